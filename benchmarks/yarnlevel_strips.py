@@ -135,41 +135,60 @@ def main() -> None:
     asked = parser.parse_args()
     tests = {fabric: strips(asked.folder, fabric) for fabric in Fabric}
     printed = {fabric: as_measured(sample("acrylic", fabric)) for fabric in Fabric}
-    rows = []
     print("simulated over measured strain at", ", ".join(map(str, STRESSES)), "N/mm")
-    for fabric, entry in printed.items():
-        law = yarn_law(entry, asked.friction)
-        for strip in tests[fabric]:
-            rows.append(strain_ratio(law, strip))
-            shown = ", ".join(f"{value:.2f}" for value in rows[-1])
-            print(f"  {fabric} along the {strip.direction}: {shown}", flush=True)
-    print("rms factor:", ", ".join(f"{v:.2f}" for v in rms_factor(np.array(rows))))
+    ratios = strain_ratios(printed, tests, asked.friction)
+    names = [
+        f"{fabric} along the {strip.direction}" for fabric in tests for strip in tests[fabric]
+    ]
+    for name, row in zip(names, ratios, strict=True):
+        print(f"  {name}: {_shown(row)}")
+    print("rms factor:", _shown(rms_factor(ratios)), flush=True)
     rng = np.random.default_rng(20)
-    factors, failed = [], 0
+    draws, failed = [], 0
     for _ in range(asked.draws):
         shared = rng.standard_normal(2)
-        entries = [drawn(entry, rng, shared, asked.specimens) for entry in printed.values()]
+        entries = {
+            fabric: drawn(entry, rng, shared, asked.specimens) for fabric, entry in printed.items()
+        }
         try:
-            laws = [yarn_law(entry, asked.friction) for entry in entries]
+            draws.append(strain_ratios(entries, tests, asked.friction))
         except KnitcoreError:
             failed += 1
-            continue
-        factors.append(
-            rms_factor(
-                np.array(
-                    [
-                        strain_ratio(law, strip)
-                        for law, entry in zip(laws, entries, strict=True)
-                        for strip in tests[entry.fabric]
-                    ]
-                )
-            )
-        )
-    if factors:
-        low, middle, high = np.quantile(factors, [0.05, 0.5, 0.95], axis=0)
-        for name, values in (("5 %", low), ("median", middle), ("95 %", high)):
-            print(f"  {name} of {len(factors)} draws:", ", ".join(f"{v:.2f}" for v in values))
-        print(f"  {failed} draws gave no law")
+    if draws:
+        print(f"90 % of {len(draws)} draws of the inputs ({failed} more gave no law):")
+        for name, own in zip(names, np.swapaxes(draws, 0, 1), strict=True):
+            ends = intervals(own)
+            inside = int(np.sum((ends[0] <= 1.0) & (ends[1] >= 1.0)))
+            known = int(np.isfinite(ends[0]).sum())
+            print(f"  {name}: {_spans(ends)}; 1 lies inside {inside} of {known}")
+        print("rms factor:", _spans(intervals(np.array([rms_factor(draw) for draw in draws]))))
+
+
+def strain_ratios(
+    entries: dict[Fabric, Sample], tests: dict[Fabric, list[MeasuredStrip]], friction: float
+) -> Array:
+    """(tests, stresses): simulated over measured strain."""
+    return np.array(
+        [
+            strain_ratio(law, strip)
+            for fabric, entry in entries.items()
+            for law in [yarn_law(entry, friction)]
+            for strip in tests[fabric]
+        ]
+    )
+
+
+def intervals(draws: Array) -> Array:
+    """(2, stresses): ends of the 90 % interval; NaN where not all draws reach the stress."""
+    return np.asarray(np.quantile(draws, [0.05, 0.95], axis=0))
+
+
+def _shown(values: Array) -> str:
+    return ", ".join(f"{value:.2f}" for value in values)
+
+
+def _spans(ends: Array) -> str:
+    return ", ".join(f"{low:.2f} to {high:.2f}" for low, high in ends.T)
 
 
 if __name__ == "__main__":

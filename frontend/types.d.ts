@@ -2700,6 +2700,46 @@ export interface TrellisResult {
   shear_stress_n_per_mm: number[];
 }
 
+/** A repeat, its yarn, and how many stitches go around. */
+export interface TubeRequest {
+  chart: string | PureFabricChart;
+  /** Identifier of a material of the library. */
+  material: string;
+  /** Yarn per stitch; the material's by default. */
+  loop_length_mm?: number | null;
+  /** Stitches around, a multiple of the repeat's. */
+  wales: number;
+  /** Whether the face is outside. */
+  face_outside?: boolean;
+}
+
+/** A tube free of force, and the same repeat as a flat fabric. */
+export interface TubeResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
+  kind: "tube";
+  wales: number;
+  face_outside: boolean;
+  /** Of the surface at the mean height of the yarn. */
+  diameter_mm: number;
+  /** 90 % interval for knitted cloth. */
+  diameter_interval_mm: [number, number];
+  /** Width of a stitch, around on that surface. */
+  cell_course_mm: number;
+  cell_course_interval_mm: [number, number];
+  /** Height of a stitch. */
+  cell_wale_mm: number;
+  cell_wale_interval_mm: [number, number];
+  /** Of a stitch. */
+  energy_n_mm: number;
+  /** Width of a stitch of the flat fabric. */
+  flat_course_mm: number;
+  flat_wale_mm: number;
+  flat_energy_n_mm: number;
+  yarn: YarnResult;
+  notes: string[];
+}
+
 /** The minimum that the shape is, or leads to, once its mirror symmetries are dropped. */
 export interface UnmirroredResult {
   /** Whether the mirrored shape is that minimum. */

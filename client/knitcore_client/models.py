@@ -1143,6 +1143,20 @@ class TrellisRequest(TypedDict):
     """Angle from a bar of the frame to the rows."""
 
 
+class TubeRequest(TypedDict):
+    """A repeat, its yarn, and how many stitches go around."""
+
+    chart: str | PureFabricChart
+    material: str
+    """Identifier of a material of the library."""
+    loop_length_mm: NotRequired[float | None]
+    """Yarn per stitch; the material's by default."""
+    wales: int
+    """Stitches around, a multiple of the repeat's."""
+    face_outside: NotRequired[bool]
+    """Whether the face is outside."""
+
+
 class UploadedFile(TypedDict):
     """A file's name and its content."""
 
@@ -3018,6 +3032,34 @@ class TrellisResult(BaseModel):
     """Moment over the relaxed area."""
 
 
+class TubeResult(BaseModel):
+    """A tube free of force, and the same repeat as a flat fabric."""
+
+    interval_source: str
+    """What the 90 % intervals rest on."""
+    kind: Literal["tube"] = "tube"
+    wales: int
+    face_outside: bool
+    diameter_mm: float
+    """Of the surface at the mean height of the yarn."""
+    diameter_interval_mm: tuple[float, float]
+    """90 % interval for knitted cloth."""
+    cell_course_mm: float
+    """Width of a stitch, around on that surface."""
+    cell_course_interval_mm: tuple[float, float]
+    cell_wale_mm: float
+    """Height of a stitch."""
+    cell_wale_interval_mm: tuple[float, float]
+    energy_n_mm: float
+    """Of a stitch."""
+    flat_course_mm: float
+    """Width of a stitch of the flat fabric."""
+    flat_wale_mm: float
+    flat_energy_n_mm: float
+    yarn: YarnResult
+    notes: list[str]
+
+
 class UnmirroredResult(BaseModel):
     """The minimum that the shape is, or leads to, once its mirror symmetries are dropped."""
 
@@ -3181,6 +3223,7 @@ JobResult = (
     | StretchResult
     | SweepResult
     | TrellisResult
+    | TubeResult
     | WholeResult
 )
 """The result of a job; its ``kind`` says which."""

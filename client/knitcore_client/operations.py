@@ -86,6 +86,8 @@ from knitcore_client.models import (
     SweepResult,
     TrellisRequest,
     TrellisResult,
+    TubeRequest,
+    TubeResult,
     VersionResult,
     WholeRequest,
     WholeResult,
@@ -266,6 +268,10 @@ class AsyncOperations:
         """Shear a square in a hinged frame."""
         return await self._ask(TrellisResult, "POST", "/trellis", request)
 
+    async def tube(self, **request: Unpack[TubeRequest]) -> TubeResult:
+        """Relax a repeat in the round."""
+        return await self._ask(TubeResult, "POST", "/tube", request)
+
     async def version(self) -> VersionResult:
         """The version of the service."""
         return await self._ask(VersionResult, "GET", "/version", {})
@@ -357,6 +363,8 @@ class AsyncOperations:
         self, kind: Literal["trellis"], **request: Unpack[TrellisRequest]
     ) -> JobStatus: ...
     @overload
+    async def submit(self, kind: Literal["tube"], **request: Unpack[TubeRequest]) -> JobStatus: ...
+    @overload
     async def submit(
         self, kind: Literal["whole"], **request: Unpack[WholeRequest]
     ) -> JobStatus: ...
@@ -437,6 +445,8 @@ class AsyncOperations:
     async def run(
         self, kind: Literal["trellis"], **request: Unpack[TrellisRequest]
     ) -> TrellisResult: ...
+    @overload
+    async def run(self, kind: Literal["tube"], **request: Unpack[TubeRequest]) -> TubeResult: ...
     @overload
     async def run(self, kind: Literal["whole"], **request: Unpack[WholeRequest]) -> WholeResult: ...
 
@@ -617,6 +627,10 @@ class Operations:
         """Shear a square in a hinged frame."""
         return self._ask(TrellisResult, "POST", "/trellis", request)
 
+    def tube(self, **request: Unpack[TubeRequest]) -> TubeResult:
+        """Relax a repeat in the round."""
+        return self._ask(TubeResult, "POST", "/tube", request)
+
     def version(self) -> VersionResult:
         """The version of the service."""
         return self._ask(VersionResult, "GET", "/version", {})
@@ -681,6 +695,8 @@ class Operations:
     def submit(self, kind: Literal["sweep"], **request: Unpack[SweepRequest]) -> JobStatus: ...
     @overload
     def submit(self, kind: Literal["trellis"], **request: Unpack[TrellisRequest]) -> JobStatus: ...
+    @overload
+    def submit(self, kind: Literal["tube"], **request: Unpack[TubeRequest]) -> JobStatus: ...
     @overload
     def submit(self, kind: Literal["whole"], **request: Unpack[WholeRequest]) -> JobStatus: ...
 
@@ -748,6 +764,8 @@ class Operations:
     def run(self, kind: Literal["sweep"], **request: Unpack[SweepRequest]) -> SweepResult: ...
     @overload
     def run(self, kind: Literal["trellis"], **request: Unpack[TrellisRequest]) -> TrellisResult: ...
+    @overload
+    def run(self, kind: Literal["tube"], **request: Unpack[TubeRequest]) -> TubeResult: ...
     @overload
     def run(self, kind: Literal["whole"], **request: Unpack[WholeRequest]) -> WholeResult: ...
 

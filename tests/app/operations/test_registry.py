@@ -275,7 +275,7 @@ def test_a_command_loads_no_other_operation() -> None:
     assert "fastapi" not in loaded.stdout
 
 
-YARN_ALONE = {"characterise", "material", "relax", "rs", "sweep", "whole"}
+YARN_ALONE = {"characterise", "material", "relax", "rs", "sweep", "tube", "whole"}
 """They compute from the yarn, not from laws; the address of `material` names the laws."""
 
 

@@ -1,0 +1,115 @@
+"""A repeat relaxed in the round: a long tube of so many wales."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from app.context import Context
+from app.models.base import Ends, IntervalResult
+from app.models.yarn_level import StitchRequest, YarnResult
+from app.operations.registry import Command, Operation
+from knitcore.materials.uncertainty import (
+    YARN_LEVEL_ERRORS,
+    YARN_LEVEL_SIZE_LOG_SD,
+    log_interval,
+)
+from knitcore.yarnlevel.bending import MAX_STITCHES
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.tube import MAX_WALES, MIN_WALES, in_the_round
+
+
+class TubeRequest(StitchRequest):
+    """A repeat, its yarn, and how many stitches go around."""
+
+    wales: int = Field(
+        ge=MIN_WALES, le=MAX_WALES, description="Stitches around, a multiple of the repeat's."
+    )
+    face_outside: bool = Field(True, description="Whether the face is outside.")
+
+
+class TubeResult(IntervalResult):
+    """A tube free of force, and the same repeat as a flat fabric."""
+
+    kind: Literal["tube"] = "tube"
+    wales: int
+    face_outside: bool
+    diameter_mm: float = Field(description="Of the surface at the mean height of the yarn.")
+    diameter_interval_mm: Ends = Field(description="90 % interval for knitted cloth.")
+    cell_course_mm: float = Field(description="Width of a stitch, around on that surface.")
+    cell_course_interval_mm: Ends
+    cell_wale_mm: float = Field(description="Height of a stitch.")
+    cell_wale_interval_mm: Ends
+    energy_n_mm: float = Field(description="Of a stitch.")
+    flat_course_mm: float = Field(description="Width of a stitch of the flat fabric.")
+    flat_wale_mm: float
+    flat_energy_n_mm: float
+    yarn: YarnResult
+    notes: list[str]
+
+
+def tube(request: TubeRequest, context: Context) -> TubeResult:
+    """Relax a repeat in the round: sizes and energy of a stitch of a long tube, free of force.
+
+    Courses are closed rings, and the tube's ends are left out.
+
+    Raises
+    ------
+    InputError
+        If the repeat is too large or does not go around a whole number of times.
+    ConvergenceError
+        If the repeat is not stable without its symmetries, or the tube is too narrow for it.
+    """
+    repeat = request.repeat(MAX_STITCHES)
+    used = request.yarn(repeat, context)
+    flat = relax(repeat, used.yarn, used.loop_length_mm, cancelled=context.cancelled)
+    found = in_the_round(
+        flat, request.wales, face_outside=request.face_outside, cancelled=context.cancelled
+    )
+    around, up, across = (
+        log_interval(size, YARN_LEVEL_SIZE_LOG_SD)
+        for size in (found.cell_course_mm, found.cell_wale_mm, found.diameter_mm)
+    )
+    return TubeResult.of(
+        found,
+        cell_course_interval_mm=around,
+        cell_wale_interval_mm=up,
+        diameter_interval_mm=across,
+        interval_source=YARN_LEVEL_ERRORS,
+        yarn=YarnResult.of(used, used.yarn),
+        notes=list(flat.notes),
+    )
+
+
+def _lines(r: TubeResult) -> list[str]:
+    side = "face" if r.face_outside else "back"
+    thick, wide, high = r.diameter_interval_mm, r.cell_course_interval_mm, r.cell_wale_interval_mm
+    wider, higher = (
+        f"{100 * (size / flat - 1):+.1f} %"
+        for size, flat in (
+            (r.cell_course_mm, r.flat_course_mm),
+            (r.cell_wale_mm, r.flat_wale_mm),
+        )
+    )
+    return [
+        f"tube            {r.wales} stitches around, its {side} outside",
+        f"diameter        {r.diameter_mm:.1f} mm ({thick[0]:.0f} to {thick[1]:.0f})",
+        f"stitch          {r.cell_course_mm:.3f} mm wide ({wide[0]:.2f} to {wide[1]:.2f}), "
+        f"{r.cell_wale_mm:.3f} mm high ({high[0]:.2f} to {high[1]:.2f})",
+        f"against flat    {wider} in width, {higher} in height",
+        f"energy          {r.energy_n_mm:.4f} N·mm a stitch, flat {r.flat_energy_n_mm:.4f}",
+    ]
+
+
+OPERATION = Operation(
+    tube,
+    tag="yarn level",
+    summary="Relax a repeat in the round",
+    example={"chart": "K", "material": "acrylic", "wales": 60},
+    job=True,
+    command=Command(
+        _lines,
+        help="Relax the repeat CHART as a long tube of --wales stitches around, without friction.",
+    ),
+)

@@ -1,0 +1,37 @@
+"""``tube``: a repeat in the round, on the command line and over REST."""
+
+from __future__ import annotations
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+from tests.app.command_line import run
+
+
+def test_a_tube_is_the_same_over_rest_and_on_the_command_line(client: TestClient) -> None:
+    asked = {"chart": "K", "material": "cotton", "wales": 60}
+    answer = client.post("/api/v1/tube", json=asked)
+    assert answer.status_code == 200, answer.text
+    found = answer.json()
+    told = run("tube", "stockinette", "--material", "cotton", "--wales", 60)
+    assert told["diameter_mm"] == pytest.approx(found["diameter_mm"], rel=1e-9)
+    low, high = found["diameter_interval_mm"]
+    assert low < found["diameter_mm"] < high
+    assert found["energy_n_mm"] < found["flat_energy_n_mm"]  # it curls that way by itself
+
+
+def test_the_command_compares_the_tube_with_flat_fabric() -> None:
+    asked = ["tube", "stockinette", "--material", "cotton", "--wales", "60", "--no-face-outside"]
+    told = CliRunner().invoke(main, asked)
+    assert told.exit_code == 0, told.stderr
+    assert "its back outside" in told.stdout
+    assert "against flat" in told.stdout
+
+
+def test_a_repeat_goes_around_a_whole_number_of_times(client: TestClient) -> None:
+    asked = {"chart": "KP", "material": "acrylic", "wales": 25}
+    answer = client.post("/api/v1/tube", json=asked)
+    assert answer.status_code == 422
+    assert answer.json()["field"] == "wales"
