@@ -137,9 +137,7 @@ def main() -> None:
     printed = {fabric: as_measured(sample("acrylic", fabric)) for fabric in Fabric}
     print("simulated over measured strain at", ", ".join(map(str, STRESSES)), "N/mm")
     ratios = strain_ratios(printed, tests, asked.friction)
-    names = [
-        f"{fabric} along the {strip.direction}" for fabric in tests for strip in tests[fabric]
-    ]
+    names = [f"{fabric} along the {strip.direction}" for fabric in tests for strip in tests[fabric]]
     for name, row in zip(names, ratios, strict=True):
         print(f"  {name}: {_shown(row)}")
     print("rms factor:", _shown(rms_factor(ratios)), flush=True)
