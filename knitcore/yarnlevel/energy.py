@@ -24,7 +24,7 @@ SPACING_PER_BENDING = 100.0
 """Stiffness of the spacing penalty in units of B / L: keeps the samples evenly spread."""
 STIFF_SPACING_PER_BENDING = 1000.0
 """The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
-the lengths, is then convex in them. It costs 1e-4 of the energy, so the last steps go without."""
+the lengths, is then convex in them. It costs 1e-4 of the energy, so the fine grid goes without."""
 BLOCK = 12
 """Unknowns in a block of the sparse Hessian: those of four control points."""
 PENALTY_PER_BENDING = 3e4

@@ -150,10 +150,6 @@ class Search:
         best = self.best()
         state = refined_state(self.energy.cell, best.state, energy.cell)
         tension = None if energy.held.size else best.tension
-        if self.energy.spacing_per_bending != energy.spacing_per_bending:
-            nearly = replace(energy, spacing_per_bending=self.energy.spacing_per_bending)
-            near = self._minimised(nearly, state, tension, self.options)
-            state, tension = near.state, near.tension
         found = self._minimised(energy, state, tension, options)
         if outcome(energy, found) not in (RELAXED, UNSETTLED):
             # between the old samples the cores may overlap: push them apart first
