@@ -3,6 +3,7 @@
 import { listenToKeys } from "./actions/registry.js";
 import { ApiError, api, isAbort } from "./api.js";
 import { Painter } from "./chart/painter.js";
+import { isDark, onTheme } from "./studio/palette.js";
 import { ChartView } from "./chart/view.js";
 import { ChartDocument } from "./core/document.js";
 import { exampleGrid } from "./core/example.js";
@@ -51,7 +52,6 @@ sharePlaces(view, studio, keeper.windows);
 const open = panelOpener(studio);
 /** @type {(() => void)[]} */
 const themed = [];
-const dark = matchMedia("(prefers-color-scheme: dark)");
 
 /** @type {import("./actions/action.js").ActionContext} */
 const context = {
@@ -61,17 +61,15 @@ const context = {
   open: (name) => void open(name, context),
   toggleTheme: () => {
     const root = document.documentElement;
-    const now = root.dataset.theme ?? (dark.matches ? "dark" : "light");
-    root.dataset.theme = now === "dark" ? "light" : "dark";
+    root.dataset.theme = isDark() ? "light" : "dark";
     saveSettings({ theme: root.dataset.theme });
-    retheme();
   },
 };
 const retheme = () => {
   view.retheme();
   for (const redraw of themed) redraw();
 };
-dark.addEventListener("change", retheme);
+onTheme(retheme);
 
 const stretcher = new Stretcher(studio);
 startPoser(studio);
@@ -137,6 +135,7 @@ const loadLists = async () => {
   try {
     const [{ materials }, { patterns }] = await Promise.all([api.materials(), api.patterns()]);
     studio.materials.value = materials;
+    await nextTask();
     studio.shelf.value = patterns
       .filter(({ repeat }) => isChartText(repeat.replaceAll("/", "\n")))
       .map(({ id, name, repeat, note }) => new Ink(id, name, motifGrid(repeat), note));
@@ -146,6 +145,7 @@ const loadLists = async () => {
     else studio.tellProblem(error.problem);
   }
 };
+await nextTask();
 void loadLists();
 void import("./services/account.js").then(({ showUser }) => showUser(studio));
 
@@ -156,6 +156,7 @@ watchConnection(studio, () => {
   showAgain();
 });
 
+await nextTask();
 const elsewhere = openAddressed(studio, keeper);
 if (!kept && !elsewhere) {
   offerTour(byId("topbar"), context);

@@ -79,6 +79,14 @@ export function nextTask() {
   return new Promise((resolve) => setTimeout(resolve));
 }
 
+/** Act on each, in a task of its own. @template T @param {Iterable<T>} all @param {(each: T) => void} act */
+export async function inTurn(all, act) {
+  for (const each of all) {
+    await nextTask();
+    act(each);
+  }
+}
+
 /** Until the page has nothing to do, or for two seconds. */
 export function idle() {
   return new Promise((resolve) => {

@@ -9,13 +9,13 @@
 
 import { ApiError, api } from "../api.js";
 import { atRest, shownOverlay } from "../studio/overlays.js";
+import { onTheme, readPalette } from "../studio/palette.js";
 import { along } from "../core/directions.js";
 import { outlineText } from "../core/snapshot.js";
-import { h } from "../dom.js";
+import { h, nextTask } from "../dom.js";
 import { icon } from "../icons.js";
 import { ViewLink } from "./fabric/link.js";
 import { Still } from "./fabric/still.js";
-import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
 import { problemText } from "../widgets/problem.js";
 import { POSES, wordsOf } from "../studio/seeing.js";
@@ -86,6 +86,7 @@ export function fabricview(host, studio, view) {
       if (pass) tellFrame({ pass });
     }
     if (data.view === "seen") knitted();
+    if (data.view === "lost") beStill();
     if (data.view === "none") {
       blind = true;
       status.replaceChildren(icon("warning"), problemText(BLIND));
@@ -169,6 +170,7 @@ export function fabricview(host, studio, view) {
     sending = true;
     host.toggleAttribute("data-sending", true);
     if (!live) beStill();
+    await nextTask();
     try {
       sent = "";
       const answer = await api.view(studio.designId, asked);
@@ -254,7 +256,7 @@ export function fabricview(host, studio, view) {
   onTheme(soon);
   studio.stretch.watch(describe);
   studio.step.listen(describe);
-  now();
+  void nextTask().then(now);
   return () => {
     shown = ""; // a restarted service has new scenes, so the frame must connect anew
     const test = pulled(studio);
@@ -280,15 +282,16 @@ function wanted(studio, view) {
   const colour = seeing.yarnColours.value === "chart" ? ofChart : seeing.yarnColours.value;
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
   const { rows, columns } = chart.grid;
+  const { written: palette } = readPalette();
   const seen = view.viewport.visible(chart.grid);
   if (posed?.piece) {
-    return { ...studio.request, ...posed.piece, colour: "fabric", palette: palette(), curl: { id: posed.id } };
+    return { ...studio.request, ...posed.piece, colour: "fabric", palette, curl: { id: posed.id } };
   }
   return {
     ...studio.request,
     outline: chart.shaped ? outlineText(chart.outline, columns) : null,
     colour: /** @type {ViewRequest["colour"]} */ (colour),
-    palette: palette(),
+    palette,
     regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],
     rectangles: studio.rectangles.value,
     rectangle_groups: seeing.groups.value,
@@ -316,17 +319,4 @@ function poseText(studio) {
   if (posed.value) return wordsOf(posed.value);
   if (value === "flat") return "Relaxed, held flat";
   return `${POSES[value]}: being computed`;
-}
-
-/** The theme's colours. @returns {NonNullable<ViewRequest["palette"]>} */
-function palette() {
-  const style = getComputedStyle(document.documentElement);
-  /** @param {string} name */
-  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
-  return {
-    stockinette: colour("stockinette"),
-    garter: colour("garter"),
-    rib: colour("rib"),
-    seed: colour("seed"),
-  };
 }

@@ -14,7 +14,7 @@ import { motifText } from "../core/motif.js";
 import { QUARTERS, surroundings } from "../core/segments.js";
 import { ownInk, ownPatterns } from "../core/shelf.js";
 import { loadShelf, saveShelf } from "../core/store.js";
-import { h } from "../dom.js";
+import { h, inTurn } from "../dom.js";
 import { iconButton, textButton } from "../widgets/buttons.js";
 
 const SIDE = 34;
@@ -67,8 +67,9 @@ export function shelf(host, studio, context) {
     const what = JSON.stringify([inks.map(({ id, name }) => [id, name]), palette]);
     if (what !== shown) {
       shown = what;
+      const swatches = inks.map((ink) => ({ ink, picture: h("img", { class: "thumbnail", alt: "" }) }));
       list.replaceChildren(
-        ...inks.map((ink) =>
+        ...swatches.map(({ ink, picture }) =>
           h(
             "button",
             {
@@ -78,11 +79,14 @@ export function shelf(host, studio, context) {
               title: ink.note || ink.name,
               onclick: () => (studio.ink.value = ink),
             },
-            thumbnail(ink, palette, chart.region(ink.target.slice(7))?.colour ?? ""),
+            picture,
             h("span", { class: "ellipsis" }, ink.name),
           ),
         ),
       );
+      void inTurn(swatches, ({ ink, picture }) => {
+        picture.src = thumbnail(ink, palette, chart.region(ink.target.slice(7))?.colour ?? "");
+      });
     }
     for (const element of list.children) {
       const checked = String(element.id === `ink-${chosen.id}`);
@@ -112,7 +116,7 @@ export function shelf(host, studio, context) {
 }
 
 /**
- * An image, not a canvas: each canvas on the page is a layer that every frame has to blend.
+ * Address of an image, not a canvas: each canvas on the page is a layer that every frame has to blend.
  *
  * @param {Ink} ink
  * @param {Palette} palette
@@ -123,7 +127,7 @@ function thumbnail(ink, palette, colour) {
   const canvas = h("canvas", { width: side, height: side });
   const context = canvas.getContext("2d", { willReadFrequently: true }); // reading from a GPU would stop it
   drawThumbnail(/** @type {CanvasRenderingContext2D} */ (context), side, ink, palette, colour);
-  return h("img", { src: canvas.toDataURL(), class: "thumbnail", alt: "" });
+  return canvas.toDataURL();
 }
 
 /**

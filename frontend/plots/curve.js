@@ -10,10 +10,13 @@
 
 import { ApiError, api, isAbort } from "../api.js";
 import { Latest } from "../core/latest.js";
+import { paced } from "../core/paced.js";
 import { FABRICS } from "../core/segments.js";
 import { scopeOf } from "../services/scope.js";
-import { drawPlot, loadPlotly } from "./plotly.js";
+import { drawPlot, loadPlotly, movePoint } from "./plotly.js";
 
+/** Number of the trace that shows the step. */
+const STEP = FABRICS.length + 3;
 /** The service is asked this long after a change. */
 const DELAY_MS = 300;
 
@@ -69,11 +72,12 @@ export function curvePlot(host, studio) {
       }
     });
   };
-  const redraw = () => {
+  // In a task of its own: drawing takes too long for the end of a stroke, which changes the test.
+  const redraw = paced(() => {
     if (host.hidden) return;
     void draw();
     ask();
-  };
+  }, 0);
   studio.stretch.listen(redraw);
   studio.material.listen(redraw);
   studio.seeing.pull.listen(redraw);
@@ -82,11 +86,8 @@ export function curvePlot(host, studio) {
     const stretch = shownStretch(studio);
     if (host.hidden || !drawn || !plotly || !stretch) return;
     const { step } = studio;
-    void plotly.restyle(
-      host,
-      { x: [[100 * (stretch.strain[step.value] ?? 0)]], y: [[stretch.stress_n_per_mm[step.value] ?? 0]] },
-      [FABRICS.length + 3],
-    );
+    const place = { x: [100 * (stretch.strain[step.value] ?? 0)], y: [stretch.stress_n_per_mm[step.value] ?? 0] };
+    void movePoint(host, STEP, place);
   });
   new ResizeObserver(() => {
     if (drawn && (host.clientWidth !== width || host.clientHeight !== height)) void draw();

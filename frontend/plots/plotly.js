@@ -4,13 +4,18 @@
  * @typedef {Record<string, unknown>} Trace
  * @typedef {object} Plotly
  * @property {(host: HTMLElement, traces: Trace[], layout: object, config: object) => Promise<void>} react
- * @property {(host: HTMLElement, update: object, traces: number[]) => Promise<void>} restyle
+ * @property {(host: HTMLElement, frame: object, how: object) => Promise<void>} animate
  */
 
 import { idle, nextTask } from "../dom.js";
 
 /** @type {Promise<Plotly> | null} */
 let loading = null;
+
+/** What a plot is to show, and its drawing while that is under way. @type {WeakMap<HTMLElement, [Trace[], object]>} */
+const wanted = new WeakMap();
+/** @type {WeakMap<HTMLElement, Promise<void>>} */
+const drawings = new WeakMap();
 
 const CONFIG = { displayModeBar: false, responsive: false };
 
@@ -27,13 +32,36 @@ export function loadPlotly() {
  * @param {Trace[]} traces
  * @param {object} layout
  */
-export async function drawPlot(host, traces, layout) {
+export function drawPlot(host, traces, layout) {
+  wanted.set(host, [traces, layout]);
+  let drawing = drawings.get(host);
+  if (!drawing) drawings.set(host, (drawing = draw(host).finally(() => drawings.delete(host))));
+  return drawing;
+}
+
+/** Draws what is wanted, in tasks of their own: the axes, half of the curves, all of them. @param {HTMLElement} host */
+async function draw(host) {
   const plotly = await loadPlotly();
-  if (!host.classList.contains("js-plotly-plot")) {
-    await plotly.react(host, [], layout, CONFIG); // the axes first: all at once would be one long task
+  let share = host.classList.contains("js-plotly-plot") ? 1 : 0;
+  for (let shown; shown !== wanted.get(host); share = Math.min(1, share + 0.5)) {
     await nextTask();
+    const now = /** @type {[Trace[], object]} */ (wanted.get(host));
+    await plotly.react(host, now[0].slice(0, share * now[0].length), now[1], CONFIG);
+    if (share === 1) shown = now;
   }
-  await plotly.react(host, traces, layout, CONFIG);
+}
+
+/**
+ * Move a trace of one point; the rest is not drawn anew, which would take twice as long.
+ *
+ * @param {HTMLElement} host
+ * @param {number} trace
+ * @param {{x: number[], y: number[]}} place
+ */
+export async function movePoint(host, trace, place) {
+  const plotly = await loadPlotly();
+  const atOnce = { mode: "immediate", frame: { redraw: false, duration: 0 }, transition: { duration: 0 } };
+  await plotly.animate(host, { data: [place], traces: [trace] }, atOnce);
 }
 
 async function load() {

@@ -6,6 +6,7 @@
  */
 
 import { figure } from "../core/format.js";
+import { paced } from "../core/paced.js";
 import { FABRICS } from "../core/segments.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -123,13 +124,14 @@ export function rigidityPlot(host, studio) {
         : "Stiffness of the fabrics of all materials.",
     );
   };
+  const soon = paced(draw, 0); // once for all that changes together
   studio.prediction.listen(({ busy }) => {
-    if (!busy) draw();
+    if (!busy) soon();
   });
-  studio.materials.listen(draw);
-  studio.material.listen(draw);
-  new ResizeObserver(draw).observe(host);
-  return draw;
+  studio.materials.listen(soon);
+  studio.material.listen(soon);
+  new ResizeObserver(soon).observe(host);
+  return soon;
 }
 
 /**

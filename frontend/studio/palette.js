@@ -1,6 +1,8 @@
 /**
  * Colours of the canvas, taken from the style sheet, so that both themes have one source.
  *
+ * @import {Fabric} from "../types.js"
+ *
  * @typedef {object} Palette
  * @property {string} text
  * @property {string} muted
@@ -11,14 +13,44 @@
  * @property {number[]} knit colour of a knit: red, green, blue
  * @property {number[]} purl
  * @property {number[][]} fabrics by phase
+ * @property {Record<Fabric, string>} written the same as #rrggbb
  * @property {boolean} dark
  */
 
+import { FABRICS } from "../core/segments.js";
+
+const systemIsDark = () => matchMedia("(prefers-color-scheme: dark)");
+
+/** Of both themes, once they were read: reading makes the browser work out the page's styles. @type {Map<boolean, Palette>} */
+const known = new Map();
+
 /** @returns {Palette} */
 export function readPalette() {
+  const dark = isDark();
+  let found = known.get(dark);
+  if (!found) known.set(dark, (found = palette(dark)));
+  return found;
+}
+
+/** Whether the page is in its dark theme now. */
+export function isDark() {
+  return (document.documentElement.dataset.theme ?? (systemIsDark().matches ? "dark" : "light")) === "dark";
+}
+
+/** Call when that changes. @param {() => void} listener */
+export function onTheme(listener) {
+  systemIsDark().addEventListener("change", listener);
+  new MutationObserver(listener).observe(document.documentElement, { attributeFilter: ["data-theme"] });
+}
+
+/** @param {boolean} dark @returns {Palette} */
+function palette(dark) {
   const style = getComputedStyle(document.documentElement);
   /** @param {string} name */
   const read = (name) => style.getPropertyValue(name).trim();
+  const written = /** @type {Record<Fabric, string>} */ (
+    Object.fromEntries(FABRICS.map((fabric) => [fabric, read(`--${fabric}`)]))
+  );
   return {
     text: read("--text"),
     muted: read("--muted"),
@@ -28,8 +60,9 @@ export function readPalette() {
     odd: read("--odd"),
     knit: channels(read("--knit")),
     purl: channels(read("--purl")),
-    fabrics: ["--stockinette", "--garter", "--rib", "--seed"].map((name) => channels(read(name))),
-    dark: read("color-scheme") === "dark",
+    fabrics: FABRICS.map((fabric) => channels(written[fabric])),
+    written,
+    dark,
   };
 }
 

@@ -9,8 +9,8 @@
  */
 
 import { ApiError, fetched } from "../../api.js";
+import { isDark } from "../../studio/palette.js";
 import { download, fileName } from "../../services/exporter.js";
-import { isDark } from "./theme.js";
 
 /** @type {Record<Kind, string>} */
 const ENDINGS = { page: "html", recording: "viser", solid: "glb" };
