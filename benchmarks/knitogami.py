@@ -82,7 +82,7 @@ def main() -> None:
     print("chart, stitches, share as named,", ", ".join(NAMES), "(°), energy given off, s of CPU")
     for name, chart in charts(asked.folder):
         piece, sheet = curl(chart, yarn), sheet_of(chart, yarn)
-        flat, _ = sheet.energy(sheet.flat_mm, sheet.pairs(sheet.flat_mm, sheet.thickness_mm))
+        flat, _ = sheet.energy(sheet.flat_mm, sheet.pairs(sheet.flat_mm))
         share, by_kind = folds(piece)
         state = "" if piece.converged else " NOT converged"
         print(

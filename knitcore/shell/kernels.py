@@ -14,7 +14,8 @@ Unknowns are the corners of the stitches, ``x`` (n, 3) in mm. Four parts, each a
   b at a hinge, where no angle is defined: K ln²(b² / b₀²) / 2 below b₀, half its size, keeps it.
 - **Twists**: T |x₀₀ − x₁₀ − x₀₁ + x₁₁|² / 2 of a stitch.
 - **Touches**: two points of the sheet, each the mean of four corners (a corner four times, or the
-  corners of a stitch), nearer than the thickness t: k (t − d)² / 2.
+  corners of a stitch), at a distance d below t (1 + NAP). The force grows with the square of the
+  depth, for loose fibres give way first: it is k FIRM t at d = t (1 − FIRM).
 """
 
 from __future__ import annotations
@@ -32,6 +33,11 @@ RealOrComplex = NDArray[Any]
 
 WALL = 20.0
 """Stiffness of a closed fold in units of that of the hinge."""
+NAP = 0.06
+"""Reach of the outermost fibres beyond the thickness, in thicknesses."""
+FIRM = 0.007
+"""Depth below the thickness at which a touch is pressed as by a spring of the stiffness of contact,
+in thicknesses: the usual depth in a scroll."""
 
 
 @numba.njit(cache=True)
@@ -230,22 +236,30 @@ def twists(x: Array, quads: Ints, stiffness: Array, gradient: Array) -> float:
 
 
 @numba.njit(cache=True)
+def pressed(depth: float, thickness_mm: float, stiffness: float) -> tuple[float, float, float]:
+    """Energy of a touch, its force and its stiffness, at a depth in mm below the outer fibres."""
+    factor = stiffness * FIRM / ((NAP + FIRM) ** 2 * thickness_mm)
+    return factor * depth**3 / 3.0, factor * depth**2, 2.0 * factor * depth
+
+
+@numba.njit(cache=True)
 def touches(
     x: Array, points: Ints, pairs: Ints, thickness_mm: float, stiffness: float, gradient: Array
 ) -> float:
     """Energy of contact; ``points`` (k, 4) corners of a point, ``pairs`` (m, 2) points."""
     total = 0.0
     at = placed(x, points)
+    reach = (1.0 + NAP) * thickness_mm
     for k in range(pairs.shape[0]):
         i, j = pairs[k]
         dx, dy, dz = at[j, 0] - at[i, 0], at[j, 1] - at[i, 1], at[j, 2] - at[i, 2]
         square = dx * dx + dy * dy + dz * dz
-        if square >= thickness_mm * thickness_mm:
+        if square >= reach * reach:
             continue
         distance = max(np.sqrt(square), 1e-9)
-        depth = thickness_mm - distance
-        total += 0.5 * stiffness * depth * depth
-        push = 0.25 * stiffness * depth / distance
+        energy, force, _ = pressed(reach - distance, thickness_mm, stiffness)
+        total += energy
+        push = 0.25 * force / distance
         for m in range(4):
             a, b = points[i, m], points[j, m]
             gradient[a, 0] += push * dx

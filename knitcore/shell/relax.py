@@ -25,7 +25,7 @@ MEMORY = 16
 _STRIDE = 0.3
 """Longest displacement of a corner in one step, in thicknesses."""
 _SKIN = 0.8
-"""Reach of the list of near points beyond the thickness, in thicknesses."""
+"""Reach of the list of near points beyond those that touch, in thicknesses."""
 TOLERANCE = 1e-3
 """Largest force on a corner of a converged sheet, in units of its bending (``force_scale_n``), or
 of the load on a corner where that is less."""
@@ -230,5 +230,5 @@ class _Descent:
         return energy, gradient
 
     def _list(self) -> None:
-        self._pairs = self._sheet.pairs(self.x, (1.0 + _SKIN) * self._sheet.thickness_mm)
+        self._pairs = self._sheet.pairs(self.x, _SKIN * self._sheet.thickness_mm)
         self._listed = self.x

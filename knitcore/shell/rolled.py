@@ -112,4 +112,4 @@ def _shaken(strip: Sheet) -> Array:
 
 
 def _energy(sheet: Sheet, x: Array) -> float:
-    return sheet.energy(x, sheet.pairs(x, sheet.thickness_mm))[0]
+    return sheet.energy(x, sheet.pairs(x))[0]

@@ -50,8 +50,8 @@ class Sheet:
     quarters, membrane : see :func:`knitcore.shell.kernels.quarters`.
     hinges, turning : see :func:`knitcore.shell.kernels.hinges`.
     quads, twisting : see :func:`knitcore.shell.kernels.twists`.
-    thickness_mm, touch_n_per_mm : distance at which the sheet touches itself, and the stiffness of
-        contact.
+    thickness_mm, touch_n_per_mm : of the fabric, and the stiffness of its contact with itself, see
+        :func:`knitcore.shell.kernels.touches`.
     """
 
     rows: int
@@ -141,10 +141,16 @@ class Sheet:
         """(k, 2): places of these points in the flat sheet."""
         return kernels.placed(self.flat_mm, self.points)[:, :2].copy()
 
-    def pairs(self, x: Array, reach_mm: float) -> Ints:
-        """Points nearer than ``reach_mm`` that are not neighbours in the sheet."""
+    def pairs(self, x: Array, skin_mm: float = 0.0) -> Ints:
+        """Points that touch or are nearly so near, and are not neighbours in the sheet.
+
+        Parameters
+        ----------
+        skin_mm : by so much they may be farther apart.
+        """
         at = kernels.placed(x, self.points)
-        return kernels.near_pairs(at, self.home_mm, reach_mm, APART * self.thickness_mm)
+        reach = (1.0 + kernels.NAP) * self.thickness_mm + skin_mm
+        return kernels.near_pairs(at, self.home_mm, reach, APART * self.thickness_mm)
 
     def energy(self, x: Array, pairs: Ints) -> tuple[float, Array]:
         """Energy, N·mm, and its gradient (corners, 3), N."""

@@ -8,7 +8,15 @@ from numpy.typing import NDArray
 from scipy.sparse import bsr_matrix
 
 from knitcore.arrays import Array
-from knitcore.shell.kernels import bent, metric_energy, placed, turn_slope, width_slope
+from knitcore.shell.kernels import (
+    NAP,
+    bent,
+    metric_energy,
+    placed,
+    pressed,
+    turn_slope,
+    width_slope,
+)
 from knitcore.shell.sheet import Sheet
 
 Ints = NDArray[np.int64]
@@ -226,9 +234,10 @@ def _touches(
     """Corners (m, 2) and blocks (m, 3, 3) of the pairs in touch."""
     at = placed(x, points)
     touching = np.zeros(pairs.shape[0], np.bool_)
+    reach = (1.0 + NAP) * thickness_mm
     for k in range(pairs.shape[0]):
         off = at[pairs[k, 1]] - at[pairs[k, 0]]
-        touching[k] = off[0] ** 2 + off[1] ** 2 + off[2] ** 2 < thickness_mm**2
+        touching[k] = off[0] ** 2 + off[1] ** 2 + off[2] ** 2 < reach**2
     count = touching.sum()
     where = np.empty((64 * count, 2), np.int64)
     blocks = np.empty((64 * count, 3, 3))
@@ -240,11 +249,12 @@ def _touches(
         i, j = pairs[k]
         off = at[j] - at[i]
         distance = max(np.sqrt(off[0] ** 2 + off[1] ** 2 + off[2] ** 2), 1e-9)
-        bent = 0.0 if convex else 1.0 - thickness_mm / distance
+        _, force, along = pressed(reach - distance, thickness_mm, stiffness)
+        aside = 0.0 if convex else -force / distance
         for m in range(3):
             for n in range(3):
-                block[m, n] = (1.0 - bent) * off[m] * off[n] / distance**2
-            block[m, m] += bent
+                block[m, n] = (along - aside) * off[m] * off[n] / distance**2
+            block[m, m] += aside
         for s in range(8):
             for t in range(8):
                 first = points[i, s] if s < 4 else points[j, s - 4]
@@ -254,6 +264,6 @@ def _touches(
                 where[place, 1] = second
                 for m in range(3):
                     for n in range(3):
-                        blocks[place, m, n] = sign * stiffness / 16.0 * block[m, n]
+                        blocks[place, m, n] = sign / 16.0 * block[m, n]
                 place += 1
     return where, blocks

@@ -32,7 +32,7 @@ def _folded(sheet: Sheet) -> Array:
 def test_solves_with_the_matrix(rows: int, columns: int, folded: bool) -> None:
     sheet = _sheet(rows, columns)
     x = _folded(sheet) if folded else sheet.flat_mm
-    pairs = sheet.pairs(x, sheet.thickness_mm)
+    pairs = sheet.pairs(x)
     assert folded == (len(pairs) > 0) or columns == 1
     free = np.ones(x.shape, bool)
     free[: columns // 2] = False

@@ -16,6 +16,7 @@ from scipy.special import ellipe, ellipk
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.materials import material
+from knitcore.shell import kernels
 from knitcore.shell.bends import bends_of, computed
 from knitcore.shell.relax import settle
 from knitcore.shell.sheet import Sheet, sheet_of
@@ -51,6 +52,16 @@ def test_hessian_is_the_derivative_of_the_gradient(rough_mm: float) -> None:
     change = sheet.energy(x + h * way, pairs)[1] - sheet.energy(x - h * way, pairs)[1]
     assert np.allclose(matrix @ way.ravel(), change.ravel() / (2 * h), rtol=1e-5, atol=1e-6)
     assert abs(matrix - matrix.T).max() < 1e-12
+
+
+def test_a_touch_is_soft_at_first_and_firm_at_its_usual_depth() -> None:
+    thickness, stiffness = 2.5, 0.2
+    energy, force, along = kernels.pressed(0.0, thickness, stiffness)
+    assert energy == force == along == 0.0
+    firm = (kernels.NAP + kernels.FIRM) * thickness
+    _, force, along = kernels.pressed(firm, thickness, stiffness)
+    assert force == pytest.approx(stiffness * kernels.FIRM * thickness)
+    assert along == pytest.approx(2.0 * force / firm)
 
 
 def test_convex_part_of_the_hessian_is_convex() -> None:
