@@ -282,7 +282,7 @@ function fill(table, pair) {
       {},
       ...rows.map(({ label, unit, of }) => {
         const both = pair.map(of);
-        const { text, clear } = difference(both[0], both[1]);
+        const { text, clear, meet } = difference(both[0], both[1]);
         return h(
           "tr",
           {},
@@ -295,7 +295,7 @@ function fill(table, pair) {
               h("span", { class: "interval", title: pair[k].predicted.interval_source }, range(interval)),
             ),
           ),
-          h("td", { class: clear ? "clear" : "unclear" }, text, !clear && text.includes("%") && note()),
+          h("td", { class: clear ? "clear" : "unclear" }, text, meet && note()),
         );
       }),
     ),
