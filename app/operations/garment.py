@@ -189,7 +189,7 @@ class GarmentRequest(KnitterRequest):
 
 
 class RegionResult(Moduli, Extensibility):
-    """One region: its repeat, colour and size, and means over its stitches."""
+    """One region: its repeat, colour and size, and the initial moduli of its fabric."""
 
     name: str
     fill: RepeatText

@@ -12,13 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import label
 
-from knitcore.arrays import Array, runs
+from knitcore.answer.answer import Answer
+from knitcore.answer.choose import choose
+from knitcore.arrays import runs
+from knitcore.chart import StitchChart
 from knitcore.formats.chart_key import tinted
 from knitcore.formats.drawing import Box, Label, Shape
 from knitcore.formats.layout import DesignRegion, region_cells
+from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.piece import Piece
 from knitcore.materials import Material
-from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.mechanics.local import local_moduli
 
 MAX_RECTANGLES = 900
@@ -28,22 +31,20 @@ _INK, _OUTSIDE = "#222222", "#e5e1d9"
 
 @dataclass(frozen=True)
 class RegionField:
-    """Means of a region's stitches.
+    """What a region does, and where it lies.
 
     Attributes
     ----------
     name, colour : of the region.
     stitches : inside the outline and not covered by later regions.
-    modulus_course, modulus_wale : N/mm, with half the width of their 90 % intervals as a factor:
-        the value lies between modulus / factor and modulus * factor.
+    answer : of the repeat that fills it, or of the largest rectangle inside it.
     row, column : the middle of the region's largest part.
     """
 
     name: str
     colour: str
     stitches: int
-    modulus_course: tuple[float, float]
-    modulus_wale: tuple[float, float]
+    answer: Answer
     row: float
     column: float
 
@@ -59,38 +60,29 @@ def region_fields(
         If the chart needs a pure fabric that the material lacks.
     """
     rows, columns = piece.chart.rows, piece.chart.columns
-    local = local_moduli(piece.shaped.continued(), material)
-    table = local.table
     owner = np.full((rows, columns), len(regions))
     for index, region in enumerate(regions):
         owner[region_cells(region, rows, columns)] = index
-    named = [(r.name, r.colour) for r in regions] + [("rest" if regions else "all", "#8c877d")]
+    named = [(r.name, r.colour, r.fill) for r in regions]
+    named.append(("rest" if regions else "all", "#8c877d", None))
     found = []
-    for index, (name, colour) in enumerate(named):
+    for index, (name, colour, fill) in enumerate(named):
         cells = (owner == index) & piece.shaped.stitch
         if not cells.any():
             continue
-        codes = local.codes[cells]
-        course = _mean(table.modulus_course_n_per_mm[codes], table.log_sd_course[codes])
-        wale = _mean(table.modulus_wale_n_per_mm[codes], table.log_sd_wale[codes])
+        inside = piece.chart.purl[largest_rectangle(cells)]
+        answer = choose(StitchChart.parse(fill) if fill else StitchChart(inside), material)
         parts, _ = label(cells)
         largest = parts == np.bincount(parts[cells]).argmax()
         row, column = (float(np.median(place)) for place in np.nonzero(largest))
-        found.append(RegionField(name, colour, int(cells.sum()), course, wale, row, column))
+        found.append(RegionField(name, colour, int(cells.sum()), answer, row, column))
     return tuple(found)
-
-
-def _mean(modulus: Array, log_sd: Array) -> tuple[float, float]:
-    """Inverse of the mean extensibility, and the factor of its 90 % interval.
-
-    The fabrics' errors are common to all stitches, so they do not average out.
-    """
-    return 1 / float((1 / modulus).mean()), float(np.exp(Z_SCORE * log_sd.mean()))
 
 
 def field_shapes(
     piece: Piece,
     regions: Sequence[DesignRegion],
+    fields: Sequence[RegionField],
     material: Material,
     *,
     aspect: float,
@@ -99,7 +91,11 @@ def field_shapes(
     width: float,
     height: float,
 ) -> Iterator[Shape]:
-    """The field inside a box on paper, in mm; ``aspect`` is height over width of a stitch."""
+    """The field inside a box on paper, in mm; ``aspect`` is height over width of a stitch.
+
+    The stitches are those of flat cloth; ``fields`` are the piece's (:func:`region_fields`), in
+    which ribs and welts fold.
+    """
     chart, stitch = piece.chart, piece.shaped.stitch
     local = local_moduli(piece.shaped.continued(), material)
     course, wale = local.extensibility_course_mm_per_n, local.extensibility_wale_mm_per_n
@@ -124,14 +120,18 @@ def field_shapes(
         sides = scale * course[row, column], scale * wale[row, column]
         middle = left + cell * (column + 0.5), top + high * (chart.rows - 0.5 - row)
         yield _rectangle(middle, sides, _INK, 0.12)
-    scale = 0.16 * min(cell * chart.columns, high * chart.rows) / most
-    for part in region_fields(piece, regions, material):
-        sides = scale / part.modulus_course[0], scale / part.modulus_wale[0]
+    extents = [
+        (1 / part.answer.modulus_course_n_per_mm, 1 / part.answer.modulus_wale_n_per_mm)
+        for part in fields
+    ]
+    scale = 0.16 * min(cell * chart.columns, high * chart.rows) / max(map(max, extents))
+    for part, (wide, tall) in zip(fields, extents, strict=True):
+        sides = scale * wide, scale * tall
         middle = left + cell * (part.column + 0.5), top + high * (chart.rows - 0.5 - part.row)
         yield _rectangle(middle, sides, "#ffffff", 1.4)
         yield _rectangle(middle, sides, _INK, 0.7)
     share = f"one stitch in {step} × {step}" if step > 1 else "stitches"
-    note = f"large rectangles: regions; small ones: {share}"
+    note = f"large rectangles: regions; small ones: {share} of flat cloth"
     yield Label(left, top + high * chart.rows + 4.0, note, 2.8)
 
 

@@ -29,11 +29,12 @@ _CIVIDIS = np.array([[0, 32, 76], [65, 77, 107], [124, 123, 120], [187, 173, 108
 _DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
 _LEVELS, _NO_STITCH = 32, -1
 MAX_REGIONS = 12
-"""Most lines in the table of regions, as fit a page; the rest is in the CSV export."""
+"""Most lines in the table of regions, as fit a page."""
 LOCAL_ASSUMPTIONS = (
-    "Means of local values over the stitches of a region; intervals cover 90 %.",
-    "Local values come from the quarter-cell composite: the stretched, flat fabric. "
-    "At rest ribs and welts fold and give more: for a modulus at small strain, predict the repeat.",
+    "A region has the moduli of the repeat that fills it, or of the largest rectangle inside it; "
+    "intervals cover 90 %.",
+    "Maps and small rectangles show single stitches of flat cloth, without the folds of ribs and "
+    "welts, by the quarter-cell composite.",
     "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
 )
 """What the numbers of a piece with an outline take for granted."""
@@ -93,7 +94,7 @@ def _regions(
     regions: Sequence[DesignRegion],
     at_rest: SizeAtRest,
 ) -> Iterator[Shape]:
-    """Regions with their means, the maps of all stitches, and the extensibility field."""
+    """Regions with their moduli, the maps of all stitches, and the extensibility field."""
     yield Label(MARGIN_MM, 16.0, f"{name}: regions", 6.0)
     shaped = piece.shaped
     size = f"{piece.chart.columns} stitches × {piece.chart.rows} rows, {shaped.stitches} stitches"
@@ -103,19 +104,25 @@ def _regions(
     head = (
         "region",
         "stitches",
-        "flat Y course, N/mm",
-        "flat Y wale, N/mm",
+        "Y course, N/mm",
+        "Y wale, N/mm",
         "1/Y course × wale, mm/N",
     )
     for x, text in zip(places, head, strict=True):
         yield Label(x, 30.0, text, 3.0)
     yield Strokes(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
     y = 37.0
-    for part in region_fields(piece, regions, material)[:MAX_REGIONS]:
+    fields = region_fields(piece, regions, material)
+    for part in fields[:MAX_REGIONS]:
         yield Box(MARGIN_MM, y - 2.6, 3.0, 3.0, fill=tinted(part.colour))
-        sides = f"{1 / part.modulus_course[0]:.2f} × {1 / part.modulus_wale[0]:.2f}"
-        cells = (f"    {part.name[:28]}", str(part.stitches), _factor(*part.modulus_course))
-        for x, text in zip(places, (*cells, _factor(*part.modulus_wale), sides), strict=True):
+        both = [part.answer.along(direction) for direction in Direction]
+        cells = (
+            f"    {part.name[:28]}",
+            str(part.stitches),
+            *(_value(one.modulus_n_per_mm, one.modulus_interval_n_per_mm) for one in both),
+            " × ".join(f"{1 / one.modulus_n_per_mm:.2f}" for one in both),
+        )
+        for x, text in zip(places, cells, strict=True):
             yield Label(x, y, text, 3.0)
         y += 5.0
     yield from _maps(piece, material, aspect, y + 5.0)
@@ -124,6 +131,7 @@ def _regions(
     yield from field_shapes(
         piece,
         regions,
+        fields,
         material,
         aspect=aspect,
         left=MARGIN_MM,
@@ -132,10 +140,6 @@ def _regions(
         height=A4_MM[1] - top - 44.0,
     )
     yield from _assumptions(LOCAL_ASSUMPTIONS, A4_MM[1] - 30.0)
-
-
-def _factor(value: float, factor: float) -> str:
-    return f"{value:.3g}  ({value / factor:.3g} to {value * factor:.3g})"
 
 
 def _in_cm(size: SizeAtRest) -> str:

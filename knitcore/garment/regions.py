@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.choose import choose
 from knitcore.bounds import check_positive
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
@@ -16,7 +17,6 @@ from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
 from knitcore.materials.loops import loop_lengths_mm
 from knitcore.materials.uncertainty import log_interval
-from knitcore.mechanics.local import local_moduli
 from knitcore.phases import quarter_phases
 
 MISFIT = 0.10
@@ -63,7 +63,7 @@ class RegionMisfit:
 
 @dataclass(frozen=True)
 class RegionNumbers:
-    """Mean stitch-level numbers of a region: of flat cloth, without the folds of ribs and welts."""
+    """What the fabric of a region does, with the moduli of its answer."""
 
     name: str
     stitches: int
@@ -142,23 +142,22 @@ def misfits(
 def region_numbers(
     shaped: ShapedChart, regions: Sequence[Region], material: Material
 ) -> tuple[RegionNumbers, ...]:
-    """The extensibility field by region: means of the rectangles of its stitches (Fig. 4d).
+    """Initial extensibility of the fabrics that fill the regions, and its inverse.
 
     Raises
     ------
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    local = local_moduli(shaped.continued(), material)
     numbers = []
     for region in regions:
         cells = region.cells & shaped.stitch
         if not cells.any():
             continue
-        course = float(local.extensibility_course_mm_per_n[cells].mean())
-        wale = float(local.extensibility_wale_mm_per_n[cells].mean())
+        found = choose(region.fill, material)
+        course, wale = found.modulus_course_n_per_mm, found.modulus_wale_n_per_mm
         numbers.append(
-            RegionNumbers(region.name, int(cells.sum()), course, wale, 1 / course, 1 / wale)
+            RegionNumbers(region.name, int(cells.sum()), 1 / course, 1 / wale, course, wale)
         )
     return tuple(numbers)
 

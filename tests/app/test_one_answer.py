@@ -22,6 +22,7 @@ from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.formats import report
 from knitcore.formats.chart_key import ChartStyle
 from knitcore.formats.drawing import Label, Page
+from knitcore.formats.layout import DesignRegion
 from knitcore.formats.pattern import pattern_pages
 from knitcore.formats.stitch_values import write_vtu
 from knitcore.formats.yarn_mesh import course_centre_lines
@@ -29,7 +30,7 @@ from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
 from knitcore.garment.shaped import ShapedChart
 from knitcore.geometry.laid_out import laid_corners_mm, mean_stitch_mm
-from knitcore.materials import Material, material
+from knitcore.materials import Interval, Material, material
 from knitcore.yarnlibrary.store import stored_charts
 from tests.app.command_line import run
 
@@ -153,7 +154,7 @@ def _agrees_with_report(labels: set[str], answer: Answer) -> None:
             (along.modulus_n_per_mm, along.modulus_interval_n_per_mm),
             (along.relaxed_mm, along.relaxed_interval_mm),
         ):
-            assert f"{value:.3g}  ({interval.low:.3g} to {interval.high:.3g})" in labels
+            assert _with_interval(value, interval) in labels
 
 
 def _agrees_with_files(chart: StitchChart, used: Material, answer: Answer) -> None:
@@ -250,18 +251,44 @@ def test_a_target_pressure_agrees_with_the_pressure_command(
     assert value[0] == pytest.approx(middle, rel=0.01)
 
 
+@pytest.mark.parametrize("fill", [None, "KKPP"])
+def test_a_region_of_a_report_says_what_is_predicted_of_it(
+    fill: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ribs left, garter right: as a region and its rest, with a repeat or without one."""
+    rib, garter = StitchChart.parse("KKPP").resized(12, 16), StitchChart.of_fabric("garter", 12, 8)
+    chart = StitchChart(np.hstack([rib.purl, garter.purl]))
+    region = DesignRegion(
+        id="r", name="ribs", colour="#336699", fill=fill, runs=[(row, 0, 16) for row in range(12)]
+    )
+    written = _report(chart, "acrylic", monkeypatch, region)
+    for part in (rib if fill is None else StitchChart.parse(fill), garter):
+        for direction in Direction:
+            along = predict(part, material("acrylic")).along(direction)
+            assert (
+                _with_interval(along.modulus_n_per_mm, along.modulus_interval_n_per_mm) in written
+            )
+
+
 def _operation(body: dict[str, str]) -> Any:
     request = PredictRequest.model_validate(body)
     return predict_operation(request, Context(Path())).model_dump(mode="json")
 
 
+def _with_interval(value: float, interval: Interval) -> str:
+    return f"{value:.3g}  ({interval.low:.3g} to {interval.high:.3g})"
+
+
 def _report(
-    chart: StitchChart | ShapedChart, yarn: str, monkeypatch: pytest.MonkeyPatch
+    chart: StitchChart | ShapedChart,
+    yarn: str,
+    monkeypatch: pytest.MonkeyPatch,
+    *regions: DesignRegion,
 ) -> set[str]:
     """All that is written on the pages of the report."""
     pages: list[Page] = []
     monkeypatch.setattr(report, "to_pdf", lambda drawn, _title: pages.extend(drawn) or b"")
-    report.design_report(Piece.plain(chart), material(yarn), "One", ChartStyle())
+    report.design_report(Piece.plain(chart), material(yarn), "One", ChartStyle(), regions)
     return _texts(pages)
 
 
