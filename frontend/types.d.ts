@@ -2157,7 +2157,7 @@ export type RectangleGroups = "stitch" | "block" | "region";
 /** Reduction of points to constants. */
 export type Reduction = "published" | "uniform" | "recommended";
 
-/** One region: its repeat, colour and size, and means over its stitches. */
+/** One region: its repeat, colour and size, and the initial moduli of its fabric. */
 export interface RegionResult {
   extensibility_course_mm_per_n: number;
   extensibility_wale_mm_per_n: number;

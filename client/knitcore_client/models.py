@@ -2706,7 +2706,7 @@ class RSSegment(BaseModel):
 
 
 class RegionResult(BaseModel):
-    """One region: its repeat, colour and size, and means over its stitches."""
+    """One region: its repeat, colour and size, and the initial moduli of its fabric."""
 
     extensibility_course_mm_per_n: float
     extensibility_wale_mm_per_n: float
