@@ -144,7 +144,7 @@ export function inspector(host, studio) {
     shown = value;
     const part = scopeOf(studio);
     title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, part.size));
-    title.title = part.note;
+    title.title = part.note || (part.shaped && value ? value.notes[0] : "");
     // While the service is unreachable the banner says so.
     problem.hidden = !wrong || wrong.type === "offline";
     if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));

@@ -59,7 +59,7 @@ def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
     page = open_design(visitor, service, outline=WAISTED)
     expect(page.locator("#inspector h2")).to_contain_text("12 × 10")
     expect(page.locator("#inspector h2")).to_have_attribute(
-        "title", re.compile("largest rectangle inside the fabric, 8 × 10")
+        "title", re.compile("largest rectangle inside the outline, 8 x 10")
     )
     for number in ("modulus-course", "extensibility-wale", "poisson-yx"):
         expect(page.locator(f"#{number} .interval")).to_have_text(re.compile(INTERVAL))
