@@ -368,10 +368,8 @@ def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
         width, height = facts.sizes_mm[cells].mean(axis=0).tolist()
         first, last = (facts.piece.chart.columns - c for c in (columns.max(), columns.min()))
         where = f"rows {rows.min() + 1}–{rows.max() + 1}, sts {first}–{last}"
-        across, up = (
-            np.where(cells, facts.sizes_mm[..., axis], 0.0).sum(axis=1 - axis).max() / 10
-            for axis in range(2)
-        )
+        across = width * cells.sum(axis=1).max() / 10
+        up = height * cells.sum(axis=0).max() / 10
         gauge = f"{100 / width:.1f} sts, {100 / height:.1f} rows"
         cells_told = (_short(region.name), where, gauge, f"{across:.1f} × {up:.1f} cm")
         flow.row(cells_told, places, colour=region.colour)
