@@ -33,19 +33,6 @@
   /** @param {Record<string, unknown>} message */
   const tell = (message) => parent !== window && parent.postMessage(message, "*");
 
-  // --- notices of viser's client that users cannot act on: its sorter of point clouds, unused here,
-  // builds functions from text, which our policy forbids; and three.js renames a class ------------
-  for (const name of ["error", "unhandledrejection"]) {
-    addEventListener(name, (event) => {
-      const { message, reason } = /** @type {ErrorEvent & PromiseRejectionEvent} */ (event);
-      if (/unsafe-eval/.test(message ?? reason?.message)) event.preventDefault();
-    });
-  }
-  /* eslint-disable no-console -- it is viser's console that is kept clean */
-  const warn = console.warn;
-  console.warn = (...words) => String(words[0]).startsWith("THREE.Clock") || warn(...words);
-  /* eslint-enable no-console */
-
   // --- connection ---------------------------------------------------------------------------------
   // viser's client connects again only while its window has the focus, which a frame rarely has: a
   // first connection that took too long, or one that was lost, would leave the view empty.

@@ -59,6 +59,11 @@ def page_files() -> Path:
     return IN_WHEEL if IN_WHEEL.is_dir() else page_folder(SOURCES)
 
 
+def script_tag(name: str) -> str:
+    """A plain script of the page's files, to stand in a page of viser's client."""
+    return f"<script>{(page_files() / name).read_text(encoding='utf-8')}</script>"
+
+
 def page_folder(sources: Path) -> Path:
     """The folder to serve: the bundle, unless it is missing or older than the sources."""
     bundle = sources / "dist"

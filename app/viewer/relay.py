@@ -15,7 +15,7 @@ import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
-from app.http.page import page_files
+from app.http.page import script_tag
 from app.identity import current_user
 from app.limits.budgets import InUse, OverBudgetError
 from app.limits.rate import RateLimit
@@ -28,7 +28,7 @@ log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
-SCRIPTS = ("yarn.js", "frame.js")
+SCRIPTS = ("notices.js", "yarn.js", "frame.js")
 """Ours, before viser's own."""
 OPENING_S = 8.0
 """So long a browser waits for a view: its page is loaded while the first scene is being made."""
@@ -155,8 +155,6 @@ class ViewerPage:
 def viewer_page() -> ViewerPage:
     """Put it together."""
     page = CLIENT_PAGE.read_text(encoding="utf-8")
-    scripts = "".join(
-        f"<script>{(page_files() / name).read_text(encoding='utf-8')}</script>" for name in SCRIPTS
-    )
+    scripts = "".join(map(script_tag, SCRIPTS))
     content = page.replace("<head>", f"<head>{scripts}{VIEW_STYLE}", 1).encode()
     return ViewerPage(content, f'"{hashlib.sha256(content).hexdigest()[:16]}"')

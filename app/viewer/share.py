@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from app.drawing.fabric import FabricScene
+from app.http.page import script_tag
 from app.problems.errors import ServiceError
 from app.viewer.incoming import WantedPicture
 from app.viewer.views import View, new_view
@@ -68,7 +69,7 @@ def page_html(scenes: Iterable[FabricScene], *, dark: bool) -> str:
     """A page that shows a fabric, and plays the steps if there are several."""
     with _recorded(scenes) as serializer:
         page: str = serializer.as_html(dark_mode=dark)
-    return page.replace("<head>", f"<head>{PAGE_POLICY}", 1)
+    return page.replace("<head>", f"<head>{PAGE_POLICY}{script_tag('notices.js')}", 1)
 
 
 def recording(scenes: Iterable[FabricScene]) -> bytes:

@@ -53,7 +53,7 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Answer) -> Siz
     >>> piece = ShapedChart.rectangle(StitchChart.of_fabric("garter", 40, 30))
     >>> size = size_at_rest(piece, acrylic, choose(piece.chart, acrylic))
     >>> round(size.width_mm), round(size.height_mm)
-    (137, 63)
+    (119, 81)
     """
     stitch = _stitch_mm(answer)
     if shaped.is_rectangle:
