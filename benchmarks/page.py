@@ -1,4 +1,4 @@
-"""The page as users experience it: first paint, first cloth, strokes, yarn, size of its scripts.
+"""The page as users experience it: first paint and cloth, strokes, shapes, yarn, size of scripts.
 
 Headless Chromium without a GPU, against its own service on this machine. The time from an event to
 its paint is the browser's (Event Timing, in steps of 8 ms, shorter ones count as 8). Strokes are
@@ -93,6 +93,26 @@ FRAMES = """async (number) => {
     window.requestAnimationFrame = request;
     return times.sort((a, b) => a - b);
 }"""
+
+
+ENDED = """() => {
+    performance.setResourceTimingBufferSize(5000);
+    addEventListener("pointerup", () => (window.ended = performance.now()), true);
+}"""
+FIRST_SHAPE = """async () => {
+    const since = (start, path) => performance.getEntriesByType("resource").find(
+        (entry) => entry.startTime >= start && entry.responseEnd && entry.name.includes(path));
+    for (;;) {
+        const shape = since(window.ended, "/api/v1/curl");
+        const shown = shape && since(shape.responseEnd, "/api/v1/views/");
+        if (shown) {
+            const at = [shape.startTime, shape.responseEnd, shown.responseEnd];
+            return at.map((ms) => ms - window.ended);
+        }
+        await new Promise((done) => setTimeout(done, 10));
+    }
+}"""
+"""Milliseconds from a stroke until its first shape is asked for, answered, and in the view."""
 
 
 def report(what: str, value: float, unit: str, target: float) -> None:
@@ -199,6 +219,24 @@ def yarn(browser: Browser, url: str) -> None:
     report("a frame of 100 x 100 stitches, yarn over plain tubes", dressed / plain, "", 1.1)
 
 
+def shapes(browser: Browser, url: str) -> None:
+    """From the end of a stroke to the first shape of 60 x 60 stitches as they lie."""
+    page = open_chart(browser, url, 60)
+    page.click("#fabric-lying")
+    page.wait_for_timeout(6000)  # it lies
+    page.evaluate(ENDED)
+    box = page.evaluate(READY)
+    rng = random.Random(1)
+    parts = []
+    for _ in range(STROKES):
+        stroke(page, box, rng)
+        parts.append(page.evaluate(FIRST_SHAPE))
+    asked, answered, first = (statistics.median(part) for part in zip(*parts, strict=True))
+    print(f"a first shape is asked for after {asked:.0f} ms and answered after {answered:.0f} ms")
+    report("end of a stroke to the first shape in the 3D view, median", first, "ms", 300)
+    page.context.close()
+
+
 def open_chart(browser: Browser, url: str, side: int, script: str = "") -> Page:
     """A mixed chart of side x side stitches with a map of moduli; a script for all its frames."""
     rng = random.Random(7)
@@ -279,6 +317,7 @@ def main() -> None:
             first_paint(browser, service.url)
             first_strokes(browser, service.url)
             painting(browser, service.url)
+            shapes(browser, service.url)
             yarn(browser, service.url)
             browser.close()
             print(f"forced to draw whole frames ({FORCED})")

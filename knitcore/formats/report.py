@@ -125,6 +125,8 @@ def _regions(
         for x, text in zip(places, cells, strict=True):
             yield Label(x, y, text, 3.0)
         y += 5.0
+    if (left_out := len(fields) - MAX_REGIONS) > 0:
+        yield Label(MARGIN_MM, y, f"… and {left_out} more, in the maps only.", 3.0)
     yield from _maps(piece, material, aspect, y + 5.0)
     top = y + 86.0
     yield Label(MARGIN_MM, top - 2.0, "extensibility, 1/Y course wide and 1/Y wale high", 3.0)

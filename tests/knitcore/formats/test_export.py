@@ -317,7 +317,9 @@ def test_a_report_has_numbers_and_the_chart(chart: StitchChart, pages: int) -> N
     assert content.count(b"/Type /Page\n") == pages
 
 
-def test_a_report_gives_its_numbers_with_their_source(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Page]:
+    """The pages of a report that is made."""
     drawn: list[Page] = []
 
     def keep(pages: Iterable[Page], _: str) -> bytes:
@@ -325,6 +327,23 @@ def test_a_report_gives_its_numbers_with_their_source(monkeypatch: pytest.Monkey
         return b""
 
     monkeypatch.setattr(report, "to_pdf", keep)
+    return drawn
+
+
+def test_a_report_tells_how_many_regions_its_table_leaves_out(drawn: list[Page]) -> None:
+    most = report.MAX_REGIONS
+    chart = StitchChart.of_fabric("stockinette", rows=most + 2, columns=4)
+    regions = [
+        DesignRegion(id=str(row), name=str(row), colour="#112233", runs=[(row, 0, 4)])
+        for row in range(most + 2)
+    ]
+    for some in (regions[: most - 1], regions):  # and the rest of the chart, if there is one
+        report.design_report(chart, ACRYLIC, "Cuff", ChartStyle(), some)
+    words = [shape.text for page in drawn for shape in page.shapes if isinstance(shape, Label)]
+    assert [text for text in words if "more, in" in text] == ["… and 2 more, in the maps only."]
+
+
+def test_a_report_gives_its_numbers_with_their_source(drawn: list[Page]) -> None:
     chart = StitchChart.of_fabric("garter", rows=5, columns=5)
     report.design_report(chart, ACRYLIC, "Cuff", ChartStyle())
     words = " ".join(shape.text for shape in drawn[0].shapes if isinstance(shape, Label))
