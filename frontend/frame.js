@@ -3,8 +3,7 @@
  * cookies, and in most browsers a process of its own. It talks to the page around by messages:
  *
  *   page to frame    {pass} the right to watch, {hold} whether frames wait while somebody paints
- *   frame to page    {view: "loaded" | "seen" | "lost", its connection | "none" where the browser draws nothing in 3D},
- *                    {slow} whether drawing takes long
+ *   frame to page    {view: "loaded" | "seen" | "none" where the browser draws nothing in 3D}, {slow} whether drawing takes long
  *
  * A plain script without imports: the service puts it into viser's page.
  */
@@ -23,13 +22,9 @@
   const NEWS_MS = 1500;
   /** After this time it is looked whether something was drawn. */
   const ANSWER_MS = 20;
-  /** Frames that a cloth has to be built in, before the one on show may be taken away all the same. */
-  const PATIENCE = 100;
   /** Drawn without a GPU: smoothing edges would take three times as long as all the rest. */
   const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
-  /** viser's own state, once it runs. @returns {any} */
-  const viser = () => /** @type {any} */ (window).__viserMutable;
   /** @param {Record<string, unknown>} message */
   const tell = (message) => parent !== window && parent.postMessage(message, "*");
 
@@ -52,86 +47,19 @@
     return URL.createObjectURL(new Blob([reading.responseText.replaceAll("import.meta.url", "''")]));
   };
 
-  // The service sends a new cloth; a moment later it shows that and takes the one before it away. A browser that
-  // is behind learns of both at once, and would show no cloth in the frames that it builds the new one in.
-  /** @typedef {{type: string, name: string, visible?: boolean}} Message */
-  /** Parts of cloths that viser was told of, by name. @type {Set<string>} */
-  const cloths = new Set();
-  /** Called after each frame. */
-  let drawn = () => {};
-
-  /** Whether viser has built all of them. */
-  function built() {
-    return [...cloths].every((name) => {
-      let stitches = 0;
-      viser()?.nodeRefFromName[name]?.traverse((/** @type {any} */ part) => (stitches += part.instancesCount ?? 0));
-      return stitches > 0;
-    });
-  }
-
-  /** Whether it changes which cloth is seen. @param {Message} message */
-  function changes({ type, name, visible }) {
-    const seen = type === "RemoveSceneNodeMessage" || (type === "SetSceneNodeVisibilityMessage" && visible);
-    return seen && cloths.has(name);
-  }
-
   const Threads = Worker;
   window.Worker = class extends Threads {
     /** Once an attempt has failed the client begins a new one every second and drops the one before. A busy
      * machine needs longer, and would never be connected: an attempt has the time the client allows it. */
     #connecting = false;
-    /** What waits for a cloth to be built. @type {Message[]} */
-    #later = [];
-    /** Frames that it has waited. */
-    #frames = 0;
 
     /** @param {string | URL} url @param {WorkerOptions} [options] */
     constructor(url, options) {
       super(plain(url), { ...options, type: "classic" });
-      this.addEventListener("message", (event) => {
-        const { type, messages } = event.data;
-        if (type === "message_batch") {
-          event.stopImmediatePropagation();
-          this.#later.push(...messages);
-          this.#pass();
-          return;
-        }
-        if (type === "connected") {
-          this.#connecting = false;
-          this.#later = [];
-          cloths.clear();
-          drawn = () => this.#drawn();
-        }
-        if (type === "closed") {
-          this.#connecting = false;
-          if (seen) tell({ view: "lost" });
-          [seen, fed] = [false, -1];
-        }
+      this.addEventListener("message", ({ data }) => {
+        if (data.type === "message_batch") wake(true);
+        if (data.type === "connected" || data.type === "closed") this.#connecting = false;
       });
-    }
-
-    #drawn() {
-      if (!this.#later.length) return;
-      this.#frames++;
-      this.#pass();
-      if (this.#later.length) viser()?.requestRender();
-    }
-
-    /** Hand on what need not wait. A page that nobody looks at draws no frames to wait for. */
-    #pass() {
-      const patient = this.#frames < PATIENCE && !document.hidden;
-      let count = 0;
-      for (const message of this.#later) {
-        if (patient && changes(message) && !built()) break;
-        if (message.type === "BatchedMeshesMessage") cloths.add(message.name);
-        if (message.type === "RemoveSceneNodeMessage") cloths.delete(message.name);
-        count++;
-      }
-      if (!count) return;
-      this.#frames = 0;
-      const data = { type: "message_batch", messages: this.#later.splice(0, count) };
-      this.onmessage?.(new MessageEvent("message", { data }));
-      wake(true);
     }
 
     /** @param {any} message @param {any} [rest] @override */
@@ -148,9 +76,8 @@
   /** Callbacks that wait. @type {Map<number, FrameRequestCallback>} */
   const waiting = new Map();
   const request = window.requestAnimationFrame.bind(window);
+  const cancel = window.cancelAnimationFrame.bind(window);
   let next = 1;
-  /** Whether the browser was asked for its next frame. */
-  let asked = false;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let pause;
   let newsUntil = 0;
@@ -160,19 +87,22 @@
   let slow = false;
   /** Where viser draws. @type {WebGL2RenderingContext | null} */
   let gl = null;
-  /** A canvas of another size is empty until it is drawn. */
-  const resized = new MutationObserver(() => frame(performance.now()));
   /** Frames since the first scene came; below 0 there is none. */
   let fed = -1;
   /** How long a frame takes, in ms. */
   let cost = 0;
 
   window.requestAnimationFrame = (callback) => {
-    waiting.set(next, callback);
+    if (!held && rest() === 0) return request((time) => frame(callback, time));
+    // Our own numbers are far from the browser's, so the two never meet.
+    const id = -next++;
+    waiting.set(id, callback);
     release();
-    return next++;
+    return id;
   };
-  window.cancelAnimationFrame = (id) => void waiting.delete(id);
+  window.cancelAnimationFrame = (id) => {
+    if (!waiting.delete(id)) cancel(id);
+  };
 
   /** Time until the next frame may be drawn, in ms: on a slow machine viser's idle frames wait. */
   function rest() {
@@ -183,31 +113,29 @@
 
   function release() {
     clearTimeout(pause);
-    if (held || asked || !waiting.size) return;
+    if (held) return;
     const left = rest();
     if (left > 0) pause = setTimeout(release, left);
-    else {
-      asked = true;
-      request((time) => {
-        asked = false;
-        if (!held) frame(time);
-      });
-    }
+    else draw();
   }
 
-  /** Everything that waits. @param {number} time */
-  function frame(time) {
-    const start = performance.now();
+  /** What waits, in the browser's next frame. */
+  function draw() {
     const callbacks = [...waiting.values()];
     waiting.clear();
+    for (const callback of callbacks) request((time) => frame(callback, time));
+  }
+
+  /** @param {FrameRequestCallback} callback @param {number} time */
+  function frame(callback, time) {
+    const start = performance.now();
     const query = !seen && fed >= FIRST_FRAMES ? gl?.createQuery() : null;
     if (query) gl?.beginQuery(gl.ANY_SAMPLES_PASSED, query);
-    for (const callback of callbacks) callback(time);
+    callback(time);
     if (query) {
       gl?.endQuery(gl.ANY_SAMPLES_PASSED);
       answer(query);
     }
-    resized.takeRecords(); // of another size now, and drawn
     steer();
     if (fed >= 0) fed++;
     // What the browser itself does for the frame counts, too.
@@ -218,13 +146,15 @@
         slow = !slow;
         tell({ slow });
       }
-      drawn();
     });
   }
 
   /** Zoom to the pointer, not to the middle, and turn half as fast as viser does. */
   function steer() {
-    const control = viser()?.cameraControl;
+    /** @type {{__viserMutable?: {cameraControl?: {dollyToCursor: boolean, azimuthRotateSpeed: number,
+     *   polarRotateSpeed: number}}}} */
+    const { __viserMutable: viser } = /** @type {any} */ (window);
+    const control = viser?.cameraControl;
     if (!control || control.dollyToCursor) return;
     Object.assign(control, { dollyToCursor: true, azimuthRotateSpeed: TURNING, polarRotateSpeed: TURNING });
   }
@@ -275,8 +205,9 @@
     const probe = document.createElement("canvas");
     software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
     gl = /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, { ...options, antialias: !software }));
-    // On a slow machine viser draws fewer pixels. That is not left to wait, even while somebody paints.
-    resized.observe(this, { attributeFilter: ["width", "height"] });
+    // On a slow machine viser draws fewer pixels, and a canvas of another size is empty until it is drawn again:
+    // that is not left to wait, even while somebody paints.
+    new MutationObserver(draw).observe(this, { attributeFilter: ["width", "height"] });
     return gl;
   };
 
@@ -286,7 +217,7 @@
     if (typeof data.pass === "string") givePass(data.pass);
     if (typeof data.hold === "boolean") {
       held = data.hold;
-      if (!held) wake(false); // what came meanwhile is news now
+      release();
     }
   });
   tell({ view: "loaded" });

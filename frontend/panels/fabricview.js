@@ -86,7 +86,6 @@ export function fabricview(host, studio, view) {
       if (pass) tellFrame({ pass });
     }
     if (data.view === "seen") knitted();
-    if (data.view === "lost") beStill();
     if (data.view === "none") {
       blind = true;
       status.replaceChildren(icon("warning"), problemText(BLIND));

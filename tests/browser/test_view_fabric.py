@@ -53,6 +53,22 @@ def test_a_click_on_the_fabric_finds_its_stitch_and_marks_it(studio: Page) -> No
 
 
 @pytest.mark.slow
+def test_the_live_view_is_framed_as_the_picture_before_it(studio: Page) -> None:
+    still = _reach(wait_for_colour(studio, "#fabric", YARN))
+    live = _reach(_wait_for_live_cloth(studio))
+    assert live == pytest.approx(still, abs=0.1)
+
+
+def _reach(picture: np.ndarray) -> list[float]:
+    """Height and width of what is coloured, in shares of the pane."""
+    coloured = np.ptp(picture[..., :3].astype(int), axis=2) > 40
+    return [
+        float(np.ptp(where)) / side
+        for where, side in zip(np.nonzero(coloured), coloured.shape, strict=True)
+    ]
+
+
+@pytest.mark.slow
 def test_a_picture_stands_in_until_the_live_view_is_there(flat_studio: Page) -> None:
     wait_for_colour(flat_studio, "#fabric", YARN)
     expect(flat_studio.locator(".fabric-still")).to_be_visible()
