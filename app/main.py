@@ -19,8 +19,8 @@ from app import health, memory
 from app.api import routers
 from app.compute.answers import Answers
 from app.compute.compute import Compute
-from app.compute.places import Place
 from app.compute.processes import processes
+from app.compute.workers import Worker
 from app.context import Context
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
@@ -81,7 +81,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
         app.state.cluster = _cluster(chosen)
         app.state.compute = Compute(
-            _places(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
+            _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
         )
         app.state.large_bodies = Gate()
         app.state.light_work = Gate()
@@ -183,12 +183,12 @@ def _cluster(settings: Settings) -> Cluster | None:
     return Cluster(settings.scheduler)
 
 
-def _places(settings: Settings, cluster: Cluster | None) -> list[Place]:
+def _workers(settings: Settings, cluster: Cluster | None) -> list[Worker]:
     """Where heavy work is done."""
     if cluster is not None:
-        from app.compute.cluster import ClusterPlace
+        from app.compute.cluster import ClusterWorker
 
-        return [ClusterPlace(cluster) for _ in range(settings.workers)]
+        return [ClusterWorker(cluster) for _ in range(settings.workers)]
     return list(
         processes(
             settings.workers,
@@ -200,7 +200,7 @@ def _places(settings: Settings, cluster: Cluster | None) -> list[Place]:
 
 
 def _most_each(settings: Settings) -> int | None:
-    """Places that one user may hold, by the memory of their workers; no limit on a cluster."""
+    """Workers that one user may hold, by their memory; no limit on a cluster."""
     if settings.scheduler is not None or not settings.asks_for_login:
         return None
     return max(1, BUDGETS.memory_bytes // settings.worker_memory_bytes)

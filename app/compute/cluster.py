@@ -1,8 +1,9 @@
-"""Places on a Dask cluster: the same jobs with progress and cancel, on other machines.
+"""Workers on a Dask cluster: the same jobs with progress and cancel, on other machines.
 
-The workers run the same program. A job's progress goes through the scheduler as events; its
-cancellation goes to all workers, and the one that runs it stops it. If a worker dies in mid-job,
-the job is retried on another, as often as the scheduler's ``allowed-failures`` says; then it fails.
+The cluster runs the same program. A job's progress goes through the scheduler as events; its
+cancellation goes to all its machines, and the one that runs it stops it. If a machine dies in
+mid-job, the job is retried on another, as often as the scheduler's ``allowed-failures`` says; then
+it fails.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from distributed import Client, get_worker
 from distributed.client import Future as ClusterFuture
 from distributed.scheduler import KilledWorker
 
-from app.compute.places import NotBegunError, WorkerDiedError, call
+from app.compute.workers import NotBegunError, WorkerDiedError, call
 
 log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")
@@ -49,7 +50,7 @@ class Cluster:
         self.address = address
         self._client: Client | None = None
         self._lock = threading.Lock()
-        self.listeners: dict[str, ClusterPlace] = {}
+        self.listeners: dict[str, ClusterWorker] = {}
 
     def begin(self, key: str, job: Callable[..., Any]) -> ClusterFuture[Any]:
         """Submit a job; its progress goes to the listener with its key.
@@ -111,8 +112,8 @@ class Cluster:
 
     def _hear(self, event: tuple[float, dict[str, Any]]) -> None:
         message = event[1]
-        if (place := self.listeners.get(message["job"])) is not None:
-            place.share, place.worker = message["share"], message["worker"]
+        if (worker := self.listeners.get(message["job"])) is not None:
+            worker.share, worker.address = message["share"], message["worker"]
 
 
 def _no_workers() -> ClusterError:
@@ -121,13 +122,13 @@ def _no_workers() -> ClusterError:
     )
 
 
-class ClusterPlace:
+class ClusterWorker:
     """Room for one job at a time on a cluster.
 
     Attributes
     ----------
     share : how much of the job is done; None until it starts.
-    worker : address of the worker that runs it.
+    address : of the machine that runs it.
     cpu_s : not known; the time that the job takes counts instead.
     """
 
@@ -138,12 +139,12 @@ class ClusterPlace:
         self._key = ""
         self._future: ClusterFuture[Any] | None = None
         self.share: float | None = None
-        self.worker: str | None = None
+        self.address: str | None = None
 
     async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
         """Begin a job; connecting to the cluster is part of it."""
         self._cluster.listeners.pop(self._key, None)
-        self._key, self.share, self.worker = secrets.token_hex(16), None, None
+        self._key, self.share, self.address = secrets.token_hex(16), None, None
         self._cluster.listeners[self._key] = self
         self._future = await asyncio.to_thread(self._cluster.begin, self._key, job)
         done: Future[T] = Future()
@@ -154,13 +155,13 @@ class ClusterPlace:
         """Ask the job to stop; one that no worker has begun is withdrawn."""
         key = self._key
         self._cluster.later(lambda client: client.run(_cancel, key, on_error="ignore"))
-        if self.worker is None:
+        if self.address is None:
             self._take_back()
 
     def replace(self) -> None:
         """Withdraw the job and, if it runs, have the nanny of its worker start a new process."""
         self._take_back()
-        if (worker := self.worker) is not None:
+        if (worker := self.address) is not None:
             self._cluster.later(
                 lambda client: client.restart_workers([worker], raise_for_error=False)
             )
@@ -184,7 +185,7 @@ class ClusterPlace:
         except (KilledWorker, CancelledError, OSError, TimeoutError) as error:
             log.warning("a job was lost on the cluster: %s", error)
             lost: Exception = WorkerDiedError("The machine of this computation was lost.")
-            if self.worker is None and not isinstance(error, KilledWorker):
+            if self.address is None and not isinstance(error, KilledWorker):
                 lost = NotBegunError("The cluster lost this computation before it began.")
             done.set_exception(lost)
         except Exception as error:

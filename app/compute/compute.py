@@ -9,11 +9,11 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from typing import Any, TypeVar
 
-from app.compute.places import (
+from app.compute.workers import (
     AbandonedError,
     NotBegunError,
-    Place,
     TimeLimitError,
+    Worker,
     WorkerDiedError,
 )
 from app.identity import current_user
@@ -31,13 +31,13 @@ START_S = 120.0
 
 
 class Compute:
-    """Runs heavy work in a few places, users taking turns.
+    """Runs heavy work in a few workers, users taking turns.
 
     Parameters
     ----------
-    places : where jobs are done. Four times as many may wait in the foreground.
+    workers : where jobs are done. Four times as many may wait in the foreground.
     timeout_s : longest run of one job, unless it is given another.
-    most_each : places that one user may hold at once; None is all of them.
+    most_each : workers that one user may hold at once; None is all of them.
 
     Attributes
     ----------
@@ -45,15 +45,15 @@ class Compute:
     """
 
     def __init__(
-        self, places: Sequence[Place], timeout_s: float, most_each: int | None = None
+        self, workers: Sequence[Worker], timeout_s: float, most_each: int | None = None
     ) -> None:
         self._timeout_s = timeout_s
         self.spent = ComputingTime()
-        self.places = list(places)
+        self.workers = list(workers)
         self.turns = Turns(
-            self.places,
-            most_background=max(1, len(places) - 1),
-            most_waiting=4 * len(places),
+            self.workers,
+            most_background=max(1, len(workers) - 1),
+            most_waiting=4 * len(workers),
             most_waiting_each=BUDGETS.jobs,
             most_each=most_each,
         )
@@ -81,7 +81,7 @@ class Compute:
         ------
         AbandonedError, TimeLimitError, WorkerDiedError, MemoryLimitError
         NotBegunError
-            If no place was free, or none began, in time.
+            If no worker was free, or none began, in time.
         UnavailableError
             If too many wait already, or the cluster cannot be reached.
         OverBudgetError
@@ -98,21 +98,21 @@ class Compute:
                     raise AbandonedError("The computation was abandoned.")
                 if not background and asyncio.get_running_loop().time() > asked + self._timeout_s:
                     raise NotBegunError(f"No worker was free for {self._timeout_s:g} s.")
-            place = ticket.place.result()
+            worker = ticket.place.result()
             self.spent.check(owner)  # jobs of the same user may have run meanwhile
             begun = asyncio.get_running_loop().time()
-            future = await place.submit(partial(job, *args))
+            future = await worker.submit(partial(job, *args))
             try:
-                return await self._watch(place, future, abandoned, limit, on_share)
+                return await self._watch(worker, future, abandoned, limit, on_share)
             finally:
                 lasted = asyncio.get_running_loop().time() - begun
-                self.spent.spend(owner, lasted if place.cpu_s is None else place.cpu_s)
+                self.spent.spend(owner, lasted if worker.cpu_s is None else worker.cpu_s)
         finally:
             self.turns.leave(ticket)
 
     async def _watch(
         self,
-        place: Place,
+        worker: Worker,
         future: asyncio.Future[T],
         abandoned: Callable[[], Awaitable[bool]],
         limit_s: float,
@@ -124,7 +124,7 @@ class Compute:
             while not (await asyncio.wait([future], timeout=POLL_S))[0]:
                 if await abandoned():
                     raise AbandonedError("The computation was abandoned.")
-                if (now := place.share) is None:
+                if (now := worker.share) is None:
                     if loop.time() > begun + START_S:
                         raise NotBegunError(f"No worker began within {START_S:g} s.")
                     continue
@@ -135,18 +135,18 @@ class Compute:
                     share = now
                     await on_share(share)
         except (AbandonedError, TimeLimitError, NotBegunError):
-            await _stop(place, future)
+            await _stop(worker, future)
             raise
         except BaseException:
             future.add_done_callback(_forget)
-            place.replace()  # the task itself was cancelled: do not wait for the process
+            worker.replace()  # the task itself was cancelled: do not wait for the process
             raise
         try:
             return future.result()
         except BrokenProcessPool as error:
             log.warning("a worker process died")
-            idle = place.share is None
-            place.replace()
+            idle = worker.share is None
+            worker.replace()
             if idle:
                 raise NotBegunError("The worker died before it began.") from error
             raise WorkerDiedError("The process of this computation died.") from error
@@ -162,9 +162,9 @@ class Compute:
         self.turns.check_room(owner, background=True)
 
     def close(self) -> None:
-        """Close all places."""
-        for place in self.places:
-            place.close()
+        """Close all workers."""
+        for worker in self.workers:
+            worker.close()
 
 
 def _forget(future: asyncio.Future[Any]) -> None:
@@ -173,11 +173,11 @@ def _forget(future: asyncio.Future[Any]) -> None:
         future.exception()
 
 
-async def _stop(place: Place, future: asyncio.Future[Any]) -> None:
+async def _stop(worker: Worker, future: asyncio.Future[Any]) -> None:
     future.add_done_callback(_forget)
-    place.cancel()
+    worker.cancel()
     done, _ = await asyncio.wait([future], timeout=GRACE_S)
     if not done:
         log.warning("a cancelled computation did not stop; its process is replaced")
-        place.replace()
+        worker.replace()
         await asyncio.wait([future], timeout=GRACE_S)

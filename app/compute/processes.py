@@ -1,4 +1,4 @@
-"""Places on this machine, a process each: one that dies, hangs or grows loses only its own job.
+"""Workers on this machine, a process each: one that dies, hangs or grows loses only its own job.
 
 Workers are forked from a process that has loaded what they need (:mod:`app.compute.loaded`), so one
 that is lost is replaced in milliseconds and all share the memory of their modules.
@@ -24,7 +24,7 @@ from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any, TypeVar
 
-from app.compute.places import call
+from app.compute.workers import call
 
 T = TypeVar("T")
 
@@ -42,7 +42,7 @@ def _nothing() -> None:
     """Nothing to begin with."""
 
 
-class Cell(IntEnum):
+class Slot(IntEnum):
     """Cells of the memory that a worker shares with the service."""
 
     CANCELLED = 0
@@ -52,7 +52,7 @@ class Cell(IntEnum):
     CPU_S = 4
 
 
-class ProcessPlace:
+class ProcessWorker:
     """One process, replaced when it is lost.
 
     Parameters
@@ -69,12 +69,12 @@ class ProcessPlace:
         self._idle = idle
         self._begin = begin
         self._scratch = Path(tempfile.mkdtemp(prefix=f"{SCRATCH}{os.getpid()}-"))
-        self._cells = CONTEXT.Array("d", len(Cell), lock=False)
+        self._slots = CONTEXT.Array("d", len(Slot), lock=False)
         self._executor = self._new()
 
     async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
         """Begin a job."""
-        self._cells[:] = [0.0] * len(Cell)
+        self._slots[:] = [0.0] * len(Slot)
         await asyncio.shield(asyncio.wrap_future(_loaded()))
         return asyncio.wrap_future(await asyncio.to_thread(self._submit, job))
 
@@ -88,18 +88,18 @@ class ProcessPlace:
     @property
     def share(self) -> float | None:
         """How much of the job is done."""
-        if not self._cells[Cell.STARTED]:
+        if not self._slots[Slot.STARTED]:
             return None
-        return float(self._cells[Cell.DONE] / max(self._cells[Cell.OF], 1.0))
+        return float(self._slots[Slot.DONE] / max(self._slots[Slot.OF], 1.0))
 
     @property
     def cpu_s(self) -> float | None:
         """CPU seconds that the job took; None if it was stopped by force."""
-        return float(self._cells[Cell.CPU_S]) or None
+        return float(self._slots[Slot.CPU_S]) or None
 
     def cancel(self) -> None:
         """Ask the job to stop."""
-        self._cells[Cell.CANCELLED] = 1.0
+        self._slots[Slot.CANCELLED] = 1.0
 
     def replace(self) -> None:
         """Kill the process; the next job gets a new one."""
@@ -119,7 +119,7 @@ class ProcessPlace:
             mp_context=CONTEXT,
             initializer=_adopt,
             initargs=(
-                self._cells,
+                self._slots,
                 self._memory_bytes,
                 self._idle,
                 str(self._scratch),
@@ -134,11 +134,11 @@ def processes(
     *,
     idle: bool = False,
     begin: Callable[[], object] = _nothing,
-) -> list[ProcessPlace]:
-    """Several places, each with a memory limit."""
+) -> list[ProcessWorker]:
+    """Several workers, each with a memory limit."""
     _sweep()
     _loaded()
-    return [ProcessPlace(memory_bytes, idle=idle, begin=begin) for _ in range(count)]
+    return [ProcessWorker(memory_bytes, idle=idle, begin=begin) for _ in range(count)]
 
 
 @cache
@@ -172,16 +172,16 @@ def _kill(executor: ProcessPoolExecutor) -> None:
         process.kill()
 
 
-_cells: Any = None
+_slots: Any = None
 _memory_bytes = 0
 
 
 def _adopt(
-    cells: Any, memory_bytes: int, idle: bool, scratch: str, begin: Callable[[], object]
+    slots: Any, memory_bytes: int, idle: bool, scratch: str, begin: Callable[[], object]
 ) -> None:
     """In a worker: keep the shared memory and set the limits."""
-    global _cells, _memory_bytes
-    _cells, _memory_bytes = cells, memory_bytes
+    global _slots, _memory_bytes
+    _slots, _memory_bytes = slots, memory_bytes
     tempfile.tempdir = scratch
     begin()
     threading.Thread(target=_end_with_parent, daemon=True).start()
@@ -216,18 +216,18 @@ def _end_with_parent() -> None:
 
 
 def _run(job: Callable[..., T]) -> T:
-    cells = _cells
-    cells[Cell.STARTED] = 1.0
+    slots = _slots
+    slots[Slot.STARTED] = 1.0
 
     def cancelled() -> bool:
-        return bool(cells[Cell.CANCELLED])
+        return bool(slots[Slot.CANCELLED])
 
     def progress(done: float, of: float) -> None:
-        cells[Cell.OF] = of
-        cells[Cell.DONE] = done
+        slots[Slot.OF] = of
+        slots[Slot.DONE] = done
 
     begun = time.process_time()
     try:
         return call(job, cancelled, progress, f"the {_memory_bytes / 1e9:g} GB it may use")
     finally:
-        cells[Cell.CPU_S] = time.process_time() - begun
+        slots[Slot.CPU_S] = time.process_time() - begun

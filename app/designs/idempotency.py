@@ -16,7 +16,7 @@ from app.store.database import Database
 from app.store.tables import idempotency_keys
 from app.store.values import now
 
-Answer = TypeVar("Answer", bound=BaseModel)
+Reply = TypeVar("Reply", bound=BaseModel)
 KEPT_S = 86_400.0
 
 
@@ -51,9 +51,9 @@ class Retry:
 def once(
     database: Database,
     retry: Retry | None,
-    kind: type[Answer],
-    action: Callable[[Connection], Answer],
-) -> Answer:
+    kind: type[Reply],
+    action: Callable[[Connection], Reply],
+) -> Reply:
     """Run an action in a transaction; where the request has a key, once for that key.
 
     Raises
@@ -64,7 +64,7 @@ def once(
     if retry is None:
         return database.write(action)
 
-    def guarded(connection: Connection) -> Answer:
+    def guarded(connection: Connection) -> Reply:
         known = connection.execute(
             select(idempotency_keys.c.fingerprint, idempotency_keys.c.answer).where(
                 idempotency_keys.c.owner == retry.owner, idempotency_keys.c.key == retry.key

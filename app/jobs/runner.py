@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.compute.answers import Answers
-from app.compute.places import AbandonedError, NotBegunError
+from app.compute.workers import AbandonedError, NotBegunError
 from app.designs.idempotency import Retry
 from app.http.bodies import SMALL_BYTES
 from app.http.error_responses import problem_of

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import BaseModel, Discriminator, Field, Tag
 
 from app.models.base import RequestModel
-from app.models.checks import Check
+from app.models.checks import CheckedBy
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.fabric import Fabric
 from knitcore.garment.shaped import outline_marks
@@ -56,7 +56,7 @@ TEXT_TAG, FABRIC_TAG = "K/P text", "pure fabric"
 ChartInput = Annotated[
     Annotated[ChartText, Tag(TEXT_TAG)] | Annotated[PureFabricChart, Tag(FABRIC_TAG)],
     Discriminator(lambda given: TEXT_TAG if isinstance(given, str) else FABRIC_TAG),
-    Check(lambda chart, _: to_chart(chart)),
+    CheckedBy(lambda chart, _: to_chart(chart)),
 ]
 IS_REPEAT = "repeat"
 RepeatInput = Annotated[ChartInput, IS_REPEAT]
@@ -69,7 +69,7 @@ OutlineInput = Annotated[
         description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
         "left out.",
     ),
-    Check(lambda outline, _: outline_marks(outline)),
+    CheckedBy(lambda outline, _: outline_marks(outline)),
 ]
 MaterialName = Annotated[
     str,
@@ -78,7 +78,7 @@ MaterialName = Annotated[
         description="Identifier of a material of the library.",
         examples=["acrylic"],
     ),
-    Check(lambda name, context: context.material(name)),
+    CheckedBy(lambda name, context: context.material(name)),
 ]
 
 

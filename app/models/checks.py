@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Check:
+class CheckedBy:
     """Part of a field's type: how the library reads such a value.
 
     Attributes
@@ -60,7 +60,7 @@ def _faults(
     if value is None:
         return
     for check in metadata:
-        if isinstance(check, Check):
+        if isinstance(check, CheckedBy):
             try:
                 check.read(value, context)
             except InputError as error:

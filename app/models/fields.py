@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
-from app.models.checks import Check
+from app.models.checks import CheckedBy
 from app.models.uploads import UploadedFile, stored
 from knitcore.fabric import Direction
 from knitcore.swatch.measured import MeasuredField, load_field
@@ -16,7 +16,7 @@ from knitcore.swatch.measured import MeasuredField, load_field
 class FieldRequest(RequestModel):
     """A displacement field and how the fabric in it was pulled."""
 
-    field: Annotated[UploadedFile, Check(lambda file, _: load(file))] = Field(
+    field: Annotated[UploadedFile, CheckedBy(lambda file, _: load(file))] = Field(
         description=".npz: displacement (frames, 2, rows, columns), frame."
     )
     direction: Direction = Field(description="Direction in which the fabric was pulled.")

@@ -16,7 +16,7 @@ from app.models.posed import Floats
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.garment.shaped import ShapedChart
-from knitcore.shell.cloth import Cloth, cloth_of, stitch_corners
+from knitcore.shell.cloth import EvenCloth, cloth_of, stitch_corners
 
 LinearDensity = Annotated[
     float,
@@ -56,13 +56,13 @@ class WeighedRequest(LawsRequest):
     material: MaterialName
     linear_density_g_per_m: LinearDensity
 
-    def cloth(self, repeat: StitchChart, context: Context) -> Cloth:
+    def cloth(self, repeat: StitchChart, context: Context) -> EvenCloth:
         """Cloth of a repeat."""
         density = self.linear_density_g_per_m
         return cloth_of(repeat, context.material(self.material), linear_density_g_per_m=density)
 
 
-def notes_of(cloth: Cloth) -> list[str]:
+def notes_of(cloth: EvenCloth) -> list[str]:
     """What a test of cloth that is flat at rest leaves out."""
     return [
         FRICTIONLESS,
@@ -82,7 +82,7 @@ class ClothPiece(ResultModel):
 def piece_of(
     corners_mm: Array,
     rectangle_mm: tuple[float, float],
-    cloth: Cloth,
+    cloth: EvenCloth,
     repeat: StitchChart,
     identifier: str,
 ) -> tuple[ClothPiece, Floats]:

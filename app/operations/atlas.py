@@ -31,7 +31,7 @@ def _rounded(values: Iterable[float]) -> list[float]:
     return [float(f"{value:.{DIGITS}g}") for value in values]
 
 
-Column = Annotated[list[float], BeforeValidator(_rounded)]
+Values = Annotated[list[float], BeforeValidator(_rounded)]
 
 
 class AtlasRequest(LawsRequest):
@@ -47,19 +47,19 @@ class AtlasResult(IntervalResult):
     kind: Literal["atlas"] = "atlas"
     material: str
     repeats: list[RepeatText]
-    modulus_course_n_per_mm: Column
-    modulus_course_interval_n_per_mm: tuple[Column, Column]
-    modulus_wale_n_per_mm: Column
-    modulus_wale_interval_n_per_mm: tuple[Column, Column]
-    poisson_yx: Column
-    poisson_xy: Column
-    stretch_course: Column = Field(description="Strain at 0.1 N/mm.")
-    stretch_wale: Column
-    relaxed_course_mm: Column = Field(description="Width of the mean stitch at rest.")
-    relaxed_wale_mm: Column = Field(description="Height of the mean stitch at rest.")
-    transfers_per_stitch: Column
-    crossings_per_stitch: Column
-    curl: Column
+    modulus_course_n_per_mm: Values
+    modulus_course_interval_n_per_mm: tuple[Values, Values]
+    modulus_wale_n_per_mm: Values
+    modulus_wale_interval_n_per_mm: tuple[Values, Values]
+    poisson_yx: Values
+    poisson_xy: Values
+    stretch_course: Values = Field(description="Strain at 0.1 N/mm.")
+    stretch_wale: Values
+    relaxed_course_mm: Values = Field(description="Width of the mean stitch at rest.")
+    relaxed_wale_mm: Values = Field(description="Height of the mean stitch at rest.")
+    transfers_per_stitch: Values
+    crossings_per_stitch: Values
+    curl: Values
     provenance: list[str]
 
 

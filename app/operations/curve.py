@@ -10,7 +10,7 @@ from pydantic import Field
 
 from app.context import Context
 from app.models.base import EARLIER_NAME, EndsOfList, Floats, IntervalResult
-from app.models.checks import Check
+from app.models.checks import CheckedBy
 from app.models.gauge import GaugedRequest
 from app.operations.registry import Command, Operation
 from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM, increasing
@@ -25,7 +25,7 @@ class CurveRequest(GaugedRequest):
     """A chart, a direction and the stresses to ask for."""
 
     direction: Direction = Field(description="Along rows, or along columns.")
-    stress_n_per_mm: Annotated[list[Stress], Check(lambda s, _: increasing(s))] = Field(
+    stress_n_per_mm: Annotated[list[Stress], CheckedBy(lambda s, _: increasing(s))] = Field(
         list(DEFAULT_STRESS_N_PER_MM), min_length=1, max_length=500, description="Increasing."
     )
 

@@ -28,7 +28,7 @@ from app.results.atlases import Extent
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
-from knitcore.design.wishes import Parts, Wish, wanted_maps, wished_parts
+from knitcore.design.part_targets import Parts, PartTarget, target_maps, target_parts
 from knitcore.errors import InputError
 from knitcore.formats.stitch_maps import read_wanted_moduli
 from knitcore.garment.shaped import outline_marks
@@ -43,14 +43,16 @@ MAX_RUNS = 40_000
 
 Modulus = Annotated[float, Field(gt=0, le=1000)] | None
 Map = Annotated[list[list[Modulus]], Field(min_length=1, max_length=1000)]
-Run = tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]]
+StitchRun = tuple[
+    Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]
+]
 
 
 class WishInput(RequestModel):
     """Stiffness wanted in one part of the chart."""
 
     name: str = Field("part", min_length=1, max_length=80)
-    runs: list[Run] = Field(
+    runs: list[StitchRun] = Field(
         min_length=1,
         max_length=MAX_RUNS,
         description="Its stitches as runs [row, first column, length], with row 0 at the bottom.",
@@ -58,9 +60,9 @@ class WishInput(RequestModel):
     modulus_course_n_per_mm: Modulus = None
     modulus_wale_n_per_mm: Modulus = None
 
-    def wish(self) -> Wish:
+    def target(self) -> PartTarget:
         """The library's object."""
-        return Wish(
+        return PartTarget(
             self.name,
             tuple(self.runs),
             self.modulus_course_n_per_mm,
@@ -191,8 +193,8 @@ def _wanted(request: FillRequest) -> Maps:
         raise InputError("wishes", "are given together with maps.", "Give either.")
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
-    wishes = [wish.wish() for wish in request.wishes]
-    return *request.pass_to(wanted_maps, wishes), request.pass_to(wished_parts, wishes)
+    targets = [wish.target() for wish in request.wishes]
+    return *request.pass_to(target_maps, targets), request.pass_to(target_parts, targets)
 
 
 def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float64]:

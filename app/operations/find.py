@@ -13,7 +13,7 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, KnownEnds, RequestModel, ResultModel
 from app.models.charts import MaterialName, RepeatText
-from app.models.checks import Check
+from app.models.checks import CheckedBy
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
 from app.results.atlases import EXTENTS, Extent
@@ -77,7 +77,7 @@ class FindRequest(LawsRequest):
     """Target properties, and the yarns to search."""
 
     materials: list[MaterialName] = Field(min_length=1, max_length=MAX_MATERIALS)
-    targets: list[Annotated[TargetInput, Check(lambda one, _: one.target())]] = Field(
+    targets: list[Annotated[TargetInput, CheckedBy(lambda one, _: one.target())]] = Field(
         min_length=1, max_length=MAX_TARGETS
     )
     limits: LimitsInput | None = None

@@ -10,7 +10,7 @@ from pydantic import Field
 from app.command_options import out_option, write_csv
 from app.context import Context
 from app.models.base import Floats, RequestModel, ResultModel
-from app.models.checks import Check
+from app.models.checks import CheckedBy
 from app.models.laws import ElasticConstants, LawConstants, LawResult
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.registry import Command, Operation
@@ -33,10 +33,10 @@ def _read(file: UploadedFile, _: Context) -> None:
 class FitRequest(RequestModel):
     """Two stretch tests of one fabric."""
 
-    test_course: Annotated[UploadedFile, Check(_read)] = Field(
+    test_course: Annotated[UploadedFile, CheckedBy(_read)] = Field(
         description="Pulled along the rows; HDF5, CSV or XLSX."
     )
-    test_wale: Annotated[UploadedFile, Check(_read)] = Field(
+    test_wale: Annotated[UploadedFile, CheckedBy(_read)] = Field(
         description="Pulled along the columns."
     )
     format: Literal["csv", "h5"] | None = Field(

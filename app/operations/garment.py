@@ -31,7 +31,7 @@ from knitcore.materials.uncertainty import log_interval
 
 Length = Annotated[float, Field(gt=0, le=5000)]
 Ease = Annotated[float, Field(ge=-0.6, le=1)]
-Target = Annotated[
+TargetPressure = Annotated[
     float | None,
     Field(gt=0, le=300, description="Target pressure; takes precedence over the ease."),
 ]
@@ -61,7 +61,7 @@ class Template(RequestModel):
     """How tightly a garment fits."""
 
     ease: Ease = -0.15
-    target_mmhg: Target = None
+    target_mmhg: TargetPressure = None
 
     @property
     def fit(self) -> Fit:

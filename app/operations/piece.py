@@ -13,7 +13,7 @@ from app.command_options import out_option
 from app.context import Context
 from app.models.base import EndsOfList, Floats, ResultModel, first_fault
 from app.models.charts import to_repeat
-from app.models.checks import Check
+from app.models.checks import CheckedBy
 from app.models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
@@ -27,7 +27,7 @@ from knitcore.piece.uncertainty import piece_spreads
 class PieceRequest(PieceTestRequest):
     """Cloth, the piece cut from it, and the conditions on its edges."""
 
-    piece: Annotated[PieceInput, Check(lambda cut, _: cut.piece())]
+    piece: Annotated[PieceInput, CheckedBy(lambda cut, _: cut.piece())]
     fields: bool = Field(False, description="Whether to return the final shape and strains.")
 
 

@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw
 from knitcore.chart import StitchChart
 from knitcore.materials import material
 from knitcore.shell.border import advice
-from knitcore.shell.cloth import Cloth, cloth_of
+from knitcore.shell.cloth import EvenCloth, cloth_of
 from knitcore.shell.drape import drape
 from knitcore.shell.hang import HungBy, hang
 from knitcore.shell.overhang import overhang
@@ -57,7 +57,7 @@ def main() -> None:
     colours.save(Path(__file__).parents[1] / "images" / "weight.png", optimize=True)
 
 
-def _cloth(repeat: str) -> Cloth:
+def _cloth(repeat: str) -> EvenCloth:
     return cloth_of(StitchChart.parse(repeat), ACRYLIC, linear_density_g_per_m=DENSITY_G_PER_M)
 
 

@@ -47,27 +47,27 @@ class Patch:
     modulus_wale_interval_n_per_mm: Interval
 
 
-def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) -> list[str]:
+def unreached(regions: Sequence[Patch], targets: Array, off: Array, have: Array) -> list[str]:
     """Messages about targets that were not met, with alternatives; one for patches alike.
 
     Parameters
     ----------
     regions : the patches.
-    wishes : (patches, 2) logarithms of the wanted moduli, NaN where there is no target.
+    targets : (patches, 2) logarithms of the wanted moduli, NaN where there is no target.
     off : (patches, 2) relative deviations.
     have : (repeats, 2) logarithms of the moduli of all repeats.
     """
     said = []
     told = set()
-    for region, wish, away in zip(regions, wishes, off, strict=True):
+    for region, target, away in zip(regions, targets, off, strict=True):
         for axis, direction in enumerate(Direction):
-            alike = region.repeat, float(wish[axis]), axis
+            alike = region.repeat, float(target[axis]), axis
             if abs(away[axis]) > OFF and alike not in told:
                 told.add(alike)
                 said.append(
                     f"The patch of {region.stitches} stitches from row {region.row + 1}, column "
                     f"{region.column + 1} is {_compared(away[axis])} than wanted {direction}-wise: "
-                    f"{region.repeat} is the nearest. {_reach(wish, direction, have)}"
+                    f"{region.repeat} is the nearest. {_reach(target, direction, have)}"
                 )
     if len(regions) == 1:
         only = regions[0]
@@ -86,23 +86,23 @@ def _compared(away: float) -> str:
     return f"{more} {'stiffer' if away > 0 else 'softer'}"
 
 
-def _reach(wish: Array, direction: Direction, have: Array) -> str:
+def _reach(target: Array, direction: Direction, have: Array) -> str:
     """What this yarn can reach."""
     own, other = direction.axis, direction.other.axis
     whole = np.exp(have[:, own])
     text = f"This yarn reaches {whole.min():.3g} to {whole.max():.3g} N/mm {direction}-wise"
-    if not np.isnan(wish[other]):
-        near = np.abs(have[:, other] - wish[other]) < OFF
+    if not np.isnan(target[other]):
+        near = np.abs(have[:, other] - target[other]) < OFF
         if near.any():
             part = np.exp(have[near, own])
             text += (
-                f", with the wanted {np.exp(wish[other]):.3g} {direction.other}-wise "
+                f", with the wanted {np.exp(target[other]):.3g} {direction.other}-wise "
                 f"{part.min():.3g} to {part.max():.3g}"
             )
         else:
-            text += f", but not the wanted {np.exp(wish[other]):.3g} {direction.other}-wise"
+            text += f", but not the wanted {np.exp(target[other]):.3g} {direction.other}-wise"
     return text + "; search other yarns and needles for more."
 
 
 def _percent(value: float) -> str:
-    return "no wish" if np.isnan(value) else f"{value:+.0%}"
+    return "no target" if np.isnan(value) else f"{value:+.0%}"

@@ -104,8 +104,8 @@ def fill_field(
         there is no target.
     material : one yarn for the whole chart.
     atlas : of that material.
-    parts : (rows, columns) numbers from 0 of the parts that were wished for one by one
-        (:func:`knitcore.design.wishes.wished_parts`); a part narrower than a patch is one patch.
+    parts : (rows, columns) numbers from 0 of the parts that were given one by one
+        (:func:`knitcore.design.part_targets.target_parts`); a part narrower than a patch is one.
     kept : a chart whose stitches without a target stay as they are; the others are fitted to them
         and judged among them. Without it all stitches are filled.
     stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere there is no target
@@ -185,11 +185,11 @@ class _Fill:
         self._wanted = np.where(inside, wanted, np.nan)
         self._parts, self._scattered = parts, scattered
         self._material, self._atlas, self._stitch = material, atlas, inside
-        no_wish = np.isnan(self._wanted).all(axis=0)
-        self._fixed = ~inside if kept is None else no_wish
+        no_target = np.isnan(self._wanted).all(axis=0)
+        self._fixed = ~inside if kept is None else no_target
         around = np.zeros_like(inside) if kept is None else kept.purl
         self._kept = StitchChart(around & inside)
-        self._has_wish = ~no_wish
+        self._has_target = ~no_target
         self._seed, self._progress = seed, progress
         self._table = stitch_table(material)
         self._mixer: Mixer | None = None
@@ -208,7 +208,7 @@ class _Fill:
         count = len(np.unique(patches[~self._fixed]))
         patches[self._fixed] = count  # labels are in order, so these were last
         first = np.unique(patches, return_index=True)[1][:count]
-        medians = _spread(self._wishes(patches, count), patches)
+        medians = _spread(self._targets(patches, count), patches)
         rough = self._rms(deviation(own, self._wanted, self._table))
         uneven_map = self._rms(medians - self._wanted)
         if rough <= min(
@@ -235,8 +235,8 @@ class _Fill:
 
     def _mixed(self, patches: Labels, choices: list[_Choice]) -> list[_Choice]:
         """Mixtures, where they come nearer than repeats of the atlas."""
-        wishes = self._wishes(patches, len(choices))
-        off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - wishes)).max(axis=1)
+        targets = self._targets(patches, len(choices))
+        off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - targets)).max(axis=1)
         sizes = np.bincount(patches.ravel())
         large = [k for k in np.argsort(-sizes[: len(choices)]) if sizes[k] >= MIN_MIXED]
         poor = [k for k in large if off[k] > CLOSE][:MAX_MIXED]
@@ -245,17 +245,17 @@ class _Fill:
         for count, patch in enumerate(poor):
             self._progress.look(0.45 * count / len(poor))
             rows, columns = _extent(patches == patch)
-            key = (*np.nan_to_num(wishes[patch].round(3)).tolist(), rows, columns)
+            key = (*np.nan_to_num(targets[patch].round(3)).tolist(), rows, columns)
             if key not in known:
-                known[key] = self._mixture(wishes[patch], rows, columns, off[patch])
+                known[key] = self._mixture(targets[patch], rows, columns, off[patch])
             found[patch] = known[key] or choices[patch]
         return found
 
-    def _mixture(self, wish: Array, rows: int, columns: int, off: float) -> _Choice | None:
+    def _mixture(self, target: Array, rows: int, columns: int, off: float) -> _Choice | None:
         if self._mixer is None:
             self._mixer = Mixer(self._atlas, self._material)
         mixture = self._mixer.nearest(
-            *np.exp(wish).tolist(),
+            *np.exp(target).tolist(),
             most_rows=min(rows, 12),
             most_columns=min(columns, 12),
             scattered=self._scattered,
@@ -267,14 +267,14 @@ class _Fill:
 
     def _chosen_again(self, patches: Labels, last: _Trial) -> list[_Choice] | None:
         """The nearest repeats, given each patch's factors in the swatch; None if none changes."""
-        wishes = self._wishes(patches, len(last.choices)) - last.factors
+        targets = self._targets(patches, len(last.choices)) - last.factors
         if self._is_alone(last.choices):
             return None
         found = list(last.choices)
         for patch, choice in enumerate(last.choices):
-            off = np.nan_to_num(np.abs(self._atlas.log_moduli - wishes[patch])).max(axis=1)
+            off = np.nan_to_num(np.abs(self._atlas.log_moduli - targets[patch])).max(axis=1)
             entry = int(off.argmin())
-            own = float(np.nan_to_num(np.abs(choice.log_moduli - wishes[patch])).max())
+            own = float(np.nan_to_num(np.abs(choice.log_moduli - targets[patch])).max())
             if own > CLOSE and off[entry] < 0.8 * own:
                 found[patch] = self._of_atlas(entry)
         changed = any(a is not b for a, b in zip(found, last.choices, strict=True))
@@ -310,12 +310,12 @@ class _Fill:
         off = _spread(self._judged(choices, factors), patches) - self._wanted
         return _Trial(chart, tuple(choices), factors, self._off_share(off) + 0.1 * self._rms(off))
 
-    def _wishes(self, patches: Labels, count: int) -> Array:
+    def _targets(self, patches: Labels, count: int) -> Array:
         """(patches, 2) medians of the targets' logarithms, NaN where a patch has none."""
         found = np.full((count, 2), np.nan)
         for patch in range(count):
-            for axis, wish in enumerate(self._wanted):
-                here = wish[patches == patch]
+            for axis, target in enumerate(self._wanted):
+                here = target[patches == patch]
                 if not np.isnan(here).all():
                     found[patch, axis] = np.nanmedian(here)
         return found
@@ -337,10 +337,10 @@ class _Fill:
 
     def _filled(self, patches: Labels, trial: _Trial, *, check: bool) -> FilledField:
         moduli = np.stack([choice.log_moduli for choice in trial.choices])
-        wishes = self._wishes(patches, len(trial.choices))
-        off, there = np.expm1(moduli - wishes), np.full(moduli.shape, np.nan)
+        targets = self._targets(patches, len(trial.choices))
+        off, there = np.expm1(moduli - targets), np.full(moduli.shape, np.nan)
         if check:
-            there = np.expm1(moduli + trial.factors - wishes)
+            there = np.expm1(moduli + trial.factors - targets)
         judged = self._judged(trial.choices, trial.factors)
         regions = []
         for patch, choice in enumerate(trial.choices):
@@ -366,7 +366,7 @@ class _Fill:
             tuple(regions),
             local_moduli(trial.chart, self._material),
             self._off_share(_spread(judged, patches) - self._wanted),
-            tuple(unreached(regions, wishes, np.expm1(judged - wishes), self._atlas.log_moduli)),
+            tuple(unreached(regions, targets, np.expm1(judged - targets), self._atlas.log_moduli)),
         )
 
     def _moduli(self, choice: _Choice, judged: Array) -> tuple[float, Interval, float, Interval]:
@@ -394,7 +394,7 @@ class _Fill:
     def _off_share(self, off: Array) -> float:
         """Share of stitches with a target that miss it by more than 10 % (logarithms)."""
         missed = (np.abs(np.expm1(off)) > OFF).any(axis=0)
-        return float(np.mean(missed, where=self._has_wish))
+        return float(np.mean(missed, where=self._has_target))
 
     def _is_alone(self, choices: Sequence[_Choice]) -> bool:
         """Whether a single patch covers all stitches."""

@@ -93,63 +93,63 @@ class Mixer:
         scattered : single stitches may be turned where no stripes come near.
         look : called between predictions; may raise to stop.
         """
-        wish = np.log([course_n_per_mm, wale_n_per_mm])
+        target = np.log([course_n_per_mm, wale_n_per_mm])
         tables = [table.within(most_rows, most_columns) for table in self._estimates]
         best: Stripes | None = None
         learnt = np.zeros(2)
         tried: set[StitchChart] = set()
         for _ in range(MAX_PREDICTED):
             look()
-            found = self._next(tables, wish - learnt, tried)
+            found = self._next(tables, target - learnt, tried)
             if found is None:
                 break
             chart, estimated = found
             tried.add(chart)
-            mixture = self._predicted(chart, wish)
+            mixture = self._predicted(chart, target)
             if best is None or mixture.off < best.off:
                 best = mixture
             if best.off < CLOSE:
                 return best
             learnt += 0.3 * (mixture.log_moduli - estimated - learnt)
         if scattered and (best is None or best.off > NEAR):
-            best = self._turned(best, wish, (most_rows, most_columns), look)
+            best = self._turned(best, target, (most_rows, most_columns), look)
         return best
 
-    def _predicted(self, chart: StitchChart, wish: Array) -> Stripes:
+    def _predicted(self, chart: StitchChart, target: Array) -> Stripes:
         found = predict_repeat(chart, self._material)
         moduli = found.modulus_course_n_per_mm, found.modulus_wale_n_per_mm
-        return Stripes(chart, *moduli, float(np.nanmax(np.abs(np.log(moduli) - wish))))
+        return Stripes(chart, *moduli, float(np.nanmax(np.abs(np.log(moduli) - target))))
 
     def _turned(
         self,
         best: Stripes | None,
-        wish: Array,
+        target: Array,
         most: tuple[int, int],
         look: Callable[[], None],
     ) -> Stripes | None:
         """The best mixtures and repeats, improved by turning a stitch, row or column at a time."""
         rng = np.random.default_rng(0)
-        near = np.argsort(np.nan_to_num(np.abs(self._atlas.log_moduli - wish)).max(axis=1))[:4]
+        near = np.argsort(np.nan_to_num(np.abs(self._atlas.log_moduli - target)).max(axis=1))[:4]
         starts = [self._atlas.chart(int(k)) for k in near]
         starts = [chart for chart in starts if chart.rows <= most[0] and chart.columns <= most[1]]
         pool = [] if best is None else [best]
-        pool += [self._predicted(chart, wish) for chart in starts]
+        pool += [self._predicted(chart, target) for chart in starts]
         for _ in range(MAX_TURNED if pool else 0):
             look()
             pool = sorted(pool, key=lambda mixture: mixture.off)[:4]
             if pool[0].off < NEAR:
                 break
             start = pool[int(rng.integers(len(pool)))].repeat
-            pool.append(self._predicted(_turn_some(start, most, rng), wish))
+            pool.append(self._predicted(_turn_some(start, most, rng), target))
         return min(pool, key=lambda mixture: mixture.off, default=None)
 
     def _next(
-        self, tables: list[_Estimates], wish: Array, tried: set[StitchChart]
+        self, tables: list[_Estimates], target: Array, tried: set[StitchChart]
     ) -> tuple[StitchChart, Array] | None:
         """The stripes with the nearest estimates that have not been tried."""
         ranked: list[tuple[float, StitchChart, Array]] = []
         for table in tables:
-            off = np.maximum(*np.nan_to_num(np.abs(table.log_moduli - wish)).T)
+            off = np.maximum(*np.nan_to_num(np.abs(table.log_moduli - target)).T)
             count = min(len(tried) + 1, len(off))
             for k in np.argpartition(off, count - 1)[:count].tolist() if count else []:
                 chart = self._chart(table, k)

@@ -171,20 +171,20 @@ class _Run:
         total = chosen + TRIES
 
         watch = SearchProgress(progress, self._cancelled)
-        wish = self._by_band(1 - self._wanted)
+        target = self._by_band(1 - self._wanted)
         best: _Pulled | None = None
-        aim = wish
+        aim = target
         for turn in range(chosen):
             watch.look(turn / total)
             if turn % ROUNDS == 0:
-                aim = wish
+                aim = target
             pulled = self._pull(self._choose(aim, FORCES_N_PER_MM[turn // ROUNDS]))
             if pulled is None:
                 aim = _DAMPING * aim  # too far for some band: try less
                 continue
             if best is None or pulled.error < best.error:
                 best = pulled
-            aim = aim + _DAMPING * np.nan_to_num(wish - self._by_band(1 - pulled.width))
+            aim = aim + _DAMPING * np.nan_to_num(target - self._by_band(1 - pulled.width))
         if best is None:
             raise InputError(
                 "strain",

@@ -31,7 +31,7 @@ from knitcore.formats.chart_key import (
     multiple_words,
     tinted,
 )
-from knitcore.formats.drawing import Box, Dots, Label, Page, Shape, Strokes, to_pdf, to_svg
+from knitcore.formats.drawing import Dots, Label, Lines, Page, Rectangle, Shape, to_pdf, to_svg
 from knitcore.garment.piece import Piece
 from knitcore.worked import Construction, Side, side_of_row
 
@@ -119,7 +119,7 @@ def _overview(piece: Piece, style: ChartStyle, parts: list[_Part], first: int) -
     for number, part in enumerate(parts, start=first + 1):
         left, top = whole.x(part.columns.start), whole.y(part.rows.stop - 1)
         width, height = cell * len(part.columns), cell * style.aspect * len(part.rows)
-        yield Box(left, top, width, height, stroke=HEAVY, line_width=0.3)
+        yield Rectangle(left, top, width, height, stroke=HEAVY, line_width=0.3)
         middle = left + width / 2
         yield from _on_a_plate(middle, top + height / 2 + 1.0, f"page {number}", 4.0)
     for region in style.regions:
@@ -137,7 +137,7 @@ def _on_a_plate(
     """A label that can be read above lines and dots."""
     width = 0.55 * size * len(text) + size / 2
     left = x - width / 2 if anchor == "middle" else x - size / 4
-    yield Box(left, y - 0.95 * size, width, 1.3 * size, fill="#ffffff")
+    yield Rectangle(left, y - 0.95 * size, width, 1.3 * size, fill="#ffffff")
     yield Label(x, y, text, size, anchor)
 
 
@@ -201,7 +201,7 @@ class _Part:
 
     def _shapes(self) -> Iterator[Shape]:
         yield from self.header()
-        yield Box(self._left, self._top, self._width, self._height, fill="#ffffff")
+        yield Rectangle(self._left, self._top, self._width, self._height, fill="#ffffff")
         yield from self._colours()
         yield from self._grid()
         yield self.purls(INK)
@@ -233,7 +233,7 @@ class _Part:
 
     def _boxes(
         self, rows: range, columns: range, fill: str | None = None, stroke: str | None = None
-    ) -> Iterator[Box]:
+    ) -> Iterator[Rectangle]:
         """A box on these stitches, as far as they are in the window."""
         left, right = (
             max(columns.start, self.columns.start),
@@ -242,7 +242,9 @@ class _Part:
         low, high = max(rows.start, self.rows.start), min(rows.stop, self.rows.stop)
         if left < right and low < high:
             width, height = self.cell * (right - left), self._row_height * (high - low)
-            yield Box(self.x(left), self.y(high - 1), width, height, fill, stroke, line_width=0.7)
+            yield Rectangle(
+                self.x(left), self.y(high - 1), width, height, fill, stroke, line_width=0.7
+            )
 
     def _colours(self) -> Iterator[Shape]:
         for row in self.rows if is_coloured(self.piece) else ():
@@ -250,7 +252,7 @@ class _Part:
                 fill = tinted(self.piece.yarns[run.yarn].colour)
                 yield from self._boxes(range(row, row + 1), range(run.start, run.stop), fill)
 
-    def _grid(self) -> Iterator[Strokes]:
+    def _grid(self) -> Iterator[Lines]:
         """Fine lines, heavier every ten stitches from the right and every ten rows."""
         right, total = self._left + self._width, self.chart.columns
         fine: list[tuple[float, float, float, float]] = []
@@ -261,8 +263,8 @@ class _Part:
         for row in range(self.rows.start - 1, self.rows.stop):
             line = (self._left, self.y(row), right, self.y(row))
             (fine if (row + 1) % TENTHS else tenth).append(line)
-        yield Strokes(tuple(fine), GRID, 0.15)
-        yield Strokes(tuple(tenth), TENTH, 0.3)
+        yield Lines(tuple(fine), GRID, 0.15)
+        yield Lines(tuple(tenth), TENTH, 0.3)
 
     def purls(self, colour: str) -> Dots:
         """A dot in each purl."""
@@ -282,9 +284,9 @@ class _Part:
             rows = len(list(alike))
             width, height = self.cell * (stop - start), self._row_height * rows
             row += rows
-            yield Box(self.x(start), self.y(row - 1), width, height, fill="#efece6")
+            yield Rectangle(self.x(start), self.y(row - 1), width, height, fill="#efece6")
 
-    def region_borders(self) -> Iterator[Strokes]:
+    def region_borders(self) -> Iterator[Lines]:
         """Borders of the regions in their colours."""
         for region in self.style.regions:
             window = np.s_[self.rows.start : self.rows.stop, self.columns.start : self.columns.stop]
@@ -297,7 +299,7 @@ class _Part:
                 for r, c in self._edges(cells[1:, 1:-1] != cells[:-1, 1:-1])
             ]
             if lines:
-                yield Strokes(tuple(lines), region.colour, 0.6)
+                yield Lines(tuple(lines), region.colour, 0.6)
 
     def _edges(self, changes: NDArray[np.bool_]) -> list[tuple[int, int]]:
         """Rows and columns of the chart at which something changes."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from knitcore.bounds import check_range
 from knitcore.chart import StitchChart
-from knitcore.formats.drawing import Box, Dots, Label, Shape
+from knitcore.formats.drawing import Dots, Label, Rectangle, Shape
 from knitcore.garment.piece import Piece, yarn_name
 from knitcore.worked import Construction, Side
 
@@ -120,16 +120,16 @@ def key_shapes(piece: Piece, style: ChartStyle, y: float) -> Iterator[Shape]:
     purl = "purl on RS, knit on WS" if flat else "purl"
     for index, (dot, words) in enumerate(((False, knit), (True, purl))):
         top = y + 5.5 * index
-        yield Box(MARGIN_MM, top - 3.0, 4.0, 4.0, fill="#ffffff", stroke=GRID)
+        yield Rectangle(MARGIN_MM, top - 3.0, 4.0, 4.0, fill="#ffffff", stroke=GRID)
         if dot:
             yield Dots(((MARGIN_MM + 2.0, top - 1.0),), 0.9, INK)
         yield Label(MARGIN_MM + 6.0, top, words)
     x = MARGIN_MM + 50.0
     if not piece.is_rectangle:
-        yield Box(x, y - 3.0, 4.0, 4.0, fill=NO_STITCH)
+        yield Rectangle(x, y - 3.0, 4.0, 4.0, fill=NO_STITCH)
         yield Label(x + 6.0, y, "no stitch")
     elif not style.repeats and piece.chart.repeat_cut() != piece.chart:
-        yield Box(x, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
+        yield Rectangle(x, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
         yield Label(x + 6.0, y, "repeat")
     reading = (
         "odd rows from right to left, even rows from left to right"
@@ -141,19 +141,19 @@ def key_shapes(piece: Piece, style: ChartStyle, y: float) -> Iterator[Shape]:
     yield Label(MARGIN_MM, y + 11.0, f"Seen from the right side; read {reading}.", SMALL_MM)
     y += 17.0
     for index, yarn in enumerate(piece.yarns if is_coloured(piece) else ()):
-        yield Box(MARGIN_MM, y - 3.0, 4.0, 4.0, fill=tinted(yarn.colour), stroke=GRID)
+        yield Rectangle(MARGIN_MM, y - 3.0, 4.0, 4.0, fill=tinted(yarn.colour), stroke=GRID)
         facts = style.yarn_facts[index : index + 1]
         said = f"{yarn_name(index)}: {yarn.name} ({yarn.colour})"
         yield Label(MARGIN_MM + 6.0, y, ", ".join([said, *facts]))
         y += KEY_LINE_MM
     for mark in style.repeats:
-        yield Box(MARGIN_MM, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
+        yield Rectangle(MARGIN_MM, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
         yield Label(MARGIN_MM + 6.0, y, mark.words)
         y += KEY_LINE_MM
     for regions in _region_lines(style):
         for index, region in enumerate(regions):
             x = MARGIN_MM + index * REGION_MM
-            yield Box(x, y - 3.0, 4.0, 4.0, stroke=region.colour, line_width=0.6)
+            yield Rectangle(x, y - 3.0, 4.0, 4.0, stroke=region.colour, line_width=0.6)
             yield Label(x + 6.0, y, textwrap.shorten(region.name, 22, placeholder="…"))
         y += KEY_LINE_MM
     for line in _note_lines(style):

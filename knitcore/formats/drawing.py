@@ -19,7 +19,7 @@ CONDENSED = 0.87
 
 
 @dataclass(frozen=True)
-class Box:
+class Rectangle:
     """A rectangle; ``fill`` and ``stroke`` are ``#rrggbb`` or None."""
 
     x: float
@@ -32,7 +32,7 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Strokes:
+class Lines:
     """Straight lines of one width and colour, each from (x, y) to (x, y)."""
 
     lines: tuple[tuple[float, float, float, float], ...]
@@ -74,7 +74,7 @@ class Photo:
 
 _FORBIDDEN = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
-Shape = Box | Strokes | Dots | Label | Photo
+Shape = Rectangle | Lines | Dots | Label | Photo
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ def _svg_page(parent: ET.Element, page: Page) -> None:
 
 def _svg(root: ET.Element, shape: Shape) -> None:
     match shape:
-        case Box():
+        case Rectangle():
             box = ET.SubElement(root, "rect", x=f"{shape.x:.3f}", y=f"{shape.y:.3f}")
             box.set("width", f"{shape.width:.3f}")
             box.set("height", f"{shape.height:.3f}")
@@ -133,7 +133,7 @@ def _svg(root: ET.Element, shape: Shape) -> None:
             if shape.stroke:
                 box.set("stroke", shape.stroke)
                 box.set("stroke-width", f"{shape.line_width:g}")
-        case Strokes():
+        case Lines():
             drawn = "".join(f"M{a:.3f} {b:.3f}L{c:.3f} {d:.3f}" for a, b, c, d in shape.lines)
             path = ET.SubElement(root, "path", d=drawn, fill="none", stroke=shape.stroke)
             path.set("stroke-width", f"{shape.line_width:g}")
@@ -190,7 +190,7 @@ def _pdf(canvas: object, shape: Shape, top: float) -> None:
 
     assert isinstance(canvas, Canvas)  # noqa: S101 - reportlab has no types
     match shape:
-        case Box():
+        case Rectangle():
             if shape.fill:
                 canvas.setFillColor(HexColor(shape.fill))
             if shape.stroke:
@@ -204,7 +204,7 @@ def _pdf(canvas: object, shape: Shape, top: float) -> None:
                 fill=int(shape.fill is not None),
                 stroke=int(shape.stroke is not None),
             )
-        case Strokes():
+        case Lines():
             canvas.setStrokeColor(HexColor(shape.stroke))
             canvas.setLineWidth(shape.line_width)
             canvas.lines([(a, top - b, c, top - d) for a, b, c, d in shape.lines])

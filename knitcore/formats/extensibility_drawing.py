@@ -17,7 +17,7 @@ from knitcore.answer.choose import choose
 from knitcore.arrays import runs
 from knitcore.chart import StitchChart
 from knitcore.formats.chart_key import tinted
-from knitcore.formats.drawing import Box, Label, Shape
+from knitcore.formats.drawing import Label, Rectangle, Shape
 from knitcore.formats.layout import DesignRegion, region_cells
 from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.piece import Piece
@@ -102,7 +102,7 @@ def field_shapes(
     cell = min(width / chart.columns, height / (chart.rows * aspect))
     high = cell * aspect
     most = max(float(course[stitch].max()), float(wale[stitch].max()))
-    yield Box(left, top, cell * chart.columns, high * chart.rows, fill=_OUTSIDE)
+    yield Rectangle(left, top, cell * chart.columns, high * chart.rows, fill=_OUTSIDE)
     owner = np.full(stitch.shape, -1)
     for index, region in enumerate(regions):
         owner[region_cells(region, chart.rows, chart.columns)] = index
@@ -111,7 +111,7 @@ def field_shapes(
         for start, stop, index in runs(np.where(stitch[row], owner[row], -2)):
             if index > -2:
                 fill = tinted(regions[index].colour) if index >= 0 else "#ffffff"
-                yield Box(left + cell * start, y, cell * (stop - start), high, fill=fill)
+                yield Rectangle(left + cell * start, y, cell * (stop - start), high, fill=fill)
     step = max(1, int(np.ceil(np.sqrt(stitch.sum() / MAX_RECTANGLES))))
     scale = 0.9 * step * min(cell, high) / most
     for row, column in np.argwhere(stitch).tolist():
@@ -137,6 +137,6 @@ def field_shapes(
 
 def _rectangle(
     middle: tuple[float, float], sides: tuple[float, float], ink: str, line: float
-) -> Box:
+) -> Rectangle:
     corner = middle[0] - sides[0] / 2, middle[1] - sides[1] / 2
-    return Box(*corner, *sides, stroke=ink, line_width=line)
+    return Rectangle(*corner, *sides, stroke=ink, line_width=line)

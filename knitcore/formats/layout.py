@@ -35,7 +35,7 @@ Motif = Annotated[
         examples=["KP/PK"],
     ),
 ]
-Place = Annotated[
+Index = Annotated[
     int,
     Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="From 0, the bottom row or the left column."),
 ]
@@ -56,7 +56,7 @@ class DesignRegion(_Part):
     fill: Motif | None = Field(
         None, description="Repeat that fills it, counted from the chart's corner."
     )
-    runs: list[tuple[Place, Place, Length]] = Field(
+    runs: list[tuple[Index, Index, Length]] = Field(
         max_length=MAX_RUNS,
         description="[row, column, length] of adjacent stitches; row 0 is the bottom.",
     )
@@ -67,8 +67,8 @@ class DesignRegion(_Part):
 class Placement(_Part):
     """Where a linked repeat lies."""
 
-    row: Place
-    column: Place
+    row: Index
+    column: Index
     rows: Length
     columns: Length
 

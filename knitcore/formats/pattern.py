@@ -30,7 +30,7 @@ from knitcore.formats.chart_key import (
     is_coloured,
     tinted,
 )
-from knitcore.formats.drawing import Box, Label, Page, Photo, Shape
+from knitcore.formats.drawing import Label, Page, Photo, Rectangle, Shape
 from knitcore.formats.written import written_sections
 from knitcore.garment.piece import Piece, yarn_name
 from knitcore.geometry.laid_out import SizeAtRest, laid_sizes_mm, size_at_rest
@@ -254,7 +254,7 @@ class _Flow:
         self._pages[-1].append(shape)
 
     def _patch(self, colour: str) -> None:
-        self.draw(Box(MARGIN_MM, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
+        self.draw(Rectangle(MARGIN_MM, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
 
     def _room(self, height: float) -> None:
         if self._y + height > A4_MM[1] - FOOT_MM:

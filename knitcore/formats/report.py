@@ -15,7 +15,7 @@ from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.formats.chart_drawing import A4_MM, chart_pages
 from knitcore.formats.chart_key import MARGIN_MM, ChartStyle, tinted
-from knitcore.formats.drawing import Box, Label, Page, Shape, Strokes, to_pdf
+from knitcore.formats.drawing import Label, Lines, Page, Rectangle, Shape, to_pdf
 from knitcore.formats.extensibility_drawing import field_shapes, region_fields
 from knitcore.formats.layout import DesignRegion
 from knitcore.garment.piece import Piece
@@ -110,11 +110,11 @@ def _regions(
     )
     for x, text in zip(places, head, strict=True):
         yield Label(x, 30.0, text, 3.0)
-    yield Strokes(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
+    yield Lines(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
     y = 37.0
     fields = region_fields(piece, regions, material)
     for part in fields[:MAX_REGIONS]:
-        yield Box(MARGIN_MM, y - 2.6, 3.0, 3.0, fill=tinted(part.colour))
+        yield Rectangle(MARGIN_MM, y - 2.6, 3.0, 3.0, fill=tinted(part.colour))
         both = [part.answer.along(direction) for direction in Direction]
         cells = (
             f"    {part.name[:28]}",
@@ -169,7 +169,7 @@ def _numbers(
     for index, cells in enumerate(rows):
         for x, text in zip((MARGIN_MM, 62.0, 128.0), cells, strict=True):
             yield Label(x, 36.0 + 5.2 * index, text, 3.2)
-    yield Strokes(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
+    yield Lines(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
     yield Label(MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {found.provenance}.", 3.0)
 
 
@@ -203,9 +203,9 @@ def _maps(piece: Piece, material: Material, aspect: float, top: float) -> Iterat
             for start, stop, value in runs(level[row]):
                 if value != _NO_STITCH:
                     width = cell * (stop - start)
-                    yield Box(left + cell * start, y, width, high_mm, fill=_colour(value))
+                    yield Rectangle(left + cell * start, y, width, high_mm, fill=_colour(value))
     for step in range(_LEVELS):
-        yield Box(MARGIN_MM + 2.0 * step, top + 68.0, 2.0, 3.0, fill=_colour(step))
+        yield Rectangle(MARGIN_MM + 2.0 * step, top + 68.0, 2.0, 3.0, fill=_colour(step))
     yield Label(MARGIN_MM, top + 75.0, f"{np.exp(low):.3g}", 2.8)
     end = MARGIN_MM + 2.0 * _LEVELS
     yield Label(end, top + 75.0, f"{np.exp(high):.3g} N/mm (logarithmic)", 2.8, "end")
@@ -224,7 +224,7 @@ def _plot(found: Answer) -> Iterator[Shape]:
     stress = np.array(DEFAULT_STRESS_N_PER_MM)
     strains = {d: found.along(d).strain(stress) for d in Direction}
     widest, tallest = max(float(strain[-1]) for strain in strains.values()), float(stress[-1])
-    yield Box(left, top, width, height, stroke="#b5b0a8")
+    yield Rectangle(left, top, width, height, stroke="#b5b0a8")
     for share in (0.0, 0.5, 1.0):
         x, y = left + width * share, top + height * (1 - share)
         yield Label(x, top + height + 4.0, f"{widest * share:.2f}", 2.8, "middle")
@@ -234,9 +234,9 @@ def _plot(found: Answer) -> Iterator[Shape]:
         lines = np.stack([across[:-1], up[:-1], across[1:], up[1:]], axis=1).tolist()
         drawn = tuple((a, b, c, d) for a, b, c, d in lines)
         ink = _DIRECTION_INK[direction]
-        yield Strokes(drawn, ink, 0.5)
+        yield Lines(drawn, ink, 0.5)
         line = top + 5.0 + 5.0 * index
-        yield Strokes(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
+        yield Lines(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
         yield Label(left + 13.0, line, f"{direction} ({found.provenance})", 2.8)
 
 

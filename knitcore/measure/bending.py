@@ -58,7 +58,7 @@ class BendingPhoto:
 
 
 @dataclass(frozen=True, eq=False)
-class BendingResult:
+class MeasuredBending:
     """Mean over photos.
 
     Attributes
@@ -83,7 +83,7 @@ def measure_bending(
     linear_density_g_per_m: float,
     length_mm: float | Sequence[float] | None = None,
     px_per_mm: float | None = None,
-) -> BendingResult:
+) -> MeasuredBending:
     """Bending modulus from photos.
 
     Parameters
@@ -135,7 +135,7 @@ def measure_bending(
     deviation = float(values.std(ddof=1)) if several else None
     if not several:
         notes.append("One photo does not show the scatter between samples.")
-    return BendingResult(
+    return MeasuredBending(
         bending_modulus_n_mm2=float(values.mean()),
         standard_deviation=deviation,
         standard_error=None if deviation is None else deviation / float(np.sqrt(len(values))),

@@ -17,9 +17,9 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled
-from knitcore.shell.cloth import Cloth
+from knitcore.shell.cloth import EvenCloth
 from knitcore.shell.relax import Shape, settle
-from knitcore.shell.sheet import Sheet
+from knitcore.shell.sheet import StitchSheet
 
 RULE_STITCHES, RULE_ROWS = (3, 5), 4
 """Knitters' rule for the width of a border at the sides, and at top and bottom."""
@@ -56,8 +56,8 @@ class BorderAdvice:
 
 
 def advice(
-    inner: Cloth,
-    border: Cloth,
+    inner: EvenCloth,
+    border: EvenCloth,
     axis: int,
     *,
     time_limit_s: float = 20.0,
@@ -99,14 +99,14 @@ def advice(
 
 
 def on_table(
-    inner: Cloth,
-    border: Cloth,
+    inner: EvenCloth,
+    border: EvenCloth,
     axis: int,
     border_mm: float,
     *,
     time_limit_s: float = 20.0,
     cancelled: Cancelled | None = None,
-) -> tuple[Sheet, Shape]:
+) -> tuple[StitchSheet, Shape]:
     """A strip across the piece with a border at both ends, from the flat state to rest.
 
     It lies on a smooth table with the side up to which it curls.

@@ -24,7 +24,7 @@ from knitcore.materials import Material
 from knitcore.materials.loops import loop_lengths_mm
 from knitcore.phases import pure_fabric, quarter_phases
 from knitcore.shell.bends import bends_of
-from knitcore.shell.sheet import TWIST, Net, Sheet
+from knitcore.shell.sheet import TWIST, Net, StitchSheet
 from knitcore.yarnlevel.bending import MAX_STITCHES, ROLLS_FROM, bending, bending_length_mm
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlibrary.yarns import yarn_for
@@ -34,7 +34,7 @@ _MAX_POISSON = 0.95
 
 
 @dataclass(frozen=True)
-class Cloth:
+class EvenCloth:
     """Even cloth; pairs are along the rows and along the columns.
 
     Parameters
@@ -81,11 +81,11 @@ class Cloth:
         """Whether free edges roll up (:data:`knitcore.yarnlevel.bending.ROLLS_FROM`)."""
         return 0.5 * self.thickness_mm * max(map(abs, self.curvature_per_mm)) >= ROLLS_FROM
 
-    def flat(self) -> Cloth:
+    def flat(self) -> EvenCloth:
         """The same without its curvature at rest."""
         return replace(self, curvature_per_mm=(0.0, 0.0))
 
-    def turned(self) -> Cloth:
+    def turned(self) -> EvenCloth:
         """Columns for rows."""
         c11, c22, c12, shear = self.membrane_n_per_mm
         return replace(
@@ -96,7 +96,7 @@ class Cloth:
             curvature_per_mm=self.curvature_per_mm[::-1],
         )
 
-    def sheet(self, rows: int, columns: int, size_mm: tuple[float, float]) -> Sheet:
+    def sheet(self, rows: int, columns: int, size_mm: tuple[float, float]) -> StitchSheet:
         """A flat sheet of rectangles.
 
         Parameters
@@ -117,7 +117,7 @@ class Cloth:
         flat[:, 0] = np.tile(size_mm[0] * (np.arange(columns + 1) - 0.5 * columns), rows + 1)
         flat[:, 1] = np.repeat(size_mm[1] * (np.arange(rows + 1) - 0.5 * rows), columns + 1)
         mean = sum(self.membrane_n_per_mm[:2]) / 2.0
-        return Sheet(
+        return StitchSheet(
             rows=rows,
             columns=columns,
             flat_mm=flat,
@@ -132,7 +132,7 @@ class Cloth:
         )
 
 
-def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: float) -> Cloth:
+def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: float) -> EvenCloth:
     """The cloth of a repeat.
 
     Parameters
@@ -155,7 +155,7 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     stitch = course.relaxed_mm, wale.relaxed_mm
     rigidity, curvature, thickness = _bent(repeat, material)
     weight = float(stitch_weights_n(repeat, material, linear_density_g_per_m, periodic=True).mean())
-    return Cloth(
+    return EvenCloth(
         stitch_mm=stitch,
         membrane_n_per_mm=(*stiff, coupling, found.shear_modulus_n_per_mm),
         rigidity_n_mm=rigidity,

@@ -17,7 +17,7 @@ from knitcore.materials import Material
 from knitcore.shell.folds import balances
 from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.rolled import start
-from knitcore.shell.sheet import Sheet, sheet_of
+from knitcore.shell.sheet import StitchSheet, sheet_of
 
 MAX_STITCHES = 10_000
 """Largest piece that is calculated."""
@@ -188,7 +188,7 @@ def curl(
     )
 
 
-def _pulled(sheet: Sheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
+def _pulled(sheet: StitchSheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
     """The flat sheet stretched evenly between clamps, and which corners these hold, (corners,)."""
     axis = pull.direction.axis
     grid = np.arange(len(sheet.flat_mm)).reshape(sheet.rows + 1, sheet.columns + 1)
@@ -213,7 +213,7 @@ def check_size(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) ->
         )
 
 
-def aligned(x: Array, sheet: Sheet) -> Array:
+def aligned(x: Array, sheet: StitchSheet) -> Array:
     """A shape turned and moved so that it is nearest to the flat sheet (Kabsch 1976)."""
     middle = x - x[sheet.used].mean(axis=0)
     left, _, right = np.linalg.svd(middle[sheet.used].T @ sheet.flat_mm[sheet.used])

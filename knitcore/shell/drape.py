@@ -17,9 +17,9 @@ from scipy.signal import find_peaks
 from knitcore.arrays import Array
 from knitcore.bounds import check_range
 from knitcore.errors import Cancelled, InputError
-from knitcore.shell.cloth import Cloth
+from knitcore.shell.cloth import EvenCloth
 from knitcore.shell.relax import Shape, settle, shake_mm
-from knitcore.shell.sheet import Sheet
+from knitcore.shell.sheet import StitchSheet
 
 PIECE_MM, DISC_MM = 300.0, 180.0
 """Diameters of the standard test."""
@@ -56,7 +56,7 @@ class Drape:
 
 
 def drape(
-    cloth: Cloth,
+    cloth: EvenCloth,
     *,
     piece_mm: float = PIECE_MM,
     disc_mm: float = DISC_MM,
@@ -109,8 +109,8 @@ def drape(
 
 
 def _round(
-    cloth: Cloth, piece_mm: float, disc_mm: float, across: int
-) -> tuple[Sheet, NDArray[np.bool_]]:
+    cloth: EvenCloth, piece_mm: float, disc_mm: float, across: int
+) -> tuple[StitchSheet, NDArray[np.bool_]]:
     """The piece, and which of its corners are in the clamp."""
     size = piece_mm / across
     whole = cloth.flat().sheet(across, across, (size, size))
@@ -123,7 +123,7 @@ def _round(
     return sheet, radius <= reach[clamped - 1]
 
 
-def _waved(sheet: Sheet, held: NDArray[np.bool_], waves: int) -> Array:
+def _waved(sheet: StitchSheet, held: NDArray[np.bool_], waves: int) -> Array:
     x = sheet.flat_mm.copy()
     out = np.linalg.norm(x, axis=1) - np.linalg.norm(x[held], axis=1).max()
     wave = _WAVE * out * np.cos(waves * np.arctan2(x[:, 1], x[:, 0]))
@@ -132,11 +132,11 @@ def _waved(sheet: Sheet, held: NDArray[np.bool_], waves: int) -> Array:
     return x
 
 
-def _area(sheet: Sheet) -> float:
+def _area(sheet: StitchSheet) -> float:
     return float(sheet.membrane[0, :2].prod())
 
 
-def _coefficient(sheet: Sheet, x: Array, disc_mm: float) -> float:
+def _coefficient(sheet: StitchSheet, x: Array, disc_mm: float) -> float:
     disc = 0.25 * math.pi * disc_mm**2
     ring = len(sheet.quads) * _area(sheet) - disc
     return (_shadow(x[:, :2], sheet.quads) - disc) / ring
@@ -150,7 +150,7 @@ def _shadow(at: Array, quads: NDArray[np.int64]) -> float:
     return float(shapely.union_all(solid, grid_size=1e-4).area)
 
 
-def _folds(sheet: Sheet, shape: Shape, ring_mm: float) -> int:
+def _folds(sheet: StitchSheet, shape: Shape, ring_mm: float) -> int:
     """Crests around the rim, at least a tenth as high as the ring is wide."""
     rim = np.linalg.norm(sheet.flat_mm, axis=1) >= 0.92 * sheet.flat_mm[:, 0].max()
     rim &= sheet.used

@@ -14,7 +14,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, InputError
-from knitcore.shell.cloth import Cloth
+from knitcore.shell.cloth import EvenCloth
 from knitcore.shell.relax import settle
 
 WIDTH_MM = 25.0
@@ -54,7 +54,7 @@ class Overhang:
 
 
 def overhang(
-    cloth: Cloth,
+    cloth: EvenCloth,
     axis: int,
     overhang_mm: float | None = None,
     *,

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, check_cancelled
 from knitcore.shell.factor import SheetFactor
-from knitcore.shell.sheet import Sheet
+from knitcore.shell.sheet import StitchSheet
 from knitcore.shell.tangent import Tangent
 
 MEMORY = 16
@@ -76,7 +76,7 @@ def shake_mm(shape: tuple[int, ...], size_mm: float = 1e-3) -> Array:
 
 
 def settle(
-    sheet: Sheet,
+    sheet: StitchSheet,
     x: Array,
     *,
     held: NDArray[np.bool_] | None = None,
@@ -116,7 +116,7 @@ def settle(
 class _Descent:
     def __init__(
         self,
-        sheet: Sheet,
+        sheet: StitchSheet,
         x: Array,
         held: NDArray[np.bool_] | None,
         load_n: Array | None,

@@ -14,14 +14,16 @@ import numpy as np
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled
 from knitcore.shell.relax import settle, shake_mm
-from knitcore.shell.sheet import Net, Sheet
+from knitcore.shell.sheet import Net, StitchSheet
 
 _ALIKE = 0.1
 """Share by which energies may differ that count as alike: of two bent shapes alike that is taken
 which is bent the shorter way, so that the long edges roll, and of a bent and the flat one that."""
 
 
-def start(sheet: Sheet, *, time_limit_s: float = 60.0, cancelled: Cancelled | None = None) -> Array:
+def start(
+    sheet: StitchSheet, *, time_limit_s: float = 60.0, cancelled: Cancelled | None = None
+) -> Array:
     """A shape from which to descend, (corners, 3), mm, slightly perturbed.
 
     Parameters
@@ -42,12 +44,12 @@ def start(sheet: Sheet, *, time_limit_s: float = 60.0, cancelled: Cancelled | No
     return np.asarray(best + shake_mm(best.shape))
 
 
-def _shorter_first(sheet: Sheet) -> tuple[int, int]:
+def _shorter_first(sheet: StitchSheet) -> tuple[int, int]:
     width, height, _ = np.ptp(sheet.flat_mm, axis=0)
     return (0, 1) if height <= width else (1, 0)
 
 
-def _bent(sheet: Sheet, axis: int, time_limit_s: float, cancelled: Cancelled | None) -> Array:
+def _bent(sheet: StitchSheet, axis: int, time_limit_s: float, cancelled: Cancelled | None) -> Array:
     strip = strip_of(sheet, axis)
     plane = np.zeros(strip.flat_mm.shape, dtype=bool)
     plane[:, axis] = True  # a strip would roll up into a helix
@@ -57,7 +59,7 @@ def _bent(sheet: Sheet, axis: int, time_limit_s: float, cancelled: Cancelled | N
     return extruded(sheet, axis, found.x)
 
 
-def strip_of(sheet: Sheet, axis: int) -> Sheet:
+def strip_of(sheet: StitchSheet, axis: int) -> StitchSheet:
     """A strip one stitch wide with the mean properties of the sheet's lines.
 
     Parameters
@@ -89,7 +91,7 @@ def strip_of(sheet: Sheet, axis: int) -> Sheet:
     )  # fmt: skip
 
 
-def extruded(sheet: Sheet, axis: int, strip_mm: Array) -> Array:
+def extruded(sheet: StitchSheet, axis: int, strip_mm: Array) -> Array:
     """The sheet bent as a strip of it, (corners, 3), mm."""
     shape = sheet.rows + 1, sheet.columns + 1
     bent = sheet.flat_mm.reshape(*shape, 3).copy()
@@ -102,7 +104,7 @@ def extruded(sheet: Sheet, axis: int, strip_mm: Array) -> Array:
     return bent.reshape(-1, 3)
 
 
-def _shaken(strip: Sheet) -> Array:
+def _shaken(strip: StitchSheet) -> Array:
     """The flat strip, lifted a little, both sides alike, so that it does not twist."""
     sides = (strip.rows + 1, 1) if strip.columns == 1 else (1, strip.columns + 1)
     lift = shake_mm(sides)
@@ -111,5 +113,5 @@ def _shaken(strip: Sheet) -> Array:
     return shaken
 
 
-def _energy(sheet: Sheet, x: Array) -> float:
+def _energy(sheet: StitchSheet, x: Array) -> float:
     return sheet.energy(x, sheet.pairs(x))[0]

@@ -40,7 +40,7 @@ long."""
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class StitchSheet:
     """A sheet of stitches.
 
     Parameters
@@ -95,7 +95,7 @@ class Sheet:
         corners = np.repeat(np.flatnonzero(self.used)[:, None], 4, axis=1)
         return np.concatenate([corners, self.quads])
 
-    def cut(self, stitches: NDArray[np.bool_]) -> Sheet:
+    def cut(self, stitches: NDArray[np.bool_]) -> StitchSheet:
         """The sheet without some of its stitches; its corners keep their numbers.
 
         Parameters
@@ -111,7 +111,7 @@ class Sheet:
             twisting=self.twisting[kept],
         )  # fmt: skip
 
-    def clamped(self, held: NDArray[np.bool_]) -> Sheet:
+    def clamped(self, held: NDArray[np.bool_]) -> StitchSheet:
         """The sheet with lines at the edge of a clamp twice as stiff: only their outer half bends.
 
         Parameters
@@ -170,8 +170,8 @@ _QUARTERS = ((0, 1, 2), (1, 0, 3), (2, 3, 0), (3, 2, 1))
 
 @dataclass(frozen=True, eq=False)
 class Net:
-    """Which corners belong together; see :class:`Sheet`. Hinges between the neighbours of the rows,
-    row by row, come before those between the neighbours of the columns, column by column."""
+    """Which corners belong together; see :class:`StitchSheet`. Hinges between the neighbours of the
+    rows, row by row, come before those between the neighbours of the columns, column by column."""
 
     quads: Ints
     quarters: Ints
@@ -202,7 +202,7 @@ def _between(corner: Ints) -> Ints:
     ).reshape(-1, 6)  # fmt: skip
 
 
-def sheet_of(chart: StitchChart, material: Material) -> Sheet:
+def sheet_of(chart: StitchChart, material: Material) -> StitchSheet:
     """The sheet of a chart.
 
     Raises
@@ -230,7 +230,7 @@ def sheet_of(chart: StitchChart, material: Material) -> Sheet:
     flat[:, 0] = np.tile(np.append(0.0, np.cumsum(size[..., 0].mean(axis=0))), rows + 1)
     flat[:, 1] = np.repeat(np.append(0.0, np.cumsum(size[..., 1].mean(axis=1))), columns + 1)
     flat[:, :2] -= flat[:, :2].mean(axis=0)
-    return Sheet(
+    return StitchSheet(
         rows=rows,
         columns=columns,
         flat_mm=flat,

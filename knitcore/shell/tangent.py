@@ -17,7 +17,7 @@ from knitcore.shell.kernels import (
     turn_slope,
     width_slope,
 )
-from knitcore.shell.sheet import Sheet
+from knitcore.shell.sheet import StitchSheet
 
 Ints = NDArray[np.int64]
 
@@ -30,7 +30,7 @@ _FAR = 0.5
 class Tangent:
     """The matrix of a sheet: its pattern is found once, its entries at every shape."""
 
-    def __init__(self, sheet: Sheet) -> None:
+    def __init__(self, sheet: StitchSheet) -> None:
         self._sheet = sheet
         self._count = len(sheet.flat_mm)
         parts = (sheet.quarters, sheet.hinges, sheet.quads)

@@ -75,7 +75,7 @@ def process_id(*, cancelled: Callable[[], bool]) -> int:
     return os.getpid()
 
 
-class Wish(BaseModel):
+class Task(BaseModel):
     """What the jobs of these tests are asked."""
 
     what: str = "answer"
@@ -88,14 +88,14 @@ class Answer(BaseModel):
     value: int
 
 
-def work(wish: Wish, context: Context) -> Answer:
+def work(task: Task, context: Context) -> Answer:
     """An operation that does what it is told."""
     context.progress(1, 4)
-    if wish.what == "die":
+    if task.what == "die":
         os.kill(os.getpid(), signal.SIGKILL)
-    if wish.what == "fail":
+    if task.what == "fail":
         raise ValueError("a mistake of ours")
-    while wish.what == "wait" and not Path(wish.mark).exists():
+    while task.what == "wait" and not Path(task.mark).exists():
         if context.cancelled():
             break
         time.sleep(0.01)

@@ -25,7 +25,7 @@ from app.compute import cluster as cluster_module
 from app.compute import compute as compute_module
 from app.compute.cluster import Cluster, ClusterError
 from app.compute.compute import Compute
-from app.compute.places import NotBegunError
+from app.compute.workers import NotBegunError
 from app.http import observing
 from app.main import create_app
 from app.settings import Settings

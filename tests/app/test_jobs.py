@@ -30,7 +30,7 @@ from app.store.database import Database, StoreError
 from app.store.schema import migrate
 from knitcore.extensions import Group
 from knitcore.yarnlibrary import fingerprint
-from tests.app.jobs import WORK, Wish, answers
+from tests.app.jobs import WORK, Task, answers
 from tests.app.service import Service
 from tests.extension_package import install
 
@@ -77,7 +77,7 @@ async def _running(runner: JobRunner, job: str) -> None:
 
 
 def _wish(what: str, mark: Path | str = "/nonexistent") -> str:
-    return Wish(what=what, mark=str(mark)).model_dump_json()
+    return Task(what=what, mark=str(mark)).model_dump_json()
 
 
 def test_a_stretch_test_in_the_background(client: TestClient) -> None:

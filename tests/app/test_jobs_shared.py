@@ -19,7 +19,7 @@ from app.jobs.kinds import KINDS
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.store.database import Database, StoreError
-from tests.app.jobs import WORK, Wish, answers
+from tests.app.jobs import WORK, Task, answers
 
 
 @pytest.fixture(autouse=True)
@@ -46,7 +46,7 @@ async def _until(true: Callable[[], Awaitable[bool]]) -> None:
 
 
 def _wish(what: str, mark: Path | str = "/nonexistent") -> str:
-    return Wish(what=what, mark=str(mark)).model_dump_json()
+    return Task(what=what, mark=str(mark)).model_dump_json()
 
 
 def test_another_process_sees_the_progress_and_cancels(

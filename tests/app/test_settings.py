@@ -8,7 +8,7 @@ from fastapi.testclient import TestClient
 from pydantic import ValidationError
 
 from app.cli.main import main
-from app.compute.cluster import ClusterPlace
+from app.compute.cluster import ClusterWorker
 from app.main import create_app
 from app.settings import Settings
 
@@ -43,8 +43,8 @@ def test_logs_hold_no_token() -> None:
 def test_a_scheduler_takes_the_work_away_from_this_machine(tmp_path: Path) -> None:
     app = create_app(Settings(scheduler="tcp://127.0.0.1:9", workers=3, data_dir=tmp_path))
     with TestClient(app, base_url="http://127.0.0.1") as client:  # it need not be there yet
-        places = app.state.compute.places
-        assert [type(place) for place in places] == [ClusterPlace] * 3
+        workers = app.state.compute.workers
+        assert [type(worker) for worker in workers] == [ClusterWorker] * 3
         assert client.get("/healthz").status_code == 200
         assert client.get("/readyz").status_code == 503
 

@@ -48,7 +48,7 @@ def test_a_repeat_of_the_atlas_is_shown_applied_and_dragged_onto_the_chart(
 @pytest.mark.slow
 def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
     flat_studio.keyboard.press("Shift+F")
-    values = flat_studio.locator(".wish-value")
+    values = flat_studio.locator(".target-value")
     garter = material("acrylic").law(Fabric.GARTER)
     values.nth(0).fill(f"{garter.modulus_course:.4f}")
     values.nth(1).fill(f"{garter.modulus_wale:.4f}")

@@ -1,4 +1,4 @@
-"""Numbers of the mechanics on the page: stretch tests, their intervals, measured curves, wishes."""
+"""Mechanics on the page: stretch tests, their intervals, measured curves, targets."""
 
 from __future__ import annotations
 

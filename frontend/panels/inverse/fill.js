@@ -38,7 +38,7 @@ const NEAR = 0.1;
 export function fillTab(studio) {
   const { document: chart, selection } = studio;
   const run = new Run();
-  const list = h("ol", { class: "wish-list", id: "parts" });
+  const list = h("ol", { class: "target-list", id: "parts" });
   const answer = h("div", { class: "inverse-answer", id: "fill-answer" });
   /** @type {Part[]} */
   let parts = [];
@@ -146,10 +146,10 @@ export function fillTab(studio) {
     };
     return h(
       "li",
-      { class: "wish" },
+      { class: "target" },
       h(
         "div",
-        { class: "wish-line" },
+        { class: "target-line" },
         h("input", {
           type: "text",
           class: "text part-title",
@@ -205,14 +205,14 @@ export function fillTab(studio) {
 
   const fill = async () => {
     const { rows, columns } = chart.grid;
-    const wished = parts.filter(({ course, wale }) => course !== null || wale !== null);
-    if (!wished.length || size !== sizeNow()) {
+    const targeted = parts.filter(({ course, wale }) => course !== null || wale !== null);
+    if (!targeted.length || size !== sizeNow()) {
       run.say({
-        title: wished.length ? "The chart has another size now" : "There is no target",
-        detail: wished.length
+        title: targeted.length ? "The chart has another size now" : "There is no target",
+        detail: targeted.length
           ? "The parts were drawn on the chart as it was."
           : "A part needs a stiffness along rows or columns.",
-        remedy: wished.length ? "Add the parts again." : "Add a part, and give it a number.",
+        remedy: targeted.length ? "Add the parts again." : "Add a part, and give it a number.",
       });
       return;
     }
@@ -226,7 +226,7 @@ export function fillTab(studio) {
         columns,
         chart: chart.grid.text,
         outline: outlineNow(),
-        wishes: wished.map(({ name, cells, course, wale }) => ({
+        wishes: targeted.map(({ name, cells, course, wale }) => ({
           name,
           runs: runsOf(cells, columns),
           modulus_course_n_per_mm: course,
@@ -239,19 +239,19 @@ export function fillTab(studio) {
       },
       "Filling",
     );
-    if (found) preview(found, wished);
+    if (found) preview(found, targeted);
   };
 
   /**
    * The result goes onto the chart at once, so that chart, 3D and numbers show it.
    *
    * @param {FillResult} found
-   * @param {Part[]} wished
+   * @param {Part[]} targeted
    */
-  const preview = (found, wished) => {
+  const preview = (found, targeted) => {
     if (size !== sizeNow()) return;
     const filled = Grid.fromText(found.chart);
-    const cells = [...new Set(wished.flatMap((part) => part.cells))];
+    const cells = [...new Set(targeted.flatMap((part) => part.cells))];
     const before = cells.map((i) => chart.grid.purl[i]);
     /** @param {(at: number, i: number) => number} label @param {string} words */
     const put = (label, words) =>
@@ -295,7 +295,7 @@ export function fillTab(studio) {
         "details",
         {},
         h("summary", {}, "Which patterns, and how near they come"),
-        found.patches.length > 0 && patchTable(found, wished),
+        found.patches.length > 0 && patchTable(found, targeted),
         ...found.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
       ),
     );
@@ -368,10 +368,10 @@ function against(now, wanted) {
 const inKnitting = (message) =>
   message.replaceAll("course-wise", "along rows").replaceAll("wale-wise", "along columns");
 
-/** @param {FillResult} found @param {Part[]} wished */
-function patchTable({ patches, columns }, wished) {
+/** @param {FillResult} found @param {Part[]} targeted */
+function patchTable({ patches, columns }, targeted) {
   /** @param {{row: number, column: number}} patch */
-  const partOf = ({ row, column }) => wished.find(({ cells }) => cells.includes(row * columns + column));
+  const partOf = ({ row, column }) => targeted.find(({ cells }) => cells.includes(row * columns + column));
   /** One row for all patches of a part with the same pattern. @type {Map<string, FillResult["patches"][number]>} */
   const alike = new Map();
   for (const patch of patches) {

@@ -1,5 +1,5 @@
 /**
- * Find a fabric: wishes with tolerances, in this yarn or in all, and what comes nearest.
+ * Find a fabric: targets with tolerances, in this yarn or in all, and what comes nearest.
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
@@ -95,7 +95,7 @@ const quantityOf = (label) => QUANTITIES.find(({ id }) => id === label.split("@"
  */
 export function findTab(studio, context) {
   const run = new Run();
-  const rows = h("div", { class: "wish-list", id: "wishes" });
+  const rows = h("div", { class: "target-list", id: "targets" });
   const answer = h("div", { class: "inverse-answer", id: "find-answer" });
   /** @type {(() => TargetInput | null)[]} */
   const readers = [];
@@ -107,8 +107,8 @@ export function findTab(studio, context) {
       { class: "text", "aria-label": "Quantity" },
       ...QUANTITIES.map((q) => h("option", { value: q.id, selected: q === first }, q.label)),
     );
-    const number = field("Value", value, { step: "any", class: "number figures wish-value" });
-    const unit = h("span", { class: "muted wish-unit" });
+    const number = field("Value", value, { step: "any", class: "number figures target-value" });
+    const unit = h("span", { class: "muted target-unit" });
     const tolerance = field("Tolerance", 10, { min: "0.1", step: "any" });
     const toleranceUnit = h("span", { class: "muted" }, "%");
     const weight = h(
@@ -123,7 +123,7 @@ export function findTab(studio, context) {
     const load = field("Load in N/mm", 0.1, { min: "0.001", max: "0.5", step: "any" });
     const rest = field("Tube at rest in mm", 180, { min: "1", step: "any" });
     const worn = field("Limb in mm", 220, { min: "1", step: "any" });
-    const extra = h("div", { class: "wish-extra" });
+    const extra = h("div", { class: "target-extra" });
     const remove = iconButton("close", "Remove this target", () => {
       readers.splice(readers.indexOf(read), 1);
       row.remove();
@@ -169,14 +169,14 @@ export function findTab(studio, context) {
     readers.push(read);
     const row = h(
       "div",
-      { class: "wish" },
+      { class: "target" },
       h(
         "div",
-        { class: "wish-line" },
+        { class: "target-line" },
         select,
         number,
         unit,
-        h("label", { class: "wish-tolerance" }, "±", tolerance, toleranceUnit),
+        h("label", { class: "target-tolerance" }, "±", tolerance, toleranceUnit),
         weight,
         remove,
       ),
@@ -325,7 +325,7 @@ export function findTab(studio, context) {
         "plus",
         "Target",
         () => addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]),
-        { id: "wish-add" },
+        { id: "target-add" },
       ),
       transfers.label,
       curl.label,

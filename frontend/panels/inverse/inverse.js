@@ -1,6 +1,6 @@
 /**
  * Inverse design beside the chart: the atlas of all repeats, the search for a fabric, and filling
- * from a wish. It lies over the fabric and the inspector, so that the chart stays in sight.
+ * from a target. It lies over the fabric and the inspector, so that the chart stays in sight.
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"

@@ -17,9 +17,9 @@ import pytest
 import yaml
 
 from app.compute import compute as compute_module
-from app.compute.cluster import Cluster, ClusterError, ClusterPlace
+from app.compute.cluster import Cluster, ClusterError, ClusterWorker
 from app.compute.compute import Compute
-from app.compute.places import AbandonedError, TimeLimitError, WorkerDiedError
+from app.compute.workers import AbandonedError, TimeLimitError, WorkerDiedError
 from app.context import Context
 from app.jobs.document import JobState
 from app.jobs.runner import JobRunner
@@ -77,7 +77,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def compute(address: str) -> Iterator[Compute]:
     cluster = Cluster(address)
-    yield Compute([ClusterPlace(cluster), ClusterPlace(cluster)], timeout_s=60.0)
+    yield Compute([ClusterWorker(cluster), ClusterWorker(cluster)], timeout_s=60.0)
     cluster.close()
 
 
@@ -185,7 +185,7 @@ def test_a_lost_cluster_is_reported_and_found_again(
 ) -> None:
     monkeypatch.setattr("app.compute.cluster.CONNECT_S", 0.5)
     cluster = Cluster("tcp://127.0.0.1:9")
-    compute = Compute([ClusterPlace(cluster)], timeout_s=60.0)
+    compute = Compute([ClusterWorker(cluster)], timeout_s=60.0)
     with pytest.raises(ClusterError, match="cannot be reached"):
         asyncio.run(compute.run(never, jobs.add, 1, 1))
     monkeypatch.setattr(cluster, "address", address)

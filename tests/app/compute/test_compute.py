@@ -14,14 +14,14 @@ import pytest
 
 from app.compute import compute as compute_module
 from app.compute.compute import Compute
-from app.compute.places import (
+from app.compute.processes import NICENESS, SCRATCH, processes
+from app.compute.workers import (
     AbandonedError,
     MemoryLimitError,
     NotBegunError,
     TimeLimitError,
     WorkerDiedError,
 )
-from app.compute.processes import NICENESS, SCRATCH, processes
 from app.problems.errors import UnavailableError
 from knitcore import InputError
 from tests.app import jobs
@@ -44,7 +44,7 @@ async def at_once() -> bool:
 
 def test_results_and_errors_come_back(compute: Compute) -> None:
     assert asyncio.run(compute.run(never, jobs.add, 2, 3)) == 5
-    assert 0 < (compute.places[0].cpu_s or 0) < 30
+    assert 0 < (compute.workers[0].cpu_s or 0) < 30
     with pytest.raises(InputError, match="Use less"):
         asyncio.run(compute.run(never, jobs.refuse))
 
@@ -91,14 +91,14 @@ def test_uploads_of_a_lost_worker_are_removed(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     killed = tmp_path / f"{SCRATCH}{2**22 + 1}-x"  # of a process that cannot be
     killed.mkdir()
-    (place,) = processes(1)
+    (worker,) = processes(1)
     (scratch,) = tmp_path.iterdir()
     upload = scratch / "knitcore-1"
     upload.mkdir()
     (upload / "secret.csv").touch()
-    place.replace()
+    worker.replace()
     assert list(scratch.iterdir()) == []
-    place.close()
+    worker.close()
     assert list(tmp_path.iterdir()) == []
 
 

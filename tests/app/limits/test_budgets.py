@@ -46,7 +46,7 @@ def test_what_users_hold_is_counted_and_released() -> None:
 
 
 class _Finished:
-    """A place whose jobs are done at once, and took some CPU seconds."""
+    """A worker whose jobs are done at once, and took some CPU seconds."""
 
     share, cpu_s = 0.0, 0.2
 

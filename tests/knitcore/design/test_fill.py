@@ -7,9 +7,9 @@ from hypothesis import given
 from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
+from knitcore.design.part_targets import PartTarget, target_maps, target_parts
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patches import connected
-from knitcore.design.wishes import Wish, wanted_maps, wished_parts
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
@@ -103,10 +103,10 @@ def test_a_uniform_target_is_met(index: int) -> None:
 
 
 def test_a_target_between_the_repeats_is_met_by_a_mixture() -> None:
-    """Stripes hidden in the wish: no repeat of this small atlas comes near."""
+    """Stripes hidden in the target: no repeat of this small atlas comes near."""
     hidden = predict_repeat(StitchChart.parse("KKKKKKPKP\nKKKKKKKPK"), ACRYLIC)
-    wish = [np.full((20, 20), hidden.modulus_n_per_mm(d)) for d in Direction]
-    field = fill_field(*wish, ACRYLIC, ATLAS)
+    target = [np.full((20, 20), hidden.modulus_n_per_mm(d)) for d in Direction]
+    field = fill_field(*target, ACRYLIC, ATLAS)
     found = predict_repeat(StitchChart.parse(field.regions[0].repeat), ACRYLIC)
     for direction in Direction:
         wanted = hidden.modulus_n_per_mm(direction)
@@ -173,14 +173,14 @@ def test_patches_are_not_too_small(smallest: int) -> None:
 def test_a_part_narrower_than_a_patch_is_filled(columns: int) -> None:
     """Its repeat is cut off at the part's edge; the stitches beside it stay."""
     garter = ACRYLIC.law(Fabric.GARTER)
-    cuff = Wish(
+    cuff = PartTarget(
         "cuff",
         tuple((row, 0, columns) for row in range(12)),
         garter.modulus_course,
         garter.modulus_wale,
     )
-    course, wale = wanted_maps([cuff], 12, 10)
-    parts = wished_parts([cuff], 12, 10)
+    course, wale = target_maps([cuff], 12, 10)
+    parts = target_parts([cuff], 12, 10)
     knit = StitchChart.of_fabric(Fabric.STOCKINETTE, 12, 10)
     field = fill_field(course, wale, ACRYLIC, ATLAS, parts=parts, kept=knit)
     (region,) = field.regions
@@ -206,7 +206,7 @@ def test_stitches_without_a_target_are_not_constrained() -> None:
 PART = (slice(3, 10), slice(4, 13))
 
 
-def wish_in_part(fabric: Fabric, shape: tuple[int, int] = (14, 18)) -> list[np.ndarray]:
+def target_in_part(fabric: Fabric, shape: tuple[int, int] = (14, 18)) -> list[np.ndarray]:
     """The fabric's moduli in a part of a chart."""
     maps = [np.full(shape, np.nan) for _ in Direction]
     for direction in Direction:
@@ -218,7 +218,7 @@ def wish_in_part(fabric: Fabric, shape: tuple[int, int] = (14, 18)) -> list[np.n
 def test_a_filled_part_continues_its_surroundings(shift: int) -> None:
     """Garter wished for in garter: the rows go through, whichever of them is knit."""
     around = StitchChart.of_fabric("garter", 14, 18).purl ^ bool(shift)
-    field = fill_field(*wish_in_part(Fabric.GARTER), ACRYLIC, ATLAS, kept=StitchChart(around))
+    field = fill_field(*target_in_part(Fabric.GARTER), ACRYLIC, ATLAS, kept=StitchChart(around))
     assert np.array_equal(field.chart.purl, around)
     assert field.off_share == 0
 
@@ -229,7 +229,7 @@ def test_stitches_without_a_target_are_kept_and_the_part_fitted_to_them(
     seed: int, fabric: Fabric
 ) -> None:
     kept = hidden_chart(seed, side=18, patches=4, least=4).purl[:14]
-    maps = wish_in_part(fabric)
+    maps = target_in_part(fabric)
     field = fill_field(*maps, ACRYLIC, ATLAS, kept=StitchChart(kept), seed=seed)
     outside = np.ones(kept.shape, dtype=bool)
     outside[PART] = False
@@ -248,13 +248,13 @@ def test_stitches_without_a_target_are_kept_and_the_part_fitted_to_them(
 
 
 def test_a_shaped_piece_is_filled_whatever_stands_where_it_has_no_stitch() -> None:
-    """Also if a wish reaches over its edge: the part of it inside is filled, and judged."""
+    """Also if a target reaches over its edge: the part of it inside is filled, and judged."""
     kept = hidden_chart(2, side=18, patches=4, least=4).purl[:14]
     stitch = np.ones(kept.shape, dtype=bool)
     stitch[5:9, 10:] = False
     fields = [
         fill_field(
-            *wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, kept=StitchChart(chart), stitch=stitch
+            *target_in_part(Fabric.SEED), ACRYLIC, ATLAS, kept=StitchChart(chart), stitch=stitch
         )
         for chart in (kept, np.where(stitch, kept, ~kept))
     ]
@@ -271,11 +271,11 @@ def test_a_target_off_the_fabric_and_a_fabric_in_parts_are_refused() -> None:
     stitch = np.ones((14, 18), dtype=bool)
     stitch[PART] = False
     with pytest.raises(InputError, match="inside the outline"):
-        fill_field(*wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
+        fill_field(*target_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
     stitch = np.ones((14, 18), dtype=bool)
     stitch[:, 8] = False
     with pytest.raises(InputError, match="2 pieces"):
-        fill_field(*wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
+        fill_field(*target_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
 
 
 def test_the_missed_share_counts_stitches_with_a_target() -> None:
@@ -289,7 +289,7 @@ def test_the_missed_share_counts_stitches_with_a_target() -> None:
 def test_a_chart_of_another_size_is_refused() -> None:
     with pytest.raises(InputError, match="18x14"):
         fill_field(
-            *wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, kept=StitchChart.of_fabric("rib", 3, 3)
+            *target_in_part(Fabric.SEED), ACRYLIC, ATLAS, kept=StitchChart.of_fabric("rib", 3, 3)
         )
 
 

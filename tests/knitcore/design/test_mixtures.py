@@ -19,14 +19,14 @@ MIXER = Mixer(ATLAS, ACRYLIC)
 
 def test_a_target_between_two_fabrics_is_met_by_stripes_of_them() -> None:
     hidden = StitchChart.parse("KKKKKKPKP\nKKKKKKKPK")
-    wish = predict_repeat(hidden, ACRYLIC)
-    found = MIXER.nearest(wish.modulus_course_n_per_mm, wish.modulus_wale_n_per_mm)
+    target = predict_repeat(hidden, ACRYLIC)
+    found = MIXER.nearest(target.modulus_course_n_per_mm, target.modulus_wale_n_per_mm)
     assert found is not None
     assert found.off <= math.log(1.08)
     again = predict_repeat(found.repeat, ACRYLIC)
     for direction in Direction:
         assert again.modulus_n_per_mm(direction) == pytest.approx(
-            wish.modulus_n_per_mm(direction), rel=0.08
+            target.modulus_n_per_mm(direction), rel=0.08
         )
 
 

@@ -20,7 +20,7 @@ from knitcore.formats import report
 from knitcore.formats.chart_drawing import chart_pages, chart_pdf, chart_svg
 from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.formats.chart_key import HEAVY, ChartStyle, RegionMark, tinted
-from knitcore.formats.drawing import Box, Label, Page, to_pdf, to_svg
+from knitcore.formats.drawing import Label, Page, Rectangle, to_pdf, to_svg
 from knitcore.formats.export import (
     FORMATS,
     ExportKind,
@@ -351,7 +351,7 @@ def test_a_report_gives_its_numbers_with_their_source(drawn: list[Page]) -> None
     assert "0.223  (" in words
     assert "Source: measured" in words
     assert "Shear modulus 0.01 N/mm: an assumption" in words
-    inside = [s for s in drawn[0].shapes if isinstance(s, Box)]
+    inside = [s for s in drawn[0].shapes if isinstance(s, Rectangle)]
     assert all(0 <= b.x <= 210 and b.y + b.height <= 297 for b in inside)
 
 

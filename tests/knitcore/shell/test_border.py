@@ -10,10 +10,10 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.materials import material
 from knitcore.shell.border import RULE_STITCHES, advice, on_table
-from knitcore.shell.cloth import Cloth, cloth_of
+from knitcore.shell.cloth import EvenCloth, cloth_of
 
 
-def _cloth(chart: str) -> Cloth:
+def _cloth(chart: str) -> EvenCloth:
     return cloth_of(StitchChart.parse(chart), material("acrylic"), linear_density_g_per_m=0.5)
 
 

@@ -11,7 +11,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import material
 from knitcore.shell.bends import bends_of
-from knitcore.shell.cloth import Cloth, cloth_of, stitch_corners, stitch_weights_n
+from knitcore.shell.cloth import EvenCloth, cloth_of, stitch_corners, stitch_weights_n
 from knitcore.shell.sheet import sheet_of
 
 ACRYLIC = material("acrylic")
@@ -19,7 +19,7 @@ GARTER = StitchChart.parse("K/P")
 NONE = np.zeros((0, 2), dtype=np.int64)
 
 
-def _cloth(chart: str) -> Cloth:
+def _cloth(chart: str) -> EvenCloth:
     return cloth_of(StitchChart.parse(chart), ACRYLIC, linear_density_g_per_m=0.5)
 
 

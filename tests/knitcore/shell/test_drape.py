@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 from knitcore.errors import InputError
-from knitcore.shell.cloth import Cloth
+from knitcore.shell.cloth import EvenCloth
 from knitcore.shell.drape import DISC_MM, PIECE_MM, drape
 
 WEIGHT = 2e-6
 
 
-def _isotropic(bending_length_mm: float) -> Cloth:
+def _isotropic(bending_length_mm: float) -> EvenCloth:
     """A plate without contraction across: D₆₆ is half of D, G half of C. Its stiffness in
     the plane is so low that rectangles of 7.5 mm do not lock, and still stretches by 1 % only."""
     rigidity = WEIGHT * bending_length_mm**3
-    return Cloth(
+    return EvenCloth(
         stitch_mm=(2.0, 2.0),
         membrane_n_per_mm=(0.02, 0.02, 0.0, 0.01),
         rigidity_n_mm=(rigidity, rigidity),
@@ -29,7 +29,7 @@ def _isotropic(bending_length_mm: float) -> Cloth:
     )
 
 
-def _ring_fall(cloth: Cloth) -> float:
+def _ring_fall(cloth: EvenCloth) -> float:
     """Fall of the rim of a ring clamped inside, small deflection (Timoshenko, Woinowsky-Krieger,
     "Theory of plates and shells", chapter 3): w = q r⁴ / 64 D + A + B ln r + C r² + E r² ln r."""
     inner, outer = 0.5 * DISC_MM, 0.5 * PIECE_MM

@@ -8,17 +8,17 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.materials import material
 from knitcore.shell.factor import SheetFactor
-from knitcore.shell.sheet import Sheet, sheet_of
+from knitcore.shell.sheet import StitchSheet, sheet_of
 from knitcore.shell.tangent import Tangent
 
 Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 
 
-def _sheet(rows: int, columns: int) -> Sheet:
+def _sheet(rows: int, columns: int) -> StitchSheet:
     return sheet_of(StitchChart.parse("K").tile(rows, columns), material("acrylic"))
 
 
-def _folded(sheet: Sheet) -> Array:
+def _folded(sheet: StitchSheet) -> Array:
     """The right half laid on the left one, nearer than the cloth is thick."""
     x = sheet.flat_mm.copy()
     over = x[:, 0] > 0.0

@@ -9,11 +9,11 @@ import pytest
 
 from knitcore.errors import InputError
 from knitcore.measure.elastica import heavy_elastica
-from knitcore.shell.cloth import Cloth
+from knitcore.shell.cloth import EvenCloth
 from knitcore.shell.overhang import overhang
 
 WEIGHT, LENGTH = 3e-6, 12.0
-CLOTH = Cloth(
+CLOTH = EvenCloth(
     stitch_mm=(3.0, 2.0),
     membrane_n_per_mm=(0.3, 0.2, 0.05, 0.03),
     rigidity_n_mm=(WEIGHT * LENGTH**3, 8.0 * WEIGHT * LENGTH**3),

@@ -19,7 +19,7 @@ from knitcore.materials import material
 from knitcore.shell import kernels
 from knitcore.shell.bends import bends_of, computed
 from knitcore.shell.relax import settle
-from knitcore.shell.sheet import Sheet, sheet_of
+from knitcore.shell.sheet import StitchSheet, sheet_of
 from knitcore.shell.tangent import Tangent
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ MIXED = StitchChart.parse("KKPK\nKPPK\nPPKK\nKPKP\nKKKK")
 ACRYLIC = material("acrylic")
 
 
-def _crumpled(sheet: Sheet, size_mm: float = 0.7) -> tuple[Array, NDArray[np.int64]]:
+def _crumpled(sheet: StitchSheet, size_mm: float = 0.7) -> tuple[Array, NDArray[np.int64]]:
     """A rough shape in which a few points touch."""
     noise = np.random.default_rng(0).standard_normal(sheet.flat_mm.shape)
     x = sheet.flat_mm + size_mm * noise

@@ -17,7 +17,7 @@ Parts = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class Wish:
+class PartTarget:
     """Target stiffness of one part of a chart.
 
     Attributes
@@ -33,7 +33,7 @@ class Wish:
     wale_n_per_mm: float | None
 
 
-def wanted_maps(wishes: Sequence[Wish], rows: int, columns: int) -> tuple[Array, Array]:
+def target_maps(targets: Sequence[PartTarget], rows: int, columns: int) -> tuple[Array, Array]:
     """Maps (rows, columns) of the target moduli, NaN where there is none.
 
     Raises
@@ -44,21 +44,21 @@ def wanted_maps(wishes: Sequence[Wish], rows: int, columns: int) -> tuple[Array,
     check_size(rows, columns)
     maps = np.full((2, rows, columns), np.nan)
     owner = np.full((2, rows, columns), -1)
-    for number, wish in enumerate(wishes):
-        cells = _cells(wish, rows, columns)
-        for axis, value in enumerate((wish.course_n_per_mm, wish.wale_n_per_mm)):
+    for number, target in enumerate(targets):
+        cells = _cells(target, rows, columns)
+        for axis, value in enumerate((target.course_n_per_mm, target.wale_n_per_mm)):
             if value is None:
                 continue
             other = cells & (owner[axis] >= 0) & ~np.isclose(maps[axis], value, rtol=1e-9)
             if other.any():
-                _refuse(wish, wishes[int(owner[axis][other][0])], other, axis)
+                _refuse(target, targets[int(owner[axis][other][0])], other, axis)
             maps[axis][cells] = value
             owner[axis][cells] = number
     return maps[0], maps[1]
 
 
-def wished_parts(wishes: Sequence[Wish], rows: int, columns: int) -> Parts:
-    """(rows, columns) numbers from 0, equal where the same wishes apply.
+def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Parts:
+    """(rows, columns) numbers from 0, equal where the same targets apply.
 
     Raises
     ------
@@ -67,41 +67,43 @@ def wished_parts(wishes: Sequence[Wish], rows: int, columns: int) -> Parts:
     """
     check_size(rows, columns)
     parts = np.zeros((rows, columns), dtype=np.intp)
-    for wish in wishes:
-        numbers = np.unique(2 * parts + _cells(wish, rows, columns), return_inverse=True)[1]
+    for target in targets:
+        numbers = np.unique(2 * parts + _cells(target, rows, columns), return_inverse=True)[1]
         parts = numbers.reshape(rows, columns)
     return parts
 
 
-def _cells(wish: Wish, rows: int, columns: int) -> NDArray[np.bool_]:
+def _cells(target: PartTarget, rows: int, columns: int) -> NDArray[np.bool_]:
     cells = np.zeros((rows, columns), dtype=bool)
-    for row, column, length in wish.runs:
-        if not (0 <= row < rows and column >= 0 and length >= 1 and column + length <= columns):
+    for row, first, length in target.runs:
+        if not (0 <= row < rows and first >= 0 and length >= 1 and first + length <= columns):
             raise InputError(
                 "wishes",
-                f"“{wish.name}” reaches row {row + 1}, columns {column + 1} to {column + length}: "
+                f"“{target.name}” reaches row {row + 1}, columns {first + 1} to {first + length}: "
                 f"the chart has {columns} columns and {rows} rows.",
                 "Draw it inside the chart.",
             )
-        cells[row, column : column + length] = True
+        cells[row, first : first + length] = True
     if not cells.any():
-        raise InputError("wishes", f"“{wish.name}” covers no stitch.", "Draw it, or leave it out.")
-    values = (wish.course_n_per_mm, wish.wale_n_per_mm)
+        raise InputError(
+            "wishes", f"“{target.name}” covers no stitch.", "Draw it, or leave it out."
+        )
+    values = (target.course_n_per_mm, target.wale_n_per_mm)
     if any(v is not None and not (math.isfinite(v) and v > 0) for v in values):
         raise InputError(
             "wishes",
-            f"“{wish.name}” has a target stiffness that is not positive.",
+            f"“{target.name}” has a target stiffness that is not positive.",
             "Give N/mm above 0.",
         )
     return cells
 
 
-def _refuse(wish: Wish, other: Wish, cells: NDArray[np.bool_], axis: int) -> None:
+def _refuse(target: PartTarget, other: PartTarget, cells: NDArray[np.bool_], axis: int) -> None:
     row, column = np.argwhere(cells)[0] + 1
-    values = [(w.course_n_per_mm, w.wale_n_per_mm)[axis] for w in (other, wish)]
+    values = [(w.course_n_per_mm, w.wale_n_per_mm)[axis] for w in (other, target)]
     raise InputError(
         "wishes",
-        f"“{other.name}” and “{wish.name}” contradict each other in {int(cells.sum())} stitches "
+        f"“{other.name}” and “{target.name}” contradict each other in {int(cells.sum())} stitches "
         f"(the first in row {row}, column {column}): {values[0]:g} and {values[1]:g} N/mm "
         f"{('course', 'wale')[axis]}-wise.",
         "Take these stitches out of one of them, or give both the same value.",

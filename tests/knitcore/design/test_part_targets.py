@@ -4,17 +4,19 @@ import numpy as np
 import pytest
 
 from knitcore import InputError
-from knitcore.design.wishes import Wish, wanted_maps, wished_parts
+from knitcore.design.part_targets import PartTarget, target_maps, target_parts
 
 
-def box(name: str, rows: range, columns: range, course: float | None, wale: float | None) -> Wish:
+def box(
+    name: str, rows: range, columns: range, course: float | None, wale: float | None
+) -> PartTarget:
     runs = tuple((row, columns.start, len(columns)) for row in rows)
-    return Wish(name, runs, course, wale)
+    return PartTarget(name, runs, course, wale)
 
 
 def test_parts_become_maps() -> None:
-    slope = Wish("slope", tuple((row, row, 6 - row) for row in range(6)), 0.1, None)
-    course, wale = wanted_maps([slope, box("top", range(6, 8), range(8), None, 0.2)], 8, 8)
+    slope = PartTarget("slope", tuple((row, row, 6 - row) for row in range(6)), 0.1, None)
+    course, wale = target_maps([slope, box("top", range(6, 8), range(8), None, 0.2)], 8, 8)
     assert np.nansum(course) == pytest.approx(0.1 * 21)
     assert np.isnan(wale[:6]).all()
     assert (wale[6:] == 0.2).all()
@@ -23,15 +25,15 @@ def test_parts_become_maps() -> None:
 def test_the_same_target_twice_is_not_a_contradiction() -> None:
     one = box("one", range(4), range(4), 0.1, None)
     other = box("other", range(2, 6), range(2, 6), 0.1, 0.2)
-    course, wale = wanted_maps([one, other], 8, 8)
+    course, wale = target_maps([one, other], 8, 8)
     assert np.count_nonzero(~np.isnan(course)) == 28
     assert np.count_nonzero(~np.isnan(wale)) == 16
 
 
-def test_stitches_of_the_same_wishes_are_one_part() -> None:
+def test_stitches_of_the_same_targets_are_one_part() -> None:
     one = box("one", range(4), range(4), 0.1, None)
     other = box("other", range(2, 6), range(2, 6), None, 0.2)
-    parts = wished_parts([one, other], 8, 8)
+    parts = target_parts([one, other], 8, 8)
     assert sorted(np.bincount(parts.ravel()).tolist()) == [4, 12, 12, 36]
     assert parts[2, 2] == parts[3, 3] != parts[0, 0]
 
@@ -40,19 +42,19 @@ def test_contradictions_are_named_with_both_parts_and_where() -> None:
     palm = box("palm", range(4), range(4), 0.1, None)
     thumb = box("thumb", range(2, 6), range(2, 6), 0.2, None)
     with pytest.raises(InputError, match=r"“palm” and “thumb” contradict .* in 4 stitches") as told:
-        wanted_maps([palm, thumb], 8, 8)
+        target_maps([palm, thumb], 8, 8)
     assert "row 3, column 3" in told.value.problem
     assert "0.1 and 0.2 N/mm course-wise" in told.value.problem
 
 
 @pytest.mark.parametrize(
-    ("wish", "says"),
+    ("target", "says"),
     [
         (box("far", range(6, 9), range(3), 0.1, None), "reaches row 9"),
-        (Wish("empty", (), 0.1, None), "covers no stitch"),
+        (PartTarget("empty", (), 0.1, None), "covers no stitch"),
         (box("odd", range(4), range(4), -0.1, None), "not positive"),
     ],
 )
-def test_unusable_targets_are_refused(wish: Wish, says: str) -> None:
+def test_unusable_targets_are_refused(target: PartTarget, says: str) -> None:
     with pytest.raises(InputError, match=says):
-        wanted_maps([wish], 8, 8)
+        target_maps([target], 8, 8)

@@ -1,4 +1,4 @@
-"""Jobs, the places that run them, and the errors that end them without a result."""
+"""Jobs, the workers that run them, and the errors that end them without a result."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Job(Protocol[R_co]):
         ...
 
 
-class Place(Protocol):
+class Worker(Protocol):
     """Runs one job at a time: a process here, or a share of a cluster."""
 
     async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
@@ -50,7 +50,7 @@ class Place(Protocol):
         ...
 
     def close(self) -> None:
-        """Close the place and drop its job."""
+        """Close the worker and drop its job."""
         ...
 
 
