@@ -1,6 +1,6 @@
 """Make the packaged store of relaxed stitches: ``python -m scripts.stored_stitches``.
 
-Relaxes and stretches the repeats of :mod:`knitcore.yarnlibrary.catalogue` for each yarn and writes
+Relaxes and stretches every small repeat (:func:`charts_of_the_store`) for each yarn and writes
 ``stitches.json`` (sizes, energies, laws) and ``stitches.npz`` (control points) into the library's
 data folder. Finished repeats are kept in a folder, so an interrupted build can be resumed.
 """
@@ -23,12 +23,29 @@ from knitcore.fabric import Direction
 from knitcore.materials import material
 from knitcore.repeats import primitive_repeats, repeats_up_to
 from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlibrary.catalogue import COMMON
 from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
 from knitcore.yarnlibrary.store import MATERIALS
 from knitcore.yarnlibrary.yarns import yarn_for
 
 DATA = Path(__file__).parent.parent / "knitcore" / "yarnlibrary" / "data"
+COMMON: dict[str, str] = {
+    "stockinette": "K",
+    "garter": "P\nK",
+    "1x1 rib": "KP",
+    "seed": "PK\nKP",
+    "2x1 rib": "KKP",
+    "2x2 rib": "KKPP",
+    "3x1 rib": "KKKP",
+    "3x3 rib": "KKKPPP",
+    "2x1 welt": "P\nK\nK",
+    "2x2 welt": "P\nP\nK\nK",
+    "3x1 welt": "P\nK\nK\nK",
+    "3x3 welt": "P\nP\nP\nK\nK\nK",
+    "moss": "PK\nPK\nKP\nKP",
+    "basket 2x2": "PPKK\nPPKK\nKKPP\nKKPP",
+    "broken rib": "KP\nKK",
+}
+"""Repeats with names that knitters use, top row first."""
 MAX_STITCHES = 8
 SQUARE = 3
 """Repeats of this many rows and columns are also in the store, though they have more stitches."""

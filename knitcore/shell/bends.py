@@ -7,13 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from importlib.resources import files
-from pathlib import Path
 from types import MappingProxyType
 
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
-from knitcore.materials.library import load_library
 from knitcore.yarnlevel.bending import bending
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.yarn import YarnModel
@@ -42,7 +40,8 @@ class Bend:
 def bends_of(material: Material) -> Mapping[Fabric, Bend]:
     """Bending of the four fabrics of a material, relaxed with their symmetries.
 
-    Those of the library come with the package (``data/bends.csv``); others take a second or two.
+    Those of the library come with the package (``data/bends.csv``, made by
+    ``scripts/bends_table.py``); others take a second or two.
 
     Raises
     ------
@@ -74,19 +73,6 @@ def _stored() -> Mapping[str, Mapping[Fabric, Bend]]:
     return MappingProxyType({name: MappingProxyType(bends) for name, bends in found.items()})
 
 
-def write_table(path: Path) -> None:
-    """Make ``data/bends.csv`` again (``python -m knitcore.shell.bends``)."""
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        names = [field.name for field in fields(Bend)]
-        writer = csv.DictWriter(stream, ["material", "fabric", *names], lineterminator="\n")
-        writer.writeheader()
-        for identifier, material in load_library().items():
-            for fabric in Fabric:
-                bend = computed(fabric, material)
-                values = {name: f"{getattr(bend, name):.5g}" for name in names}
-                writer.writerow({"material": identifier, "fabric": fabric.value} | values)
-
-
 @lru_cache(maxsize=256)
 def _bend(fabric: Fabric, yarn: YarnModel, loop_length_mm: float) -> Bend:
     repeat = StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
@@ -99,7 +85,3 @@ def _bend(fabric: Fabric, yarn: YarnModel, loop_length_mm: float) -> Bend:
         rigidity_wale_n_mm=found.wale.rigidity_n_mm,
         thickness_mm=found.thickness_mm,
     )
-
-
-if __name__ == "__main__":
-    write_table(Path(__file__).parent / "data" / "bends.csv")

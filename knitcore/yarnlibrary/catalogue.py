@@ -1,4 +1,4 @@
-"""The repeats in the packaged store."""
+"""How a chart follows from a stored repeat that is the same fabric."""
 
 from __future__ import annotations
 
@@ -12,25 +12,6 @@ from numpy.typing import NDArray
 from knitcore.chart import StitchChart
 
 Grid = NDArray[np.bool_]
-
-COMMON: dict[str, str] = {
-    "stockinette": "K",
-    "garter": "P\nK",
-    "1x1 rib": "KP",
-    "seed": "PK\nKP",
-    "2x1 rib": "KKP",
-    "2x2 rib": "KKPP",
-    "3x1 rib": "KKKP",
-    "3x3 rib": "KKKPPP",
-    "2x1 welt": "P\nK\nK",
-    "2x2 welt": "P\nP\nK\nK",
-    "3x1 welt": "P\nK\nK\nK",
-    "3x3 welt": "P\nP\nP\nK\nK\nK",
-    "moss": "PK\nPK\nKP\nKP",
-    "basket 2x2": "PPKK\nPPKK\nKKPP\nKKPP",
-    "broken rib": "KP\nKK",
-}
-"""Repeats with names that knitters use, top row first."""
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """The training library as it is packaged: relaxed sizes, raw curves and failures.
 
-``data/training.json`` is written by :mod:`knitcore.yarnlibrary.training_build`.
+``data/training.json`` is written by ``scripts/training/build.py``.
 """
 
 from __future__ import annotations

@@ -8,7 +8,8 @@ from hypothesis.extra.numpy import arrays
 
 from knitcore.chart import StitchChart
 from knitcore.repeats import primitive_repeats, repeats_up_to
-from knitcore.yarnlibrary.catalogue import COMMON, placement, placements
+from knitcore.yarnlibrary.catalogue import placement, placements
+from scripts.stored_stitches import COMMON
 
 charts = arrays(bool, st.tuples(st.integers(1, 3), st.integers(1, 4))).map(StitchChart)
 

@@ -10,10 +10,9 @@ from knitcore.chart import StitchChart
 from knitcore.yarnlevel.clasps import is_knitted
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlibrary.catalogue import COMMON
 from knitcore.yarnlibrary.store import stored_charts, stored_failure, stored_stitch
 from scripts import stored_stitches
-from scripts.stored_stitches import charts_of_the_store
+from scripts.stored_stitches import COMMON, charts_of_the_store
 
 FREE = set(COMMON) - {"basket 2x2", "3x3 welt"}
 

@@ -1,4 +1,4 @@
-"""Relax and stretch the training charts: ``python -m knitcore.yarnlibrary.training_build``.
+"""Relax and stretch the training charts: ``python -m scripts.training.build``.
 
 Every finished task is kept in a folder, so an interrupted build can be resumed. ``--pack`` adds
 the tasks finished so far to ``data/training.json``; the next build leaves those out.
@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 
-from knitcore.batch import BatchProgress, run_batch
+from knitcore.batch import run_batch
 from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError
 from knitcore.materials import material
@@ -24,13 +24,9 @@ from knitcore.yarnlevel.splines import COARSE
 from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
 from knitcore.yarnlibrary.fingerprint import content_key
 from knitcore.yarnlibrary.store import stored_charts
-from knitcore.yarnlibrary.training import (
-    YARN_POINTS,
-    anchor_charts,
-    drawn_charts,
-    training_charts,
-)
 from knitcore.yarnlibrary.yarns import yarn_for
+from scripts.stored_stitches import DATA, tell
+from scripts.training.charts import YARN_POINTS, anchor_charts, drawn_charts, training_charts
 
 MAX_RELAXED = 36
 """Cells with more stitches are left out."""
@@ -190,27 +186,22 @@ def _short(value: float) -> float:
     return float(f"{value:.5g}")
 
 
-def _tell(progress: BatchProgress) -> None:
-    sys.stderr.write(f"{progress.done}/{progress.total} {progress.key}\n")
-    sys.stderr.flush()
-
-
 def main() -> None:
-    """Run ``python -m knitcore.yarnlibrary.training_build``."""
-    parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.training_build")
+    """Run ``python -m scripts.training.build``."""
+    parser = argparse.ArgumentParser(prog="python -m scripts.training.build")
     parser.add_argument("--keep", type=Path, default=Path("build/training"))
     parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
     parser.add_argument("--workers", type=int, help="processes, all cores if left out")
     parser.add_argument("--pack", action="store_true", help="only pack finished tasks")
     arguments = parser.parse_args()
-    packed = Path(__file__).parent / "data" / "training.json"
+    packed = DATA / "training.json"
     if arguments.pack:
         count = pack(arguments.keep, packed)
         sys.stderr.write(f"{count} packed\n")
         return
     run_batch(
         characterise, tasks(packed), scheduler=arguments.scheduler, workers=arguments.workers,
-        keep=arguments.keep, progress=_tell,
+        keep=arguments.keep, progress=tell,
     )  # fmt: skip
 
 

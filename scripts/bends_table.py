@@ -1,0 +1,24 @@
+"""Make the library's table of bending again: ``python -m scripts.bends_table``."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import fields
+from pathlib import Path
+
+from knitcore.fabric import Fabric
+from knitcore.materials.library import load_library
+from knitcore.shell.bends import Bend, computed
+
+FILE = Path(__file__).parent.parent / "knitcore" / "shell" / "data" / "bends.csv"
+
+if __name__ == "__main__":
+    names = [field.name for field in fields(Bend)]
+    with FILE.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.DictWriter(stream, ["material", "fabric", *names], lineterminator="\n")
+        writer.writeheader()
+        for identifier, material in load_library().items():
+            for fabric in Fabric:
+                bend = computed(fabric, material)
+                values = {name: f"{getattr(bend, name):.5g}" for name in names}
+                writer.writerow({"material": identifier, "fabric": fabric.value} | values)
