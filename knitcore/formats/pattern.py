@@ -375,7 +375,7 @@ def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
         flow.row(cells_told, places, colour=region.colour)
     flow.text(
         "Stitches are counted from the right edge; sizes are of each part's widest row and "
-        "highest column."
+        "highest column, as it lies beside its neighbours. By itself its fabric has another gauge."
     )
 
 

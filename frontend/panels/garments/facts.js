@@ -27,6 +27,11 @@ export function facts(garment, unit) {
       ` · ${stitches} stitches · ${figure(yarn_m)} m of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
     ),
     regions(garment, unit),
+    h(
+      "p",
+      { class: "muted" },
+      "Sizes are those of each fabric by itself, by which its stitches are counted. In the piece its neighbours widen or narrow it; a pattern gives those sizes.",
+    ),
     ...pressure(garment, unit),
     h(
       "ul",
@@ -52,7 +57,7 @@ function regions({ regions: all }, unit) {
       h(
         "tr",
         {},
-        ...["Region", "Stitches", "At rest", "Yarn", "Extensibility, mm/N"].map((words) =>
+        ...["Region", "Stitches", "By itself, at rest", "Yarn", "Extensibility, mm/N"].map((words) =>
           h("th", { scope: "col" }, words),
         ),
       ),
