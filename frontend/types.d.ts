@@ -2172,7 +2172,7 @@ export interface RegionResult {
   columns: number;
   /** Rows of its longest column. */
   rows: number;
-  /** Size at rest of that many stitches of its fabric by itself, without neighbours. */
+  /** Size at rest of that many stitches of its fabric, without neighbours. */
   width_mm: number;
   height_mm: number;
   /** 90 % interval, from that of the gauge. */

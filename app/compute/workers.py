@@ -5,30 +5,22 @@ from __future__ import annotations
 import asyncio
 import inspect
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 from app.problems.errors import ServiceError, UnavailableError
 
 T = TypeVar("T")
-R_co = TypeVar("R_co", covariant=True)
-
-
-class Job(Protocol[R_co]):
-    """A picklable function that checks ``cancelled`` regularly.
-
-    If it has a parameter ``progress``, it may call that with (steps done, steps in all).
-    """
-
-    def __call__(self, *args: Any, cancelled: Callable[[], bool]) -> R_co:
-        """Do the work."""
-        ...
 
 
 class Worker(Protocol):
     """Runs one job at a time: a process here, or a share of a cluster."""
 
     async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
-        """Begin a job; all its arguments except ``cancelled`` and ``progress`` are bound."""
+        """Begin a job: a picklable function that checks ``cancelled`` regularly.
+
+        If it has a parameter ``progress``, it may call that with (steps done, steps in all). All
+        other arguments are bound.
+        """
         ...
 
     @property

@@ -198,7 +198,7 @@ class RegionResult(Moduli, Extensibility):
     columns: int = Field(description="Stitches of its longest row.")
     rows: int = Field(description="Rows of its longest column.")
     width_mm: float = Field(
-        description="Size at rest of that many stitches of its fabric by itself, without neighbours."
+        description="Size at rest of that many stitches of its fabric, without neighbours."
     )
     height_mm: float
     width_interval_mm: Ends = Field(description="90 % interval, from that of the gauge.")

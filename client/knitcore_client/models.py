@@ -2722,7 +2722,7 @@ class RegionResult(BaseModel):
     rows: int
     """Rows of its longest column."""
     width_mm: float
-    """Size at rest of that many stitches of its fabric by itself, without neighbours."""
+    """Size at rest of that many stitches of its fabric, without neighbours."""
     height_mm: float
     width_interval_mm: tuple[float, float]
     """90 % interval, from that of the gauge."""

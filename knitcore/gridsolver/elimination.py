@@ -58,6 +58,49 @@ call: Any = intrinsic(_generate_call)
 
 
 @njit(cache=True, nogil=True)
+def reduce_front(
+    routines: Indices,
+    letters: NDArray[np.uint8],
+    numbers: NDArray[np.int32],
+    scalars: Block,
+    offset: int,
+    s: int,
+    b: int,
+    place: int,
+    factor: Block,
+    work: Block,
+) -> bool:
+    """Factorise a front in place; False if a pivot is not positive definite.
+
+    Parameters
+    ----------
+    routines, letters, numbers, scalars : see :func:`eliminate`.
+    offset : of the front in ``factor``: s columns to eliminate, then b of their border.
+    place : in ``work``, of the (b, b) remainder that the border's product is taken from.
+    """
+    if s == 0:
+        return True
+    numbers[0], numbers[1], numbers[2] = s, b, 0
+    letter, number, scalar = letters.ctypes.data, numbers.ctypes.data, scalars.ctypes.data
+    lower, right, transposed, plain = letter, letter + 1, letter + 2, letter + 3
+    s_at, b_at, info_at = number, number + 4, number + 8
+    one, minus = scalar, scalar + scalars.itemsize
+    pivot = factor.ctypes.data + offset * factor.itemsize
+    below = pivot + s * s * factor.itemsize
+    schur = work.ctypes.data + place * work.itemsize
+    call(routines[0], (lower, s_at, pivot, s_at, info_at))
+    if numbers[2] != 0:
+        return False
+    if b > 0:
+        call(
+            routines[1],
+            (right, lower, transposed, plain, b_at, s_at, one, pivot, s_at, below, b_at),
+        )
+        call(routines[2], (lower, plain, b_at, s_at, minus, below, b_at, one, schur, b_at))
+    return True
+
+
+@njit(cache=True, nogil=True)
 def eliminate(
     first: int,
     last: int,
@@ -91,10 +134,6 @@ def eliminate(
     eliminated, border : unknowns by box.
     factor, work : the factor, and room for the Schur complements that wait.
     """
-    letter, number, scalar = letters.ctypes.data, numbers.ctypes.data, scalars.ctypes.data
-    lower, right, transposed, plain = letter, letter + 1, letter + 2, letter + 3
-    s_at, b_at, info_at = number, number + 4, number + 8
-    one, minus = scalar, scalar + scalars.itemsize
     for index in range(first, last):
         offset, s, b = boxes[index, 0], boxes[index, 1], boxes[index, 2]
         middle = offset + s * s
@@ -134,21 +173,8 @@ def eliminate(
             )
             e0, b0 = boxes[index, 8], boxes[index, 9]
             _fix(fixed, eliminated[e0 : e0 + s], border[b0 : b0 + b], pivot, below, schur)
-        if s == 0:
-            continue
-        numbers[0], numbers[1], numbers[2] = s, b, 0
-        columns = factor.ctypes.data + offset * factor.itemsize
-        rest = factor.ctypes.data + middle * factor.itemsize
-        corner = work.ctypes.data + place * work.itemsize
-        call(routines[0], (lower, s_at, columns, s_at, info_at))
-        if numbers[2] != 0:
+        if not reduce_front(routines, letters, numbers, scalars, offset, s, b, place, factor, work):
             return False
-        if b > 0:
-            call(
-                routines[1],
-                (right, lower, transposed, plain, b_at, s_at, one, columns, s_at, rest, b_at),
-            )
-            call(routines[2], (lower, plain, b_at, s_at, minus, rest, b_at, one, corner, b_at))
     return True
 
 

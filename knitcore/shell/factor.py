@@ -180,10 +180,6 @@ def _eliminate(
     work: Floats,
 ) -> bool:
     """Eliminate all fronts; False if a pivot is not positive definite."""
-    letter, number, scalar = letters.ctypes.data, numbers.ctypes.data, scalars.ctypes.data
-    lower, right, transposed, plain = letter, letter + 1, letter + 2, letter + 3
-    s_at, b_at, info_at = number, number + 4, number + 8
-    one, minus = scalar, scalar + scalars.itemsize
     at = np.empty(len(order), np.int64)  # of corners in the front
     taken = 0
     for box in range(len(boxes)):
@@ -209,23 +205,10 @@ def _eliminate(
             rest = work[boxes[child, 7] : boxes[child, 7] + size * size].reshape((size, size))
             _extend(rest, places[taken : taken + size // 3], pivot, below, schur)
             taken += size // 3
-        if s == 0:
-            continue
-        numbers[0], numbers[1], numbers[2] = s, b, 0
-        whole = factor.ctypes.data + offset * factor.itemsize
-        side_of = whole + s * s * factor.itemsize
-        corner = work.ctypes.data + room * work.itemsize
-        elimination.call(routines[0], (lower, s_at, whole, s_at, info_at))
-        if numbers[2] != 0:
+        if not elimination.reduce_front(
+            routines, letters, numbers, scalars, offset, s, b, room, factor, work
+        ):
             return False
-        if b > 0:
-            elimination.call(
-                routines[1],
-                (right, lower, transposed, plain, b_at, s_at, one, whole, s_at, side_of, b_at),
-            )
-            elimination.call(
-                routines[2], (lower, plain, b_at, s_at, minus, side_of, b_at, one, corner, b_at)
-            )
     return True
 
 
