@@ -34,6 +34,7 @@ class Context:
         as large as the library accepts.
     cancelled : whether the caller has given up.
     progress : called with (done, total).
+    before : what a 3D view shows of the result that the request names in ``after``, if any.
     """
 
     def __init__(
@@ -43,11 +44,13 @@ class Context:
         local: bool = False,
         cancelled: Callable[[], bool] = _never,
         progress: Callable[[float, float], None] = _untold,
+        before: object = None,
     ) -> None:
         self._data_dir = data_dir
         self.local = local
         self.cancelled = cancelled
         self.progress = progress
+        self.before = before
 
     @cached_property
     def data_dir(self) -> Path:

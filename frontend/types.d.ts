@@ -515,6 +515,8 @@ export interface CurlRequest {
   outline?: string | null;
   /** By clamps, whose free sides curl. */
   pull?: PullInput | null;
+  /** Id of a shape of as many stitches, such as that before a stitch was changed: the calculation begins there, and its first shapes come sooner. Has no effect if the service has forgotten it, or with another size. */
+  after?: string | null;
   /** Also return the corners of all stitches. */
   corners?: boolean;
   /** CPU time after which the current shape is returned, not converged. */

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -64,7 +65,9 @@ class Answers:
         known: Reply | None = self._recent.get(key)
         if known is not None:
             return known
+        earlier: Reply | None = self._recent.get(getattr(request, "after", None) or "")
+        job = partial(perform, before=earlier and earlier.view)
         args = operation.run, operation.request, request, self._data_dir
-        answer: Reply = await self.compute.run(abandoned, perform, *args, **turn)
+        answer: Reply = await self.compute.run(abandoned, job, *args, **turn)
         self._recent.put(answer.key or key, answer, answer.size_bytes)
         return answer

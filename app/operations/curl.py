@@ -40,6 +40,13 @@ class CurlRequest(FabricRequest):
 
     outline: OutlineInput = None
     pull: PullInput | None = Field(None, description="By clamps, whose free sides curl.")
+    after: str | None = Field(
+        None,
+        max_length=128,
+        description="Id of a shape of as many stitches, such as that before a stitch was changed: "
+        "the calculation begins there, and its first shapes come sooner. Has no effect if the "
+        "service has forgotten it, or with another size.",
+    )
     corners: bool = Field(False, description="Also return the corners of all stitches.")
     time_limit_s: TimeLimit = TIME_LIMIT_S
 
@@ -86,11 +93,15 @@ def _curled(request: CurlRequest, context: Context) -> CurledPiece:
     stitches = None if request.outline is None else outline_marks(request.outline)
     if stitches is not None and stitches.shape == chart.purl.shape and stitches.any():
         chart = ShapedChart(chart, stitches).continued()
+    before = context.before
+    shape = (chart.rows + 1, chart.columns + 1, 3)
+    begin = before.corners_mm if isinstance(before, PosedView) else None
     return request.pass_to(
         curl_piece,
         chart,
         material,
         stitches=stitches,
+        begin=begin if begin is not None and begin.shape == shape else None,
         pull=None if request.pull is None else request.pull.pass_to(Pull),
         cancelled=context.cancelled,
     )
@@ -157,7 +168,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help=f"How the whole piece CHART (up to {MAX_STITCHES} stitches) curls and folds.",
-        names={"corners": None},
+        names={"after": None, "corners": None},
         run=_and_write,
     ),
 )

@@ -88,6 +88,7 @@ def perform(
     *,
     cancelled: Callable[[], bool],
     progress: Callable[[float, float], None],
+    before: ViewData | None = None,
 ) -> Reply:
     """Do an operation; megabytes are decoded and packed here and not on the event loop.
 
@@ -97,7 +98,7 @@ def perform(
         If the request came as bytes and is none of the model.
     """
     wanted: BaseModel = read(model, request) if isinstance(request, bytes) else request
-    context = Context(data_dir, cancelled=cancelled, progress=progress)
+    context = Context(data_dir, cancelled=cancelled, progress=progress, before=before)
     found = carried_out(run, wanted, context)
     result, view = (found.result, found.view) if isinstance(found, Viewed) else (found, None)
     body = gzip.compress(result.model_dump_json().encode(), LEVEL)

@@ -296,6 +296,10 @@ class CurlRequest(TypedDict):
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     pull: NotRequired[PullInput | None]
     """By clamps, whose free sides curl."""
+    after: NotRequired[str | None]
+    """Id of a shape of as many stitches, such as that before a stitch was changed: the
+    calculation begins there, and its first shapes come sooner. Has no effect if the service has
+    forgotten it, or with another size."""
     corners: NotRequired[bool]
     """Also return the corners of all stitches."""
     time_limit_s: NotRequired[float]

@@ -105,11 +105,15 @@ async function* hung(studio, signal) {
  * @param {AbortSignal} signal
  * @param {import("../types.js").CurlRequest["pull"]} pull
  */
-async function* curled({ document: chart, request }, signal, pull) {
+async function* curled({ document: chart, request, seeing }, signal, pull) {
   const outline = chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null;
+  const asked = { ...request, outline, pull };
+  /** The first shape begins at the old one; the last one depends on the chart only. */
+  let after = seeing.posed.value?.id ?? null;
   for (const time_limit_s of PATIENCE_S) {
-    const { id, rows, columns, converged, notes } = await api.curl({ ...request, outline, pull, time_limit_s }, signal);
-    yield { id, rows, columns, converged, note: notes[0] };
+    const { id, rows, columns, converged, notes } = await api.curl({ ...asked, after, time_limit_s }, signal);
+    yield { id, rows, columns, converged: converged && !after, note: notes[0] };
+    after = null;
   }
 }
 

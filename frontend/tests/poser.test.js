@@ -77,3 +77,26 @@ test("after a stroke the old shape is a preview at once", async () => {
   assert.match(wordsOf(page.seeing.posed.value), /a preview/);
   page.seeing.pose.value = "flat"; // nothing is asked for any more
 });
+
+test("the first shape begins at the old one, and the last one at nothing", async () => {
+  /** @type {any[]} */
+  const begun = [];
+  /** @type {any} */ (api).curl = (/** @type {any} */ { after, time_limit_s }) => {
+    begun.push(after);
+    const id = `shape ${begun.length}`;
+    return Promise.resolve({ id, rows: 1, columns: 2, converged: time_limit_s > 1 || after, notes: [] });
+  };
+  const page = studio();
+  startPoser(page);
+  const two = shown(page, 2);
+  page.seeing.pose.value = "lying";
+  await two;
+  const three = shown(page, 3);
+  page.paint();
+  const [old, first, last] = await three;
+  assert.deepEqual(begun, [null, null, "shape 2", null]);
+  assert.deepEqual(
+    [old, first, last].map(({ converged }) => converged),
+    [false, false, true],
+  );
+});

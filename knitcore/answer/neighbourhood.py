@@ -57,9 +57,9 @@ def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
     return _seen(chart, lambda found: packaged_model().relaxed_mm(found, material))
 
 
-def neighbourhood_folds(chart: StitchChart, material: Material) -> Array:
-    """Those sizes over the flat mixture's of the same surroundings, (rows, columns, 2): 1 where a
-    pure fabric is far from others, less where the cloth folds.
+def sizes_and_folds(chart: StitchChart, material: Material) -> tuple[Array, Array]:
+    """Those sizes, and the same over the flat mixture's of the same surroundings, (rows, columns,
+    2) each: 1 where a pure fabric is far from others, less where the cloth folds.
 
     Raises
     ------
@@ -67,17 +67,19 @@ def neighbourhood_folds(chart: StitchChart, material: Material) -> Array:
         If the material lacks a pure fabric that the chart needs.
     """
 
-    def folds(found: Densities) -> Array:
+    def both(found: Densities) -> Array:
         phases = present(found.shares)
         records = [material.record(PHASES[phase]) for phase in phases]
         flat = found.shares[:, phases] @ [(r.stitch_course_mm, r.stitch_wale_mm) for r in records]
-        return np.asarray(packaged_model().relaxed_mm(found, material) / flat)
+        relaxed = packaged_model().relaxed_mm(found, material)
+        return np.concatenate([relaxed, relaxed / flat], axis=1)
 
-    return _seen(chart, folds)
+    seen = _seen(chart, both)
+    return seen[..., :2], seen[..., 2:]
 
 
 def _seen(chart: StitchChart, of: Callable[[Densities], Array]) -> Array:
-    """Values of a function of densities (windows, 2) at every stitch, (rows, columns, 2)."""
+    """Values of a function of densities (windows, n) at every stitch, (rows, columns, n)."""
     counted = list(product(*(_windows(count) for count in chart.purl.shape)))
     return np.asarray(sum(_interpolated(chart, of, *each) for each in counted) / len(counted))
 
@@ -91,9 +93,10 @@ def _interpolated(
     count, windows = windows.shape[:2], windows.reshape(-1, WINDOW, WINDOW)
     packed = np.packbits(windows.reshape(len(windows), -1), axis=1)
     _, first, same = np.unique(packed, axis=0, return_index=True, return_inverse=True)
-    values = of(densities_of(windows[first]))[same].reshape(*count, 2)
+    values = of(densities_of(windows[first]))[same].reshape(*count, -1)
     at = np.meshgrid(rows.places, columns.places, indexing="ij")
-    return np.stack([map_coordinates(values[..., k], at, order=1) for k in range(2)], axis=-1)
+    layers = np.moveaxis(values, -1, 0)
+    return np.stack([map_coordinates(layer, at, order=1) for layer in layers], axis=-1)
 
 
 class Windows(NamedTuple):

@@ -35,7 +35,7 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 from knitcore.answer.answer import Answer
 from knitcore.answer.mixture import law_strains
-from knitcore.answer.neighbourhood import neighbourhood_folds
+from knitcore.answer.neighbourhood import sizes_and_folds
 from knitcore.answer.patches import Patches, patches_of
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
@@ -152,7 +152,7 @@ def _scale(
 
     Each stitch folds by its surroundings, so that a hem is narrower than the cloth above it.
     """
-    folds = neighbourhood_folds(chart, material)
+    _, folds = sizes_and_folds(chart, material)
     records = _records(phases, material)
     for direction in Direction:
         flat = np.array([_size(record, direction) for record in records])[phases]

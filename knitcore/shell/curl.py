@@ -121,6 +121,7 @@ def curl(
     *,
     stitches: NDArray[np.bool_] | None = None,
     pull: Pull | None = None,
+    begin: Array | None = None,
     time_limit_s: float = TIME_LIMIT_S,
     cancelled: Cancelled | None = None,
 ) -> CurledPiece:
@@ -131,13 +132,17 @@ def curl(
     chart : the whole piece, from the face side.
     stitches : (rows, columns) False where the piece has none; the chart goes on there as beside it.
     pull : by clamps, if any.
+    begin : (rows + 1, columns + 1, 3) corners, mm, to descend from, such as those of the piece
+        before a stitch was changed: the first steps come soon. By default the flat or a bent
+        piece, so that the result depends on nothing else.
     time_limit_s : CPU time after which the current shape is returned, not converged.
     cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
     InputError
-        If the piece is too large or has no stitch, or the material lacks data for the yarn level.
+        If the piece is too large or has no stitch, ``begin`` has another size, or the material
+        lacks data for the yarn level.
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
@@ -146,19 +151,25 @@ def curl(
     check_size(chart, stitches)
     if pull is not None and min(chart.rows, chart.columns) < _BETWEEN:
         raise InputError("chart", "is too small for clamps.", f"Give {_BETWEEN} rows and columns.")
+    shape = (chart.rows + 1, chart.columns + 1, 3)
+    if begin is not None and begin.shape != shape:
+        raise InputError("begin", "has another size.", "Give the corners of as many stitches.")
     sheet = sheet_of(chart, material)
     clock = time.process_time()
-    held = None
-    if pull is None:
-        begin = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancelled=cancelled)
-    else:
-        begin, held = _pulled(sheet, pull)
+    x, held = np.empty(0), None
+    if pull is not None:
+        x, held = _pulled(sheet, pull)
         sheet = sheet.clamped(held)
+    elif begin is None:
+        x = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancelled=cancelled)
+    if begin is not None:
+        before = begin.reshape(-1, 3).astype(float)
+        x = before if held is None else np.where(held[:, None], x, before)
     if stitches is not None:
         sheet = sheet.cut(stitches)
     left = time_limit_s - (time.process_time() - clock)
-    found = settle(sheet, begin, held=held, time_limit_s=left, cancelled=cancelled)
-    shape = (chart.rows + 1, chart.columns + 1, 3)
+    quick = begin is not None
+    found = settle(sheet, x, held=held, quick=quick, time_limit_s=left, cancelled=cancelled)
     placed = found.x if pull else aligned(found.x, sheet)
     corners = placed.reshape(shape)
     strip = STRIP * sheet.thickness_mm

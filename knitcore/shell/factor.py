@@ -9,6 +9,7 @@ sparse solvers do not know the sheet, and take several times as long where it is
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -43,6 +44,7 @@ class SheetFactor:
     ----------
     matrix : symmetric, blocks of (3, 3), one for each corner of the sheet.
     columns : corners in a row of the sheet.
+    again : whether other matrices have its pattern, too: the order of elimination is then kept.
 
     Raises
     ------
@@ -50,8 +52,9 @@ class SheetFactor:
         If the matrix is not positive definite in single precision.
     """
 
-    def __init__(self, matrix: bsr_matrix, columns: int) -> None:
-        fronts = _fronts(matrix, columns)
+    def __init__(self, matrix: bsr_matrix, columns: int, *, again: bool = False) -> None:
+        pattern = (part.astype(np.int32).tobytes() for part in (matrix.indptr, matrix.indices))
+        fronts = (_fronts if again else _fronts.__wrapped__)(*pattern, columns)
         count = matrix.shape[0] // 3
         order = np.concatenate([front.own for front in fronts])
         rank = np.empty(count, np.int64)
@@ -86,11 +89,11 @@ class SheetFactor:
         return x.astype(float)
 
 
-def _fronts(matrix: bsr_matrix, columns: int) -> list[_Front]:
-    count = matrix.shape[0] // 3
-    touching = csr_matrix(
-        (np.ones(len(matrix.indices), bool), matrix.indices, matrix.indptr), (count, count)
-    )
+@lru_cache(maxsize=4)
+def _fronts(indptr: bytes, indices: bytes, columns: int) -> list[_Front]:
+    first, near = np.frombuffer(indptr, np.int32), np.frombuffer(indices, np.int32)
+    count = len(first) - 1
+    touching = csr_matrix((np.ones(len(near), bool), near, first), (count, count))
     at = np.stack(np.divmod(np.arange(count), columns))
     fronts: list[_Front] = []
     eliminated = np.zeros(count, bool)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.neighbourhood import neighbourhood_folds, neighbourhood_sizes
+from knitcore.answer.neighbourhood import sizes_and_folds
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
@@ -56,7 +56,8 @@ def folds_of(chart: StitchChart, material: Material, free: Array) -> Folds:
     InputError
         If the material lacks a pure fabric that the chart needs.
     """
-    span = np.minimum(neighbourhood_folds(chart, material), 1.0 - MIN_FOLD)
+    sizes, span = sizes_and_folds(chart, material)
+    span = np.minimum(span, 1.0 - MIN_FOLD)
     side = turning(chart)
     run = np.stack([opposed(side), opposed(side.T).T], axis=-1)
     folded = run > 1
@@ -69,7 +70,7 @@ def folds_of(chart: StitchChart, material: Material, free: Array) -> Folds:
     folds_to = np.sinc(0.5 * count * turn / np.pi) / np.sinc(0.5 * turn / np.pi)
     # a sheet that is to fold in both directions would have to stretch, and hardly gets narrower
     both = folded.all(axis=-1, keepdims=True)
-    return Folds(share, neighbourhood_sizes(chart, material) / np.where(both, 1.0, folds_to))
+    return Folds(share, sizes / np.where(both, 1.0, folds_to))
 
 
 def turning(chart: StitchChart) -> NDArray[np.int8]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -33,15 +35,12 @@ class Tangent:
     def __init__(self, sheet: StitchSheet) -> None:
         self._sheet = sheet
         self._count = len(sheet.flat_mm)
-        parts = (sheet.quarters, sheet.hinges, sheet.quads)
-        keys = [(part[:, :, None] * self._count + part[:, None, :]).ravel() for part in parts]
-        own = np.arange(self._count) * (self._count + 1)
-        self._blocks, inverse = np.unique(np.concatenate([*keys, own]), return_inverse=True)
-        bounds = np.cumsum([0, *(len(key) for key in keys)])
-        self._places = [
-            inverse[first:last].reshape(part.shape[0], part.shape[1], part.shape[1])
-            for part, first, last in zip(parts, bounds[:-1], bounds[1:], strict=True)
-        ]
+        net = (part.tobytes() for part in (sheet.quarters, sheet.hinges, sheet.quads))
+        self._blocks, self._places = _pattern(self._count, *net)
+
+    def is_apart(self, matrix: bsr_matrix) -> bool:
+        """Whether no corners but neighbours have an entry in the matrix."""
+        return len(matrix.indices) == len(self._blocks)
 
     def matrix(
         self,
@@ -84,6 +83,28 @@ class Tangent:
         start = np.searchsorted(row, np.arange(self._count + 1))
         size = 3 * self._count
         return bsr_matrix((data, column, start), shape=(size, size))
+
+
+@lru_cache(maxsize=4)
+def _pattern(
+    count: int, quarters: bytes, hinges: bytes, quads: bytes
+) -> tuple[Ints, tuple[Ints, ...]]:
+    """Numbers of the blocks, row · count + column, and where the parts of the net add to them.
+
+    It is the same for all pieces of a size, such as those between two strokes of a brush.
+    """
+    parts = [
+        np.frombuffer(part, np.int64).reshape(-1, corners)
+        for part, corners in ((quarters, 3), (hinges, 6), (quads, 4))
+    ]
+    keys = [(part[:, :, None] * count + part[:, None, :]).ravel() for part in parts]
+    own = np.arange(count) * (count + 1)
+    blocks, inverse = np.unique(np.concatenate([*keys, own]), return_inverse=True)
+    places = np.split(inverse[: -len(own)], np.cumsum([len(key) for key in keys])[:-1])
+    return blocks, tuple(
+        place.reshape(len(part), part.shape[1], part.shape[1])
+        for part, place in zip(parts, places, strict=True)
+    )
 
 
 @numba.njit(cache=True)

@@ -187,3 +187,24 @@ def test_an_outline_of_another_size_is_refused() -> None:
 def test_clamps_need_a_stitch_between_them() -> None:
     with pytest.raises(InputError, match="too small for clamps"):
         curl(StitchChart.parse("KK"), ACRYLIC, pull=Pull(Direction.WALE, 0.1))
+
+
+def test_after_a_change_a_descent_that_begins_at_the_old_shape_is_near_rest_at_once() -> None:
+    chart = StitchChart.parse("KKKPPP").tile(12, 3)
+    old = curl(chart, ACRYLIC)
+    purl = chart.purl.copy()
+    purl[5, 8:10] ^= True
+    changed = StitchChart(purl)
+    rest = curl(changed, ACRYLIC)
+    begun = curl(changed, ACRYLIC, begin=old.corners_mm)
+    assert begun.converged
+    assert begun.energy_n_mm == pytest.approx(rest.energy_n_mm, rel=0.02)
+    soon = [curl(changed, ACRYLIC, begin=b, time_limit_s=1e-9) for b in (None, old.corners_mm)]
+    assert not any(piece.converged for piece in soon)
+    far = [piece.energy_n_mm - rest.energy_n_mm for piece in soon]
+    assert 0.0 < far[1] < 0.3 * far[0]
+
+
+def test_a_shape_of_another_size_is_nothing_to_begin_with() -> None:
+    with pytest.raises(InputError, match="another size"):
+        curl(StitchChart.parse("K").tile(4, 4), ACRYLIC, begin=np.zeros((4, 5, 3)))
