@@ -20,6 +20,8 @@ Colours = NDArray[np.uint8]
 
 RECTANGLE = 20
 """Stitches that take as much memory of a view as an extensibility rectangle."""
+NEARER = 0.25
+"""What lies so high over the plane, towards the eye, looks this share of it farther out."""
 BESIDE = 0.8
 """So many stitches from a stitch's centre a click still means it."""
 
@@ -42,16 +44,24 @@ class Ground:
     ----------
     centres_mm, sizes_mm : (rows, columns, 2); in single precision, as a view keeps them.
     top_mm : how high the yarn reaches above the middle plane.
-    is_flat : False for a fabric that has left its plane.
     drawn, room_mm : as in :class:`FabricScene`.
+    box_mm : (2, 2) of a fabric that has left its plane: lowest and highest place, as they look from
+        the front, of its stitches and of what it rests on.
+    rests : whether it rests on something that is to be seen.
     """
 
     centres_mm: NDArray[np.float32]
     sizes_mm: NDArray[np.float32]
     top_mm: float
-    is_flat: bool
+    box_mm: Array | None = None
+    rests: bool = False
     drawn: NDArray[np.bool_] | None = None
     room_mm: Array | None = None
+
+    @property
+    def is_flat(self) -> bool:
+        """False for a fabric that has left its plane."""
+        return self.box_mm is None
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -61,15 +71,17 @@ class Ground:
 
     @cached_property
     def middle_mm(self) -> Array:
-        """Centre of the fabric; the scene's origin."""
+        """Centre of the fabric, with what it rests on; the scene's origin."""
+        if self.box_mm is not None:
+            return np.asarray(self.box_mm.mean(axis=0))
         middle: Array = self.centres_mm.reshape(-1, 2).mean(axis=0, dtype=np.float64)
         return middle
 
     @cached_property
     def extent_mm(self) -> Array:
-        """Width and height."""
-        span = np.ptp(self.centres_mm.reshape(-1, 2), axis=0)
-        extent: Array = span.astype(float) + self.sizes_mm[0, 0]
+        """Width and height, with what the fabric rests on."""
+        box = self.centres_mm.reshape(-1, 2) if self.box_mm is None else self.box_mm
+        extent: Array = np.ptp(box, axis=0).astype(float) + self.sizes_mm[0, 0]
         return extent
 
     @property
@@ -146,10 +158,25 @@ class FabricScene:
             centres_mm=places.centres_mm.astype(np.float32),
             sizes_mm=places.sizes_mm.astype(np.float32),
             top_mm=self.top_mm,
-            is_flat=places.frames is None,
+            box_mm=self._box_mm,
+            rests=self.body is not None,
             drawn=self.drawn,
             room_mm=self.room_mm,
         )
+
+    @property
+    def _box_mm(self) -> Array | None:
+        """See :class:`Ground`."""
+        places = self.placement
+        if places.frames is None or places.heights_mm is None:
+            return None
+        points = np.dstack([places.centres_mm, places.heights_mm])
+        points = points.reshape(-1, 3) if self.drawn is None else points[self.drawn]
+        if self.body is not None:
+            points = np.concatenate([points, self.body.vertices_mm])
+        out = NEARER * np.maximum(points[:, 2:], 0.0)
+        plane = points[:, :2]
+        return np.stack([(plane - out).min(axis=0), (plane + out).max(axis=0)])
 
     def drawing(self) -> Drawing:
         """What a view shows of it, and keeps."""

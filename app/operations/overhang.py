@@ -74,7 +74,7 @@ def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResul
     else:  # turned about the vertical, so that the face stays above
         sheet, rectangle = found.corners_mm[:, ::-1], found.rectangle_mm[::-1]
     piece, corners = piece_of(sheet, rectangle, cloth, repeat, OPERATION.key(request))
-    table = TABLE_MM * np.array([(-1.0, -1.0), (0.0, -1.0), (0.0, 1.0), (-1.0, 1.0)])
+    table = TABLE_MM * np.array([(-1.0, -0.5), (0.0, -0.5), (0.0, 0.5), (-1.0, 0.5)])
     result = OverhangResult.of(
         found,
         cloth,

@@ -272,8 +272,8 @@ def round_length_mm(width_mm: float) -> float:
 
 def _room(ground: Ground) -> tuple[float, ...]:
     """The size that the camera was placed for; until it changes the camera stays as turned."""
-    shape = ground.shape
-    return shape if ground.room_mm is None else (*shape, *ground.room_mm.round(1).tolist())
+    room = ground.extent_mm if ground.rests else ground.room_mm
+    return ground.shape if room is None else (*ground.shape, *room.round(1).tolist())
 
 
 def _units(points_mm: Array) -> NDArray[np.float32]:

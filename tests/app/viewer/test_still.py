@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from PIL import Image
 from app.context import Context
 from app.drawing.colours import FABRIC_COLOURS, rgb
 from app.drawing.design_view import ViewRequest, build_scene
-from app.models.posed import PosedView
+from app.models.posed import Body, PosedView
 from app.viewer.still import still_png
 from knitcore.fabric import Fabric
 
@@ -56,13 +57,51 @@ def test_where_there_is_no_stitch_nothing_is_drawn() -> None:
 
 
 def test_a_shape_that_leaves_the_picture_is_cut_at_its_edges() -> None:
-    corners = np.full((5, 5, 3), 30.0, np.float32)  # near the eye
+    corners = np.full((5, 5, 3), 12.0, np.float32)  # nearer to the eye, in the frame of the flat one
     corners[..., 1], corners[..., 0] = np.mgrid[:5, :5] * 3.0
     request = ViewRequest.model_validate(ASKED | {"curl": {"id": "bowl"}})
-    scene = build_scene(request, PosedView(corners), Context(Path()))
-    shown = picture(still_png(scene.drawing(), 120, 90))[..., 3] > 128
+    near = build_scene(request, PosedView(corners), Context(Path())).drawing()
+    flat = build_scene(ViewRequest.model_validate(ASKED), None, Context(Path()))
+    drawing = dataclasses.replace(near, ground=flat.ground)
+    shown = picture(still_png(drawing, 120, 90))[..., 3] > 128
     assert shown[0].any()
     assert shown[-1].any()
+
+
+def on_a_ball(over_mm: float) -> np.ndarray:
+    """A picture of flat cloth, 4 x 4 stitches, and a ring around its middle: over or under it."""
+    corners = np.zeros((5, 5, 3), np.float32)
+    corners[..., 1], corners[..., 0] = 3.0 * np.mgrid[:5, :5]
+    turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    circle = np.stack([np.sin(turn), np.zeros(24), np.cos(turn)], axis=-1)
+    rings = np.stack([6.0 + 2.0 * circle, 6.0 + 2.0 * circle])
+    rings[:, :, 1] = [[2.0], [10.0]]
+    rings[..., 2] += over_mm - 6.0
+    request = ViewRequest.model_validate(ASKED | {"curl": {"id": "ball"}})
+    scene = build_scene(request, PosedView(corners, Body.around(rings)), Context(Path()))
+    return picture(still_png(scene.drawing(), 120, 90))
+
+
+def test_what_the_cloth_rests_on_hides_it_or_is_hidden() -> None:
+    above, below = on_a_ball(6.0), on_a_ball(-6.0)
+    # skin is reddish, the yarn blue
+    seen = [((at[..., 3] > 128) & (at[..., 0] > at[..., 2])).sum() for at in (above, below)]
+    assert seen[0] > 2 * seen[1] > 0  # between the loops it is seen from above, too
+
+
+def test_what_it_rests_on_is_framed_whole() -> None:
+    """A table that reaches far beyond the cloth, on one side, and towards the eye."""
+    corners = np.zeros((5, 5, 3), np.float32)
+    corners[..., 1], corners[..., 0] = 3.0 * np.mgrid[:5, :5]
+    table = Body.slab(np.array([(-60.0, -40.0), (0.0, -40.0), (0.0, 40.0), (-60.0, 40.0)]), 10.0)
+    request = ViewRequest.model_validate(ASKED | {"curl": {"id": "table"}})
+    scene = build_scene(request, PosedView(corners, table).upright(), Context(Path()))
+    shown = picture(still_png(scene.drawing(), 120, 90))[..., 3] > 128
+    columns, rows = np.flatnonzero(shown.any(axis=0)), np.flatnonzero(shown.any(axis=1))
+    assert 0 < columns[0] < columns[-1] < 119
+    assert 0 < rows[0] < rows[-1] < 89
+    assert columns.mean() == pytest.approx(60, abs=4)
+    assert np.ptp(columns) > 0.6 * 120 * (90 / 120 * 1.25)
 
 
 def test_large_pictures_are_larger_not_other_ones() -> None:
