@@ -36,9 +36,8 @@ FREE_ALONG = (
 )
 
 BY_PATCHES = (
-    f"Its law is that of patches of {SIDE} stitches a side and more. Where textures meet, as at a "
-    "hem, the pressure steps at the border of a patch, which may lie some rows beside the hem; "
-    "within a patch it follows the size of the rows."
+    f"The law of a row is that of its surroundings of {SIDE} rows and more. Where textures meet, "
+    "as at a hem, the pressure therefore changes over some rows on either side, and not at once."
 )
 
 

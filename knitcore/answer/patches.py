@@ -19,6 +19,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain, pairwise, product
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -50,13 +51,14 @@ class Patches:
 
     Attributes
     ----------
-    rows, columns : where patches begin and end, from 0; one more than there are patches.
+    rows, columns : where patches begin and end, from 0, in stitches, or in shares of a line; one
+        more than there are patches.
     answers : of each patch, [row][column].
     alike : share of the whole chart in the densities of each patch.
     """
 
-    rows: NDArray[np.intp]
-    columns: NDArray[np.intp]
+    rows: NDArray[Any]
+    columns: NDArray[Any]
     answers: tuple[tuple[Answer, ...], ...]
     alike: float = 1.0
 
@@ -100,16 +102,32 @@ class Patches:
         )
 
     def lines(self, direction: Direction) -> tuple[Answer, ...]:
-        """Answers of the chart's rows (course), or of its columns, each that of its patches."""
+        """Answers of the chart's rows (course), or of its columns, for a pull along them.
+
+        Between the middles of the patches' windows they change gradually, as if a line were knitted
+        partly as the one window, partly as the other.
+        """
         by_row = direction is Direction.COURSE
-        cuts = self.rows if by_row else self.columns
-        found: list[Answer] = []
-        for k, count in enumerate(np.diff(cuts)):
-            line = self.answers[k : k + 1] if by_row else tuple(r[k : k + 1] for r in self.answers)
-            part = cuts[k : k + 2]
-            strip = Patches(part, self.columns, line) if by_row else Patches(self.rows, part, line)
-            found += [strip.together()] * int(count)
-        return tuple(found)
+        cuts, across = (self.rows, self.columns) if by_row else (self.columns, self.rows)
+        grid = self.answers if by_row else tuple(zip(*self.answers, strict=True))
+        count = int(cuts[-1])
+        places = np.arange(count) + 0.5
+        middles = _windows(cuts) @ places
+
+        @cache
+        def line(first: int, share: float) -> Answer:
+            near, parts = grid[first : first + 2], np.array([0.0, 1.0 - share, 1.0])
+            if share in (0.0, 1.0):
+                near, parts = (near[int(share)],), np.array([0.0, 1.0])
+            if by_row:
+                return Patches(parts, across, near).together()
+            return Patches(across, parts, tuple(zip(*near, strict=True))).together()
+
+        if len(middles) == 1:
+            return (line(0, 0.0),) * count
+        first = np.clip(np.searchsorted(middles, places) - 1, 0, len(middles) - 2)
+        share = np.clip((places - middles[first]) / np.diff(middles)[first], 0.0, 1.0)
+        return tuple(line(*at) for at in zip(first.tolist(), share.tolist(), strict=True))
 
     def _along(self, flat: list[Answer], share: Array, direction: Direction) -> Along:
         parts = [answer.along(direction) for answer in flat]

@@ -3,7 +3,7 @@
 Around the limb a line of stitches (a row, or a column) is as long as the limb's girth there, or as
 at rest where that is more. Along the limb nothing holds it, so that it shortens as the answer says
 of a strip free to narrow (:mod:`knitcore.answer.tube`). Sizes at rest are those of every stitch's
-surroundings, stress and strain those of the patch (:mod:`knitcore.answer.patches`).
+surroundings, and so is the law (:meth:`knitcore.answer.patches.Patches.lines`).
 """
 
 from __future__ import annotations

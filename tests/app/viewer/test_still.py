@@ -57,7 +57,9 @@ def test_where_there_is_no_stitch_nothing_is_drawn() -> None:
 
 
 def test_a_shape_that_leaves_the_picture_is_cut_at_its_edges() -> None:
-    corners = np.full((5, 5, 3), 12.0, np.float32)  # nearer to the eye, in the frame of the flat one
+    corners = np.full(
+        (5, 5, 3), 12.0, np.float32
+    )  # nearer to the eye, in the frame of the flat one
     corners[..., 1], corners[..., 0] = np.mgrid[:5, :5] * 3.0
     request = ViewRequest.model_validate(ASKED | {"curl": {"id": "bowl"}})
     near = build_scene(request, PosedView(corners), Context(Path())).drawing()

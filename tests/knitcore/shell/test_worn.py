@@ -71,6 +71,20 @@ def test_a_ribbed_cuff_is_narrower_at_rest_and_presses_less() -> None:
     assert first.pressure.kpa.high < last.pressure.kpa.low
 
 
+def test_at_a_hem_the_pressure_changes_from_row_to_row_and_not_at_once() -> None:
+    cuff = np.tile([[False, False, True, True]], (20, 16))
+    sleeve = StitchChart(np.vstack([cuff, np.zeros((50, 64), dtype=bool)]))
+    along = worn_tube(sleeve, ACRYLIC, Limb((0.0, 600.0), (260.0, 260.0)))
+    across = worn_tube(
+        StitchChart(sleeve.purl.T), ACRYLIC, Limb((0.0, 600.0), (160.0, 160.0)), Direction.WALE
+    )
+    for tube in (along, across):
+        kpa = np.array([place.pressure.kpa.low for place in tube.places if place.pressure])
+        assert len(kpa) == 70
+        assert kpa.max() > 2.0 * kpa.min()
+        assert np.abs(np.diff(np.log(kpa))).max() < np.log(1.4)
+
+
 def test_columns_run_around_as_rows_do() -> None:
     rib = StitchChart.parse("KP").tile(40, 3)
     tube = worn_tube(rib, ACRYLIC, Limb((0.0, 300.0), (120.0, 120.0)), Direction.WALE)
