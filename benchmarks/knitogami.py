@@ -1,4 +1,4 @@
-"""Charts that fold themselves: ``python -m benchmarks.knitogami FOLDER [PICTURES]``.
+"""Charts that fold themselves: ``python -m benchmarks.knitogami FOLDER [PICTURE]``.
 
 FOLDER holds the seven charts (``knit_3a_miura.txt`` …) of L. Niu, G. Dion and R. D. Kamien,
 "Geometric mechanics of knitted fabrics", arXiv 2408.08409: a first line ``# rows columns`` that
@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from docs.figures.draw_curl import drawn
+from docs.figures.draw_curl import drawn, save
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.materials import material
@@ -76,9 +76,10 @@ def folds(piece: CurledPiece) -> tuple[float, list[float]]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("pictures", type=Path, nargs="?", help="Folder for pictures.")
+    parser.add_argument("picture", type=Path, nargs="?", help="Of all shapes, a PNG.")
     asked = parser.parse_args()
     yarn = material("acrylic")
+    pictures = {}
     print("chart, stitches, share as named,", ", ".join(NAMES), "(°), energy given off, s of CPU")
     for name, chart in charts(asked.folder):
         piece, sheet = curl(chart, yarn), sheet_of(chart, yarn)
@@ -92,8 +93,10 @@ def main() -> None:
             f"deep{state}, {piece.seconds:.1f} s",
             flush=True,
         )
-        if asked.pictures is not None:
-            drawn(piece.corners_mm, chart.purl).save(asked.pictures / f"{name}.png")
+        label = f"{name}, {chart.columns} x {chart.rows}: {piece.depth_mm:.0f} mm deep"
+        pictures[label] = drawn(piece.corners_mm, chart.purl)
+    if asked.picture is not None:
+        save(pictures, asked.picture, across=4)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,12 @@
-"""Draw the shapes of ``docs/curl.md``: ``python docs/figures/draw_curl.py`` (a minute)."""
+"""Draw the shapes of ``docs/curl.md``: ``python docs/figures/draw_curl.py`` (a minute).
+
+``draw_weight.py`` beside it draws the tests with weight, ``python -m benchmarks.knitogami FOLDER
+docs/images/folds.png`` the charts that fold themselves.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -45,8 +50,7 @@ PIECES = {
     "shifted stripes": StitchChart.parse(MIURA).tile(2, 2),
     "stockinette in garter": StitchChart.parse(FRAMED),
 }
-ACROSS = 4
-"""Pieces beside each other."""
+IMAGES = Path(__file__).parents[1] / "images"
 
 
 def drawn(corners_mm: Array, purl: NDArray[np.bool_]) -> Image.Image:
@@ -84,19 +88,26 @@ def drawn(corners_mm: Array, purl: NDArray[np.bool_]) -> Image.Image:
     return picture.resize((SIDE, SIDE), Image.Resampling.LANCZOS)
 
 
+def save(pictures: Mapping[str, Image.Image], path: Path, *, across: int) -> None:
+    """Pictures beside each other, so many in a row, each over its name."""
+    sheet = Image.new("RGB", (across * SIDE, -(-len(pictures) // across) * (SIDE + 22)), "white")
+    pen = ImageDraw.Draw(sheet)
+    for place, (name, picture) in enumerate(pictures.items()):
+        at = (place % across) * SIDE, (place // across) * (SIDE + 22)
+        sheet.paste(picture, at)
+        pen.text((at[0] + 12, at[1] + SIDE), name, fill=(40, 40, 40))
+    sheet.quantize(128).save(path, optimize=True)
+
+
 def main() -> None:
     """Write the picture."""
-    sheet = Image.new("RGB", (ACROSS * SIDE, -(-len(PIECES) // ACROSS) * (SIDE + 22)), "white")
-    pen = ImageDraw.Draw(sheet)
-    for place, (name, chart) in enumerate(PIECES.items()):
+    pictures = {}
+    for name, chart in PIECES.items():
         piece = curl(chart, material("acrylic"))
         size = f"{piece.width_mm:.0f} x {piece.height_mm:.0f} x {piece.depth_mm:.0f} mm"
         print(name, size, "" if piece.converged else "NOT converged", f"{piece.seconds:.1f} s")
-        at = (place % ACROSS) * SIDE, (place // ACROSS) * (SIDE + 22)
-        sheet.paste(drawn(piece.corners_mm, chart.purl), at)
-        pen.text((at[0] + 12, at[1] + SIDE), f"{name}: {size}", fill=(40, 40, 40))
-    colours = sheet.quantize(128)
-    colours.save(Path(__file__).parents[1] / "images" / "curl.png", optimize=True)
+        pictures[f"{name}: {size}"] = drawn(piece.corners_mm, chart.purl)
+    save(pictures, IMAGES / "curl.png", across=4)
 
 
 if __name__ == "__main__":

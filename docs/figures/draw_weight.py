@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-from draw_curl import SIDE, drawn
+from draw_curl import IMAGES, SIDE, drawn, save
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
@@ -46,15 +44,7 @@ def main() -> None:
         found = advice(_cloth("K"), _cloth(repeat), 0)
         lines[f"{name} {1.2 * found.width_mm:.0f} mm wide"] = found.line_mm
     pictures["stockinette between borders, on a table"] = _profiles(lines)
-    sheet = Image.new("RGB", (3 * SIDE, 3 * (SIDE + 22)), "white")
-    pen = ImageDraw.Draw(sheet)
-    for place, (name, picture) in enumerate(pictures.items()):
-        print(name)
-        at = (place % 3) * SIDE, (place // 3) * (SIDE + 22)
-        sheet.paste(picture, at)
-        pen.text((at[0] + 12, at[1] + SIDE), name, fill=(40, 40, 40))
-    colours = sheet.quantize(128)
-    colours.save(Path(__file__).parents[1] / "images" / "weight.png", optimize=True)
+    save(pictures, IMAGES / "weight.png", across=3)
 
 
 def _cloth(repeat: str) -> EvenCloth:
