@@ -46,6 +46,14 @@ def side_by_side(first: Callable[[], Result], second: Callable[[], Result]) -> l
     return [results_of_first, *results]
 
 
+def on_halves(work: Callable[[Any], Result], of: Any, least: int) -> list[Result]:
+    """Result of a function on a sequence; on either half, in two threads, from ``least`` items."""
+    if len(of) < least:
+        return [work(of)]
+    half = len(of) // 2
+    return side_by_side(lambda: work(of[:half]), lambda: work(of[half:]))
+
+
 def one_blas_thread() -> AbstractContextManager[Any]:
     """A context in which BLAS uses one thread; the caller's setting is restored afterwards."""
     limited: AbstractContextManager[Any] = _controller().limit(limits=1, user_api="blas")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.threads import on_halves
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
@@ -25,6 +26,8 @@ SPACING_PER_BENDING = 100.0
 STIFF_SPACING_PER_BENDING = 1000.0
 """The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
 the lengths, is then convex in them. It costs 1e-4 of the energy, so the fine grid goes without."""
+PAIRS_TO_SHARE, _SAMPLES_TO_SHARE = 1_000_000, 20_000
+"""So many pairs, or samples, are worth two threads."""
 BLOCK = 12
 """Unknowns in a block of the sparse Hessian: those of four control points."""
 PENALTY_PER_BENDING = 3e4
@@ -209,17 +212,28 @@ class CellEnergy:
 
     def pairs(self, curve: Array, state: Array, reach: float) -> tuple[Pairs, Ints]:
         """Pairs of samples nearer than ``reach`` (see neighbours)."""
+        return self._near(curve, state, reach, np.ones(len(curve), bool), (False, False))
+
+    def _near(
+        self, curve: Array, state: Array, reach: float,
+        moving: NDArray[np.bool_], cut: tuple[bool, bool],
+    ) -> tuple[Pairs, Ints]:  # fmt: skip
         cell = self.cell
-        pairs, start = neighbour_pairs(
-            curve,
-            cell.place,
-            (float(state[-2]), float(state[-1])),
-            (cell.rows, cell.wales),
-            cell.mirror,
-            reach,
-            EXCLUSION_RADII * self.yarn.radius_mm / self.mean_loop_mm,
-        )
-        return pairs, start
+        sizes = float(state[-2]), float(state[-1])
+        exclusion = EXCLUSION_RADII * self.yarn.radius_mm / self.mean_loop_mm
+
+        def listed(of: Ints) -> tuple[Pairs, Ints]:
+            found: tuple[Pairs, Ints] = neighbour_pairs(
+                curve, cell.place, sizes, (cell.rows, cell.wales), cell.mirror, reach, exclusion,
+                of, moving, cut,
+            )  # fmt: skip
+            return found
+
+        parts = on_halves(listed, np.arange(len(curve)), _SAMPLES_TO_SHARE)
+        if len(parts) == 1:
+            return parts[0]
+        (pairs, start), (more, later) = parts
+        return np.concatenate([pairs, more]), np.concatenate([start[:-1], later + len(pairs)])
 
     @cached_property
     def speeds(self) -> Array:
@@ -237,9 +251,13 @@ class CellEnergy:
 
     def value(self, state: Array, curve: Array, pairs: Pairs) -> Terms:
         """Parts of the energy."""
-        contact = kernels.contact_energy(
-            curve, state[-2], state[-1], pairs, self.cell.layout, self.contact_law
-        )
+        layout, law = self.cell.layout, self.contact_law
+        contact = sum(
+            on_halves(
+                lambda of: kernels.contact_energy(curve, state[-2], state[-1], of, layout, law),
+                pairs, PAIRS_TO_SHARE,
+            )
+        )  # fmt: skip
         rod, spacing = kernels.rod_energy(curve, self.rod_law, self.speeds)
         friction = 0.0
         if self.sliding is not None:
@@ -268,7 +286,11 @@ class CellEnergy:
         A sparse Hessian leaves out slides and friction, whose Hessians are dense.
         """
         layout, law = self.cell.layout, self.contact_law
-        force, by_speed = kernels.contact_slopes(curve, state[-2], state[-1], pairs, layout, law)
+        pressed = on_halves(
+            lambda of: kernels.contact_slopes(curve, state[-2], state[-1], of, layout, law),
+            pairs, PAIRS_TO_SHARE,
+        )  # fmt: skip
+        force, by_speed = (sum(parts) for parts in zip(*pressed, strict=True))
         along = curve, self.rod_law, self.speeds, tension[self.stretch_of], by_speed
         if hessian:
             slopes, local = kernels.rod_hessian(*along)

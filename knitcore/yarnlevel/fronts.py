@@ -199,7 +199,7 @@ class FrontalFactor:
         return np.asarray(x[: len(right)] * scale, dtype=float)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     touching: NDArray[np.bool_], wanted: Ints
 ) -> tuple[Ints, Ints, Ints, Ints]:
@@ -269,7 +269,7 @@ def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     return order, first[: fronts + 1], border[:stored], border_first[: fronts + 1]
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def _scale(tiles: Array, where: NDArray[np.int32], unknowns: int, damping: float) -> Array:
     blocks, size = where.shape[0], tiles.shape[1]
     scale = np.ones(blocks * size)
@@ -279,7 +279,7 @@ def _scale(tiles: Array, where: NDArray[np.int32], unknowns: int, damping: float
     return scale
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def _assemble(
     tiles: Array, where: NDArray[np.int32], scale: Array, damping: float, unknowns: int,
     own: Ints, border: Ints, upper: Floats, side: Floats,
@@ -306,7 +306,7 @@ def _assemble(
             upper[at, at] = upper[at, at] + damping * scale[u] ** 2 if u < unknowns else 1.0
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def _extend(
     remainder: Floats, places: Ints, own: int, size: int, upper: Floats, side: Floats, rest: Floats
 ) -> None:

@@ -20,7 +20,7 @@ _BINS = 3
 """Bins per reach: finer ones follow its circle more closely."""
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     curve: NDArray[np.float64],
     place: NDArray[np.float64],
@@ -29,8 +29,11 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     mirror: tuple[int, int],
     reach: float,
     exclusion: float,
+    of: NDArray[np.int64],
+    moving: NDArray[np.bool_],
+    cut: tuple[bool, bool],
 ) -> tuple[Pairs, NDArray[np.int64]]:
-    """All pairs of samples nearer than ``reach``.
+    """All pairs of samples nearer than ``reach`` of which one moves.
 
     Parameters
     ----------
@@ -41,11 +44,14 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     mirror : -1 where z changes its sign from one cell to the next (course, wale), else 1.
     reach : mm.
     exclusion : stitches of yarn within which a yarn does not touch itself.
+    of : (k,) samples i whose pairs are wanted.
+    moving : (courses * S,) which samples move.
+    cut : whether images across, and up, are left out.
 
     Returns
     -------
     pairs : int (n, 5): i, j, across, up, sign of z of the image of j relative to i.
-    start : int (courses * S + 1): pairs start[i] … start[i + 1] belong to sample i.
+    start : int (k + 1): pairs start[q] … start[q + 1] belong to sample of[q].
     """
     rows, wales = shape
     n = curve.shape[0]
@@ -60,6 +66,7 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     image = np.empty((n, 2), np.int64)
     bin_of = np.empty(n, np.int64)
     first = np.zeros(bins_x * bins_y + 1, np.int64)
+    moves = np.zeros(bins_x * bins_y, np.bool_)  # whether a sample of the bin does
     for i in range(n):
         full_x = curve[i, 0, 0] + cell[0] * place[i % samples]
         full_y = curve[i, 0, 1] + cell[1] * (i // samples)
@@ -72,6 +79,7 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
         )
         bin_of[i] = b
         first[b + 1] += 1
+        moves[b] |= moving[i]
     for b in range(bins_x * bins_y):
         first[b + 1] += first[b]
     # the samples bin by bin, in falling order, side by side in memory
@@ -83,13 +91,14 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
         filled[bin_of[i]] += 1
         sample[k] = i
         there[k, 0], there[k, 1], there[k, 2] = x[i], y[i], z[i]
-    capacity = 64 * n
+    capacity = 64 * of.shape[0]
     pairs = np.empty((capacity, 5), np.int32)
-    start = np.zeros(n + 1, np.int64)
+    start = np.zeros(of.shape[0] + 1, np.int64)
     count = 0
     square = reach * reach
-    for i in range(n):
-        start[i] = count
+    for p in range(of.shape[0]):
+        i = of[p]
+        start[p] = count
         by, bx = bin_of[i] // bins_x, bin_of[i] % bins_x
         row_i, t_i = i // samples, place[i % samples]
         for v in range(by - span_y, by + span_y + 1):
@@ -99,6 +108,8 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
                 across_x = shift * width - x[i]
                 up_y = lift * height - y[i]
                 b = (v - lift * bins_y) * bins_x + (u - shift * bins_x)
+                if not (moving[i] or moves[b]):
+                    continue
                 for k in range(first[b], first[b + 1]):
                     j = sample[k]
                     if j < i:
@@ -106,10 +117,12 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
                     dx = there[k, 0] + across_x
                     dy = there[k, 1] + up_y
                     left = square - dx * dx - dy * dy
-                    if left <= 0.0:
+                    if left <= 0.0 or not (moving[i] or moving[j]):
                         continue
                     across = shift - image[j, 0] + image[i, 0]
                     up = lift - image[j, 1] + image[i, 1]
+                    if (cut[0] and across != 0) or (cut[1] and up != 0):
+                        continue
                     flip = 1
                     if mirror[0] < 0 and across % 2 != 0:
                         flip = -flip
@@ -134,11 +147,11 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
                     pairs[count, 3] = up
                     pairs[count, 4] = flip
                     count += 1
-    start[n] = count
+    start[-1] = count
     return pairs[:count], start
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def pair_changes(
     curve: NDArray[np.float64],
     cell: tuple[float, float],
@@ -166,3 +179,22 @@ def pair_changes(
         distance[q] = np.sqrt(x * x + y * y + z * z)
         change[q] = np.sqrt(dx * dx + dy * dy + dz * dz)
     return distance, change
+
+
+@numba.njit(cache=True, nogil=True)
+def reaches(pairs: Pairs, samples: int, shape: tuple[int, int]) -> NDArray[np.int64]:
+    """(2, rows, wales): how many rows, and wales, beyond itself a stitch has pairs; at least 1.
+
+    ``samples`` are those of a stitch, ``shape`` the rows and wales of the cell.
+    """
+    rows, wales = shape
+    out = np.ones((2, rows, wales), np.int64)
+    for q in range(pairs.shape[0]):
+        one, other = pairs[q, 0] // samples, pairs[q, 1] // samples
+        up = abs(other // wales + rows * pairs[q, 3] - one // wales)
+        across = abs(other % wales + wales * pairs[q, 2] - one % wales)
+        for stitch in (one, other):
+            row, wale = stitch // wales, stitch % wales
+            out[0, row, wale] = max(out[0, row, wale], up)
+            out[1, row, wale] = max(out[1, row, wale], across)
+    return out

@@ -9,12 +9,15 @@ what yarn passes from window to window; the next descent has its windows elsewhe
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, check_cancelled
+from knitcore.threads import on_halves
 from knitcore.yarnlevel.elimination_order import dissected
 from knitcore.yarnlevel.energy import CellEnergy, Slope
 from knitcore.yarnlevel.fronts import Room, elimination
@@ -63,7 +66,10 @@ class _Inverse:
         self, sheet: CellEnergy, state: Array, tension: Array, windows: list[Window], flat: bool
     ) -> None:
         self._sheet = sheet
-        self._parts = [_part(sheet, state, tension, window, flat) for window in windows]
+        made = on_halves(
+            lambda some: [_part(sheet, state, tension, window, flat) for window in some], windows, 2
+        )
+        self._parts = list(chain.from_iterable(made))
         self._sizes = np.array([self._with_size(k, len(state)) for k in range(2)])
         here = _gradient(sheet, state, tension)
         slopes = [
@@ -85,15 +91,19 @@ class _Inverse:
     def relaxed(self, gradient: Array, excess: Array) -> tuple[Array, Array]:
         """Newton steps of all windows at once, and the mean change of the tensions (rows,), N."""
         step = np.zeros(len(gradient))
-        change = np.zeros(len(excess))
-        for part in self._parts:
-            slope = Slope(np.append(gradient[part.unknowns], (0.0, 0.0)), part.lengths)
-            missing = np.zeros(len(part.lengths))
-            missing[: len(part.rows)] = part.share * excess[part.rows]
-            moved, pull = part.system.solve(slope, missing, np.zeros(2))
-            step[part.unknowns] = moved[:-2]
-            change[part.rows] += part.share * pull[: len(part.rows)]
-        return step, change
+
+        def solved(parts: Sequence[_Part]) -> Array:
+            change = np.zeros(len(excess))
+            for part in parts:
+                slope = Slope(np.append(gradient[part.unknowns], (0.0, 0.0)), part.lengths)
+                missing = np.zeros(len(part.lengths))
+                missing[: len(part.rows)] = part.share * excess[part.rows]
+                moved, pull = part.system.solve(slope, missing, np.zeros(2))
+                step[part.unknowns] = moved[:-2]  # no other part has them
+                change[part.rows] += part.share * pull[: len(part.rows)]
+            return change
+
+        return step, np.sum(on_halves(solved, self._parts, 2), axis=0)
 
     def _with_size(self, size: int, unknowns: int) -> Array:
         """How the windows answer to a change of one size of a stitch, and that change."""
@@ -135,14 +145,18 @@ def polished(
         before = sheet.merit(terms, tension)
         pull = sheet.penalty * terms.excess_mm @ slope.lengths
         downhill = min(float((gradient + pull) @ step), 0.0)
+        share = 1.0
         for _ in range(_TRIALS):
-            found = path.certified(step)
-            wanted = _ENOUGH * found.fraction * downhill
-            if sheet.merit(found.to.terms, tension) < before + wanted:
+            found = path.certified(share * step)
+            share *= found.fraction
+            if sheet.merit(found.to.terms, tension) < before + _ENOUGH * share * downhill:
                 break
-            step, downhill = _SHORTER * step, _SHORTER * downhill
+            share *= _SHORTER
         else:
-            break
+            if not past:
+                break
+            past.clear()  # what was learned of the curvature holds no more
+            continue
         moved = found.to.state - path.here.state
         path.advance(found)
         slope = path.slope(tension, hessian=False)

@@ -17,7 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.threads import on_halves
 from knitcore.yarnlevel.cell import YarnCell
+from knitcore.yarnlevel.energy import PAIRS_TO_SHARE
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.neighbours import pair_changes
 
@@ -84,10 +86,17 @@ class Guard:
 
     def changes(self, state: Array, curve: Array) -> tuple[Array, Array]:
         """Distances of the listed pairs, and how far their vectors change to another state."""
-        return pair_changes(
-            self.curve, _size(self.state), curve, _size(state),
-            self.cell.place, (self.cell.rows, self.cell.wales), self.pairs,
+        shape = self.cell.rows, self.cell.wales
+        parts = on_halves(
+            lambda of: pair_changes(
+                self.curve, _size(self.state), curve, _size(state), self.cell.place, shape, of
+            ),
+            self.pairs, PAIRS_TO_SHARE,
         )  # fmt: skip
+        distance, change = (
+            parts[0] if len(parts) == 1 else map(np.concatenate, zip(*parts, strict=True))
+        )
+        return distance, change
 
     def _spacing(self, curve: Array, fraction: float) -> float:
         """Largest distance of consecutive samples up to a fraction of the step, mm.

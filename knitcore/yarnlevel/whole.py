@@ -10,8 +10,9 @@ these come from a descent of all unknowns at once (:mod:`knitcore.yarnlevel.poli
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import chain, zip_longest
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +27,7 @@ from knitcore.errors import (
     UnravelledError,
     check_cancelled,
 )  # fmt: skip
+from knitcore.threads import on_halves, one_blas_thread
 from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
@@ -38,6 +40,7 @@ from knitcore.yarnlevel.growth import (
     stiffened,
 )  # fmt: skip
 from knitcore.yarnlevel.limits import check_loop
+from knitcore.yarnlevel.neighbours import reaches
 from knitcore.yarnlevel.polish import polished
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
@@ -47,7 +50,7 @@ from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.tiling import refined_state
 from knitcore.yarnlevel.topology import Guard
 from knitcore.yarnlevel.trajectory import SKIN
-from knitcore.yarnlevel.windows import Ints, Window, each, row_lengths, window_energy, windows
+from knitcore.yarnlevel.windows import Window, each, row_lengths, touch, window_energy, windows
 from knitcore.yarnlevel.yarn import YarnModel
 
 MAX_STITCHES_WHOLE = 4_000
@@ -162,7 +165,8 @@ def relax_whole(
         chart, yarn, np.resize(lengths, chart.rows), Convention.parse(convention), flat,
         tolerance, rounds, kept, progress, cancelled,
     )  # fmt: skip
-    return work.relaxed(resume)
+    with one_blas_thread():
+        return work.relaxed(resume)
 
 
 @dataclass(frozen=True, eq=False)
@@ -277,14 +281,13 @@ class _Work:
     def _one_pass(
         self, sheet: Sheet, energy: CellEnergy, options: Options, number: int = 0
     ) -> Sheet:
-        """The sheet after its windows have been relaxed in turn."""
+        """The sheet after its windows have been relaxed in turn, two apart at a time."""
         controls, tension = sheet.controls.copy(), sheet.tension_n.copy()
         curve = energy.curve(sheet.state)
         missing = energy.loop_length_mm - row_lengths(energy.cell, curve) / energy.cell.wales
-        failed = 0
-        covering = self._windows(energy, sheet, number)
-        for window in covering:
-            check_cancelled(self.cancelled)
+
+        def settled(window: Window) -> Callable[[], None] | None:
+            """What lays the relaxed window into the sheet; None where it cannot be relaxed."""
             rows, wales = window
             part, state = window_energy(
                 energy, controls, sheet.sizes_mm, window, missing, flat=self.flat
@@ -293,33 +296,37 @@ class _Work:
             try:
                 found = minimise(
                     part, state, tension=np.concatenate([pulls, np.zeros(len(part.held))]),
-                    fixed=(COURSE, WALE), options=options, cancelled=self.cancelled,
+                    fixed=(COURSE, WALE), options=options,
                 )  # fmt: skip
             except (ConvergenceError, UnravelledError):  # the next windows divide it elsewhere
-                failed += 1
-                continue
-            place = np.ix_(rows.stitches, each(wales.stitches, energy.cell.grid.controls))
-            block = controls[place]
-            block[part.cell.free] = found.state[:-2].reshape(-1, 3)
-            controls[place] = block
-            tension[np.ix_(rows.own, wales.own)] = found.tension[: len(rows.own), None]
-        if failed == len(covering):
+                return None
+
+            def lay() -> None:
+                place = np.ix_(rows.stitches, each(wales.stitches, energy.cell.grid.controls))
+                block = controls[place]
+                block[part.cell.free] = found.state[:-2].reshape(-1, 3)
+                controls[place] = block
+                tension[np.ix_(rows.own, wales.own)] = found.tension[: len(rows.own), None]
+
+            return lay
+
+        laid = 0
+        for some in _side_by_side(self._windows(energy, sheet, number)):
+            check_cancelled(self.cancelled)
+            for lay in chain.from_iterable(on_halves(lambda of: [*map(settled, of)], some, 2)):
+                if lay is not None:
+                    lay()
+                    laid += 1
+        if not laid:
             raise UnravelledError("No window of the chart could be relaxed.")
         return replace(sheet, controls=controls, tension_n=tension)
 
     def _windows(self, energy: CellEnergy, sheet: Sheet, number: int) -> list[Window]:
         """Windows with as many resting stitches around them as strands reach."""
+        cell = energy.cell
         pairs = self._guard(energy, sheet).pairs
-        course: Ints = np.repeat(np.arange(energy.cell.rows), len(energy.cell.place))
-        place = np.tile(energy.cell.place, energy.cell.rows)
-        one, other, across, up = pairs[:, :4].T
-        reach = (
-            np.abs(course[other] + energy.cell.rows * up - course[one]),
-            np.abs(place[other] + energy.cell.wales * across - place[one]),
-        )
-        around = [int(np.ceil(distance.max(initial=1.0))) for distance in reach]
-        first = _FIRSTS[number % len(_FIRSTS)]
-        return windows(energy.cell.purl.shape, _WINDOW, (around[0], around[1]), first)
+        around = reaches(pairs, cell.grid.samples, (cell.rows, cell.wales))
+        return windows(around, _WINDOW, _FIRSTS[number % len(_FIRSTS)])
 
     def _guard(self, energy: CellEnergy, sheet: Sheet) -> Guard:
         reach = (2.0 + SKIN) * self.yarn.radius_mm
@@ -357,3 +364,15 @@ class _Work:
             share = max(float(near), len(sheet.energies_n_mm) / self.rounds)
             grown = sheet.core_radius_mm / self.yarn.core_radius_mm
             self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)
+
+
+def _side_by_side(covering: list[Window]) -> Iterator[list[Window]]:
+    """The windows, by twos where neither touches the other."""
+    half = -(-len(covering) // 2)
+    for one, other in zip_longest(covering[:half], covering[half:]):
+        if other is None:
+            yield [one]
+        elif touch(one, other):
+            yield from ([one], [other])
+        else:
+            yield [one, other]

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,44 +51,50 @@ Window = tuple[Extent, Extent]
 """Rows and wales of a window."""
 
 
-def windows(
-    shape: tuple[int, int], size: int, around: tuple[int, int], first: tuple[int, int]
-) -> list[Window]:
+def windows(around: Ints, size: int, first: tuple[int, int]) -> list[Window]:
     """Windows that cover a sheet without overlap.
 
     Parameters
     ----------
-    shape : rows and wales of the sheet.
+    around : (2, rows, wales) how many rows, and wales, the strands of a stitch reach beyond it.
     size : most rows and wales of a window.
-    around : resting rows and wales at either side.
     first : row and wale where the first window begins.
     """
+    counts = around.shape[1:]
     rows, wales = (
-        extents(count, size, beside, begin)
-        for count, beside, begin in zip(shape, around, first, strict=True)
+        _spans(count, size, int(reach.max()), begin)
+        for count, reach, begin in zip(counts, around, first, strict=True)
     )
-    return [(row, wale) for row in rows for wale in wales]
-
-
-def extents(count: int, size: int, around: int, first: int) -> list[Extent]:
-    """Windows that cover ``count`` stitches of one direction without overlap.
-
-    Parameters
-    ----------
-    count : stitches of the sheet.
-    size : of a window, at most.
-    around : resting stitches at either side.
-    first : where the first window begins.
-    """
-    if count <= size + 2 * around:
-        return [Extent(np.arange(count), np.ones(count, bool), cut=False)]
-    edges = np.linspace(0, count, -(-count // size) + 1).round().astype(int)
     found = []
-    for begin, end in pairwise(edges):
-        places = np.arange(begin - around, end + around)
-        free = (places >= begin) & (places < end)
-        found.append(Extent((places + first) % count, free, cut=True))
+    for row, wale in product(rows, wales):
+        beside = around[:, (row % counts[0])[:, None], wale % counts[1]].max(axis=(1, 2))
+        found.append(
+            (_extent(row, counts[0], int(beside[0])), _extent(wale, counts[1], int(beside[1])))
+        )
     return found
+
+
+def touch(one: Window, other: Window) -> bool:
+    """Whether a window holds stitches that move in another, which may then not move meanwhile."""
+    return any(
+        all(np.isin(a.own, b.stitches).any() for a, b in zip(*both, strict=True))
+        for both in ((one, other), (other, one))
+    )
+
+
+def _spans(count: int, size: int, around: int, first: int) -> list[Ints]:
+    """Places of one direction, ``size`` at most; all of them if hardly any would rest."""
+    if count <= size + 2 * around:
+        return [np.arange(count)]
+    edges = first + np.linspace(0, count, -(-count // size) + 1).round().astype(int)
+    return [np.arange(begin, end) for begin, end in pairwise(edges)]
+
+
+def _extent(own: Ints, count: int, around: int) -> Extent:
+    if len(own) == count:
+        return Extent(own, np.ones(count, bool), cut=False)
+    places = np.arange(own[0] - around, own[-1] + 1 + around)
+    return Extent(places % count, (places >= own[0]) & (places <= own[-1]), cut=True)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -123,7 +129,7 @@ class WindowEnergy(CellEnergy):
 
     Parameters
     ----------
-    cut : (2,) whether the sheet goes on beyond the window's cell, up and across.
+    cut : (2,) whether the sheet goes on beyond the window's cell, across and up.
     moving : (rows * S,) samples that depend on free control points.
     resting_curve : (rows * S, 4, 3) the curve around.
     own_rows : rows of the cell that have free stitches.
@@ -175,13 +181,7 @@ class WindowEnergy(CellEnergy):
 
     def pairs(self, curve: Array, state: Array, reach: float) -> tuple[Pairs, Ints]:
         """Pairs nearer than ``reach`` of which one moves."""
-        pairs, _ = super().pairs(curve, state, reach)
-        kept = self.moving[pairs[:, 0]] | self.moving[pairs[:, 1]]
-        for column, cut in zip((3, 2), self.cut, strict=True):
-            if cut:
-                kept &= pairs[:, column] == 0
-        pairs = pairs[kept]
-        return pairs, np.searchsorted(pairs[:, 0], np.arange(len(curve) + 1))
+        return self._near(curve, state, reach, self.moving, self.cut)
 
     def excess(self, state: Array, curve: Array) -> Array:
         """Lengths of the rows less those prescribed, and heights of the stitches, mm."""
@@ -242,7 +242,7 @@ def window_energy(
     energy = WindowEnergy(
         cell=cell, yarn=sheet.yarn, loop_length_mm=sheet.loop_length_mm[rows.stitches],
         convention=sheet.convention, flat=flat,
-        spacing_per_bending=sheet.spacing_per_bending, cut=(rows.cut, wales.cut), moving=moving,
+        spacing_per_bending=sheet.spacing_per_bending, cut=(wales.cut, rows.cut), moving=moving,
         resting_curve=curve, own_rows=own_rows,
         length_mm=row_lengths(cell, curve)[own_rows] + share,
     )  # fmt: skip

@@ -11,7 +11,7 @@ from knitcore.yarnlevel.kernels.structures import ContactLaw, Ints, Layout, Pair
 from knitcore.yarnlevel.potential import potential, potential_and_derivatives
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def apart(
     at: Array, pairs: Pairs, q: int, layout: Layout, course_mm: float, wale_mm: float
 ) -> tuple[float, float, float]:
@@ -24,7 +24,7 @@ def apart(
     )
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def contact_energy(
     curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
 ) -> float:
@@ -41,7 +41,7 @@ def contact_energy(
     return total
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def contact_slopes(
     curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
 ) -> tuple[Array, Array]:
@@ -78,7 +78,7 @@ def contact_slopes(
     return force, by_speed
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def _add_transposed(matrix: Array, size: int) -> None:
     """A + A.T of the leading block, in place; tile by tile, as columns are far apart."""
     tile = 32
@@ -91,7 +91,7 @@ def _add_transposed(matrix: Array, size: int) -> None:
                     matrix[j, i] = both
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one sweep
     curve: Array,
     course_mm: float,

@@ -19,7 +19,7 @@ from knitcore.arrays import Array
 from knitcore.yarnlevel.kernels.structures import RodLaw
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def rod_sample(
     d: Array, bend: float, regular: float, order: int, slope: Array, curvature: Array
 ) -> float:
@@ -77,12 +77,12 @@ def rod_sample(
     return float(value)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def _length(d: Array) -> float:
     return float(np.sqrt(d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2))
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def rod_energy(curve: Array, law: RodLaw, lengths: Array) -> tuple[float, float]:
     """Bending with regularisation, and spacing penalty, N·mm.
 
@@ -98,14 +98,14 @@ def rod_energy(curve: Array, law: RodLaw, lengths: Array) -> tuple[float, float]
     return rod, spacing
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def _pull(d: Array, law: RodLaw, length: float, tension: float, by_speed: float) -> float:
     """Derivative by |d1| of spacing penalty, tension and contact."""
     stretch = _length(d) / length - 1.0
     return law.step * (tension + law.spacing * stretch / length) + by_speed
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def _by_derivatives(d: Array, slope: Array, out: Array) -> None:
     """Slopes by d1, d2, d3 from those by the products a … f."""
     for m in range(3):
@@ -114,7 +114,7 @@ def _by_derivatives(d: Array, slope: Array, out: Array) -> None:
         out[2, m] = slope[3] * d[1, m] + slope[4] * d[2, m] + 2.0 * slope[5] * d[3, m]
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def rod_slopes(curve: Array, law: RodLaw, lengths: Array, tension: Array, by_speed: Array) -> Array:
     """Derivatives by d1, d2, d3 at each sample, (n, 3, 3).
 
@@ -131,7 +131,7 @@ def rod_slopes(curve: Array, law: RodLaw, lengths: Array, tension: Array, by_spe
     return gradient
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def rod_hessian(
     curve: Array, law: RodLaw, lengths: Array, tension: Array, by_speed: Array
 ) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ from knitcore.yarnlevel.kernels.curve import control_of
 from knitcore.yarnlevel.kernels.structures import Layout, Pairs
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def scatter_gradient(force: Array, gradient: Array, layout: Layout) -> Array:
     """Gradient by the unknowns from dE/dx (n or n + 1, 3) and dE/d(d1, d2, d3) (n, 3, 3)."""
     basis, dof, sign, mirror = layout.basis, layout.dof, layout.sign, layout.mirror
@@ -36,7 +36,7 @@ def scatter_gradient(force: Array, gradient: Array, layout: Layout) -> Array:
     return out
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, nogil=True)
 def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
     local: Array,
     position: Array,
@@ -71,8 +71,13 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
                 for m in range(3):
                     index[3 * a + m] = dof[j, c, m]
                     factor[3 * a + m] = sign[j, c, m] * (z_sign if m == 2 else 1.0)
+            first = j * samples + span * per_span
+            # course size enters d1 of every sample (its effect on x is in the contact)
+            sizes[0, size - 2] += local[first : first + per_span, 0, 0].sum()
+            if not np.any(factor):  # none of its control points moves
+                continue
             for o in range(per_span):
-                i = j * samples + span * per_span + o
+                i = first + o
                 block[3:, 3:] = local[i]
                 block[:3, :3] = position[i]
                 block[:3, 3:6] = position_speed[i]
@@ -93,8 +98,6 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
                             for d in range(4):
                                 value += basis[d, o, b] * half[row, 3 * d + n]
                             full[row, 3 * b + n] += value
-                # course size enters d1 of every sample (its effect on x is in the contact)
-                sizes[0, size - 2] += local[i, 0, 0]
                 for a in range(6):
                     for m in range(3):
                         value = factor[3 * a + m] * (

@@ -55,8 +55,9 @@ def _certified(stitch: Stitch, start: Array, end: Array, halvings: int) -> bool:
     curves = [_without_drift(line, place, x) for line, x in ((first, start), (last, end))]
     sizes = [(float(x[-2]), float(x[-1])) for x in (start, end)]
     pairs, _ = neighbour_pairs(
-        curves[0], place, sizes[0], (1, 1), mirror, reach, EXCLUSION_RADII * radius / length
-    )
+        curves[0], place, sizes[0], (1, 1), mirror, reach, EXCLUSION_RADII * radius / length,
+        np.arange(len(place)), np.ones(len(place), bool), (False, False),
+    )  # fmt: skip
     distance, change = pair_changes(curves[0], sizes[0], curves[1], sizes[1], place, (1, 1), pairs)
     room = SAFETY * np.maximum(distance - CROSSING * spacing, 0.0)
     strain = max(abs(b / a - 1.0) for a, b in zip(*sizes, strict=True))

@@ -23,6 +23,7 @@ from knitcore.yarnlevel.windows import row_lengths, window_energy, windows
 
 SAMPLE = sample("acrylic", Fabric.STOCKINETTE)
 ROWS, WALES = 9, 8
+AROUND = np.full((2, ROWS, WALES), 2)
 PURL = np.random.default_rng(3).random((ROWS, WALES)) < 0.3
 
 
@@ -50,7 +51,7 @@ def _slope(energy: CellEnergy, state: np.ndarray, tension: np.ndarray) -> np.nda
 @pytest.mark.parametrize("first", [(0, 0), (2, 3), (8, 7)])
 def test_windows_cover_every_stitch_once(first: tuple[int, int]) -> None:
     seen = np.zeros((ROWS, WALES), int)
-    for rows, wales in windows((ROWS, WALES), 3, (2, 2), first):
+    for rows, wales in windows(AROUND, 3, first):
         seen[np.ix_(rows.own, wales.own)] += 1
     assert np.all(seen == 1)
 
@@ -60,7 +61,7 @@ def test_a_window_has_the_slopes_of_the_sheet(sheet: tuple[CellEnergy, np.ndarra
     tension = np.linspace(-1e-3, 2e-3, ROWS)
     gradient = _slope(whole, state, tension)[:-2].reshape(ROWS, -1, 3)
     controls, sizes = whole.cell.controls(state), state[-2:]
-    for window in windows((ROWS, WALES), 3, (2, 2), (7, 2))[:4]:
+    for window in windows(AROUND, 3, (7, 2))[:4]:
         rows, wales = window
         part, own = window_energy(whole, controls, sizes, window, np.zeros(ROWS), flat=False)
         found = _slope(part, own, tension[rows.own])[:-2]
@@ -73,7 +74,7 @@ def test_the_slopes_of_a_window_are_those_of_its_energy(
     sheet: tuple[CellEnergy, np.ndarray],
 ) -> None:
     whole, state = sheet
-    window = windows((ROWS, WALES), 3, (2, 2), (0, 0))[0]
+    window = windows(AROUND, 3, (0, 0))[0]
     controls = whole.cell.controls(state)
     part, own = window_energy(whole, controls, state[-2:], window, np.zeros(ROWS), flat=True)
     pulls = np.linspace(0.5e-3, 1e-3, part.constraints)
@@ -97,7 +98,7 @@ def test_the_lengths_of_windows_add_up_to_those_of_the_courses(
     missing = np.linspace(0.0, 0.1, ROWS)
     lengths = row_lengths(whole.cell, whole.curve(state))
     gained = np.zeros(ROWS)
-    for window in windows((ROWS, WALES), 3, (2, 2), (0, 0)):
+    for window in windows(AROUND, 3, (0, 0)):
         part, own = window_energy(
             whole, whole.cell.controls(state), state[-2:], window, missing, flat=False
         )
