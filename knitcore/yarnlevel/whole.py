@@ -45,9 +45,9 @@ from knitcore.yarnlevel.polish import polished
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
-from knitcore.yarnlevel.splines import COARSE, ROUGH, RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.splines import COARSE, ROUGH, RelaxedRepeat, relax_splines, relaxed_repeat
 from knitcore.yarnlevel.start import start_state
-from knitcore.yarnlevel.tiling import refined_state
+from knitcore.yarnlevel.tiling import refined_state, tiled_state
 from knitcore.yarnlevel.topology import Guard
 from knitcore.yarnlevel.trajectory import SKIN
 from knitcore.yarnlevel.windows import Window, each, row_lengths, touch, window_energy, windows
@@ -64,6 +64,8 @@ _GROWING = Options(tolerance=1e-3, iterations=4)
 _PASS = Options(tolerance=1e-6, iterations=3)
 _LAST_PASS = Options(tolerance=1e-6, iterations=6)
 _DESCENT_STEPS = 60
+_REPEAT = 36
+"""A chart with a repeat of up to this many stitches starts from that, relaxed."""
 _PATIENCE = 12
 """Passes in which a core may fail to grow."""
 
@@ -215,11 +217,30 @@ class _Work:
         )  # fmt: skip
 
     def _first(self) -> Sheet:
+        repeat = self.chart.repeat().stitches
+        uniform = bool(np.ptp(self.loop_lengths_mm) == 0.0)
+        if uniform and repeat <= _REPEAT and repeat < self.chart.stitches:
+            return self._tiled()
         cell = plain_cell(self.chart, ROUGH)
         height = START_HEIGHT * self.yarn.radius_mm
         state = start_state(cell, float(self.loop_lengths_mm.mean()), height)
         sheet = Sheet(cell.controls(state), state[-2:], np.zeros(self.chart.purl.shape), 0.0)
         return self._fitted(sheet, FIRST_OPENING)
+
+    def _tiled(self) -> Sheet:
+        """The chart's repeat, relaxed and laid out."""
+        found = relax_splines(
+            self.chart, self.yarn, self.loop_lengths_mm[0], branch=Branch.MIRRORED,
+            convention=self.convention, sizes_mm=(None, None), flat=self.flat, grid=COARSE,
+            starts=None, time_limit_s=None, cancelled=self.cancelled,
+        )  # fmt: skip
+        cell = plain_cell(self.chart, COARSE)
+        state = tiled_state(found.cell, found.state, cell)
+        tension = np.resize(found.tension_n[: found.cell.rows], cell.rows)
+        return Sheet(
+            cell.controls(state), state[-2:], np.tile(tension[:, None], cell.wales),
+            self.yarn.core_radius_mm, fine=True,
+        )  # fmt: skip
 
     def _checked(self, resume: Sheet) -> Sheet:
         grid = COARSE if resume.fine else ROUGH

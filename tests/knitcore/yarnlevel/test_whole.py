@@ -8,10 +8,12 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Fabric
+from knitcore.yarnlevel import energy
 from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.growth import FIRST_OPENING, core_that_fits
+from knitcore.yarnlevel.neighbours import reaches
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.samples import sample
@@ -19,7 +21,7 @@ from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.topology import Guard
 from knitcore.yarnlevel.whole import Sheet, relax_whole
-from knitcore.yarnlevel.windows import row_lengths, window_energy, windows
+from knitcore.yarnlevel.windows import each, row_lengths, touch, window_energy, windows
 
 SAMPLE = sample("acrylic", Fabric.STOCKINETTE)
 ROWS, WALES = 9, 8
@@ -54,6 +56,68 @@ def test_windows_cover_every_stitch_once(first: tuple[int, int]) -> None:
     for rows, wales in windows(AROUND, 3, first):
         seen[np.ix_(rows.own, wales.own)] += 1
     assert np.all(seen == 1)
+
+
+def test_a_window_rests_as_far_around_it_as_its_own_strands_reach() -> None:
+    around = np.full((2, 20, 20), 2)
+    around[0, 4, 4] = 3
+    for rows, wales in windows(around, 3, (0, 0)):
+        far = [len(extent.stitches) - len(extent.own) for extent in (rows, wales)]
+        assert far[0] == (2 * 3 if {4} <= set(rows.own) and {4} <= set(wales.own) else 2 * 2)
+        assert far[1] == 2 * 2
+
+
+def test_pairs_reach_from_row_to_row_and_over_the_edge() -> None:
+    # samples 0, 1 of stitch 0; 2, 3 of stitch 1, and so on; two rows of three wales
+    pairs = np.array([[0, 6, 0, 0, 1], [1, 5, -1, 0, 1], [8, 2, 0, 2, 1]], np.int32)
+    found = reaches(pairs, 2, (2, 3))
+    assert found[0].tolist() == [[1, 3, 1], [1, 3, 1]]
+    assert found[1].tolist() == [[1, 1, 1], [1, 1, 1]]
+
+
+def test_a_window_lists_those_pairs_of_the_sheet_of_which_one_moves(
+    sheet: tuple[CellEnergy, np.ndarray],
+) -> None:
+    whole, state = sheet
+    controls, sizes = whole.cell.controls(state), state[-2:]
+    reach = 2.0 * whole.yarn.radius_mm
+    every, _ = whole.pairs(whole.curve(state), state, reach)
+    count = whole.cell.grid.samples * WALES
+    for rows, wales in windows(AROUND, 3, (7, 2))[:4]:
+        part, own = window_energy(whole, controls, sizes, (rows, wales), np.zeros(ROWS), flat=False)
+        pairs, start = part.pairs(part.curve(own), own, reach)
+        samples = each(wales.stitches, whole.cell.grid.samples)
+        names = (rows.stitches[:, None] * count + samples).ravel()
+        found = {tuple(sorted(pair)) for pair in names[pairs[:, :2]].tolist()}
+        moving = set(names[part.moving].tolist())
+        wanted = {tuple(sorted(p)) for p in every[:, :2].tolist() if moving.intersection(p)}
+        assert found == wanted
+        assert np.array_equal(np.diff(start), np.bincount(pairs[:, 0], minlength=len(names)))
+
+
+def test_pairs_found_in_two_threads_are_those_found_in_one(
+    sheet: tuple[CellEnergy, np.ndarray], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole, state = sheet
+    curve, reach, tension = whole.curve(state), 2.0 * whole.yarn.radius_mm, np.zeros(ROWS)
+    pairs, start = whole.pairs(curve, state, reach)
+    value = whole.value(state, curve, pairs)
+    slope = _slope(whole, state, tension)
+    monkeypatch.setattr(energy, "_SAMPLES_TO_SHARE", 2)
+    monkeypatch.setattr(energy, "PAIRS_TO_SHARE", 2)
+    again, begin = whole.pairs(curve, state, reach)
+    assert np.array_equal(again, pairs)
+    assert np.array_equal(begin, start)
+    assert whole.value(state, curve, pairs).contact == pytest.approx(value.contact, rel=1e-12)
+    assert np.allclose(_slope(whole, state, tension), slope, rtol=1e-9, atol=1e-12)
+
+
+def test_windows_that_move_side_by_side_do_not_touch() -> None:
+    one, *_, last = windows(np.full((2, 40, 20), 2), 8, (0, 0))
+    below = windows(np.full((2, 40, 20), 2), 8, (0, 0))[3]
+    assert not touch(one, windows(np.full((2, 40, 20), 2), 8, (0, 0))[7])
+    assert touch(one, below)
+    assert touch(last, one)  # over the edge
 
 
 def test_a_window_has_the_slopes_of_the_sheet(sheet: tuple[CellEnergy, np.ndarray]) -> None:
