@@ -37,7 +37,7 @@ def main() -> None:
             parts.append(missed(found, learned_from | (kinds == "pure"), mixed & ~learned_from))
         print(f"{count:4} charts:", table(np.vstack(parts)))
     yarns = np.array([row.yarn_name for row in found])
-    for yarn in np.unique(yarns):
+    for yarn in np.unique(yarns[mixed]):
         own = yarns == yarn
         print(f"{yarn} left out:", table(missed(found, ~own | (kinds == "pure"), mixed & own)))
 

@@ -67,8 +67,10 @@ class Densities:
     excess : (…, densities) less those of the pure fabrics, weighted by the shares.
     straight : (…, 2) straightness of the fold lines, from 0 to 1. First along columns, which folds
         the width: 1 in a rib, 0 in a welt and in stockinette; then along rows: 1 in a welt.
-    ways : (…, 3) parts, adding up to 1, in which the chart is a rib, a welt, and neither, by its
-        odd segments: along the course, along the wale, and at one stitch along both.
+    ways : (…, 4) parts, adding up to 1, in which the chart is a rib, a welt, and neither, by its
+        odd segments: along the course, along the wale, and at one stitch along both. Of the last,
+        sparse purls (or knits) come last: all of it where they are a seventh of all stitches, none
+        where they are half of them.
     """
 
     shares: Array
@@ -87,6 +89,11 @@ class Densities:
         uncertainty for this chart over that for a mixed one.
         """
         return np.asarray(1 - np.exp((self.shares.max(axis=-1) - 1) / _FEW_OTHERS))
+
+    @property
+    def uncertainty(self) -> Array:
+        """(…, 4) weights of the model's scales of uncertainty: ways, less near a pure fabric."""
+        return np.asarray(self.mixed[..., None] * self.ways)
 
     @property
     def features(self) -> Array:
@@ -141,8 +148,10 @@ def densities_of(purl: NDArray[np.bool_], mean: Mean = _mean) -> Densities:
     either = mean((odd_course > 0) | (odd_wale > 0))
     neither = both / (both + _FEW_CROSSINGS * either + _NO_CHANGE)
     course = (rib + seed + _NO_CHANGE) / (rib + garter + 2 * seed + 2 * _NO_CHANGE)
-    one_way = 1 - neither
-    ways = np.stack([one_way * course, one_way * (1 - course), neither], axis=-1)
+    one_sided = mean(sign) ** 2
+    sparse = 4 * one_sided * (1 - one_sided)
+    parts = course * (1 - neither), (1 - course) * (1 - neither)
+    ways = np.stack([*parts, neither * (1 - sparse), neither * sparse], axis=-1)
     return Densities(shares, values - shares @ _pure(), straight, ways)
 
 

@@ -1,9 +1,10 @@
 """Gaussian-process regression from computed charts to new ones, with its variance.
 
 The covariance of two charts is that of a linear function of their densities, which depends slightly
-on the yarn, plus that of a smooth function (squared exponential). Far from every known chart the
-mean therefore returns to the linear function and the variance grows. See Rasmussen and Williams,
-*Gaussian Processes for Machine Learning* (2006), chapters 2 and 4.
+on the yarn, plus that of a smooth function with features of many lengths (rational quadratic with
+an exponent of 1). Far from every known chart the mean therefore returns to the linear function and
+the variance grows. See Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006),
+chapters 2 and 4.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ def covariance(settings: KernelSettings, first: Samples, second: Samples) -> Arr
     linear *= 1.0 + settings.linear_by_yarn * (first.numbers @ second.numbers.T)
     apart = cdist(first.features, second.features, "sqeuclidean") / size / settings.length**2
     apart += cdist(first.numbers, second.numbers, "sqeuclidean") / settings.yarn_length**2
-    return np.asarray(linear + settings.smooth * np.exp(-apart / 2))
+    return np.asarray(linear + settings.smooth / (1.0 + apart / 2))
 
 
 def noisy_covariance(settings: KernelSettings, samples: Samples) -> Array:

@@ -168,9 +168,9 @@ class LearnedModel:
     folding, unfolding : the regressions; of ``unfolding`` the outputs are 12 strains and 2 Poisson
         ratios.
     slopes : (14, 2) for each output: derivatives by ln width and ln height.
-    folding_scale, unfolding_scale : (3, 2), (3, 14) standard deviation over the root of the
-        regression's variance, such that 90 % of the left-out values lie in their 90 % intervals:
-        for ribs, welts and others. A chart between these kinds has their mean.
+    folding_scale, unfolding_scale : (4, 2), (4, 14) standard deviation over the root of the
+        regression's variance, such that 90 % of the left-out values lie in their 90 % intervals,
+        by ways (:class:`knitcore.answer.densities.Densities`). A chart has their mean.
     sweeps : of each sample; None where it was only relaxed.
     most_folded : see :data:`MAX_FOLDED`.
     """
@@ -235,8 +235,7 @@ class LearnedModel:
         mean, variance = unfolding
         slopes = self.slopes * follows(mixture)
         values = mean + slopes @ fold
-        # near a pure fabric little remains to be learned
-        spread = found.mixed * (found.ways @ self.unfolding_scale)
+        spread = found.uncertainty @ self.unfolding_scale
         deviations = np.sqrt(spread**2 * variance + slopes**2 @ fold_sd**2)
         return LearnedAnswer(
             size_mm=flat_mm * np.exp(fold),
@@ -258,12 +257,12 @@ class LearnedModel:
         fold, variance : (…, 2), (…) at the yarn level.
         simulated : for yarn-level fabric, which folds more than knitted fabric.
         """
-        part = np.asarray(found.mixed)[..., None]
-        deviation = part * (found.ways @ self.folding_scale) * np.sqrt(variance)[..., None]
+        deviation = found.uncertainty @ self.folding_scale * np.sqrt(variance)[..., None]
         if simulated:
             return fold, deviation
         shown = found.straight**2 / (1.0 + np.abs(fold) / self.most_folded)
-        return shown * fold, np.hypot(part * SHOWN_LOG_SD, shown * deviation)
+        rest = SHOWN_LOG_SD * np.asarray(found.mixed)[..., None]
+        return shown * fold, np.hypot(rest, shown * deviation)
 
     def relaxed_mm(self, found: Densities, material: Material) -> Array:
         """(m, 2) relaxed width and height of m charts.

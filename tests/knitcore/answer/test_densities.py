@@ -51,5 +51,5 @@ def test_columns_of_a_rib_are_straight_and_rows_of_a_welt() -> None:
 def test_single_purls_are_two_dimensional_however_few_they_are(side: int) -> None:
     grid = np.zeros((side, side), dtype=bool)
     grid[0, 0] = True
-    assert densities(StitchChart(grid)).ways[2] > 0.6
-    assert densities(StitchChart.parse("KKPP")).ways == pytest.approx([1, 0, 0], abs=1e-9)
+    assert densities(StitchChart(grid)).ways[2:].sum() > 0.6
+    assert densities(StitchChart.parse("KKPP")).ways == pytest.approx([1, 0, 0, 0], abs=1e-9)

@@ -42,7 +42,7 @@ def test_along_the_rows_they_are_in_series() -> None:
     lengths = [half.relaxed_course_mm for half in halves]
     strains = [half.course.strain(FORCES_N / (32 * half.relaxed_wale_mm)) for half in halves]
     expected = np.average(strains, axis=0, weights=lengths)
-    assert whole.course.strain(FORCES_N / height) == pytest.approx(expected, rel=0.02)
+    assert whole.course.strain(FORCES_N / height) == pytest.approx(expected, rel=0.03)
 
 
 def test_along_the_columns_they_are_side_by_side() -> None:

@@ -23,7 +23,8 @@ def test_patches_of_a_repeat_go_on_through_the_piece() -> None:
         own, code = acrylic.law(fabric), PHASES.index(Fabric(fabric))
         law = found.laws[4 * int(found.patch[0, column]) + code]
         for direction in Direction:
-            assert law.modulus(direction) == pytest.approx(own.modulus(direction), rel=0.1)
+            # the windows of both halves reach across the border
+            assert law.modulus(direction) == pytest.approx(own.modulus(direction), rel=0.15)
     assert np.isfinite(found.scale).all()
 
 
