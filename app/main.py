@@ -61,6 +61,47 @@ THREADS = 8
 loop could wait for all of them each time it returns from reading or sending."""
 
 
+@contextlib.asynccontextmanager
+async def _running(app: FastAPI) -> AsyncIterator[None]:
+    """Open what the service needs while it runs, and close it at the end."""
+    chosen: Settings = app.state.settings
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
+    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(THREADS, "service"))
+    current_default_thread_limiter().total_tokens = THREADS  # FastAPI's
+    app.state.database = await asyncio.to_thread(_open_database, chosen)
+    app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
+    app.state.cluster = _cluster(chosen)
+    app.state.compute = Compute(
+        _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
+    )
+    app.state.large_bodies = Gate()
+    app.state.light_work = Gate()
+    app.state.drawing = Gate()
+    app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
+    app.state.recent = RecentResults()
+    app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
+    app.state.viewer_page = relay.viewer_page()
+    job_store = JobStore(app.state.database, chosen.process_name)
+    app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
+    await app.state.jobs.resume()
+    janitors = [
+        asyncio.create_task(_close_idle_views(app.state.views, chosen.viewer_idle_s)),
+        asyncio.create_task(_tidy_store(app.state.database, job_store, chosen.results_max_bytes)),
+        asyncio.create_task(asyncio.to_thread(_warm_up)),
+    ]
+    if chosen.require_login:
+        ending = _end_jobs_of_the_revoked(Tokens(app.state.database), app.state.jobs)
+        janitors.append(asyncio.create_task(ending))
+    yield
+    for janitor in janitors:
+        janitor.cancel()
+    await app.state.jobs.close()
+    app.state.compute.close()
+    await asyncio.to_thread(app.state.views.close)
+    await asyncio.to_thread(app.state.database.close)
+
+
 def create_app(settings: Settings | None = None) -> FastAPI:
     """The service, ready for an ASGI server.
 
@@ -70,52 +111,11 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         If the settings would open the service to strangers.
     """
     chosen = (settings or Settings()).check()
-
-    @contextlib.asynccontextmanager
-    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-            os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
-        asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(THREADS, "service"))
-        current_default_thread_limiter().total_tokens = THREADS  # FastAPI's
-        app.state.database = await asyncio.to_thread(_open_database, chosen)
-        app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
-        app.state.cluster = _cluster(chosen)
-        app.state.compute = Compute(
-            _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
-        )
-        app.state.large_bodies = Gate()
-        app.state.light_work = Gate()
-        app.state.drawing = Gate()
-        app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
-        app.state.recent = RecentResults()
-        app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
-        app.state.viewer_page = relay.viewer_page()
-        job_store = JobStore(app.state.database, chosen.process_name)
-        app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
-        await app.state.jobs.resume()
-        janitors = [
-            asyncio.create_task(_close_idle_views(app.state.views, chosen.viewer_idle_s)),
-            asyncio.create_task(
-                _tidy_store(app.state.database, job_store, chosen.results_max_bytes)
-            ),
-        ]
-        janitors.append(asyncio.create_task(asyncio.to_thread(_warm_up)))
-        if chosen.require_login:
-            ending = _end_jobs_of_the_revoked(Tokens(app.state.database), app.state.jobs)
-            janitors.append(asyncio.create_task(ending))
-        yield
-        for janitor in janitors:
-            janitor.cancel()
-        await app.state.jobs.close()
-        app.state.compute.close()
-        await asyncio.to_thread(app.state.views.close)
-        await asyncio.to_thread(app.state.database.close)
-
     app = FastAPI(
         title="Knitcore",
         summary="Design the mechanics of knitted fabric, stitch by stitch.",
         version=VERSION,
-        lifespan=lifespan,
+        lifespan=_running,
         openapi_url=None,  # app.http.schema serves it, packed
         docs_url=None,  # FastAPI's pages ask other hosts for their scripts
         redoc_url=None,

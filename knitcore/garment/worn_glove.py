@@ -228,27 +228,9 @@ def _loops(hand: Hand, layout: GloveLayout, heights_mm: Array) -> Iterator[_Loop
         {0: "cuff", layout.cuff: "wrist support", layout.support: "base of the thumb"},
         np.arange(rows), 0, trunk_at, 0.0, trunk_girth, trunk, grown,
     )  # fmt: skip
-
     around = heights_mm[:, layout.thumb_crotch - 1]
-    shares = np.append(0.0, np.cumsum(around)) / around.sum()
-    half = layout.thumb_rows + len(layout.gusset_ends)
-
-    def thumb_girth(at_mm: Array) -> Array:
-        more = np.clip(1.0 - at_mm / max(hand.gusset_mm, 1e-9), 0.0, 1.0)
-        return np.asarray(hand.thumb.circumference_mm + hand.gusset_girth_mm * more)
-
-    round_thumb = _tube(thumb_root, thumb_mm, THUMB_ANGLE, thumb_girth, hand.thumb.length_mm)
-
-    def thumb(share: Array, at_mm: Array) -> Array:
-        return round_thumb(share + 0.5, at_mm)  # from the crotch
-
-    thumb_at = np.linspace(0.0, hand.thumb.length_mm, layout.thumb_tip - layout.thumb_crotch + 1)
-    yield _Loop(
-        {layout.thumb_crotch: "thumb"},
-        np.concatenate([np.arange(rows - half, rows), np.arange(half)]),
-        layout.thumb_crotch, thumb_at, thumb_mm, thumb_girth,
-        _leaving(trunk, thumb_mm, lambda s: shares[half] * (2.0 * s - 1.0), thumb, THUMB_ANGLE),
-    )  # fmt: skip
+    shares = _shares(around)
+    yield _thumb(hand, layout, around, trunk, thumb_root)
 
     def palm_girth(at_mm: Array) -> Array:
         return np.full(np.shape(at_mm), hand.palm_circumference_mm)
@@ -265,29 +247,73 @@ def _loops(hand: Hand, layout: GloveLayout, heights_mm: Array) -> Iterator[_Loop
         {layout.thumb_crotch: "hand"}, palm_rows, layout.thumb_crotch, palm_at, thumb_mm,
         palm_girth, palm,
     )  # fmt: skip
-
     around = heights_mm[palm_rows, layout.crotch - 1]
-    palm_shares = np.append(0.0, np.cumsum(around)) / around.sum()
+    yield from _fingers(hand, layout, palm_rows, around, palm, palm_at[-1])
+
+
+def _shares(heights_mm: Array) -> Array:
+    """Where rows of these heights end around a part, from 0 to 1, (rows + 1,)."""
+    return np.append(0.0, np.cumsum(heights_mm)) / heights_mm.sum()
+
+
+def _thumb(hand: Hand, layout: GloveLayout, heights_mm: Array, trunk: Curve, root: float) -> _Loop:
+    """The thumb with its gusset, which leaves the trunk where its rows are ``heights_mm`` high."""
+    rows, shares = len(heights_mm), _shares(heights_mm)
+    leaves_mm = hand.cuff_mm + hand.wrist_mm + hand.thumb_crotch_mm
+    half = layout.thumb_rows + len(layout.gusset_ends)
+
+    def girth(at_mm: Array) -> Array:
+        more = np.clip(1.0 - at_mm / max(hand.gusset_mm, 1e-9), 0.0, 1.0)
+        return np.asarray(hand.thumb.circumference_mm + hand.gusset_girth_mm * more)
+
+    tube = _tube(root, leaves_mm, THUMB_ANGLE, girth, hand.thumb.length_mm)
+
+    def own(share: Array, at_mm: Array) -> Array:
+        return tube(share + 0.5, at_mm)  # from the crotch
+
+    return _Loop(
+        {layout.thumb_crotch: "thumb"},
+        np.concatenate([np.arange(rows - half, rows), np.arange(half)]),
+        layout.thumb_crotch,
+        np.linspace(0.0, hand.thumb.length_mm, layout.thumb_tip - layout.thumb_crotch + 1),
+        leaves_mm,
+        girth,
+        _leaving(trunk, leaves_mm, lambda s: shares[half] * (2.0 * s - 1.0), own, THUMB_ANGLE),
+    )
+
+
+def _fingers(
+    hand: Hand,
+    layout: GloveLayout,
+    palm_rows: NDArray[np.intp],
+    heights_mm: Array,
+    palm: Curve,
+    palm_mm: float,
+) -> Iterator[_Loop]:
+    """The fingers, which leave the palm at its end, where its rows are ``heights_mm`` high."""
+    shares = _shares(heights_mm)
+    crotch_mm = hand.cuff_mm + hand.wrist_mm + hand.palm_mm
     begin = 0
     places = zip(
         FINGERS, hand.fingers, layout.finger_rows, layout.finger_tips, _roots(hand), strict=True
     )
     for name, finger, count, tip, (root, angle) in places:
-        back = side + begin + np.arange(count)
-        ends = float(palm_shares[begin]), float(palm_shares[begin + count])
+        back = palm_rows[begin : begin + count]
+        front = palm_rows[::-1][begin : begin + count][::-1]
+        ends = float(shares[begin]), float(shares[begin + count])
 
-        def finger_girth(at_mm: Array, around_mm: float = finger.circumference_mm) -> Array:
+        def girth(at_mm: Array, around_mm: float = finger.circumference_mm) -> Array:
             return np.full(np.shape(at_mm), around_mm)
 
         def of_palm(share: Array, ends: tuple[float, float] = ends) -> Array:
             across = (ends[1] - ends[0]) * np.where(share < 0.5, 2.0 * share, 2.0 * share - 1.0)
             return np.where(share < 0.5, ends[0] + across, 1.0 - ends[1] + across)
 
-        tube = _tube(root, crotch_mm, angle, finger_girth, finger.length_mm)
+        tube = _tube(root, crotch_mm, angle, girth, finger.length_mm)
         yield _Loop(
-            {layout.crotch: name}, np.concatenate([back, rows - 1 - back[::-1]]), layout.crotch,
-            np.linspace(0.0, finger.length_mm, tip - layout.crotch + 1), crotch_mm, finger_girth,
-            _leaving(palm, palm_at[-1], of_palm, tube, angle),
+            {layout.crotch: name}, np.concatenate([back, front]), layout.crotch,
+            np.linspace(0.0, finger.length_mm, tip - layout.crotch + 1), crotch_mm, girth,
+            _leaving(palm, palm_mm, of_palm, tube, angle),
         )  # fmt: skip
         begin += count + CROTCH_ROWS
 

@@ -171,6 +171,7 @@ def _fit_photo(
 ) -> BendingPhoto:
     scale = px_per_mm or line.length_px / (length_mm or 1.0)
     length = length_mm or line.length_px / scale
+    width = line.width_px / scale
     if length_mm and px_per_mm and not 0.7 <= line.length_px / scale / length <= 1.3:
         raise InputError(
             name,
@@ -178,50 +179,17 @@ def _fit_photo(
             f" {length:.0f} mm are given.",
             "Correct px_per_mm or length_mm.",
         )
-    width = line.width_px / scale
     if not 0.02 <= width <= 20:
         raise InputError(
             name,
             f"with this scale the yarn is {width:.3g} mm wide.",
             "Check the unit of length_mm or px_per_mm.",
         )
-    arc, x, y = line.arc_px / scale, line.x_px / scale, line.y_px / scale
+    arc, traced = line.arc_px / scale, np.stack([line.x_px, line.y_px], axis=1) / scale
     part = arc <= FITTED_SHARE * length
-    where = arc[part] / length
-
-    def difference(log_load: float) -> tuple[Array, Array]:
-        s, model_x, model_y = heavy_elastica(float(np.exp(log_load)))
-        dx = np.interp(where, s, model_x) * length - x[part]
-        dy = np.interp(where, s, model_y) * length - y[part]
-        return dx, dy
-
-    def cost(log_load: float) -> float:
-        dx, dy = difference(log_load)
-        return float(np.var(dx) + np.var(dy))
-
-    costs = [cost(value) for value in LOG_LOADS]
-    best = int(np.argmin(costs))
-    if best in (0, len(costs) - 1):
-        raise InputError(
-            name,
-            "the yarn is too straight: its bend is not resolved."
-            if best
-            else "the yarn does not sag under its weight.",
-            "Hang a shorter piece." if best else "Hang a longer piece, and photograph it level.",
-        )
-    found = minimize_scalar(
-        cost, bounds=(LOG_LOADS[best - 1], LOG_LOADS[best + 1]), method="bounded"
-    )
-    load, rms = float(np.exp(found.x)), float(np.sqrt(found.fun))
-    if rms > WORST_RMS_SHARE * length:
-        raise InputError(
-            name,
-            f"the traced line is {rms:.1f} mm off any hanging yarn's shape.",
-            "The photo must be level, with the clamp at one side and the yarn hanging freely.",
-        )
+    load, rms, shift = _elastica_through(name, arc[part], traced[part], length)
     weight_n_per_mm = linear_density_g_per_m * 1e-6 * STANDARD_GRAVITY_M_PER_S2
     _, model_x, model_y = heavy_elastica(load)
-    dx, dy = difference(float(found.x))
     return BendingPhoto(
         name=name,
         bending_modulus_n_mm2=weight_n_per_mm * length**3 / load,
@@ -230,6 +198,44 @@ def _fit_photo(
         px_per_mm=scale,
         yarn_width_mm=width,
         rms_mm=rms,
-        traced_mm=np.stack([x, y], axis=1),
-        fitted_mm=np.stack([model_x * length - dx.mean(), model_y * length - dy.mean()], axis=1),
+        traced_mm=traced,
+        fitted_mm=np.stack([model_x, model_y], axis=1) * length - shift,
     )
+
+
+def _elastica_through(
+    name: str, arc_mm: Array, traced_mm: Array, length_mm: float
+) -> tuple[float, float, Array]:
+    """Load Γ of the hanging yarn nearest to a line, the rms distance, and its shift (2,), mm."""
+
+    def difference(log_load: float) -> Array:
+        s, *model = heavy_elastica(float(np.exp(log_load)))
+        there = [np.interp(arc_mm / length_mm, s, along) for along in model]
+        return np.stack(there, axis=1) * length_mm - traced_mm
+
+    def cost(log_load: float) -> float:
+        return float(difference(log_load).var(axis=0).sum())
+
+    costs = [cost(value) for value in LOG_LOADS]
+    best = int(np.argmin(costs))
+    if best == 0:
+        raise InputError(
+            name,
+            "the yarn does not sag under its weight.",
+            "Hang a longer piece, and photograph it level.",
+        )
+    if best == len(costs) - 1:
+        raise InputError(
+            name, "the yarn is too straight: its bend is not resolved.", "Hang a shorter piece."
+        )
+    found = minimize_scalar(
+        cost, bounds=(LOG_LOADS[best - 1], LOG_LOADS[best + 1]), method="bounded"
+    )
+    rms = float(np.sqrt(found.fun))
+    if rms > WORST_RMS_SHARE * length_mm:
+        raise InputError(
+            name,
+            f"the traced line is {rms:.1f} mm off any hanging yarn's shape.",
+            "The photo must be level, with the clamp at one side and the yarn hanging freely.",
+        )
+    return float(np.exp(found.x)), rms, difference(float(found.x)).mean(axis=0)

@@ -127,6 +127,58 @@ def _not_utf_8(name: str) -> InputError:
 
 
 def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
+    notes: list[str] = []
+    keys = _pulls(name, file, notes)
+    clamp_px, fabric_px = (_numbers(name, file, key) for key in ("clampSize", "fabricSize"))
+    if not all(size.size and size.min() > 0 for size in (clamp_px, fabric_px)):
+        raise InputError(
+            f"{name}, clampSize and fabricSize",
+            "must both hold a positive number of pixels.",
+            f"clampSize is the length in pixels of a clamp of {CLAMP_MM} mm.",
+        )
+    mm_per_px = CLAMP_MM / float(clamp_px.mean())
+    width_mm = float(fabric_px.mean()) * mm_per_px
+    tracked = {key: _tracked(name, file, key, marks, notes) for key in keys}
+    pulls = {key: one for key, one in tracked.items() if one is not None}
+    if not pulls:
+        raise _no_pull(name, notes)
+    first = next(iter(pulls.values()))
+    across_mm = float(first.across[0]) * mm_per_px
+    if across_mm > WIDER_THAN_CLAMPED * width_mm:
+        notes.append(
+            f"{name}: the tracked points are {across_mm:.0f} mm apart across, but the"
+            f" clamped width is {width_mm:.1f} mm, so fabricSize may be misread: give the true"
+            " width."
+        )
+    runs = [
+        StretchRun(
+            name=f"{name}, {key}",
+            strain_along=one.along / first.along[0] - 1,
+            strain_across=one.across / first.across[0] - 1,
+            stress=one.force / width_mm,
+        )
+        for key, one in pulls.items()
+    ]
+    runs = _sound(runs, notes)
+    if not runs:
+        raise _no_pull(name, notes)
+    length_mm = float(np.nanmedian(first.clamps[:9])) * mm_per_px
+    description = np.asarray(file.attrs.get("description", "")).ravel()
+    text = _text(description[0]) if description.size else ""
+    widths = (width_mm,) * len(runs)
+    return StretchTest(name, text, tuple(runs), widths, tuple(notes), length_mm, across_mm)
+
+
+def _no_pull(name: str, notes: list[str]) -> InputError:
+    return InputError(
+        name,
+        "has no usable pull. " + " ".join(notes),
+        "Give at least one pull that is tracked from rest to the largest force.",
+    )
+
+
+def _pulls(name: str, file: h5py.File, notes: list[str]) -> list[str]:
+    """Groups of the pulls in their order, without the first of several."""
     if any(isinstance(key, bytes) for key in file):  # h5py's form of a name it cannot decode
         raise _not_utf_8(name)
     videos = sorted(
@@ -140,54 +192,10 @@ def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
             f"has {len(videos)} groups named video1, video2, ….",
             f"Give 1 to {MAX_VIDEOS} pulls in the layout of docs/fit-a-law.md.",
         )
-    notes: list[str] = []
     if len(videos) > 1 and videos[0][0] == 1:
         videos = videos[1:]
         notes.append("video1 conditions the sample and is left out.")
-    clamp_px = _numbers(name, file, "clampSize")
-    fabric_px = _numbers(name, file, "fabricSize")
-    if not all(size.size and size.min() > 0 for size in (clamp_px, fabric_px)):
-        raise InputError(
-            f"{name}, clampSize and fabricSize",
-            "must both hold a positive number of pixels.",
-            f"clampSize is the length in pixels of a clamp of {CLAMP_MM} mm.",
-        )
-    width_mm = float(fabric_px.mean() / clamp_px.mean() * CLAMP_MM)
-    runs: list[StretchRun] = []
-    first: _Tracked | None = None
-    for _, key in videos:
-        tracked = _tracked(name, file, key, marks, notes)
-        if tracked is None:
-            continue
-        first = first or tracked
-        runs.append(
-            StretchRun(
-                name=f"{name}, {key}",
-                strain_along=tracked.along / first.along[0] - 1,
-                strain_across=tracked.across / first.across[0] - 1,
-                stress=tracked.force / width_mm,
-            )
-        )
-    scale = CLAMP_MM / float(clamp_px.mean())
-    if first is not None and first.across[0] * scale > WIDER_THAN_CLAMPED * width_mm:
-        notes.append(
-            f"{name}: the tracked points are {first.across[0] * scale:.0f} mm apart across, but the"
-            f" clamped width is {width_mm:.1f} mm, so fabricSize may be misread: give the true"
-            " width."
-        )
-    length_mm = None if first is None else float(np.nanmedian(first.clamps[:9])) * scale
-    across_mm = None if first is None else float(first.across[0]) * scale
-    runs = _sound(runs, notes)
-    if not runs:
-        raise InputError(
-            name,
-            "has no usable pull. " + " ".join(notes),
-            "Give at least one pull that is tracked from rest to the largest force.",
-        )
-    description = np.asarray(file.attrs.get("description", "")).ravel()
-    text = _text(description[0]) if description.size else ""
-    widths = (width_mm,) * len(runs)
-    return StretchTest(name, text, tuple(runs), widths, tuple(notes), length_mm, across_mm)
+    return [key for _, key in videos]
 
 
 @dataclass(frozen=True, eq=False)
