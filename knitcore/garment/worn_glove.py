@@ -253,7 +253,7 @@ def _loops(hand: Hand, layout: GloveLayout, heights_mm: Array) -> Iterator[_Loop
 
 def _shares(heights_mm: Array) -> Array:
     """Where rows of these heights end around a part, from 0 to 1, (rows + 1,)."""
-    return np.append(0.0, np.cumsum(heights_mm)) / heights_mm.sum()
+    return np.asarray(np.append(0.0, np.cumsum(heights_mm)) / heights_mm.sum())
 
 
 def _thumb(hand: Hand, layout: GloveLayout, heights_mm: Array, trunk: Curve, root: float) -> _Loop:
