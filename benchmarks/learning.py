@@ -13,7 +13,7 @@ import numpy as np
 
 from knitcore.answer.kernel import KernelModel
 from knitcore.answer.learned import packaged_model
-from knitcore.answer.learned_build import Row, kind_of, rows
+from scripts.training.learned import Row, kind_of, rows
 
 COUNTS = (12, 25, 50, 100, 150)
 DRAWS = 4

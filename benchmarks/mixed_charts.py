@@ -23,11 +23,11 @@ import numpy as np
 
 from knitcore.answer.densities import densities
 from knitcore.answer.learned import STRESS_GRID, LearnedAnswer, packaged_model
-from knitcore.answer.learned_build import Row, kind_of, rows, simulated_materials
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials.uncertainty import Z_SCORE
+from scripts.training.learned import Row, kind_of, rows, simulated_materials
 
 GAUGE_LOG_SD = 0.03
 RELAXED_LOG_SD = 0.003

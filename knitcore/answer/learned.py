@@ -10,7 +10,7 @@ steps, each a kernel regression on the chart's densities and the yarn's dimensio
    with slopes about -0.9.
 
 A known size (a gauge, or a relaxation on the yarn level) replaces the first step. Stress is
-compared in units of B / L³. :mod:`knitcore.answer.learned_build` fits both regressions, calibrates
+compared in units of B / L³. ``scripts/training/learned.py`` fits both regressions, calibrates
 their intervals on charts left out, and reports the errors for those. Real fabric folds less than
 the yarn level predicts: see :data:`MAX_FOLDED`.
 """

@@ -1,7 +1,7 @@
 """Relax and stretch the training charts: ``python -m scripts.training.build``.
 
 Every finished task is kept in a folder, so an interrupted build can be resumed. ``--pack`` adds
-the tasks finished so far to ``data/training.json``; the next build leaves those out.
+the tasks finished so far to ``training.json``; the next build leaves those out.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise
 from knitcore.yarnlibrary.fingerprint import content_key
 from knitcore.yarnlibrary.store import stored_charts
 from knitcore.yarnlibrary.yarns import yarn_for
-from scripts.stored_stitches import DATA, tell
+from scripts.stored_stitches import tell
 from scripts.training.charts import YARN_POINTS, anchor_charts, drawn_charts, training_charts
+from scripts.training.entries import FILE
 
 MAX_RELAXED = 36
 """Cells with more stitches are left out."""
@@ -194,13 +195,12 @@ def main() -> None:
     parser.add_argument("--workers", type=int, help="processes, all cores if left out")
     parser.add_argument("--pack", action="store_true", help="only pack finished tasks")
     arguments = parser.parse_args()
-    packed = DATA / "training.json"
     if arguments.pack:
-        count = pack(arguments.keep, packed)
+        count = pack(arguments.keep, FILE)
         sys.stderr.write(f"{count} packed\n")
         return
     run_batch(
-        characterise, tasks(packed), scheduler=arguments.scheduler, workers=arguments.workers,
+        characterise, tasks(FILE), scheduler=arguments.scheduler, workers=arguments.workers,
         keep=arguments.keep, progress=tell,
     )  # fmt: skip
 

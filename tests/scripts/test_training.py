@@ -10,9 +10,9 @@ import pytest
 
 from knitcore import StitchChart
 from knitcore.fabric import Direction
-from knitcore.yarnlibrary.training_data import RawCurve, training_entries
 from scripts.training.build import characterise, pack, tasks
 from scripts.training.charts import YARN_POINTS, training_charts
+from scripts.training.entries import RawCurve, training_entries
 
 
 def test_charts_are_distinct_repeats_and_any_beginning_holds_all_kinds() -> None:

@@ -9,11 +9,11 @@ from knitcore import Direction, RelaxedSize, StitchChart, predict
 from knitcore.answer.choose import choose
 from knitcore.answer.densities import densities
 from knitcore.answer.learned import packaged_model
-from knitcore.answer.learned_build import simulated_materials
 from knitcore.answer.mixture import Mixture
 from knitcore.answer.swept import STRESS, of_law, swept_chart
 from knitcore.materials import Material, material
 from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
+from scripts.training.learned import simulated_materials
 
 
 @pytest.fixture(scope="module")

@@ -1,8 +1,8 @@
-"""Fit the learned model: ``python -m knitcore.answer.learned_build``.
+"""Fit the learned model: ``python -m scripts.training.learned``.
 
-Reads the packaged store and training library and writes ``data/learned.npz``: samples, settings
-(largest marginal likelihood), slopes, and scales calibrated on charts left out in ten folds. Prints
-the errors for the charts left out. A minute of CPU time.
+Reads the packaged store and the training library and writes the library's ``learned.npz``:
+samples, settings (largest marginal likelihood), slopes, and scales calibrated on charts left out in
+ten folds. Prints the errors for the charts left out. A minute of CPU time.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ from knitcore.materials import FabricRecord, Material, Yarn, load_library
 from knitcore.materials.uncertainty import COVERAGE, Z_SCORE
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.store import MATERIALS, stored_charts, stored_stitch
-from knitcore.yarnlibrary.training_data import TrainingEntry, training_entries
+from scripts.training.entries import TrainingEntry, training_entries
+
+FILE = Path(__file__).parents[2] / "knitcore" / "answer" / "data" / "learned.npz"
 
 NUMBER_CENTRE = np.array([np.log(0.056), np.log(0.0255), np.log(0.25), 2.65])
 NUMBER_SCALE = np.array([0.15, 0.12, 1.0, 0.25])
@@ -379,12 +381,12 @@ def _factors(logs: Array, spread: Array) -> str:
 
 
 def main() -> None:
-    """Run ``python -m knitcore.answer.learned_build``."""
+    """Run ``python -m scripts.training.learned``."""
     arrays = arrays_of(rows())
     for line in report(arrays):
         sys.stdout.write(line + "\n")
     kept = {name: values for name, values in arrays.items() if name not in _REPORTED_ONLY}
-    np.savez_compressed(Path(__file__).parent / "data" / "learned.npz", **kept)  # type: ignore[arg-type]
+    np.savez_compressed(FILE, **kept)  # type: ignore[arg-type]
 
 
 _REPORTED_ONLY = (

@@ -1,6 +1,6 @@
-"""The training library as it is packaged: relaxed sizes, raw curves and failures.
+"""The training library, ``training.json``: relaxed sizes, raw curves and failures.
 
-``data/training.json`` is written by ``scripts/training/build.py``.
+``scripts/training/build.py`` writes it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,8 @@ from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.yarn import YarnModel
+
+FILE = Path(__file__).parent / "training.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +75,8 @@ class TrainingEntry:
 
 @cache
 def training_entries() -> tuple[TrainingEntry, ...]:
-    """All that is packaged, in the order of the build."""
-    text = (files("knitcore.yarnlibrary") / "data" / "training.json").read_text(encoding="utf-8")
-    return tuple(_entry(document) for document in json.loads(text)["entries"])
+    """All entries, in the order of the build."""
+    return tuple(_entry(document) for document in json.loads(FILE.read_text("utf-8"))["entries"])
 
 
 def _entry(document: Mapping[str, Any]) -> TrainingEntry:
