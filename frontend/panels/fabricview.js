@@ -116,7 +116,7 @@ export function fabricview(host, studio, view) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
-  const request = () => wanted(studio, view);
+  const request = () => viewRequest(studio, view);
   host.replaceChildren(
     frame,
     still.root,
@@ -272,7 +272,7 @@ export function fabricview(host, studio, view) {
  * @param {ChartView} view
  * @returns {ViewRequest}
  */
-function wanted(studio, view) {
+export function viewRequest(studio, view) {
   const { document: chart, seeing } = studio;
   const posed = seeing.posed.value;
   const stretch = posed ? null : pulled(studio);

@@ -98,7 +98,7 @@ export function create(studio, context) {
             "aria-expanded": String(open),
             onclick: () => ((chosen = open ? "" : id), show()),
           },
-          h("span", { class: "ellipsis" }, name),
+          h("span", {}, name),
           h("span", { class: "muted figures" }, `${count} sts`),
         ),
         small(

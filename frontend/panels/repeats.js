@@ -78,7 +78,7 @@ export function create(studio, context) {
             "aria-expanded": String(open),
             onclick: () => ((closed = open), (editing.repeatId.value = id), show()),
           },
-          h("span", { class: "ellipsis" }, name),
+          h("span", {}, name),
           h("span", { class: "muted figures" }, `${motif.columns} × ${motif.rows}`),
         ),
       ),

@@ -152,6 +152,21 @@ export function yarnOf(base, name, yarn, fitted, evidence = []) {
   return /** @type {MaterialDocument} */ (/** @type {unknown} */ (document));
 }
 
+/**
+ * What a yarn's figures rest on, in lines.
+ *
+ * @param {MaterialDocument} yarn
+ */
+export const evidenceOf = (yarn) => [
+  ...distinctLines(yarn.note ?? "")
+    .split("\n")
+    .filter(Boolean),
+  ...entries(yarn).map(
+    ([fabric, known]) =>
+      `${fabric}: ${[known.law_source, known.stitch_size_source && `size: ${known.stitch_size_source}`].filter(Boolean).join("; ")}`,
+  ),
+];
+
 /** Lines of a note, each once. @param {...string} texts */
 export const distinctLines = (...texts) => [...new Set(texts.join("\n").split("\n"))].filter(Boolean).join("\n");
 

@@ -34,6 +34,24 @@ def test_pieces_and_limbs_leave_the_console_clean(flat_studio: Page) -> None:
     assert said == []
 
 
+def test_a_piece_has_the_yarn_of_its_design_until_another_is_chosen(flat_studio: Page) -> None:
+    page = flat_studio
+    page.focus("#chart")
+    page.keyboard.press("Shift+C")
+    expect(page.locator("#compare-a-yarn")).to_have_value("acrylic")
+    page.select_option("#compare-b", "now")
+    page.select_option("#compare-b-yarn", "glove-wool")
+    page.keyboard.press("Escape")
+    page.keyboard.press("Control+k")
+    page.fill("#command-search", "yarn pearl")
+    page.keyboard.press("Enter")
+    wait_for_numbers(page)
+    page.focus("#chart")
+    page.keyboard.press("Shift+C")
+    expect(page.locator("#compare-a-yarn")).to_have_value("cotton")
+    expect(page.locator("#compare-b-yarn")).to_have_value("glove-wool")
+
+
 def test_an_own_yarn_is_added_measured_and_changed(flat_studio: Page) -> None:
     page, said = flat_studio, []
     page.on("response", lambda r: said.append(r.url) if r.status >= 400 else None)
@@ -74,4 +92,7 @@ def test_an_own_yarn_is_added_measured_and_changed(flat_studio: Page) -> None:
     page.focus("#chart")
     page.keyboard.press("Shift+Y")
     expect(page.locator("#yarns-list")).not_to_contain_text("Plain cotton")
+    page.locator("#yarns-list li", has_text="Soft cotton").get_by_text("Evidence").click()
+    expect(page.locator("#yarns-list")).to_contain_text("mN·mm² from 1 photo.")
+    expect(page.locator("#yarns-list")).to_contain_text("garter: estimated from")
     assert said == []

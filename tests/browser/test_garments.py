@@ -78,6 +78,16 @@ def test_knitout_is_checked_before_it_is_given(flat_studio: Page) -> None:
     expect(page.locator("#export-outcome")).to_contain_text("Knitted on a virtual V-bed machine")
 
 
+def test_a_pattern_has_a_picture_where_nothing_is_drawn_in_3d(flat_studio: Page) -> None:
+    page = flat_studio
+    page.keyboard.press("Control+E")
+    page.locator("input[name=export-kind][value=pattern-svg]").check()
+    with page.expect_request("**/api/v1/export") as asked, page.expect_download() as caught:
+        page.locator("#export-make").click()
+    assert asked.value.post_data_json["photo"]
+    assert "data:image/png" in caught.value.path().read_text(encoding="utf-8")
+
+
 def test_written_rows_are_opened_as_a_design(flat_studio: Page, tmp_path: Path) -> None:
     page = flat_studio
     file = tmp_path / "scarf.txt"

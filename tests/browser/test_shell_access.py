@@ -116,6 +116,28 @@ def test_enter_in_the_palette_does_not_press_what_had_the_focus_before(flat_stud
     expect(page.locator("dialog[open]")).to_have_count(0)
 
 
+def test_the_palette_finds_what_is_meant(flat_studio: Page) -> None:
+    page = flat_studio
+    page.focus("#chart")
+    meant = {
+        "2x2 rib": "Paint with 2×2 rib",
+        "cotton yarn": "Yarn: Pearl cotton 3/2",
+        "pressure": "Pressure on a limb",
+        "strain": "Show strain crosses",
+        "colour fabrics": "Colour the chart by: fabrics",
+        "rest": "Show the cloth: as it lies",
+    }
+    page.keyboard.press("Control+k")
+    for typed, label in meant.items():
+        page.fill("#command-search", typed)
+        expect(page.get_by_role("option", name=label, exact=True)).to_be_visible()
+    page.fill("#command-search", "rib")
+    expect(page.get_by_role("option", name="Paint with Seed")).to_have_count(0)
+    page.fill("#command-search", "pressure")
+    page.keyboard.press("Enter")
+    expect(page.locator("#plot-limb")).to_be_visible()
+
+
 def test_reduced_motion_stills_the_page(flat_studio: Page) -> None:
     moving = flat_studio.evaluate(
         """() => [...document.querySelectorAll('*')].filter((element) => {
@@ -143,6 +165,22 @@ def test_everything_is_in_reach_on_small_screens(flat_studio: Page) -> None:
         assert chart
         assert chart["width"] > 300
         assert chart["height"] > 180
+
+
+def test_parts_and_targets_leave_the_chart_in_sight_on_a_phone(flat_studio: Page) -> None:
+    page = flat_studio
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.keyboard.press("Shift+A")
+    dock, chart = (page.locator(part) for part in ("#panel-regions", "#chart"))
+    expect(dock).to_be_visible()
+    page.wait_for_function("() => document.querySelector('#chart').clientWidth > 300")
+    below, above = dock.bounding_box(), chart.bounding_box()
+    assert below
+    assert above
+    assert below["y"] >= above["y"] + above["height"] - 1
+    page.focus("#chart")
+    page.keyboard.press("Shift+W")
+    expect(page.locator("#part-add")).to_be_in_viewport()
 
 
 @pytest.mark.slow

@@ -65,15 +65,22 @@ export function create(studio, { keeper }) {
       class: "select",
       id: `compare-${id}`,
       "aria-label": `Piece ${letter}`,
-      onchange: () => ((yarn.value = ""), load()),
+      onchange: () => ((side.yarnId = ""), load()),
     });
     const yarn = h("select", {
       class: "select",
       id: `compare-${id}-yarn`,
       "aria-label": `Yarn of piece ${letter}`,
-      onchange: () => load(),
+      onchange: () => ((side.yarnId = yarn.value), load()),
     });
-    return { which, yarn, picture: h("div", { class: "compare-picture" }), size: h("p", { class: "muted figures" }) };
+    const side = {
+      which,
+      yarn,
+      yarnId: "", // chosen instead of the piece's own
+      picture: h("div", { class: "compare-picture" }),
+      size: h("p", { class: "muted figures" }),
+    };
+    return side;
   });
   const element = dialog(
     "compare-dialog",
@@ -115,9 +122,9 @@ export function create(studio, { keeper }) {
     latest.run(async (signal) => {
       try {
         const all = await Promise.all(
-          sides.map(async ({ which, yarn }) => {
+          sides.map(async ({ which, yarnId }) => {
             const one = await piece(studio, keeper, which.value);
-            const material = yarn.value || one.material;
+            const material = yarnId || one.material;
             return { piece: { ...one, material }, answers: await answers(one.scope, material, signal) };
           }),
         );
@@ -168,6 +175,8 @@ export function create(studio, { keeper }) {
     );
   };
 
+  /** The design that was compared last. */
+  let opened = "";
   return async () => {
     element.classList.add("busy"); // what is on show may be old
     element.showModal();
@@ -183,12 +192,16 @@ export function create(studio, { keeper }) {
       status.replaceChildren(problemBox(error.problem));
       return;
     }
-    sides.forEach(({ which }, k) => {
-      const before = which.value;
+    const same = opened === studio.designId;
+    opened = studio.designId;
+    sides.forEach((side, k) => {
+      const { which } = side;
+      const before = same ? which.value : "";
       offer(which, all);
       // Opened for a version, or with what was compared last; else with the latest other thing there is.
       const wanted = k ? (against.value ?? (before || (all[1]?.value ?? NOW))) : before || NOW;
       which.value = all.some(({ value }) => value === wanted) ? wanted : NOW;
+      if (which.value !== before) side.yarnId = "";
     });
     against.value = null;
     load();

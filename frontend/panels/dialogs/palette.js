@@ -1,16 +1,18 @@
 /**
- * Every tool and command, yarn, pattern and colouring, found by its name.
+ * Every tool and command, yarn, pattern, colouring, plot and pose, found by its name.
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
  * @import {IconName} from "../../icons.js"
+ * @import {Pose} from "../../studio/seeing.js"
  *
  * @typedef {{label: string, words: string, icon?: IconName, key?: string, perform: () => void}} Entry
  */
 
 import { ACTIONS, shown } from "../../actions/registry.js";
 import { OVERLAYS } from "../../studio/overlays.js";
-import { h } from "../../dom.js";
+import { POSES } from "../../studio/seeing.js";
+import { byId, h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { dialog } from "../../widgets/dialog.js";
 
@@ -20,12 +22,26 @@ const WORDS = {
   "open-find": "pressure search target stretch stiffness",
   "open-fill": "target wish stiffness softer stiffer relax region",
   "open-atlas": "repeats patterns",
-  stretch: "pull test force load",
+  stretch: "pull test force load strain lock-up",
   versions: "history",
   yarns: "material own test files measure fit add",
   compare: "difference side by side versions regions yarns",
   exports: "print pdf knitout written download save",
 };
+
+/** Poses of the cloth, and what else they are called. @type {Partial<Record<Pose, string>>} */
+const POSE_WORDS = { flat: "relaxed", lying: "relax curl rest free", worn: "limb hand tube pressure" };
+
+/** Plots beside the numbers: their tabs, names and other words. */
+const PLOTS = /** @type {const} */ ([
+  ["tab-rigidity", "Stiffness among all yarns", "plot map modulus"],
+  ["tab-curve", "Stress–strain curves", "plot stretch force"],
+  ["tab-limb", "Pressure on a limb", "worn fit ease compression"],
+  ["tab-drape", "Drape, bending and weight", "hang overhang"],
+]);
+
+/** @param {string} text as it is typed */
+const plain = (text) => text.trim().toLowerCase().replaceAll("×", "x").replaceAll("–", "-");
 
 /**
  * @param {ActionContext} context
@@ -47,9 +63,20 @@ function entries(context) {
       words: "colours show",
       perform: () => (studio.overlay.value = overlay),
     })),
+    {
+      label: `${studio.seeing.crosses.value ? "Hide" : "Show"} strain crosses`,
+      words: "stretch narrow",
+      perform: () => (studio.seeing.crosses.value = !studio.seeing.crosses.value),
+    },
+    ...PLOTS.map(([id, label, words]) => ({ label, words, perform: () => byId(id).click() })),
+    ...Object.entries(POSE_WORDS).map(([pose, words]) => ({
+      label: `Show the cloth: ${POSES[/** @type {Pose} */ (pose)].toLowerCase()}`,
+      words: `3D pose ${words}`,
+      perform: () => (studio.seeing.pose.value = /** @type {Pose} */ (pose)),
+    })),
     ...patterns.map((ink) => ({
       label: `Paint with ${ink.name}`,
-      words: "pattern rib",
+      words: "pattern",
       perform: () => (studio.ink.value = ink),
     })),
     ...studio.materials.value
@@ -71,7 +98,7 @@ export function create(_studio, context) {
     type: "text",
     id: "command-search",
     class: "command-search",
-    placeholder: "Find a tool, command, yarn, pattern or colouring",
+    placeholder: "Find a command, yarn, pattern, plot …",
     "aria-label": "Find a tool or command",
     oninput: () => show(),
     onkeydown: (/** @type {KeyboardEvent} */ event) => {
@@ -91,10 +118,11 @@ export function create(_studio, context) {
     },
   });
   const show = () => {
-    const wanted = search.value.trim().toLowerCase();
+    const wanted = plain(search.value).split(/\s+/);
     const all = entries(context);
-    const named = all.filter(({ label }) => label.toLowerCase().includes(wanted));
-    const meant = wanted ? all.filter((one) => !named.includes(one) && one.words.includes(wanted)) : [];
+    const has = (/** @type {string} */ text) => wanted.every((word) => plain(text).includes(word));
+    const named = all.filter(({ label }) => has(label));
+    const meant = all.filter((one) => !named.includes(one) && has(`${one.label} ${one.words}`));
     const found = [...named, ...meant];
     nothing.textContent = found.length ? "" : "Nothing of that name. Try a tool, a yarn, a pattern or a colouring.";
     list.replaceChildren(

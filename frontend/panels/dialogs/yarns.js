@@ -7,7 +7,7 @@
 
 import { h } from "../../dom.js";
 import { download } from "../../services/exporter.js";
-import { OWN, adopt, isYarnFile, refresh, yarns } from "../../services/yarns.js";
+import { OWN, adopt, evidenceOf, isYarnFile, refresh, yarns } from "../../services/yarns.js";
 import { attempt } from "../../widgets/attempt.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog, problemBox } from "../../widgets/dialog.js";
@@ -71,6 +71,7 @@ export function create(studio) {
           [description, `${Object.keys(fabrics).length} of 4 fabrics`].filter(Boolean).join(" · "),
         ),
       ),
+      evidence(id),
       textButton(
         "pencil",
         "Change",
@@ -96,6 +97,23 @@ export function create(studio) {
         if (gone) await refresh(studio);
       }),
     );
+  /** What a yarn's figures rest on, asked for when it is opened. @param {string} id */
+  const evidence = (id) => {
+    const told = h("ul", { class: "notes" });
+    return h(
+      "details",
+      {
+        class: "row-more",
+        ontoggle: async () => {
+          if (told.hasChildNodes()) return;
+          const document = await attempt(status, () => yarns.file(id));
+          if (document) told.replaceChildren(...evidenceOf(document).map((line) => h("li", {}, line)));
+        },
+      },
+      h("summary", {}, "Evidence"),
+      told,
+    );
+  };
   studio.materials.watch(show);
   return () => {
     status.replaceChildren();

@@ -1,6 +1,7 @@
 /**
  * The export panel: all formats with their options, and what was checked of the file that came out.
  *
+ * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
  * @import {Extensions} from "../../types.js"
  * @import {ExportKind, Option} from "./kinds.js"
@@ -9,7 +10,7 @@
  *   transfers: number | null, carriers: number | null}} ExportedFile
  */
 
-import { ApiError, call } from "../../api.js";
+import { ApiError, call, fetched } from "../../api.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { download } from "../../services/exporter.js";
@@ -17,20 +18,24 @@ import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
+import { viewRequest } from "../fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
 import { textButton } from "../../widgets/buttons.js";
 
 /** Characters of a text file that are shown. */
 const MAX_SHOWN = 6000;
 
-/** Width of the picture in a pattern. */
-const PHOTO_PX = 1400;
+/** Size of the picture in a pattern; one of the view has the proportions of that. */
+const PHOTO_PX = { width: 1400, height: 800 };
 
 /** @param {ArrayBuffer} buffer */
 const toBase64 = (buffer) => btoa(Array.from(new Uint8Array(buffer), (byte) => String.fromCharCode(byte)).join(""));
 
-/** @param {Studio} studio */
-export function create(studio) {
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function create(studio, { view }) {
   let kind = KINDS[0];
   const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
   const tex = numberField({
@@ -163,24 +168,34 @@ export function create(studio) {
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
       photo: isPattern(kind.to) ? await photo() : null,
     };
+    const bare = isPattern(kind.to) && body.photo === null;
     const file = await attempt(
       status,
       () => /** @type {Promise<ExportedFile>} */ (call("/export", { method: "POST", body })),
     );
     make.disabled = false;
     outcome.replaceChildren();
-    if (file) show(file);
+    if (file) show(bare ? { ...file, notes: [...file.notes, "without a picture: none could be made"] } : file);
   }
 
-  /** What the 3D view shows, base64; null where there is no view. */
+  /** What the 3D view shows, or else what the service draws of it, base64; null where neither can be had. */
   async function photo() {
-    if (!isKnitted()) return null;
-    try {
-      return toBase64(await (await viewPicture(studio, PHOTO_PX)).arrayBuffer());
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      return null;
+    const { width, height } = PHOTO_PX;
+    const ways = [
+      ...(isKnitted() ? [() => viewPicture(studio, width)] : []),
+      async () => {
+        const address = `/views/still?width=${width}&height=${height}`;
+        return (await fetched(address, { method: "POST", body: viewRequest(studio, view) })).blob();
+      },
+    ];
+    for (const picture of ways) {
+      try {
+        return toBase64(await (await picture()).arrayBuffer());
+      } catch (error) {
+        if (!(error instanceof ApiError)) throw error;
+      }
     }
+    return null;
   }
 
   /** @param {ExportedFile} file */

@@ -153,7 +153,7 @@ function panel(studio, context) {
     if (tab === "atlas") atlas.open();
     if (tab === "fill") stiffness.opened();
     byId(`inverse-${tab}`).focus({ preventScroll: true });
-    tabs.scrollIntoView({ block: "nearest" }); // where the page scrolls: on phones, and zoomed in
+    section.scrollIntoView(); // where the page scrolls: on phones, and zoomed in
   };
   return show;
 }
