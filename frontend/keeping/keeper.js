@@ -77,6 +77,7 @@ export class Keeper {
     this.windows.onChanged = (revision) => {
       if (revision > this.revision) void this.look();
     };
+    this.windows.onNamed = (before, design) => void this.#adopt(before, design);
     setInterval(() => {
       const { kind } = this.state.value;
       const idle = kind === "kept" && this.#deleted !== this.remoteId;
@@ -274,6 +275,7 @@ export class Keeper {
   #delivered({ kind, parcel }, change, sent) {
     if (this.#parcel.remote === null && parcel.remote) {
       drafts.drop(parcel.id);
+      this.windows.named(parcel.id, parcel.remote.id);
       parcel = { ...parcel, id: parcel.remote.id }; // from now on it goes by the service's name
     }
     this.#parcel = parcel;
@@ -345,6 +347,21 @@ export class Keeper {
   async catchUp() {
     await this.look();
     await this.deliverOthers();
+  }
+
+  /**
+   * Another window has delivered the design that this one shows, too: unless it was changed here meanwhile, it
+   * is the same design, and not another one with the next stroke.
+   *
+   * @param {string} before
+   * @param {string} id
+   */
+  async #adopt(before, id) {
+    if (this.#parcel.id !== before || this.remoteId || this.#change !== this.#sentChange) return;
+    const document = this.studio.toDocument();
+    this.#parcel = { id, remote: { id, revision: 0 }, base: document, document }; // of no revision yet: look for it
+    this.showAddress();
+    await this.look();
   }
 
   /** See whether somebody else has changed the design. */

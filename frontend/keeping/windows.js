@@ -17,6 +17,7 @@ const NOWHERE = { cell: null, box: null };
 
 /**
  * @typedef {{kind: "here" | "gone" | "who", window: string, design: string | null}
+ *   | {kind: "named", window: string, design: string, before: string}
  *   | {kind: "changed", window: string, design: string, revision: number}
  *   | {kind: "elsewhere", window: string, design: string, others: number}
  *   | {kind: "at", window: string, design: string, place: Presence}} Word
@@ -29,6 +30,8 @@ export class Windows {
   places = new Signal(/** @type {ReadonlyMap<string, Presence>} */ (new Map()));
   /** Called when there is a new revision of the design, perhaps this window's own. @type {(revision: number) => void} */
   onChanged = () => {};
+  /** Called when another window has the service's name of a design that had none. @type {(before: string, design: string) => void} */
+  onNamed = () => {};
   #channel = new BroadcastChannel("knitcore-windows");
   #name = newIdentifier();
   /** @type {string | null} */ #design = null;
@@ -68,6 +71,11 @@ export class Windows {
     this.#follower.follow(design);
     this.#say({ kind: "who", window: this.#name, design });
     this.#count();
+  }
+
+  /** This window has delivered a design for the first time. @param {string} before @param {string} design */
+  named(before, design) {
+    this.#say({ kind: "named", window: this.#name, design, before });
   }
 
   /** This window has delivered a revision. @param {number} revision */
@@ -118,6 +126,7 @@ export class Windows {
     if (word.kind === "at" && word.design === this.#design) {
       this.places.value = new Map([...this.places.value, [word.window, word.place]]);
     }
+    if (word.kind === "named") this.onNamed(word.before, word.design);
     if (word.kind === "changed" && word.design === this.#design) this.onChanged(word.revision);
     this.#count();
   }

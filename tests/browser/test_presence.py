@@ -45,6 +45,23 @@ def test_a_stroke_in_one_window_is_seen_in_the_other_which_nobody_touches(
     expect(first.locator("#others")).to_be_hidden()
 
 
+def test_windows_opened_before_the_first_stroke_share_one_design(flat_studio: Page) -> None:
+    first = flat_studio
+    second = first.context.new_page()
+    second.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+    second.goto(first.url)
+    wait_for_numbers(second)
+    ours, theirs = (page.locator("#segments-course") for page in (first, second))
+    before = ours.text_content() or ""
+    drag(first, 60, 0)
+    expect(ours).not_to_have_text(before)
+    expect(theirs).to_have_text(ours.text_content() or "")
+    expect(second.locator("#others")).to_contain_text("open in another window")
+    drag(second, 0, 60, start=(-60, -40))
+    expect(ours).to_have_text(theirs.text_content() or "")
+    assert first.evaluate("location.hash") == second.evaluate("location.hash") != ""
+
+
 @pytest.mark.slow
 def test_another_browser_with_the_design_is_told_of_and_its_strokes_are_seen(
     flat_studio: Page,
