@@ -54,10 +54,13 @@ def test_windows_opened_before_the_first_stroke_share_one_design(flat_studio: Pa
     ours, theirs = (page.locator("#segments-course") for page in (first, second))
     before = ours.text_content() or ""
     drag(first, 60, 0)
-    expect(ours).not_to_have_text(before)
-    expect(theirs).to_have_text(ours.text_content() or "")
+    expect(theirs).not_to_have_text(before)
     expect(second.locator("#others")).to_contain_text("open in another window")
+    between = ours.text_content() or ""
     drag(second, 0, 60, start=(-60, -40))
+    expect(ours).not_to_have_text(between)
+    for page in (first, second):
+        expect(page.locator("#kept")).to_have_attribute("data-state", "kept")
     expect(ours).to_have_text(theirs.text_content() or "")
     assert first.evaluate("location.hash") == second.evaluate("location.hash") != ""
 
