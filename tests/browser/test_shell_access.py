@@ -123,7 +123,7 @@ def test_the_palette_finds_what_is_meant(flat_studio: Page) -> None:
         "2x2 rib": "Paint with 2×2 rib",
         "cotton yarn": "Yarn: Pearl cotton 3/2",
         "pressure": "Pressure on a limb",
-        "strain": "Show strain crosses",
+        "strain": "Stress–strain curves",
         "colour fabrics": "Colour the chart by: fabrics",
         "rest": "Show the cloth: as it lies",
     }

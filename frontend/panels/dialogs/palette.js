@@ -63,11 +63,11 @@ function entries(context) {
       words: "colours show",
       perform: () => (studio.overlay.value = overlay),
     })),
-    {
-      label: `${studio.seeing.crosses.value ? "Hide" : "Show"} strain crosses`,
+    ...(studio.currentStretch() ? [studio.seeing.crosses] : []).map((crosses) => ({
+      label: `${crosses.value ? "Hide" : "Show"} strain crosses`,
       words: "stretch narrow",
-      perform: () => (studio.seeing.crosses.value = !studio.seeing.crosses.value),
-    },
+      perform: () => (crosses.value = !crosses.value),
+    })),
     ...PLOTS.map(([id, label, words]) => ({ label, words, perform: () => byId(id).click() })),
     ...Object.entries(POSE_WORDS).map(([pose, words]) => ({
       label: `Show the cloth: ${POSES[/** @type {Pose} */ (pose)].toLowerCase()}`,
