@@ -16,7 +16,7 @@ from knitcore.errors import Cancelled, ConvergenceError
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, CellEnergy
-from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
+from knitcore.yarnlevel.solver import COURSE, SPARSE_FROM, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.start import COURSE_PER_LOOP, WALE_PER_LOOP, start_state
 from knitcore.yarnlevel.topology import Guard
 from knitcore.yarnlevel.yarn import YarnModel
@@ -29,6 +29,8 @@ _STIFFENED = 20.0
 """Factor on the contact stiffness while the core grows."""
 _STAGES = 40
 STAGE = Options(tolerance=1e-3, iterations=12)
+_SHORT_STAGE = Options(tolerance=1e-3, slack=1e-2, iterations=3)
+"""In large cells: strands part in a few steps; more would settle the shape of a stiff shell."""
 START_HEIGHT = 0.8
 
 
@@ -84,6 +86,7 @@ def grow(
     energy = CellEnergy(cell, yarn, loop_length_mm, convention, flat, (), spacing_per_bending)
     core = core_that_fits(yarn, _min_distance(energy, state), FIRST_OPENING)
     tension: Array | None = None
+    settings = STAGE if cell.stitches < SPARSE_FROM else _SHORT_STAGE
     steps = evaluations = 0
     for stage in range(_STAGES):
         found = minimise(
@@ -91,7 +94,7 @@ def grow(
             state,
             tension=tension,
             fixed=(COURSE, WALE) if stage == 0 else (),
-            options=STAGE,
+            options=settings,
             cancelled=cancelled,
         )
         state, tension = found.state, found.tension

@@ -152,33 +152,27 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
 
 
 @numba.njit(cache=True, nogil=True)
-def pair_changes(
+def pair_distances(
     curve: NDArray[np.float64],
     cell: tuple[float, float],
-    later: NDArray[np.float64],
-    later_cell: tuple[float, float],
     place: NDArray[np.float64],
     shape: tuple[int, int],
     pairs: Pairs,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distance of each pair, and length of the change of its vector to a later curve, mm."""
+) -> NDArray[np.float64]:
+    """Length of the vector of each pair, mm.
+
+    The vectors are linear in curve and cell: differences of both give how far the vectors change.
+    """
     rows, wales = shape
-    here = laid_out(curve, place, *cell)
-    there = laid_out(later, place, *later_cell)
+    at = laid_out(curve, place, *cell)
     distance = np.empty(pairs.shape[0])
-    change = np.empty(pairs.shape[0])
     for q in range(pairs.shape[0]):
-        i, j, flip = pairs[q, 0], pairs[q, 1], pairs[q, 4]
-        right, up = wales * pairs[q, 2], rows * pairs[q, 3]
-        x = here[j, 0] - here[i, 0] + right * cell[0]
-        y = here[j, 1] - here[i, 1] + up * cell[1]
-        z = flip * here[j, 2] - here[i, 2]
-        dx = there[j, 0] - there[i, 0] + right * later_cell[0] - x
-        dy = there[j, 1] - there[i, 1] + up * later_cell[1] - y
-        dz = flip * there[j, 2] - there[i, 2] - z
+        i, j = pairs[q, 0], pairs[q, 1]
+        x = at[j, 0] - at[i, 0] + wales * pairs[q, 2] * cell[0]
+        y = at[j, 1] - at[i, 1] + rows * pairs[q, 3] * cell[1]
+        z = pairs[q, 4] * at[j, 2] - at[i, 2]
         distance[q] = np.sqrt(x * x + y * y + z * z)
-        change[q] = np.sqrt(dx * dx + dy * dy + dz * dz)
-    return distance, change
+    return distance
 
 
 @numba.njit(cache=True, nogil=True)

@@ -16,7 +16,9 @@ symmetry of the first shape; a saddle is left along its direction of most negati
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +44,7 @@ _SINGLE_FROM = 450
 """Systems of at least this many unknowns are factored in single precision, in half the time. With
 its diagonal
 scaled to one the damped matrix has a condition of some 1e5, which leaves steps of two digits."""
-_SPARSE_FROM = 12
+SPARSE_FROM = 12
 """Cells of at least this many stitches have a sparse factor."""
 _MIN_DAMPING_SINGLE = 1e-3
 """Least damping for a factor in single precision, relative to the first."""
@@ -169,7 +171,7 @@ class _Descent:
         self.first_damping = _DAMPING * energy.unit / energy.mean_loop_mm**2
         self.damping = self.first_damping
         dense_only = energy.slides or energy.sliding is not None
-        self.sparse = energy.cell.stitches >= _SPARSE_FROM and not dense_only
+        self.sparse = energy.cell.stitches >= SPARSE_FROM and not dense_only
         self.single = self.sparse or energy.cell.unknowns >= _SINGLE_FROM
         self.dissection = Dissection()
         self.room = Room()
@@ -192,14 +194,13 @@ class _Descent:
         for _ in range(_TRIALS):
             self._factorise(system)
             step, change = system.solve(slope, excess, remaining)
-            taken = trajectory.certified(step)
+            taken = trajectory.certified(step, self._mending(system, slope))
             blocked = taken.fraction < _NO_STEP
             if blocked:
                 self._damp(4.0)
                 continue
             self.evaluations += 2
-            moved = taken.to.state - here.state
-            predicted = system.decrease(slope, moved, change, excess)
+            predicted = system.decrease(slope, taken.fraction * step, change, excess)
             before = energy.merit(here.terms, self.tension + change)
             actual = before - energy.merit(taken.to.terms, self.tension + change)
             ratio = actual / predicted if predicted > 0.0 else -1.0
@@ -245,6 +246,11 @@ class _Descent:
         fronts = self.dissection.fronts(slope.sparse.touching)
         return SparseSystem(slope, self.energy.penalty, self.free, fronts, self.room)
 
+    def _mending(self, system: System, slope: Slope) -> Callable[[Array], Array] | None:
+        """Keeps the lengths on a step of a large cell: what a straight one stretches the yarn would
+        cut it down. A small cell's few states are found without."""
+        return partial(system.mending, slope.lengths) if self.sparse else None
+
     def _factorise(self, system: System) -> None:
         """Factorise with as much damping as it takes, and learn how negative the lowest
         curvature is: damping just beyond it leaves a saddle fast."""
@@ -286,13 +292,12 @@ class _Descent:
             excess = here.terms.excess_mm
             slope = trajectory.slope(self.tension, hessian=False)
             step, change = system.solve(slope, excess, none)
-            taken = trajectory.certified(step)
+            taken = trajectory.certified(step, self._mending(system, slope))
             self.evaluations += 2
             tension = self.tension + change
             actual = energy.merit(here.terms, tension) - energy.merit(taken.to.terms, tension)
-            moved = taken.to.state - here.state
             if taken.fraction < _NO_STEP or actual < 0.2 * system.decrease_solved(
-                slope, moved, change, excess, taken.fraction
+                slope, taken.fraction * step, change, excess, taken.fraction
             ):
                 return
             trajectory.advance(taken)

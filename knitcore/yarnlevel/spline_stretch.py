@@ -108,7 +108,6 @@ def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
     touch = 2.0 * cell.yarn.radius_mm
     pairs, _ = energy.pairs(curve, cell.state, touch)
     guard = Guard(cell.cell, cell.state, curve, pairs, touch, touch)
-    distances, _ = guard.changes(cell.state, curve)
-    slides = slides_at(cell.cell, cell.state, pairs, distances, touch, energy.mean_loop_mm)
+    slides = slides_at(cell.cell, cell.state, pairs, guard.distances_mm, touch, energy.mean_loop_mm)
     tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(slides))])
     return replace(cell, slides=slides, tension_n=tension)

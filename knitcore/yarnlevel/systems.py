@@ -94,6 +94,17 @@ class System(ABC):
         step[self._held] = remaining
         return step, change
 
+    def mending(self, lengths: Array, excess: Array) -> Array:
+        """Least step, in the metric of the factor, that takes an excess of the lengths away.
+
+        ``solve`` goes first with each factor.
+        """
+        assert self._by_tension is not None  # noqa: S101 - see above
+        pulls = np.linalg.solve(lengths[:, self._free] @ self._by_tension, excess)
+        step = np.zeros(len(self._free))
+        step[self._free] = -self._by_tension @ pulls
+        return step
+
     def decrease(self, slope: Slope, step: Array, change: Array, excess: Array) -> float:
         """Decrease of the merit, with the changed tensions, that the quadratic model predicts."""
         bent = float(step @ self._times(step))

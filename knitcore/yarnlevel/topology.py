@@ -13,6 +13,7 @@ to cross.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from knitcore.threads import on_halves
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.energy import PAIRS_TO_SHARE
 from knitcore.yarnlevel.kernels.structures import Pairs
-from knitcore.yarnlevel.neighbours import pair_changes
+from knitcore.yarnlevel.neighbours import pair_distances
 
 CROSSING = 0.75
 """Two polylines that meet have samples within h / sqrt(2) of each other; the rest is for the bend
@@ -53,8 +54,12 @@ class Guard:
     @property
     def min_distance_mm(self) -> float:
         """Smallest distance between samples of different stretches of yarn."""
-        distances, _ = self.changes(self.state, self.curve)
-        return float(distances.min(initial=self.reach_mm))
+        return float(self.distances_mm.min(initial=self.reach_mm))
+
+    @cached_property
+    def distances_mm(self) -> Array:
+        """Of the listed pairs."""
+        return self._lengths(self.curve, self.state[-2:])
 
     def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> float:
         """Fraction (at most 1) of the way to another state that is certified.
@@ -64,10 +69,10 @@ class Guard:
         allowed = (self.reach_mm - self.touch_mm) / max(self.approach_mm(state, curve), 1e-300)
         allowed = min(1.0, allowed)
         if len(self.pairs):
-            distances, shift = self.changes(state, curve)
+            shift = self.changes_mm(state, curve)
             allowed = min(allowed, pair_cap_mm / max(float(shift.max()), 1e-300))
             spacing = self._spacing(curve, allowed)
-            room = np.maximum(distances - CROSSING * spacing, 0.0) * SAFETY
+            room = np.maximum(self.distances_mm - CROSSING * spacing, 0.0) * SAFETY
             allowed = min(allowed, float((room / np.maximum(shift, 1e-300)).min()))
         return allowed
 
@@ -84,19 +89,17 @@ class Guard:
         far = 2.0 * float(np.sqrt(np.einsum("im,im->i", moved, moved).max()))
         return far + strain * self.reach_mm
 
-    def changes(self, state: Array, curve: Array) -> tuple[Array, Array]:
-        """Distances of the listed pairs, and how far their vectors change to another state."""
-        shape = self.cell.rows, self.cell.wales
+    def changes_mm(self, state: Array, curve: Array) -> Array:
+        """How far the vectors of the listed pairs change to another state."""
+        return self._lengths(curve - self.curve, state[-2:] - self.state[-2:])
+
+    def _lengths(self, curve: Array, size: Array) -> Array:
+        shape, sizes = (self.cell.rows, self.cell.wales), (size[0], size[1])
         parts = on_halves(
-            lambda of: pair_changes(
-                self.curve, _size(self.state), curve, _size(state), self.cell.place, shape, of
-            ),
+            lambda of: pair_distances(curve, sizes, self.cell.place, shape, of),
             self.pairs, PAIRS_TO_SHARE,
         )  # fmt: skip
-        distance, change = (
-            parts[0] if len(parts) == 1 else map(np.concatenate, zip(*parts, strict=True))
-        )
-        return distance, change
+        return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
     def _spacing(self, curve: Array, fraction: float) -> float:
         """Largest distance of consecutive samples up to a fraction of the step, mm.
@@ -110,7 +113,3 @@ class Guard:
         )
         largest = max(here, (1.0 - fraction) * here + fraction * there)
         return 1.05 * largest / self.cell.grid.samples
-
-
-def _size(state: Array) -> tuple[float, float]:
-    return float(state[-2]), float(state[-1])

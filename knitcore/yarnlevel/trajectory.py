@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from knitcore.arrays import Array
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
@@ -73,20 +74,38 @@ class Trajectory:
             hessian=hessian, sparse=sparse,
         )  # fmt: skip
 
-    def certified(self, step: Array) -> CertifiedStep:
-        """The part of a step that is certified."""
+    def certified(
+        self, step: Array, mending: Callable[[Array], Array] | None = None
+    ) -> CertifiedStep:
+        """The part of a step that is certified.
+
+        With ``mending``, the step that takes an excess of the lengths away, the path ends beside
+        the straight step, where the yarn is not longer: a straight step along inextensible yarn
+        stretches it.
+        """
         here = self.here
+        if mending is not None:
+            straight = self._allowed(here.state + step)[0]
+            moved = here.state + straight * step
+            excess = self._energy.excess(moved, self._energy.curve(moved))
+            mended = mending(excess - (1.0 - straight) * here.terms.excess_mm)
+            found = self.certified(straight * step + mended)
+            return replace(found, fraction=straight * found.fraction)
         state = here.state + step
-        if state[-2] <= 0.0 or state[-1] <= 0.0:
-            return CertifiedStep(here, 0.0, 0.0)
-        curve = self._energy.curve(state)
-        fraction = self.guard.longest_step(state, curve, self._cap)
+        fraction, curve = self._allowed(state)
         approach = fraction * self.guard.approach_mm(state, curve)
         if fraction < 1.0:
             state = here.state + fraction * step
             curve = here.curve + fraction * (curve - here.curve)
         terms = self._energy.value(state, curve, self._pairs)
         return CertifiedStep(Configuration(state, curve, terms), fraction, approach)
+
+    def _allowed(self, state: Array) -> tuple[float, Array]:
+        """Fraction of the straight way to a state that is certified, and the curve at its end."""
+        if state[-2] <= 0.0 or state[-1] <= 0.0:
+            return 0.0, self.here.curve
+        curve = self._energy.curve(state)
+        return self.guard.longest_step(state, curve, self._cap), curve
 
     def advance(self, step: CertifiedStep) -> None:
         """Take a certified step from here."""

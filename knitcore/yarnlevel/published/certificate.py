@@ -11,7 +11,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.yarnlevel.clasps import is_knitted
-from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs, pair_changes
+from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs, pair_distances
 from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
 from knitcore.yarnlevel.topology import CROSSING, SAFETY
 
@@ -58,7 +58,9 @@ def _certified(stitch: Stitch, start: Array, end: Array, halvings: int) -> bool:
         curves[0], place, sizes[0], (1, 1), mirror, reach, EXCLUSION_RADII * radius / length,
         np.arange(len(place)), np.ones(len(place), bool), (False, False),
     )  # fmt: skip
-    distance, change = pair_changes(curves[0], sizes[0], curves[1], sizes[1], place, (1, 1), pairs)
+    step = sizes[1][0] - sizes[0][0], sizes[1][1] - sizes[0][1]
+    distance = pair_distances(curves[0], sizes[0], place, (1, 1), pairs)
+    change = pair_distances(curves[1] - curves[0], step, place, (1, 1), pairs)
     room = SAFETY * np.maximum(distance - CROSSING * spacing, 0.0)
     strain = max(abs(b / a - 1.0) for a, b in zip(*sizes, strict=True))
     moved = np.linalg.norm(curves[1][:, 0] - curves[0][:, 0], axis=1)

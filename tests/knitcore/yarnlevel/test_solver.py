@@ -4,12 +4,16 @@ import numpy as np
 import pytest
 
 from knitcore.chart import StitchChart
-from knitcore.yarnlevel.cell import mirrored_cell
+from knitcore.yarnlevel.cell import mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.growth import Start, grow
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.solver import Options
 from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.start import start_state
+from knitcore.yarnlevel.systems import DenseSystem
+from knitcore.yarnlevel.trajectory import Trajectory
 
 
 def test_a_saddle_is_left_for_the_minimum_below_it():
@@ -29,3 +33,23 @@ def test_a_saddle_is_left_for_the_minimum_below_it():
     assert found.converged
     assert found.stable
     assert found.terms.energy / cell.stitches == pytest.approx(0.19784, rel=2e-4)
+
+
+def test_a_mended_step_does_not_stretch_the_yarn():
+    entry = sample("acrylic", "stockinette")
+    cell = plain_cell(StitchChart.parse("KP\nKK"), SplineGrid(16, 3))
+    energy = CellEnergy(cell, entry.yarn, np.full(2, entry.loop_length_mm), Convention.PUBLISHED)
+    path = Trajectory(energy, start_state(cell, entry.loop_length_mm, 0.6), pair_cap=0.3)
+    slope = path.slope(np.zeros(2), hessian=True)
+    system = DenseSystem(slope, energy.penalty, np.ones(cell.unknowns, bool), single=False)
+    assert system.factorise(1e3)
+    before = path.here.terms.excess_mm
+    step, _ = system.solve(slope, before, np.zeros(0))
+    straight = path.certified(step)
+    mended = path.certified(step, lambda excess: system.mending(slope.lengths, excess))
+
+    def missed(taken):
+        return np.abs(taken.to.terms.excess_mm - (1.0 - taken.fraction) * before).max()
+
+    assert straight.fraction > 0.1
+    assert missed(mended) < 0.2 * missed(straight)

@@ -60,11 +60,10 @@ def test_the_cap_on_a_pair_holds():
     moved = state + 0.1 * np.random.default_rng(0).standard_normal(len(state))
     fraction = guard.longest_step(moved, energy.curve(moved), 0.05)
     between = state + fraction * (moved - state)
-    distances, change = guard.changes(between, energy.curve(between))
+    change = guard.changes_mm(between, energy.curve(between))
     assert fraction < 1.0
     assert change.max() == pytest.approx(0.05, rel=1e-6)
     after = _guard(energy, between)
-    later, _ = after.changes(between, after.curve)
-    old = dict(zip(map(tuple, guard.pairs.tolist()), distances, strict=True))
-    new = dict(zip(map(tuple, after.pairs.tolist()), later, strict=True))
+    old = dict(zip(map(tuple, guard.pairs.tolist()), guard.distances_mm, strict=True))
+    new = dict(zip(map(tuple, after.pairs.tolist()), after.distances_mm, strict=True))
     assert max(abs(new[pair] - old[pair]) for pair in new.keys() & old.keys()) <= 0.05 + 1e-9
