@@ -78,6 +78,8 @@ class Options:
     tolerance : stop when a Newton step would lower the energy by less than this part of it.
     slack : stop only when the lengths are within this part of a loop length.
     iterations : most Newton steps.
+    mended : whether steps of a large cell keep the lengths: what a straight one stretches the yarn
+        would cut it down. A small cell's few states are found without.
     """
 
     pair_cap: float = 0.3
@@ -86,6 +88,7 @@ class Options:
     tolerance: float = 1e-7
     slack: float = 1e-7
     iterations: int = 400
+    mended: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,9 +250,9 @@ class _Descent:
         return SparseSystem(slope, self.energy.penalty, self.free, fronts, self.room)
 
     def _mending(self, system: System, slope: Slope) -> Callable[[Array], Array] | None:
-        """Keeps the lengths on a step of a large cell: what a straight one stretches the yarn would
-        cut it down. A small cell's few states are found without."""
-        return partial(system.mending, slope.lengths) if self.sparse else None
+        """How the yarn is brought back to its length where a step ends, if it is."""
+        mended = self.sparse and self.options.mended
+        return partial(system.mending, slope.lengths) if mended else None
 
     def _factorise(self, system: System) -> None:
         """Factorise with as much damping as it takes, and learn how negative the lowest

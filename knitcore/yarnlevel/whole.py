@@ -60,9 +60,9 @@ _WINDOW = 8
 """Most rows and wales of a window."""
 _FIRSTS = ((0, 0), (_WINDOW // 2, _WINDOW // 2), (0, _WINDOW // 2), (_WINDOW // 2, 0))
 """Where the first window of a round begins."""
-_GROWING = Options(tolerance=1e-3, iterations=4)
-_PASS = Options(tolerance=1e-6, iterations=3)
-_LAST_PASS = Options(tolerance=1e-6, iterations=6)
+_GROWING = Options(tolerance=1e-3, iterations=4, mended=False)
+_PASS = Options(tolerance=1e-6, iterations=3, mended=False)
+_LAST_PASS = Options(tolerance=1e-6, iterations=6, mended=False)
 _DESCENT_STEPS = 60
 _REPEAT = 36
 """A chart with a repeat of up to this many stitches starts from that, relaxed."""
