@@ -22,9 +22,13 @@
   const NEWS_MS = 1500;
   /** After this time it is looked whether something was drawn. */
   const ANSWER_MS = 20;
+  /** Frames that shapes have to be built in, before what they replace is taken away all the same. */
+  const PATIENCE = 100;
   /** Drawn without a GPU: smoothing edges would take three times as long as all the rest. */
   const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
+  /** viser's own state, once it runs. @returns {any} */
+  const viser = () => /** @type {any} */ (window).__viserMutable;
   /** @param {Record<string, unknown>} message */
   const tell = (message) => parent !== window && parent.postMessage(message, "*");
 
@@ -47,6 +51,54 @@
     return URL.createObjectURL(new Blob([reading.responseText.replaceAll("import.meta.url", "''")]));
   };
 
+  // --- cloth --------------------------------------------------------------------------------------
+  // viser takes several frames to build new shapes of stitches. Until then those that are there neither move nor go,
+  // or there would be holes in the cloth, or none to see. Everything else is handed on at once.
+  /** @typedef {{type: string, name?: string}} Message */
+  /** Nodes of stitches, by name. @type {Set<string>} */
+  const cloth = new Set();
+  /** What waits for new ones to be built. @type {Message[]} */
+  let later = [];
+  /** Frames that it has waited. */
+  let waited = 0;
+  /** @type {(messages: Message[]) => void} */
+  let handOn = () => {};
+
+  /** Whether stitches of this shape are drawn. @param {string} name */
+  function built(name) {
+    let stitches = 0;
+    viser()?.nodeRefFromName[name]?.traverse((/** @type {any} */ part) => (stitches += part.instancesCount ?? 0));
+    return stitches > 0;
+  }
+
+  /** Whether it must not come before new shapes are built; a picture is of the whole cloth. @param {Message} message */
+  const changes = ({ type, name = "" }) =>
+    type === "GetRenderRequestMessage" ||
+    (["SceneNodeUpdateMessage", "RemoveSceneNodeMessage"].includes(type) && cloth.has(name));
+
+  /** What of some messages is handed on at once. @param {Message[]} messages */
+  function prompt(messages) {
+    const added = messages.filter(({ type }) => type === "BatchedMeshesMessage");
+    // A page that nobody looks at has no frames to wait for.
+    const wait = !document.hidden && (later.length > 0 || (added.length > 0 && [...cloth].some(built)));
+    const held = wait ? messages.filter(changes) : [];
+    const rest = wait ? messages.filter((message) => !changes(message)) : [...later.splice(0), ...messages];
+    later.push(...held);
+    for (const { name = "" } of added) cloth.add(name);
+    for (const { type, name = "" } of messages) if (type === "RemoveSceneNodeMessage") cloth.delete(name);
+    return rest;
+  }
+
+  /** After each frame. */
+  function catchUp() {
+    if (!later.length) return;
+    if (++waited < PATIENCE && ![...cloth].every(built)) viser()?.requestRender();
+    else {
+      waited = 0;
+      handOn(later.splice(0));
+    }
+  }
+
   const Threads = Worker;
   window.Worker = class extends Threads {
     /** Once an attempt has failed the client begins a new one every second and drops the one before. A busy
@@ -56,9 +108,20 @@
     /** @param {string | URL} url @param {WorkerOptions} [options] */
     constructor(url, options) {
       super(plain(url), { ...options, type: "classic" });
+      handOn = (messages) => {
+        this.onmessage?.(new MessageEvent("message", { data: { type: "message_batch", messages } }));
+        wake(true);
+      };
       this.addEventListener("message", ({ data }) => {
-        if (data.type === "message_batch") wake(true);
+        if (data.type === "message_batch") {
+          data.messages = prompt(data.messages);
+          wake(true);
+        }
         if (data.type === "connected" || data.type === "closed") this.#connecting = false;
+        if (data.type === "connected") {
+          cloth.clear();
+          later = [];
+        }
       });
     }
 
@@ -146,15 +209,13 @@
         slow = !slow;
         tell({ slow });
       }
+      catchUp();
     });
   }
 
   /** Zoom to the pointer, not to the middle, and turn half as fast as viser does. */
   function steer() {
-    /** @type {{__viserMutable?: {cameraControl?: {dollyToCursor: boolean, azimuthRotateSpeed: number,
-     *   polarRotateSpeed: number}}}} */
-    const { __viserMutable: viser } = /** @type {any} */ (window);
-    const control = viser?.cameraControl;
+    const control = viser()?.cameraControl;
     if (!control || control.dollyToCursor) return;
     Object.assign(control, { dollyToCursor: true, azimuthRotateSpeed: TURNING, polarRotateSpeed: TURNING });
   }

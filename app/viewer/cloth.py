@@ -1,7 +1,8 @@
-"""The yarn of a fabric in a viser scene: one batch of instances for every shape of stitch."""
+"""The yarn of a fabric in a viser scene: one node for every shape of stitch, drawn many times."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,115 +12,135 @@ from numpy.typing import NDArray
 from app.drawing.colours import linear
 from app.drawing.fabric import FabricScene
 from knitcore.arrays import Array
-from knitcore.geometry.instances import StitchMeshes, quaternions, stitch_meshes
-from knitcore.geometry.placing import mean_sizes_mm
+from knitcore.geometry.instances import quaternions, stitch_meshes, tube_sizes
+from knitcore.geometry.stitches import StitchShapes
 
 UNITS_PER_MM = 0.01
 """A scene is drawn in dm: browsers draw nothing that is 1000 units from the camera or farther, and
 a camera that sees a cloth half a metre wide stands a metre away."""
-RESIZE = 0.06
-"""Logarithm of the change of size up to which tubes are scaled instead of drawn anew."""
+RESIZE = np.array([0.06, 0.06, 0.06, 0.02])
+"""Logarithms of the changes of :func:`tube_sizes` up to which a tube is scaled, not drawn anew."""
 FINEST = 256
 """Steps to a millimetre in which places and sizes are sent; frontend/yarn.js knows it, too."""
 BRIGHTEST = 63 / 64
 """Full light is no whole step."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Node:
+    """A shape as browsers have it: viser's handle, and the :func:`tube_sizes` it was drawn for."""
+
+    handle: Any
+    sizes: Array
+
+    def fits(self, sizes: Array) -> bool:
+        return bool((np.abs(np.log(sizes / self.sizes)) <= RESIZE).all())
+
+
 class Cloth:
-    """Instanced stitches; those of the same shapes can be moved and coloured.
+    """The stitches of a scene.
+
+    A shape keeps its node: a stretch, a colour or a stroke moves stitches from node to node, and
+    browsers build what is new. They go on showing what is not wanted any more until they have
+    built the rest (frontend/frame.js).
+    """
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self._server = server
+        self._nodes: dict[bytes, _Node] = {}
+        self._made = 0
+
+    def lay(
+        self, scene: FabricScene, middle_mm: Array, level: tuple[int, int], *, exact: bool
+    ) -> bool:
+        """Show the stitches of a scene, and no others.
+
+        Parameters
+        ----------
+        scene : drawn as yarn throughout.
+        middle_mm : (2,) the scene's origin.
+        level : points along and around a tube.
+        exact : False scales tubes however much, which flattens them, and is quick.
+
+        Returns
+        -------
+        whether tubes are scaled more than they should be.
+        """
+        shapes = _distinct(scene.shapes)
+        sizes = tube_sizes(shapes, scene.placement)
+        cells = shapes.index.ravel()
+        there = np.ones(len(cells), bool) if scene.drawn is None else scene.drawn.ravel()
+        used = map(int, np.unique(cells[there]))
+        keys = {shape: bytes(level) + shapes.lines[shape].tobytes() for shape in used}
+        kept = {key: self._nodes[key] for key in keys.values() if key in self._nodes}
+        flat = [key for s, key in keys.items() if key in kept and not kept[key].fits(sizes[s])]
+        if exact:
+            kept = {key: node for key, node in kept.items() if key not in flat}
+        new = [shape for shape, key in keys.items() if key not in kept]
+        meshes = stitch_meshes(shapes, scene.placement, *level, new)
+        drawn = sizes.copy()
+        for shape, key in keys.items():
+            if key in kept:
+                drawn[shape] = kept[key].sizes
+        copies = _copies(scene, middle_mm, drawn[cells])
+        with self._server.atomic():
+            for shape, key in keys.items():
+                of = {name: values[there & (cells == shape)] for name, values in copies.items()}
+                if key in kept:
+                    _move(kept[key].handle, of)
+                else:
+                    number = new.index(shape)
+                    lit = _lit(meshes.vertices[number], meshes.light[number])
+                    kept[key] = _Node(self._made_of(lit, meshes.faces, of), sizes[shape])
+            for key, node in self._nodes.items():
+                if node is not kept.get(key):
+                    node.handle.remove()
+        self._nodes = kept
+        return bool(flat) and not exact
+
+    def _made_of(
+        self, vertices: NDArray[np.float32], faces: NDArray[np.uint32], copies: dict[str, Any]
+    ) -> Any:
+        self._made += 1
+        return self._server.scene.add_batched_meshes_simple(
+            f"/fabric/{self._made}",
+            vertices=vertices,
+            faces=faces,
+            lod="off",
+            scale=UNITS_PER_MM,
+            cast_shadow=False,
+            receive_shadow=False,
+            **copies,
+        )
+
+
+def _move(handle: Any, copies: dict[str, Any]) -> None:
+    for name, values in copies.items():
+        if not np.array_equal(getattr(handle, name), values):
+            setattr(handle, name, values)
+
+
+def _distinct(shapes: StitchShapes) -> StitchShapes:
+    """Every shape once."""
+    count, *size = shapes.lines.shape
+    found, number = np.unique(
+        shapes.lines.astype(np.float32).reshape(count, -1), axis=0, return_inverse=True
+    )
+    lines = found.astype(float).reshape(-1, *size)
+    return replace(shapes, lines=lines, index=number.ravel()[shapes.index])
+
+
+def _copies(scene: FabricScene, middle_mm: Array, drawn: Array) -> dict[str, Any]:
+    """What viser takes of every stitch, in the order of the chart's cells.
 
     Parameters
     ----------
-    server : where they are drawn.
-    name : of their node in the scene.
-    scene : drawn as yarn throughout.
-    middle_mm : (2,) the scene's origin.
-    level : points along and around a tube.
-    visible : False makes the browsers build them without showing them.
+    drawn : (stitches, 4) for which :func:`tube_sizes` their tubes were drawn.
     """
-
-    def __init__(
-        self,
-        server: viser.ViserServer,
-        name: str,
-        scene: FabricScene,
-        middle_mm: Array,
-        level: tuple[int, int],
-        *,
-        visible: bool,
-    ) -> None:
-        self._server = server
-        self._level = level
-        self._shapes, self._drawn = scene.shapes, scene.drawn
-        index = scene.shapes.index.ravel()
-        if scene.drawn is not None:
-            index = np.where(scene.drawn.ravel(), index, -1)
-        self._members = {int(s): np.flatnonzero(index == s) for s in np.unique(index[index >= 0])}
-        self._meshes = stitch_meshes(scene.shapes, scene.placement, *level)
-        instances = _instances(scene, middle_mm, self._meshes)
-        with server.atomic():
-            self._handles: dict[int, Any] = {
-                shape: server.scene.add_batched_meshes_simple(
-                    f"{name}/{shape}",
-                    vertices=_lit(self._meshes.vertices[shape], self._meshes.light[shape]),
-                    faces=self._meshes.faces,
-                    lod="off",
-                    scale=UNITS_PER_MM,
-                    cast_shadow=False,
-                    receive_shadow=False,
-                    visible=visible,
-                    **{key: values[stitches] for key, values in instances.items()},
-                )
-                for shape, stitches in self._members.items()
-            }
-
-    def draws(self, scene: FabricScene, level: tuple[int, int]) -> bool:
-        """Whether the scene has the same stitches, wherever they lie."""
-        mine, shapes = self._shapes, scene.shapes
-        return (
-            level == self._level
-            and mine.yarn_radius_mm == shapes.yarn_radius_mm
-            and _same(self._drawn, scene.drawn)
-            and np.array_equal(mine.index, shapes.index)
-            and np.array_equal(mine.lines, shapes.lines)
-        )
-
-    def fits(self, scene: FabricScene) -> bool:
-        """Whether its tubes can be scaled to the scene's stitches without looking flattened."""
-        sizes = mean_sizes_mm(scene.shapes, scene.placement)
-        return self._meshes.fits(sizes, scene.placement.depth, RESIZE)
-
-    def move(self, scene: FabricScene, middle_mm: Array) -> None:
-        """Lay its stitches, and colour them, as in a scene that it :meth:`draws`."""
-        instances = _instances(scene, middle_mm, self._meshes)
-        with self._server.atomic():
-            for shape, handle in self._handles.items():
-                for name, values in instances.items():
-                    new = values[self._members[shape]]
-                    if not np.array_equal(getattr(handle, name), new):
-                        setattr(handle, name, new)
-
-    def show(self) -> None:
-        """Make it visible."""
-        for handle in self._handles.values():
-            handle.visible = True
-
-    def remove(self) -> None:
-        """Take it out of the scene."""
-        for handle in self._handles.values():
-            handle.remove()
-
-
-def _same(a: NDArray[np.bool_] | None, b: NDArray[np.bool_] | None) -> bool:
-    return a is b or (a is not None and b is not None and np.array_equal(a, b))
-
-
-def _instances(scene: FabricScene, middle_mm: Array, meshes: StitchMeshes) -> dict[str, Any]:
-    """What viser takes of every stitch, in the order of the chart's cells."""
-    places, index = scene.placement, scene.shapes.index.ravel()
+    places = scene.placement
     centres = places.centres_mm.reshape(-1, 2) - middle_mm
-    sizes = places.sizes_mm.reshape(-1, 2) / meshes.sizes_mm[index]
-    depth = np.full(len(index), places.depth / meshes.depth)
+    sizes = places.sizes_mm.reshape(-1, 2) / drawn[:, :2]
+    depth = places.depth / drawn[:, 2]
     heights = 0.0 * depth if places.heights_mm is None else places.heights_mm.ravel()
     return {
         "batched_positions": _short(np.column_stack([centres, heights])),

@@ -16,8 +16,8 @@ from app.viewer.cloth import UNITS_PER_MM, Cloth
 from knitcore.arrays import Array
 from knitcore.geometry.instances import level_of
 
-BUILD_S = 0.4
-"""Time that browsers get to build a cloth before it replaces the one on show."""
+STILL_S = 0.4
+"""Tubes that a stretch has flattened are drawn anew after so long without another change."""
 MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
@@ -28,19 +28,13 @@ PAPER = (255, 252, 246)
 
 
 class SceneWriter:
-    """Keeps one viser server's scene in step with a :class:`Drawing`.
-
-    A new stretch or colour of the same chart only moves instances. Anything else is a new cloth,
-    which browsers build unseen while the one before it stays: there is always one to look at.
-    """
+    """Keeps one viser server's scene in step with a :class:`Drawing`."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
         self._lock = threading.RLock()
         self._drawing: Drawing | None = None
-        self._cloths: list[Cloth] = []
-        """The one on show, and the one that is being built, if any."""
-        self._made = 0
+        self._cloth = Cloth(server)
         self._timer: threading.Timer | None = None
         self._layers: dict[str, Any] = {}
         self._framed: tuple[float, ...] | None = None
@@ -54,10 +48,9 @@ class SceneWriter:
     def write(self, drawing: Drawing) -> int:
         """Show a fabric to everybody who looks; returns the number of stitches drawn as yarn."""
         part, ground = drawing.part, drawing.ground
-        stitches = int(part.shapes.index.size if part.drawn is None else part.drawn.sum())
         with self._lock:
             self._drawing = drawing
-            self._draw(part, ground.middle_mm, level_of(stitches))
+            stitches = self._lay(exact=not self._server.get_clients())
             self._draw_rectangles(part, ground.middle_mm)
             self._draw_body(part, ground.middle_mm)
             self._draw_sheet(drawing)
@@ -96,7 +89,7 @@ class SceneWriter:
             self._place_camera(everybody=True)
 
     def close(self) -> None:
-        """Build nothing any more, and forget what was drawn."""
+        """Draw nothing any more, and forget what was drawn."""
         with self._lock:
             self._drawing = None
             self._stop_timer()
@@ -106,45 +99,26 @@ class SceneWriter:
             self._timer.cancel()
             self._timer = None
 
+    def _lay(self, *, exact: bool) -> int:
+        """Lay the stitches, and if they are flattened, once more when they keep still."""
+        with self._lock:
+            self._stop_timer()
+            if self._drawing is None:
+                return 0
+            part = self._drawing.part
+            stitches = int(part.shapes.index.size if part.drawn is None else part.drawn.sum())
+            middle, level = self._drawing.ground.middle_mm, level_of(stitches)
+            if self._cloth.lay(part, middle, level, exact=exact):
+                self._timer = threading.Timer(STILL_S, self._lay, kwargs={"exact": True})
+                self._timer.daemon = True
+                self._timer.start()
+            return stitches
+
     def _place_camera(self, *, everybody: bool) -> None:
         if self._drawing is None:
             return
         extent = UNITS_PER_MM * self._drawing.ground.framed_mm
         place_camera(self._server, self._side, extent, everybody=everybody)
-
-    # -- yarn ---------------------------------------------------------------------------------
-
-    def _draw(self, scene: FabricScene, middle: Array, level: tuple[int, int]) -> None:
-        for cloth in self._cloths:
-            if cloth.draws(scene, level):
-                cloth.move(scene, middle)
-        if self._cloths and self._cloths[-1].draws(scene, level) and self._cloths[-1].fits(scene):
-            return
-        for outdated in self._cloths[1:]:
-            outdated.remove()
-        del self._cloths[1:]
-        self._made += 1
-        unseen = bool(self._cloths) and bool(self._server.get_clients())
-        name = f"/fabric/{self._made}"
-        cloth = Cloth(self._server, name, scene, middle, level, visible=not unseen)
-        self._cloths.append(cloth)
-        self._stop_timer()
-        if unseen:
-            self._timer = threading.Timer(BUILD_S, self._take_turns, [cloth])
-            self._timer.daemon = True
-            self._timer.start()
-        else:
-            self._take_turns(cloth)
-
-    def _take_turns(self, cloth: Cloth) -> None:
-        """A cloth that is built now takes the place of the one before it."""
-        with self._lock, self._server.atomic():
-            if cloth is not self._cloths[-1]:
-                return
-            cloth.show()
-            for before in self._cloths[:-1]:
-                before.remove()
-            self._cloths = [cloth]
 
     # -- layers -------------------------------------------------------------------------------
 

@@ -12,10 +12,14 @@ class Thread extends EventTarget {
   postMessage({ type }) {
     this.sent.push(type);
   }
-  /** @param {string} type */
-  answer(type) {
-    this.dispatchEvent(Object.assign(new Event("message"), { data: { type } }));
+  /** @param {string} type @param {object[]} [messages] */
+  answer(type, messages) {
+    const event = Object.assign(new Event("message"), { data: { type, messages } });
+    this.dispatchEvent(event);
+    this.onmessage?.(event);
   }
+  /** viser's. @type {((event: any) => void) | null} */
+  onmessage = null;
 }
 
 /** The frame's window before anything runs in it. @returns {any} */
@@ -39,6 +43,7 @@ const emptyFrame = () => ({
   addEventListener() {},
   requestAnimationFrame() {},
   cancelAnimationFrame() {},
+  MessageEvent,
 });
 
 /** Run our script in it. @param {any} page */
@@ -123,14 +128,16 @@ async function slowClient() {
   page.document.createElement = () => new page.HTMLCanvasElement();
   await framed(page);
   new page.HTMLCanvasElement().getContext("webgl2", { antialias: true });
-  new page.Worker("blob:viser").answer("message_batch");
+  const thread = new page.Worker("blob:viser");
+  thread.answer("connected");
+  thread.answer("message_batch", []);
   for (let frame = 0; frame < 8; frame++) {
     client.invalidate();
     client.frame();
     client.pass(100);
   }
   assert.ok(client.wanted, "an idle frame did not wait");
-  return { client, tell: (/** @type {any} */ data) => client.told({ source: page.parent, data }) };
+  return { client, page, thread, tell: (/** @type {any} */ data) => client.told({ source: page.parent, data }) };
 }
 
 test("a connection that is being made is not given up for another one", async () => {
@@ -166,4 +173,73 @@ test("a canvas that changes its size is drawn while somebody paints, too", async
   client.resized();
   client.frame();
   assert.equal(client.frames, frames + 1);
+});
+
+/** A slow client that shows cloth of one shape, and what viser is told from now on. */
+async function withCloth() {
+  const { client, page, thread } = await slowClient();
+  /** @type {Record<string, {traverse: (look: (part: object) => void) => void}>} */
+  const nodeRefFromName = {};
+  page.__viserMutable = { nodeRefFromName, requestRender: () => client.invalidate() };
+  /** @type {string[]} */
+  const told = [];
+  thread.onmessage = ({ data }) =>
+    told.push(...data.messages.map((/** @type {any} */ { type, name = "" }) => `${type} ${name}`.trim()));
+  const built = (/** @type {string} */ name) => {
+    nodeRefFromName[name] = { traverse: (look) => look({ instancesCount: 120 }) };
+  };
+  const drawn = () => {
+    client.invalidate();
+    client.frame();
+    client.pass(10_000);
+    client.frame();
+  };
+  thread.answer("message_batch", [{ type: "BatchedMeshesMessage", name: "/fabric/1" }]);
+  built("/fabric/1");
+  told.length = 0;
+  return { thread, told, built, drawn };
+}
+
+const NEW = { type: "BatchedMeshesMessage", name: "/fabric/2" };
+const MOVED = { type: "SceneNodeUpdateMessage", name: "/fabric/1" };
+const GONE = { type: "RemoveSceneNodeMessage", name: "/fabric/1" };
+
+test("stitches move and go once new shapes are built, however late messages come", async () => {
+  const { thread, told, built, drawn } = await withCloth();
+  thread.answer("message_batch", [MOVED, NEW, GONE]);
+  drawn();
+  assert.deepEqual(told, ["BatchedMeshesMessage /fabric/2"], "there is a hole in the cloth");
+  thread.answer("message_batch", [{ type: "GetRenderRequestMessage" }]);
+  drawn();
+  assert.equal(told.length, 1, "a picture was taken of half a cloth");
+  built("/fabric/2");
+  drawn();
+  assert.deepEqual(told.slice(1), [
+    "SceneNodeUpdateMessage /fabric/1",
+    "RemoveSceneNodeMessage /fabric/1",
+    "GetRenderRequestMessage",
+  ]);
+});
+
+test("the camera and all that is no cloth never wait", async () => {
+  const { thread, told } = await withCloth();
+  const others = ["SetCameraPositionMessage", "SetCameraLookAtMessage", "SetCameraUpDirectionMessage"];
+  thread.answer("message_batch", [NEW, GONE, ...others.map((type) => ({ type }))]);
+  const rest = [{ type: "SetCameraFovMessage" }, { type: "RemoveSceneNodeMessage", name: "/mark" }];
+  thread.answer("message_batch", rest);
+  const want = ["BatchedMeshesMessage /fabric/2", ...others, "SetCameraFovMessage", "RemoveSceneNodeMessage /mark"];
+  assert.deepEqual(told, want);
+});
+
+test("a cloth that only moves does not wait", async () => {
+  const { thread, told } = await withCloth();
+  thread.answer("message_batch", [MOVED]);
+  assert.deepEqual(told, ["SceneNodeUpdateMessage /fabric/1"]);
+});
+
+test("shapes that are never built keep nothing waiting for ever", async () => {
+  const { thread, told, drawn } = await withCloth();
+  thread.answer("message_batch", [NEW, GONE]);
+  for (let frame = 0; frame < 120; frame++) drawn();
+  assert.deepEqual(told, ["BatchedMeshesMessage /fabric/2", "RemoveSceneNodeMessage /fabric/1"]);
 });

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,23 +38,11 @@ class StitchMeshes:
         ring at each end that rounds it.
     light : (shapes, V) share of the light from all around that reaches them, 0 to 1.
     faces : (F, 3), the same for all.
-    sizes_mm : (shapes, 2) of the stitch that was drawn.
-    depth : of the placement that was drawn.
     """
 
     vertices: Floats
     light: Floats
     faces: NDArray[np.uint32]
-    sizes_mm: Array
-    depth: float
-
-    def fits(self, sizes_mm: Array, depth: float, tolerance: float) -> bool:
-        """Whether stitches of these mean sizes may be shown by scaling the tubes.
-
-        Scaling makes the yarn itself thicker or thinner, so only little of it is allowed.
-        """
-        ratios = np.append(np.log(sizes_mm / self.sizes_mm), np.log(depth / self.depth))
-        return bool(np.abs(ratios).max() <= tolerance)
 
 
 def level_of(stitches: int) -> tuple[int, int]:
@@ -61,25 +50,44 @@ def level_of(stitches: int) -> tuple[int, int]:
     return next((p, s) for most, p, s in LEVELS if stitches <= most)
 
 
+def tube_sizes(shapes: StitchShapes, placement: PlacedStitches) -> Array:
+    """For what the tube of each shape is drawn, (shapes, 4).
+
+    Mean width and height of its stitches in mm, thickness of the fabric over that at rest, radius
+    of the yarn in mm. Tubes may be scaled to sizes that are little different.
+    """
+    mean = mean_sizes_mm(shapes, placement)
+    same = np.broadcast_to([placement.depth, shapes.yarn_radius_mm], mean.shape)
+    return np.concatenate([mean, same], axis=1)
+
+
 def stitch_meshes(
-    shapes: StitchShapes, placement: PlacedStitches, points: int, sides: int
+    shapes: StitchShapes,
+    placement: PlacedStitches,
+    points: int,
+    sides: int,
+    some: Sequence[int] | None = None,
 ) -> StitchMeshes:
-    """Tubes of the yarn's thickness around every shape, at its mean size in a placement."""
-    sizes = mean_sizes_mm(shapes, placement)
-    scale = np.column_stack([sizes, np.full(len(sizes), placement.depth)])
-    lines = resampled(shapes.lines, points) * scale[:, None]
+    """Tubes of the yarn's thickness around the shapes, at their mean sizes in a placement.
+
+    Parameters
+    ----------
+    some : numbers of the shapes wanted; all if None.
+    """
+    wanted = np.arange(len(shapes.lines)) if some is None else np.asarray(some, dtype=int)
+    sizes = tube_sizes(shapes, placement)[wanted, :3]
+    lines = resampled(shapes.lines[wanted], points) * sizes[:, None]
     lines[:, 0] -= OVERLAP * points * (lines[:, 1] - lines[:, 0])
     lines[:, -1] += OVERLAP * points * (lines[:, -1] - lines[:, -2])
     tubes = tube_vertices(lines, shapes.yarn_radius_mm, sides)
     ends = [_tips(lines[:, at], lines[:, by], shapes.yarn_radius_mm) for at, by in ENDS]
     first, last = (np.repeat(tip[:, None], sides, axis=1).astype(np.float32) for tip in ends)
-    light = occlusion(shapes, points, sides)[:, [0, *range(points), points - 1]]
+    light = occlusion(shapes, points, sides, some)[:, [0, *range(points), points - 1]]
+    vertices = np.concatenate([first, tubes, last], axis=1)
     return StitchMeshes(
-        vertices=np.concatenate([first, tubes, last], axis=1),
-        light=light.reshape(len(light), -1).astype(np.float32),
+        vertices=vertices,
+        light=light.reshape(vertices.shape[:2]).astype(np.float32),
         faces=tube_faces(points + 2, sides),
-        sizes_mm=sizes,
-        depth=placement.depth,
     )
 
 

@@ -78,7 +78,8 @@ def tube_vertices(
         + np.sin(angle)[..., None] * binormal[:, :, None]
     )
     around = lines[:, :, None] + radius_mm * ring
-    vertices: NDArray[np.float32] = around.reshape(len(lines), -1, 3).astype(np.float32)
+    size = (len(lines), lines.shape[1] * sides, 3)
+    vertices: NDArray[np.float32] = around.reshape(size).astype(np.float32)
     return vertices
 
 

@@ -1,10 +1,11 @@
-"""There is always a cloth to look at, and close-ups stay where they are."""
+"""What browsers are sent of a cloth that changes, and close-ups that stay where they are."""
 
 from __future__ import annotations
 
 import contextlib
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,7 +21,6 @@ from app.viewer.cloth import FINEST, Cloth
 from app.viewer.views import View, new_view
 
 SMALL = {"chart": "KPKP\nPKPK\nKPKP", "material": "acrylic"}
-OTHER = SMALL | {"chart": "KKKK\nPKPK\nKPKP"}
 
 
 @pytest.fixture
@@ -38,26 +38,71 @@ def _show(view: View, request: dict[str, str]) -> None:
     view.show(build_scene(ViewRequest.model_validate(request), None, Context(Path())).drawing())
 
 
-def test_the_old_cloth_stays_until_the_new_one_is_drawn(
+def _nodes(view: View) -> dict[str, int]:
+    """Copies in every node of stitches that browsers have."""
+    handles = view.server.scene._handle_from_node_name
+    return {
+        name: len(handle.batched_positions)
+        for name, handle in handles.items()
+        if name.startswith("/fabric/")
+    }
+
+
+def test_a_stroke_moves_stitches_between_the_shapes_that_are_there(view: View) -> None:
+    rows = ["K" * 12] * 12
+    _show(view, SMALL | {"chart": "\n".join(rows)})
+    ((plain, count),) = _nodes(view).items()
+    assert count == 144
+    rows[6] = "KKKKKPKKKKKK"
+    _show(view, SMALL | {"chart": "\n".join(rows)})
+    painted = _nodes(view)
+    assert 120 < painted[plain] < 144
+    assert sum(painted.values()) == 144
+    _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 12)})
+    assert _nodes(view) == {plain: 144}
+
+
+def test_another_size_of_the_chart_needs_no_new_shapes(view: View) -> None:
+    _show(view, SMALL | {"chart": "\n".join(["K" * 9] * 9)})
+    before = _nodes(view)
+    _show(view, SMALL | {"chart": "\n".join(["K" * 10] * 10)})
+    assert _nodes(view).keys() == before.keys()
+    assert sum(_nodes(view).values()) == 100
+
+
+def test_a_yarn_of_another_thickness_is_drawn_anew(view: View) -> None:
+    _show(view, SMALL)
+    before = _nodes(view)
+    _show(view, SMALL | {"material": "lace-acrylic"})
+    assert not before.keys() & _nodes(view).keys()
+
+
+def test_tubes_are_scaled_at_once_and_drawn_anew_once_they_keep_still(
     view: View, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(scene_module, "BUILD_S", 0.01)
-    events: list[tuple[str, Cloth]] = []
-    removed = threading.Event()
+    monkeypatch.setattr(scene_module, "STILL_S", 0.01)
+    anew = threading.Event()
+    lay = Cloth.lay
 
-    def remove(cloth: Cloth) -> None:
-        events.append(("gone", cloth))
-        removed.set()
+    def note(cloth: Cloth, *args: Any, exact: bool) -> bool:
+        flattened = lay(cloth, *args, exact=exact)
+        if exact:
+            anew.set()
+        return flattened
 
-    monkeypatch.setattr(Cloth, "show", lambda cloth: events.append(("there", cloth)))
-    monkeypatch.setattr(Cloth, "remove", remove)
-    _show(view, SMALL)
-    _show(view, OTHER)
-    assert removed.wait(10)
-    (_, first), (what, second), gone = events
-    assert what == "there"
-    assert second is not first
-    assert gone == ("gone", first)
+    monkeypatch.setattr(Cloth, "lay", note)
+    scene = build_scene(ViewRequest.model_validate(SMALL), None, Context(Path()))
+    view.show(scene.drawing())
+    before = _nodes(view)
+    places = replace(scene.placement, sizes_mm=1.03 * scene.placement.sizes_mm)
+    view.show(replace(scene, placement=places).drawing())
+    assert not anew.is_set()
+    places = replace(scene.placement, sizes_mm=1.2 * scene.placement.sizes_mm)
+    with view.writer._lock:  # not yet
+        view.show(replace(scene, placement=places).drawing())
+        assert _nodes(view) == before
+    assert anew.wait(10)
+    assert not _nodes(view).keys() & before.keys()
 
 
 def test_a_moved_camera_keeps_its_place_until_reset(view: View) -> None:

@@ -149,7 +149,12 @@ def test_meshes_follow_the_chart_s_size() -> None:
         meshes = stitch_meshes(shapes, at_rest(shapes), points, sides)
         assert meshes.vertices.shape == (len(shapes.lines), (points + 2) * sides, 3)
     assert resampled(shapes.lines, POINTS) == pytest.approx(shapes.lines)
-    grown = carried(shapes, shapes.lattice.centres_mm * 1.2, shapes.lattice)
-    meshes = stitch_meshes(shapes, at_rest(shapes), 16, 6)
-    assert meshes.fits(meshes.sizes_mm, 1.0, 1e-9)
-    assert not meshes.fits(meshes.sizes_mm * 1.2, grown.depth, 0.06)
+
+
+def test_some_shapes_are_drawn_as_among_all() -> None:
+    shapes = stitch_shapes(MIXED, ACRYLIC)
+    every = stitch_meshes(shapes, at_rest(shapes), 14, 6)
+    some = stitch_meshes(shapes, at_rest(shapes), 14, 6, [3, 1])
+    np.testing.assert_allclose(some.vertices, every.vertices[[3, 1]], atol=1e-6)
+    np.testing.assert_allclose(some.light, every.light[[3, 1]], atol=1e-6)
+    assert stitch_meshes(shapes, at_rest(shapes), 14, 6, []).vertices.shape == (0, 96, 3)
