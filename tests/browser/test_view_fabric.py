@@ -14,6 +14,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from knitcore.geometry.instances import LEVELS
 from tests.browser.conftest import (
+    CHART,
     COLUMNS,
     ROWS,
     TIMEOUT_MS,
@@ -60,12 +61,50 @@ def test_the_live_view_is_framed_as_the_picture_before_it(studio: Page) -> None:
 
 
 def _reach(picture: np.ndarray) -> list[float]:
-    """Height and width of what is coloured, in shares of the pane."""
+    """Height, width and middle of what is coloured, in shares of the pane."""
     coloured = np.ptp(picture[..., :3].astype(int), axis=2) > 40
-    return [
-        float(np.ptp(where)) / side
+    ends = [
+        (where.min() / side, where.max() / side)
         for where, side in zip(np.nonzero(coloured), coloured.shape, strict=True)
     ]
+    return [*(high - low for low, high in ends), *((low + high) / 2 for low, high in ends)]
+
+
+WATCH = """() => {
+    const gl = [...document.querySelectorAll("canvas")].find((c) => c.width).getContext("webgl2");
+    const size = 64, picture = new Uint8Array(4 * size * size);
+    window.shares = [];
+    const request = window.requestAnimationFrame;
+    window.requestAnimationFrame = (callback) => request((time) => {
+        callback(time);
+        const [x, y] = [gl.drawingBufferWidth - size, gl.drawingBufferHeight - size];
+        gl.readPixels(x >> 1, y >> 1, size, size, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+        shares.push(picture.filter((value, k) => k % 4 === 3 && value).length / size ** 2);
+    });
+}"""
+"""How much of the middle of each frame is cloth, from now on."""
+SEVERAL = """() => new Promise((done) => {
+    const look = () => (shares.length < 6 ? setTimeout(look, 20) : done(shares));
+    look();
+})"""
+PUT = """async ([path, body]) => {
+    const headers = { "Content-Type": "application/json" };
+    return (await fetch(path, { method: "PUT", headers, body })).ok;
+}"""
+
+
+@pytest.mark.slow
+def test_a_slow_browser_shows_cloth_in_every_frame(studio: Page) -> None:
+    _wait_for_live_cloth(studio)
+    frame = next(frame for frame in studio.frames if "/view/" in frame.url)
+    frame.evaluate(WATCH)
+    session = studio.context.new_cdp_session(frame)
+    session.send("Emulation.setCPUThrottlingRate", {"rate": 8})
+    for material in ("cotton", "acrylic", "cotton"):  # nothing of the cloth before can stay
+        frame.evaluate("shares.length = 0")
+        shown = {"chart": CHART, "material": material}
+        assert studio.evaluate(PUT, ["/api/v1/views/" + _design(studio), json.dumps(shown)])
+        assert min(frame.evaluate(SEVERAL)) > 0.1
 
 
 @pytest.mark.slow
