@@ -109,13 +109,13 @@ def flat_studio(visitor: Page, service: str) -> Page:
     return open_small_chart(visitor, service)
 
 
-def open_small_chart(visitor: Page, service: str) -> Page:
-    """Show a chart of 12 x 10 knits."""
+def open_small_chart(visitor: Page, service: str, chart: str = CHART) -> Page:
+    """Show a chart, by default one of 12 x 10 knits."""
     design = {
         "id": os.urandom(16).hex(),
         "name": "Test",
         "material": "acrylic",
-        "chart": CHART,
+        "chart": chart,
     }
     kept = f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}"
     visitor.add_init_script(

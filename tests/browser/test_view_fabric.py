@@ -60,6 +60,25 @@ def test_the_live_view_is_framed_as_the_picture_before_it(studio: Page) -> None:
     assert live == pytest.approx(still, abs=0.1)
 
 
+@pytest.mark.slow
+def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
+    visitor: Page, service: str
+) -> None:
+    page = open_small_chart(visitor, service, "\n".join(["KP" * 30, "PK" * 30] * 30))
+    still = _reach(wait_for_colour(page, "#fabric", YARN))
+    assert min(still[:2]) > 0.3
+    view = "views/" + _design(page)
+    for pose, below in (("flat", 0), ("lying", 50)):
+        if pose != "flat":
+            page.click(f"#fabric-{pose}")
+            expect(page.locator(".fabric-caption")).to_contain_text("As it lies")
+        assert _reach(_wait_for_live_cloth(page)) == pytest.approx(still, abs=0.1)
+        with page.expect_response(lambda r: r.url.endswith(view) and r.request.method == "PUT"):
+            drag(page, 60, 30, start=(0, below))
+        page.wait_for_timeout(4_000)
+        assert _reach(_wait_for_live_cloth(page)) == pytest.approx(still, abs=0.1)
+
+
 def _reach(picture: np.ndarray) -> list[float]:
     """Height, width and middle of what is coloured, in shares of the pane."""
     coloured = np.ptp(picture[..., :3].astype(int), axis=2) > 40
