@@ -183,7 +183,7 @@ async function withCloth() {
   page.__viserMutable = { nodeRefFromName, requestRender: () => client.invalidate() };
   /** @type {string[]} */
   const told = [];
-  thread.onmessage = ({ data }) =>
+  thread.onmessage = (/** @type {any} */ { data }) =>
     told.push(...data.messages.map((/** @type {any} */ { type, name = "" }) => `${type} ${name}`.trim()));
   const built = (/** @type {string} */ name) => {
     nodeRefFromName[name] = { traverse: (look) => look({ instancesCount: 120 }) };
