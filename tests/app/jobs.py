@@ -14,7 +14,7 @@ from pydantic import BaseModel
 from app.compute.answers import Answers
 from app.compute.compute import Compute
 from app.context import Context
-from app.operations.perform import perform
+from app.operations.perform import ViewData, perform
 from app.operations.registry import Operation
 from app.results.recent import RecentResults
 from knitcore import InputError
@@ -128,6 +128,7 @@ def killed_in_the_middle(
     *,
     cancelled: Callable[[], bool],
     progress: Callable[[float, float], None],
+    before: ViewData | None = None,
 ) -> Any:
     """As ``perform``, but the process is killed while it works on an operation of a kind.
 
@@ -137,7 +138,9 @@ def killed_in_the_middle(
     from app.jobs.kinds import KINDS  # takes a second, and workers import this module
 
     if run is not KINDS[kind].run:
-        return perform(run, model, request, data_dir, cancelled=cancelled, progress=progress)
+        return perform(
+            run, model, request, data_dir, cancelled=cancelled, progress=progress, before=before
+        )
 
     def kill(*_: Any) -> bool:
         os.kill(os.getpid(), signal.SIGKILL)

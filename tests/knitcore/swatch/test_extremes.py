@@ -17,9 +17,9 @@ def test_a_checkerboard_is_stretched_up_to_its_lock_up() -> None:
     assert test.converged, test.problem
 
 
-@pytest.mark.parametrize("extreme", [{"shear_modulus": 1e-300}, {"width_mm": 1e-9}])
+@pytest.mark.parametrize("extreme", [{"shear_modulus": 1e300}, {"width_mm": 1e-9}])
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-def test_a_failed_factorisation_gives_no_result(extreme: dict[str, float]) -> None:
+def test_a_sheet_that_numbers_cannot_hold_gives_no_result(extreme: dict[str, float]) -> None:
     chart = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
     test = strip_test(chart, material("acrylic:published"), "wale", 0.1, steps=2, **extreme)
     assert not test.converged
