@@ -164,7 +164,8 @@ def test_the_full_model_reports_where_its_law_is_extrapolated(client: TestClient
     assert answer["converged"]
     (message,) = answer["messages"]
     found = re.match(r"From a strain of (\S+) on", message)
-    assert found and 0.7 < float(found[1]) < 1.2
+    assert found
+    assert 0.7 < float(found[1]) < 1.2
     assert "extrapolated" in message
     before = client.post("/api/v1/stretch", json=body | {"strain": 0.7, "steps": 7}).json()
     assert before["messages"] == []
