@@ -203,7 +203,7 @@ export function fabricview(host, studio, view) {
       status.replaceChildren(icon("warning"), problemText(error.problem));
     } finally {
       sending = false;
-      host.toggleAttribute("data-sending", again);
+      host.toggleAttribute("data-sending", false);
       if (again) {
         again = false;
         void send();

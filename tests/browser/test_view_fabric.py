@@ -237,7 +237,10 @@ def test_the_free_edges_of_a_stretched_fabric_curl(flat_studio: Page) -> None:
     flat_studio.click("#stretch-run")
     expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
     flat_studio.click("#stretch-more")
-    flat_studio.check("#stretch-curling")
+    with flat_studio.expect_response(
+        lambda r: "/views/" in r.url and '"curl":{' in (r.request.post_data or "")
+    ):
+        flat_studio.check("#stretch-curling")
     expect(flat_studio.locator(".fabric-caption")).to_contain_text("free edges curl")
     with flat_studio.expect_request(
         lambda r: "/views/" in r.url and '"curl":null' in (r.post_data or "")
