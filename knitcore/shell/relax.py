@@ -83,6 +83,7 @@ def settle(
     load_n: Array | None = None,
     floor_mm: float | None = None,
     quick: bool = False,
+    max_steps: float = np.inf,
     time_limit_s: float = 60.0,
     cancelled: Cancelled | None = None,
 ) -> Shape:
@@ -96,6 +97,7 @@ def settle(
     floor_mm : height z of a smooth table, below which corners are pushed up.
     quick : leave contact out of the first factor. Its first steps are as good where the sheet does
         not touch itself, and otherwise worse, but come five times as soon.
+    max_steps : evaluations of the energy after which it ends, not converged.
     time_limit_s : CPU time after which it ends, not converged.
     cancelled : called before every step; True stops with CancelledError.
 
@@ -108,7 +110,7 @@ def settle(
     descent = _Descent(sheet, x.copy(), held, load_n, floor_mm, quick)
     while descent.residual > TOLERANCE and time.process_time() - clock < time_limit_s:
         check_cancelled(cancelled)
-        if not descent.step():
+        if descent.steps >= max_steps or not descent.step():
             break
     return Shape(
         descent.x, descent.energy, descent.residual, descent.residual <= TOLERANCE, descent.steps,

@@ -20,6 +20,10 @@ _ALIKE = 0.1
 """Share by which energies may differ that count as alike: of two bent shapes alike that is taken
 which is bent the shorter way, so that the long edges roll, and of a bent and the flat one that."""
 
+_STEPS = 1700
+"""Most steps of a strip. One of 100 stitches comes to rest within as many; longer ones have rolled
+up far enough to be compared. Their ends are far away, and no step moves them by a millimetre."""
+
 
 def start(
     sheet: StitchSheet, *, time_limit_s: float = 60.0, cancelled: Cancelled | None = None
@@ -54,8 +58,9 @@ def _bent(sheet: StitchSheet, axis: int, time_limit_s: float, cancelled: Cancell
     plane = np.zeros(strip.flat_mm.shape, dtype=bool)
     plane[:, axis] = True  # a strip would roll up into a helix
     found = settle(
-        strip, _shaken(strip), held=plane, time_limit_s=time_limit_s, cancelled=cancelled
-    )
+        strip, _shaken(strip), held=plane, max_steps=_STEPS, time_limit_s=time_limit_s,
+        cancelled=cancelled,
+    )  # fmt: skip
     return extruded(sheet, axis, found.x)
 
 

@@ -9,6 +9,7 @@ from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError
 from knitcore.fabric import Fabric
 from knitcore.materials import material
+from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.rolled import extruded, start, strip_of
 from knitcore.shell.sheet import sheet_of
 
@@ -50,6 +51,16 @@ def test_a_long_piece_begins_with_its_sides_rolled_to_the_back() -> None:
 def test_what_lies_flat_begins_flat() -> None:
     sheet = sheet_of(StitchChart.of_fabric(Fabric.SEED, rows=6, columns=6), ACRYLIC)
     assert np.allclose(start(sheet), sheet.flat_mm, atol=0.01)
+
+
+def test_a_descent_ends_after_so_many_steps() -> None:
+    """So the long strip of a piece of 3 x 400 stitches does not take longer than the piece."""
+    sheet = sheet_of(StitchChart.parse("K").tile(6, 6), ACRYLIC)
+    shape = sheet.flat_mm + shake_mm(sheet.flat_mm.shape)
+    ended = settle(sheet, shape, max_steps=8)
+    assert 8 <= ended.steps < 16
+    assert not ended.converged
+    assert settle(sheet, shape).steps > 16
 
 
 def test_it_can_be_cancelled() -> None:
