@@ -69,9 +69,11 @@ class Cloth:
         shapes = _distinct(scene.shapes)
         sizes = tube_sizes(shapes, scene.placement)
         cells = shapes.index.ravel()
-        there = np.ones(len(cells), bool) if scene.drawn is None else scene.drawn.ravel()
-        used = map(int, np.unique(cells[there]))
-        keys = {shape: bytes(level) + shapes.lines[shape].tobytes() for shape in used}
+        there = np.arange(len(cells)) if scene.drawn is None else np.flatnonzero(scene.drawn)
+        there = there[np.argsort(cells[there], kind="stable")]
+        used, first = np.unique(cells[there], return_index=True)
+        stitches = dict(zip(map(int, used), np.split(there, first[1:]), strict=True))
+        keys = {shape: bytes(level) + shapes.lines[shape].tobytes() for shape in stitches}
         kept = {key: self._nodes[key] for key in keys.values() if key in self._nodes}
         flat = [key for s, key in keys.items() if key in kept and not kept[key].fits(sizes[s])]
         if exact:
@@ -85,7 +87,7 @@ class Cloth:
         copies = _copies(scene, middle_mm, drawn[cells])
         with self._server.atomic():
             for shape, key in keys.items():
-                of = {name: values[there & (cells == shape)] for name, values in copies.items()}
+                of = {name: values[stitches[shape]] for name, values in copies.items()}
                 if key in kept:
                     _move(kept[key].handle, of)
                 else:

@@ -16,7 +16,7 @@ import { REST } from "../studio.js";
 
 const DELAY_MS = 40;
 /** CPU time of the first shape, and that after which the second is shown as a preview, too. */
-const PATIENCE_S = [0.05, 40];
+const PATIENCE_S = [0.03, 40];
 
 /** @type {Record<string, (studio: Studio, signal: AbortSignal) => AsyncGenerator<Posed>>} */
 const SHAPES = { lying, worn, pulled, hung };

@@ -10,7 +10,8 @@ image, not as its repeat.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import lru_cache
 from itertools import product
 from typing import NamedTuple
 
@@ -19,17 +20,19 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
-from knitcore.answer.densities import Densities, densities_of
+from knitcore.answer.densities import densities_of
 from knitcore.answer.learned import packaged_model
-from knitcore.answer.mixture import present
+from knitcore.answer.mixture import present, pure_numbers
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES
-from knitcore.materials import Material
+from knitcore.materials import Material, Origin
 
 WINDOW = 16
 """Rows and columns of a window."""
 HALF = WINDOW // 2
+MOST_KNOWN = 10_000
+"""Windows of a material whose values are kept, about 2 MB."""
 
 
 def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
@@ -54,7 +57,7 @@ def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
     >>> bool(sizes[2, 20, 0] < 0.8 * sizes[37, 20, 0])
     True
     """
-    return _seen(chart, lambda found: packaged_model().relaxed_mm(found, material))
+    return sizes_and_folds(chart, material)[0]
 
 
 def sizes_and_folds(chart: StitchChart, material: Material) -> tuple[Array, Array]:
@@ -66,37 +69,60 @@ def sizes_and_folds(chart: StitchChart, material: Material) -> tuple[Array, Arra
     InputError
         If the material lacks a pure fabric that the chart needs.
     """
-
-    def both(found: Densities) -> Array:
-        phases = present(found.shares)
-        records = [material.record(PHASES[phase]) for phase in phases]
-        flat = found.shares[:, phases] @ [(r.stitch_course_mm, r.stitch_wale_mm) for r in records]
-        relaxed = packaged_model().relaxed_mm(found, material)
-        return np.concatenate([relaxed, relaxed / flat], axis=1)
-
-    seen = _seen(chart, both)
-    return seen[..., :2], seen[..., 2:]
-
-
-def _seen(chart: StitchChart, of: Callable[[Densities], Array]) -> Array:
-    """Values of a function of densities (windows, n) at every stitch, (rows, columns, n)."""
+    known = _of_yarn(_numbers(material))
     counted = list(product(*(_windows(count) for count in chart.purl.shape)))
-    return np.asarray(sum(_interpolated(chart, of, *each) for each in counted) / len(counted))
+    sums = sum(_interpolated(chart, material, known, *each) for each in counted)
+    found = np.asarray(sums) / len(counted)
+    return found[..., :2], found[..., 2:]
+
+
+def _numbers(material: Material) -> bytes:
+    """All of a material that decides the sizes of windows."""
+    fabrics = [fabric for fabric in PHASES if fabric in material.fabrics]
+    records = [material.record(fabric) for fabric in fabrics]
+    sizes = [(r.fabric.phase, *r.stitch_mm, r.origin is Origin.SIMULATED) for r in records]
+    yarn = pure_numbers(material, np.array([fabric.phase for fabric in fabrics]))
+    return np.append(sizes, yarn).tobytes()
+
+
+@lru_cache(maxsize=16)
+def _of_yarn(numbers: bytes) -> dict[bytes, Array]:
+    """Values of windows in a material: a stroke changes a few windows of a piece."""
+    return {}
 
 
 def _interpolated(
-    chart: StitchChart, of: Callable[[Densities], Array], rows: Windows, columns: Windows
+    chart: StitchChart,
+    material: Material,
+    known: dict[bytes, Array],
+    rows: Windows,
+    columns: Windows,
 ) -> Array:
-    """The values of windows at these places."""
+    """The values of windows at these places, (rows, columns, 4)."""
     around = chart.purl[np.ix_(rows.stitches, columns.stitches)]
     windows = sliding_window_view(around, (WINDOW, WINDOW))[::HALF, ::HALF]
     count, windows = windows.shape[:2], windows.reshape(-1, WINDOW, WINDOW)
-    packed = np.packbits(windows.reshape(len(windows), -1), axis=1)
-    _, first, same = np.unique(packed, axis=0, return_index=True, return_inverse=True)
-    values = of(densities_of(windows[first]))[same].reshape(*count, -1)
+    keys = [packed.tobytes() for packed in np.packbits(windows.reshape(len(windows), -1), axis=1)]
+    found = {key: known[key] for key in set(keys) & known.keys()}
+    new = {key: window for key, window in zip(keys, windows, strict=True) if key not in found}
+    if new:
+        values = _sizes_and_folds(np.array(list(new.values())), material)
+        found.update(zip(new, values, strict=True))
+        if len(known) > MOST_KNOWN:
+            known.clear()
+        known.update(found)
+    layers = np.moveaxis(np.array([found[key] for key in keys]).reshape(*count, -1), -1, 0)
     at = np.meshgrid(rows.places, columns.places, indexing="ij")
-    layers = np.moveaxis(values, -1, 0)
     return np.stack([map_coordinates(layer, at, order=1) for layer in layers], axis=-1)
+
+
+def _sizes_and_folds(windows: NDArray[np.bool_], material: Material) -> Array:
+    """(windows, 4) size, and size over the flat mixture's."""
+    found = densities_of(windows)
+    phases = present(found.shares)
+    flat = found.shares[:, phases] @ [material.record(PHASES[k]).stitch_mm for k in phases]
+    relaxed = packaged_model().relaxed_mm(found, material)
+    return np.concatenate([relaxed, relaxed / flat], axis=1)
 
 
 class Windows(NamedTuple):

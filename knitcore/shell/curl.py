@@ -168,8 +168,8 @@ def curl(
     if stitches is not None:
         sheet = sheet.cut(stitches)
     left = time_limit_s - (time.process_time() - clock)
-    quick = begin is not None
-    found = settle(sheet, x, held=held, quick=quick, time_limit_s=left, cancelled=cancelled)
+    near = begin is not None
+    found = settle(sheet, x, held=held, near=near, time_limit_s=left, cancelled=cancelled)
     placed = found.x if pull else aligned(found.x, sheet)
     corners = placed.reshape(shape)
     strip = STRIP * sheet.thickness_mm

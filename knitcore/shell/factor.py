@@ -89,7 +89,7 @@ class SheetFactor:
         return x.astype(float)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _fronts(indptr: bytes, indices: bytes, columns: int) -> list[_Front]:
     first, near = np.frombuffer(indptr, np.int32), np.frombuffer(indices, np.int32)
     count = len(first) - 1

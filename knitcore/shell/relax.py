@@ -38,6 +38,10 @@ _GROW = 2.0
 _LEAST = 0.1
 """Of the longest displacement that is tried, in units of its greatest value."""
 _MIN_STEP = 1e-8
+_LARGE = 0.03
+"""Forces count as large from this share of the largest one."""
+_AROUND = 8
+"""Stitches around large forces that settle with them."""
 _ROUNDING = 1e-10
 """Energies this close, relatively, count as equal; then the slope decides."""
 
@@ -82,7 +86,7 @@ def settle(
     held: NDArray[np.bool_] | None = None,
     load_n: Array | None = None,
     floor_mm: float | None = None,
-    quick: bool = False,
+    near: bool = False,
     max_steps: float = np.inf,
     time_limit_s: float = 60.0,
     cancelled: Cancelled | None = None,
@@ -95,8 +99,8 @@ def settle(
     held : (corners, 3) coordinates that do not change, or (corners,) corners that do not move.
     load_n : (corners, 3) forces that act on the corners, such as their weight.
     floor_mm : height z of a smooth table, below which corners are pushed up.
-    quick : leave contact out of the first factor. Its first steps are as good where the sheet does
-        not touch itself, and otherwise worse, but come five times as soon.
+    near : settle the rectangle around the large forces first, by one step at least. Where a shape
+        was at rest before a few stitches were changed, that is most of the way.
     max_steps : evaluations of the energy after which it ends, not converged.
     time_limit_s : CPU time after which it ends, not converged.
     cancelled : called before every step; True stops with CancelledError.
@@ -107,11 +111,10 @@ def settle(
         If ``cancelled`` says so.
     """
     clock = time.process_time()
-    descent = _Descent(sheet, x.copy(), held, load_n, floor_mm, quick)
-    while descent.residual > TOLERANCE and time.process_time() - clock < time_limit_s:
-        check_cancelled(cancelled)
-        if descent.steps >= max_steps or not descent.step():
-            break
+    descent = _Descent(sheet, x.copy(), held, load_n, floor_mm)
+    if near:
+        descent.settle_near(time_limit_s, cancelled)
+    descent.run(time_limit_s - (time.process_time() - clock), max_steps, cancelled)
     return Shape(
         descent.x, descent.energy, descent.residual, descent.residual <= TOLERANCE, descent.steps,
         time.process_time() - clock,
@@ -126,7 +129,6 @@ class _Descent:
         held: NDArray[np.bool_] | None,
         load_n: Array | None,
         floor_mm: float | None,
-        quick: bool,
     ) -> None:
         self._sheet = sheet
         self.x = x
@@ -145,7 +147,7 @@ class _Descent:
         self.steps = self.factors = 0
         self._past: deque[tuple[Array, Array, float]] = deque(maxlen=MEMORY)
         self._factor: SheetFactor | None = None
-        self._quick = quick
+        self._quick = False
         self._age = 0
         self._list()
         self.energy, self._gradient = self._at(x)
@@ -154,6 +156,37 @@ class _Descent:
     def residual(self) -> float:
         """Largest force on a corner, in units of the sheet's bending."""
         return float(np.sqrt((self._gradient**2).sum(axis=1).max())) / self._unit
+
+    def load(self, forces_n: Array) -> None:
+        """Let forces (corners, 3) act on the corners."""
+        self._load = forces_n
+        self.energy, self._gradient = self._at(self.x)
+
+    def run(self, time_limit_s: float, max_steps: float, cancelled: Cancelled | None) -> None:
+        """Descend until it is at rest, or CPU time or steps are used up."""
+        clock = time.process_time()
+        while self.residual > TOLERANCE and time.process_time() - clock < time_limit_s:
+            check_cancelled(cancelled)
+            if self.steps >= max_steps or not self.step():
+                break
+
+    def settle_near(self, time_limit_s: float, cancelled: Cancelled | None) -> None:
+        """Settle a part of the sheet under the forces that the rest exerts on it now."""
+        clock = time.process_time()
+        sheet, force = self._sheet, np.linalg.norm(self._gradient, axis=1)
+        where = np.divmod(np.flatnonzero(force >= _LARGE * force.max()), sheet.columns + 1)
+        box = map(_around, where, (sheet.rows, sheet.columns))
+        part, corners, rim = sheet.part(*box)
+        held = ~self._free[corners] | rim[:, None]
+        near = _Descent(part, self.x[corners], held, None, None)
+        near.load(np.where(held, 0.0, near._gradient - self._gradient[corners]))
+        near._unit, near._quick = self._unit, True
+        near.step()
+        near.run(time_limit_s - (time.process_time() - clock), np.inf, cancelled)
+        self.x = self.x.copy()
+        self.x[corners] = near.x
+        self._list_again()
+        self.energy, self._gradient = self._at(self.x)
 
     def step(self) -> bool:
         """One step downhill; False where there is none."""
@@ -185,9 +218,7 @@ class _Descent:
         self.x, self.energy, self._gradient = self.x + moved, energy, gradient
         self._age += 1
         self._reach = min(self._stride, max(_GROW * fraction * longest, _LEAST * self._stride))
-        far = 0.5 * _SKIN * self._sheet.thickness_mm - self._reach
-        if float(((self.x - self._listed) ** 2).sum(axis=1).max()) > far * far:
-            self._list()
+        self._list_again()
         return True
 
     def _renew(self) -> None:
@@ -201,7 +232,7 @@ class _Descent:
     def _factorised(self, least: float) -> bool:
         shift = np.full(self.x.shape, least)
         shift[:, 2] += self._sheet.touch_n_per_mm * (self.x[:, 2] < self._floor)
-        pairs = self._pairs[:0] if self._quick and not self.factors else self._pairs
+        pairs = self._pairs[:0] if self._quick else self._pairs
         matrix = self._tangent.matrix(self.x, pairs, self._free, convex=True, shift=shift)
         try:
             apart = self._tangent.is_apart(matrix)
@@ -238,6 +269,20 @@ class _Descent:
         gradient[~self._free] = 0.0
         return energy, gradient
 
+    def _list_again(self) -> None:
+        """List near points anew if others may touch after the next step."""
+        far = 0.5 * _SKIN * self._sheet.thickness_mm - self._reach
+        if float(((self.x - self._listed) ** 2).sum(axis=1).max()) > far * far:
+            self._list()
+
     def _list(self) -> None:
         self._pairs = self._sheet.pairs(self.x, _SKIN * self._sheet.thickness_mm)
         self._listed = self.x
+
+
+def _around(places: NDArray[np.int64], stitches: int) -> slice:
+    """The corners of a row or column around these."""
+    first, last = max(int(places.min()) - _AROUND, 0), min(int(places.max()) + _AROUND, stitches)
+    side = min(-((first - last) // _AROUND) * _AROUND, stitches)
+    first = min(first, stitches - side)
+    return slice(first, first + side + 1)

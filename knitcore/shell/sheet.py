@@ -111,6 +111,35 @@ class StitchSheet:
             twisting=self.twisting[kept],
         )  # fmt: skip
 
+    def part(self, rows: slice, columns: slice) -> tuple[StitchSheet, Ints, NDArray[np.bool_]]:
+        """A rectangle of the sheet, the numbers that its corners have in the whole, and whether
+        each is on the rim, where stitches outside act on it.
+
+        Parameters
+        ----------
+        rows, columns : of corners.
+        """
+        corners = np.arange(len(self.flat_mm)).reshape(self.rows + 1, -1)[rows, columns]
+        number = np.full(len(self.flat_mm), -1)
+        number[corners.ravel()] = np.arange(corners.size)
+        rim = np.zeros(corners.size + 1, dtype=bool)  # the last one is outside
+
+        def within(net: Ints, values: Array) -> tuple[Ints, Array]:
+            numbers = number[net]
+            whole = (numbers >= 0).all(axis=1)
+            rim[numbers[~whole]] = True
+            return numbers[whole], values[whole]
+
+        quarters, membrane = within(self.quarters, self.membrane)
+        hinges, turning = within(self.hinges, self.turning)
+        quads, twisting = within(self.quads, self.twisting)
+        part = replace(
+            self, rows=corners.shape[0] - 1, columns=corners.shape[1] - 1,
+            flat_mm=self.flat_mm[corners.ravel()], quarters=quarters, membrane=membrane,
+            hinges=hinges, turning=turning, quads=quads, twisting=twisting,
+        )  # fmt: skip
+        return part, corners.ravel(), rim[:-1]
+
     def clamped(self, held: NDArray[np.bool_]) -> StitchSheet:
         """The sheet with lines at the edge of a clamp twice as stiff: only their outer half bends.
 

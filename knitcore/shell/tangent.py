@@ -85,7 +85,7 @@ class Tangent:
         return bsr_matrix((data, column, start), shape=(size, size))
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _pattern(
     count: int, quarters: bytes, hinges: bytes, quads: bytes
 ) -> tuple[Ints, tuple[Ints, ...]]:

@@ -42,7 +42,7 @@ def test_curl_over_rest(client: TestClient) -> None:
 
 
 def test_a_first_shape_begins_at_an_old_one(client: TestClient) -> None:
-    """Without time for a step it is that shape; unknown ids and other sizes have no effect."""
+    """Without time it is a step from that shape; unknown ids and other sizes have no effect."""
 
     def depth_mm(**more: object) -> float:
         body = {"chart": STRIP, "material": "acrylic", "time_limit_s": 1e-9} | more
@@ -54,7 +54,7 @@ def test_a_first_shape_begins_at_an_old_one(client: TestClient) -> None:
     rest = client.post("/api/v1/curl", json={"chart": STRIP, "material": "acrylic"}).json()
     changed = "KKKKKKKKKKKK\nKKKKKPKKKKKK\nKKKKKKKKKKKK"
     after = {"after": rest["id"]}
-    assert depth_mm(chart=changed, **after) == pytest.approx(rest["depth_mm"], rel=1e-3)
+    assert depth_mm(chart=changed, **after) == pytest.approx(rest["depth_mm"], rel=0.1)
     assert depth_mm(chart=changed) < 0.5 * rest["depth_mm"]
     assert depth_mm(chart=changed, after="unknown") == depth_mm(chart=changed)
     assert depth_mm(chart="KKKK\nKKKK", **after) == depth_mm(chart="KKKK\nKKKK")

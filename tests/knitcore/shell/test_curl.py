@@ -205,6 +205,17 @@ def test_after_a_change_a_descent_that_begins_at_the_old_shape_is_near_rest_at_o
     assert 0.0 < far[1] < 0.3 * far[0]
 
 
+def test_the_first_shape_after_a_change_moves_only_what_is_near_it() -> None:
+    chart = StitchChart.parse("KKKPPP").tile(40, 5)
+    old = curl(chart, ACRYLIC)
+    purl = chart.purl.copy()
+    purl[5, 8:10] ^= True
+    soon = curl(StitchChart(purl), ACRYLIC, begin=old.corners_mm, time_limit_s=1e-9)
+    rise = np.linalg.norm(np.diff(soon.corners_mm - old.corners_mm, axis=0), axis=-1)
+    assert rise[:12].max() > 0.01
+    assert rise[30:].max() < 0.03 * rise.max()  # the whole is aligned anew
+
+
 def test_a_shape_of_another_size_is_nothing_to_begin_with() -> None:
     with pytest.raises(InputError, match="another size"):
         curl(StitchChart.parse("K").tile(4, 4), ACRYLIC, begin=np.zeros((4, 5, 3)))

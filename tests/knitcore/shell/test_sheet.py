@@ -54,6 +54,20 @@ def test_hessian_is_the_derivative_of_the_gradient(rough_mm: float) -> None:
     assert abs(matrix - matrix.T).max() < 1e-12
 
 
+def test_a_part_of_a_sheet_feels_the_forces_of_the_whole_but_on_its_rim() -> None:
+    sheet = sheet_of(MIXED.tile(2, 3), ACRYLIC)
+    x = sheet.flat_mm + 0.2 * np.random.default_rng(0).standard_normal(sheet.flat_mm.shape)
+    part, corners, rim = sheet.part(slice(2, 9), slice(0, 8))
+    assert (part.rows, part.columns) == (6, 7)
+    none = np.empty((0, 2), np.int64)
+    whole, alone = sheet.energy(x, none)[1][corners], part.energy(x[corners], none)[1]
+    assert np.allclose(alone[~rim], whole[~rim])
+    assert not np.isclose(alone[rim], whole[rim]).all(axis=1).any()
+    assert rim.reshape(7, 8).tolist() == [
+        [r in (0, 1, 5, 6) or c > 5 for c in range(8)] for r in range(7)
+    ]
+
+
 def test_a_touch_is_soft_at_first_and_firm_at_its_usual_depth() -> None:
     thickness, stiffness = 2.5, 0.2
     energy, force, along = kernels.pressed(0.0, thickness, stiffness)
