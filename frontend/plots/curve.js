@@ -235,7 +235,7 @@ export function stressStrainLayout(width, height) {
     font: { family: "system-ui, sans-serif", size: 13, color: text },
     showlegend: false,
     hovermode: "closest",
-    xaxis: { ...axis, title: { text: "Strain (%)", standoff: 6, font: { size: 13 } }, nticks: 6 },
+    xaxis: { ...axis, title: { text: "Stretch (%)", standoff: 6, font: { size: 13 } }, nticks: 6 },
     yaxis: { ...axis, title: { text: "Stress (N/mm)", standoff: 8, font: { size: 13 } }, nticks: 5 },
   };
 }

@@ -15,7 +15,7 @@ import { drawPlot } from "./plotly.js";
 export async function drawPair(host, curves) {
   const style = getComputedStyle(document.documentElement);
   const end = Math.max(...curves.map(({ curve }) => 100 * Math.max(...curve.strain)));
-  const traces = curves.flatMap(({ name, colour: property, curve }) => {
+  const traces = curves.flatMap(({ name, colour: property, curve }, k) => {
     const colour = style.getPropertyValue(`--${property}`).trim();
     const percent = (/** @type {number[]} */ strain) => strain.map((value) => Math.min(100 * value, 1.15 * end));
     const stress = curve.stress_n_per_mm;
@@ -35,7 +35,7 @@ export async function drawPair(host, curves) {
         x: percent(curve.strain),
         y: stress,
         mode: "lines",
-        line: { color: colour, width: 2.5 },
+        line: { color: colour, width: 2.5, dash: k ? "dash" : "solid" }, // the first is seen below a like one
         hovertemplate: `%{x:.0f} %, %{y:.3g} N/mm<extra>${name}</extra>`,
       },
     ]);

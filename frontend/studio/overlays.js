@@ -76,7 +76,7 @@ const fabrics = {
       { label: "rib", colour: css(palette.fabrics[2]) },
       { label: "seed", colour: css(palette.fabrics[3]) },
       {
-        label: "in 3D also the mix of two",
+        label: "mixed (in 3D)",
         colour: `linear-gradient(90deg, ${css(palette.fabrics[0])}, ${css(palette.fabrics[2])})`,
       },
       { label: "purl", colour: "transparent", dot: true },

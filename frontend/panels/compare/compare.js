@@ -175,6 +175,8 @@ export function create(studio, { keeper }) {
     );
   };
 
+  element.addEventListener("close", () => latest.cancel()); // a browser sends only six requests at a time
+
   /** The design that was compared last. */
   let opened = "";
   return async () => {

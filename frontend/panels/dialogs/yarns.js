@@ -117,6 +117,7 @@ export function create(studio) {
   studio.materials.watch(show);
   return () => {
     status.replaceChildren();
+    maker.element.hidden = true;
     element.showModal();
   };
 }

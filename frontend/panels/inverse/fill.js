@@ -92,7 +92,7 @@ export function fillTab(studio) {
   /** @param {Part} part @param {number} at */
   const item = (part, at) => {
     const inputs = AXES.map(({ axis, label }) => {
-      const input = field(`Wanted stiffness along ${label}, N/mm: ${part.name}`, 0, {
+      const input = field(`Wanted modulus along ${label}, N/mm: ${part.name}`, 0, {
         min: "0.0001",
         step: "any",
         required: false,
@@ -186,7 +186,7 @@ export function fillTab(studio) {
   const show = () => {
     list.replaceChildren(
       ...(parts.length
-        ? [h("li", { class: "muted inverse-hint" }, "Stiffness in N/mm, now → wanted"), ...parts.map(item)]
+        ? [h("li", { class: "muted inverse-hint" }, "Modulus in N/mm, now → wanted"), ...parts.map(item)]
         : [
             h(
               "li",
@@ -211,7 +211,7 @@ export function fillTab(studio) {
         title: targeted.length ? "The chart has another size now" : "There is no target",
         detail: targeted.length
           ? "The parts were drawn on the chart as it was."
-          : "A part needs a stiffness along rows or columns.",
+          : "A part needs a modulus along rows or columns.",
         remedy: targeted.length ? "Add the parts again." : "Add a part, and give it a number.",
       });
       return;

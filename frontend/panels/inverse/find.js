@@ -22,8 +22,8 @@ import { numberField } from "../../widgets/fields.js";
 
 /** @type {Quantity[]} */
 const QUANTITIES = [
-  { id: "modulus_course_n_per_mm", label: "Stiffness, rows", short: "rows", unit: "N/mm", start: 0.1 },
-  { id: "modulus_wale_n_per_mm", label: "Stiffness, columns", short: "columns", unit: "N/mm", start: 0.1 },
+  { id: "modulus_course_n_per_mm", label: "Modulus, rows", short: "rows", unit: "N/mm", start: 0.1 },
+  { id: "modulus_wale_n_per_mm", label: "Modulus, columns", short: "columns", unit: "N/mm", start: 0.1 },
   {
     id: "stretch_course",
     label: "Stretch, rows",
