@@ -63,7 +63,7 @@ HEAD = """# Evidence
 
 How far to trust each number. `python scripts/evidence.py FOLDER` makes this page from the public
 data of Singal et al. (raw stretch tests, displacement pictures, compression tests) and from the
-library as it is. No figure here is typed in by hand.
+present library. No figure here is typed by hand.
 """
 
 
@@ -75,7 +75,7 @@ def stretch(folder: Path) -> list[str]:
         "simulated at the clamp-to-clamp strain at which the test carried",
         f"{', '.join(map(str, STRESSES))} N/mm. Simulated over measured force at each; waist",
         "strain between the tracked points, simulated minus measured, at the last. The measured",
-        "waist includes what cloth widens as it becomes flat at the start of a pull, which the",
+        "waist includes the widening of cloth that flattens at the start of a pull, which the",
         "refitted laws do not follow ([how](fit-a-law.md#how-constants-come-about)).",
         "",
         "| test | published | refitted | waist published | waist refitted |",
@@ -102,7 +102,7 @@ def stretch(folder: Path) -> list[str]:
         "",
         "![Waists of the eight tests by both sets of laws](figures/evidence-waists.svg)",
         "",
-        "Simulated less measured waist of each test, at the three stresses from left to right.",
+        "Simulated minus measured waist of each test, at the three stresses from left to right.",
         "",
         "![Pulls predicted from the others](figures/left-out-pulls.svg)",
         "",
@@ -222,7 +222,7 @@ def bending(folder: Path) -> list[str]:
         "",
         f"{len(photos)} photos of acrylic yarn hanging over an edge, 10 to 25 cm long: B is",
         f"{1000 * found.bending_modulus_n_mm2:.1f} ± {1000 * (found.standard_deviation or 0):.1f}"
-        f" mN·mm² (one photo), the paper has {paper.corrected:g}. B is in proportion to the linear",
+        f" mN·mm² (one photo), the paper has {paper.corrected:g}. B is proportional to the linear",
         f"density, taken as {DENSITY_G_PER_M} g/m. *Not shown*: the other yarns, and any",
         "set of the",
         "yarn.",
@@ -276,9 +276,8 @@ def relaxed_sizes(folder: Path) -> list[str]:
         "![Predicted against knitted sizes](figures/evidence-relaxed-sizes.svg)",
         "",
         f"{len(names)} knit and purl swatches of one acrylic yarn, knitted and measured by others",
-        "(KnitDB; Hofmann et al., KnitPick, UIST 2019). Compared are widths and heights",
-        "over those of",
-        "stockinette, with the pure fabrics of `lace-acrylic` for that yarn's. Rms",
+        "(KnitDB; Hofmann et al., KnitPick, UIST 2019). Widths and heights relative to stockinette",
+        "are compared, with the pure fabrics of `lace-acrylic` in place of that yarn's. Rms",
         "factors: predicted",
         f"{factor(logs - true)}; all like stockinette {factor(true)}. Rank correlation:",
         f"{ranks(logs, true)}. Of {inside.size} sizes {inside.mean():.0%} lie in the 90 %",
@@ -304,9 +303,9 @@ def gradings(folder: Path) -> list[str]:
         "B 2020, CC BY 4.0), pulled wale-wise to 10 %: the force falls by a factor of",
         f"{ratio:.1f} (middles of the measured bands); the yarn level's scale of stress, B/L³,",
         f"gives {(6.5 / 4.5) ** 3:.1f}.",
-        "A strip with one half of each, side by side, was pulled too.",
-        "Simulated with laws fitted to the uniform cloths, at either end of their bands and with",
-        "all Poisson's ratios as above, force in N:",
+        "A strip with one half of each, side by side, was pulled too. The table gives its force in",
+        "N, measured and simulated with laws fitted to the uniform cloths, at either end of their",
+        "bands and with all Poisson's ratios as above:",
         "",
         "| strain | measured | simulated, κ = 0 | simulated, with κ |",
         "|---|---|---|---|",
@@ -367,8 +366,8 @@ def field(folder: Path) -> list[str]:
         "## Displacement field",
         "",
         "Acrylic garter pulled wale-wise. Differences of displacements, u_x / u_y, root mean",
-        "square in percent of the width, with the measured motion of the edges imposed or, where",
-        "it says so, its mean.",
+        "square in percent of the width, with the measured motion of the edges imposed or, in rows",
+        "marked *rigid edges*, its mean.",
         "",
         f"| | {' | '.join(head)} |",
         "|---" * (len(head) + 1) + "|",
@@ -386,9 +385,9 @@ def field(folder: Path) -> list[str]:
         "",
         "![Differences of displacements across the pull](figures/evidence-field.svg)",
         "",
-        "The refitted law has seen the stretch tests only, so its row is a test of it. The laws",
-        "calibrated keep the stretch test's force, too: simulated over measured, on the first two",
-        f"pictures, {loaded.min():.2f} to {loaded.max():.2f} from a strain of",
+        "The refitted law rests on the stretch tests only, so its row is a true test. The",
+        "calibrated laws also keep the force of the stretch test: simulated over measured, on the",
+        f"first two pictures, {loaded.min():.2f} to {loaded.max():.2f} from a strain of",
         f"{first.force_strain[1]:.2f} on, {first.force_ratio[0]:.2f} at",
         f"{first.force_strain[0]:.2f}. The last picture of their row is an extrapolation. Half the",
         f"difference of the swatch's left and right side is {FIELD_NOISE_PERCENT} % of the width,",
@@ -462,17 +461,16 @@ def shear(folder: Path) -> list[str]:
         "The largest factor by which a force is missed is "
         + ", ".join(f"{factor:.2f} ({name})" for name, factor in worst.items())
         + ".",
-        "So much of the stiffening on the bias is the coupling's, and the rest is the shear's own:",
-        "its stiffness grows with the square of the angle and has doubled at half a radian. That",
-        "one number was chosen on this strip (Poisson's ratio 0.3, 50 and 100 mm), so the table",
-        "does not prove it, and the yarn level does not confirm it: without friction and free of",
-        "force, its stockinette and garter become softer ([decisions](decisions.md#shear)). The",
-        "interval of the number holds both.",
-        "Less certain is the modulus at rest. This jersey has a share of "
-        f"{min(matched[name]):.2f} to {max(matched[name]):.2f}, the library's acrylic, from its",
-        f"tests and a broad prior, {', '.join(shares)}. The intervals allow for a factor of three",
-        "to five either way. *Not shown*: width (50 mm is",
-        "assumed), length and Poisson's ratios of the specimens, which the files do not state;",
+        "So part of the stiffening on the bias comes from the coupling, and the rest from shear",
+        "itself, whose stiffness grows with the square of the angle and doubles at half a radian.",
+        "This one number was chosen on this strip (Poisson's ratio 0.3, 50 and 100 mm), so the",
+        "table does not prove it, and the yarn level does not confirm it: without friction and",
+        "free of force, its stockinette and garter become softer ([decisions](decisions.md#shear)). The",
+        "interval of the number includes both.",
+        "The modulus at rest is less certain. This jersey has a share of "
+        f"{min(matched[name]):.2f} to {max(matched[name]):.2f}; the library's acrylic has, from",
+        f"its tests and a broad prior, {', '.join(shares)}. The intervals allow for a factor of",
+        "three to five either way. *Not shown*: width (50 mm is assumed), length and Poisson's ratios of the specimens, which the files do not state;",
         "other yarns and fabrics; unloading.",
         "",
     ]
