@@ -465,12 +465,13 @@ def shear(folder: Path) -> list[str]:
         "itself, whose stiffness grows with the square of the angle and doubles at half a radian.",
         "This one number was chosen on this strip (Poisson's ratio 0.3, 50 and 100 mm), so the",
         "table does not prove it, and the yarn level does not confirm it: without friction and",
-        "free of force, its stockinette and garter become softer ([decisions](decisions.md#shear)). The",
-        "interval of the number includes both.",
+        "free of force, its stockinette and garter become softer",
+        "([decisions](decisions.md#shear)). The interval of the number includes both.",
         "The modulus at rest is less certain. This jersey has a share of "
         f"{min(matched[name]):.2f} to {max(matched[name]):.2f}; the library's acrylic has, from",
         f"its tests and a broad prior, {', '.join(shares)}. The intervals allow for a factor of",
-        "three to five either way. *Not shown*: width (50 mm is assumed), length and Poisson's ratios of the specimens, which the files do not state;",
+        "three to five either way. *Not shown*: width (50 mm is assumed), length and Poisson's",
+        "ratios of the specimens, which the files do not state;",
         "other yarns and fabrics; unloading.",
         "",
     ]
