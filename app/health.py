@@ -29,7 +29,7 @@ class Health(BaseModel):
 class Readiness(Health):
     """The service can work."""
 
-    checks: dict[str, bool] = Field(description="Whether all is well, by the name of the check.")
+    checks: dict[str, bool] = Field(description="Whether each check passed, by its name.")
 
 
 class NotReadyError(UnavailableError):

@@ -41,14 +41,14 @@ class Settings(BaseSettings):
     host: str = Field("127.0.0.1", description="Address to listen on.")
     port: int = Field(8737, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
     token: SecretStr | None = Field(
-        None, description="Token that every request must bring; needed beyond loopback."
+        None, description="Token that every request must carry; required beyond loopback."
     )
     require_login: bool = Field(
         False,
         description="Whether every user must bring a token of their own (`knitcore token create`).",
     )
     requests_per_s: float = Field(
-        50.0, gt=0, description="Requests of one user a second, where a login is asked for."
+        50.0, gt=0, description="Requests per second of one user, where a login is required."
     )
     allowed_hosts: tuple[str, ...] = Field(
         (), description="Host names that a browser may use for this service beyond loopback."
@@ -71,7 +71,7 @@ class Settings(BaseSettings):
         None, description="postgresql+psycopg://…; an SQLite file in the data folder otherwise."
     )
     log_format: Literal["text", "json"] = Field(
-        "text", description="Log lines for people, or one JSON object a line."
+        "text", description="Log lines for people, or one JSON object per line."
     )
     workers: int = Field(
         max(2, min(4, (os.cpu_count() or 2) - 1)),
@@ -90,7 +90,7 @@ class Settings(BaseSettings):
     worker_memory_bytes: int = Field(
         default_factory=lambda: max(4_000_000_000, machine_bytes() // 2),
         ge=500_000_000,
-        description="Most memory of one process for heavy work; half of the machine's by default.",
+        description="Largest memory of a process for heavy work; half of the machine's by default.",
     )
     worker_priority: Literal["idle", "low"] = Field(
         "idle",
@@ -98,7 +98,7 @@ class Settings(BaseSettings):
         "busy core (low).",
     )
     results_max_bytes: int = Field(
-        1_000_000_000, ge=0, description="Most disk space for stored results of jobs."
+        1_000_000_000, ge=0, description="Largest disk space for stored results of jobs."
     )
     process_name: str = Field(
         "main",

@@ -36,7 +36,7 @@ const UNREACHABLE = {
   title: "The service cannot be reached",
   status: 0,
   detail: "No answer came from the service.",
-  remedy: "Your chart is kept in this browser. Painting goes on; the numbers come back by themselves.",
+  remedy: "Your chart is saved in this browser. Continue painting; the numbers return when the service does.",
 };
 
 /**

@@ -414,7 +414,7 @@ export interface ClothPiece {
   id: string;
   /** K/P lines, the top row first, as seen from the face. */
   chart: string;
-  /** Lines of x (there) and . (not), the top row first. */
+  /** Lines of x (part of it) and . (not part of it), the top row first. */
   outline: string;
 }
 
@@ -652,7 +652,7 @@ export interface DesignDocument {
   version: 2;
   name: string;
   material: string;
-  /** K/P lines, the top row first, as seen from the face. A / may end a line, too. */
+  /** K/P lines, the top row first, as seen from the face; or separated by /. */
   chart: string;
   note: string;
 }
@@ -686,7 +686,7 @@ export interface DesignLayout {
 /** A part of a list, latest changes first. */
 export interface DesignPage {
   designs: DesignSummary[];
-  /** Ask with it for what follows; None at the end. */
+  /** Send it to get the next page; null at the end. */
   next_cursor: string | null;
 }
 
@@ -967,7 +967,7 @@ export interface FabricDocument {
 /** One fabric; extension under load comes first because it is predicted best. */
 export interface FabricEstimateResult {
   strain_at_0_1_n_per_mm: Record<Direction, number>;
-  /** Of no width where it is measured, as all intervals here. */
+  /** Without width where the fabric is measured, like all intervals here. */
   strain_at_0_1_n_per_mm_interval: Record<Direction, [number, number]>;
   modulus_n_per_mm: Record<Direction, number>;
   modulus_interval_n_per_mm: Record<Direction, [number, number]>;
@@ -1043,7 +1043,7 @@ export interface FillRequest {
   repeats?: "small" | "all";
   /** Smallest side of a patch, where its part is not smaller. */
   smallest_patch?: number;
-  /** Single stitches may be turned where that comes nearer; otherwise every patch is a repeat, or stripes of two. */
+  /** Single stitches may be turned over where that comes nearer; otherwise every patch is a repeat, or stripes of two. */
   scattered?: boolean;
   /** The same seed gives the same chart. */
   seed?: number;
@@ -1207,7 +1207,7 @@ export interface GarmentResult {
   columns: number;
   /** K/P lines, the top row first, as seen from the face. */
   chart: string;
-  /** Lines of x (there) and . (not), the top row first. */
+  /** Lines of x (part of it) and . (not part of it), the top row first. */
   outline: string;
   stitches: number;
   /** The material direction around the limb. */
@@ -1399,7 +1399,7 @@ export interface HysteresisRequest {
   max_strain?: number;
   /** Coefficient of friction between yarns; that of the fibre by default. */
   friction?: number | null;
-  /** Strains on the way there. */
+  /** Number of strains in loading. */
   points?: number;
   cycles?: number;
   /** Also find the rest size after every history. */
@@ -1419,7 +1419,7 @@ export interface HysteresisResult {
   /** Of the yarn or its fibre; null where the request gave the coefficient. */
   friction_interval: [number, number] | null;
   friction_source: string;
-  /** Ways there and back in turn. */
+  /** Loading and unloading in turn. */
   legs: LoopLeg[];
   /** Energy that the last cycle loses per area of fabric, N·mm/mm². */
   lost_per_cycle_n_per_mm: number;
@@ -1428,7 +1428,7 @@ export interface HysteresisResult {
   /** The same as a share of the work of the pull. */
   lost_share: number;
   lost_share_interval: [number, number] | null;
-  /** Strain that is left after letting go. */
+  /** Strain that remains after unloading. */
   left_strain: number;
   left_strain_interval: [number, number] | null;
   /** Change of the greatest stress from the first cycle to the last. */
@@ -1468,7 +1468,7 @@ export interface ImportResult {
 /** A part of a list of jobs, latest first. */
 export interface JobPage {
   jobs: JobStatus[];
-  /** Ask with it for what follows; None at the end. */
+  /** Send it to get the next page; null at the end. */
   next_cursor: string | null;
 }
 
@@ -1847,7 +1847,7 @@ export type Parity = "even" | "odd";
 
 /** A chart as typed text. */
 export interface ParseRequest {
-  /** K/P lines, the top row first, as seen from the face. A / may end a line, too. */
+  /** K/P lines, the top row first, as seen from the face; or separated by /. */
   text: string;
 }
 
@@ -1878,7 +1878,7 @@ export interface PatchResult {
   swatch_wale: number | null;
   /** Of the patch, in the finite swatch if it was pulled there. */
   modulus_course_n_per_mm: number;
-  /** 90 %; holds the interval of a large cloth of the repeat, too. */
+  /** 90 % interval; includes that of a large cloth of the repeat. */
   modulus_course_interval_n_per_mm: [number, number];
   modulus_wale_n_per_mm: number;
   modulus_wale_interval_n_per_mm: [number, number];
@@ -2182,7 +2182,7 @@ export interface RegionResult {
   height_interval_mm: [number, number];
   yarn_m: number;
   yarn_g: number | null;
-  /** Lines of x (there) and . (not), the top row first. */
+  /** Lines of x (part of it) and . (not part of it), the top row first. */
   cells: string;
 }
 
@@ -2408,7 +2408,7 @@ export interface SignedIn {
   user: string;
   /** Latest first; scripts have none. */
   sessions: SessionSummary[];
-  /** By the name that a refusal has in `field`; of this process, if there are several, except for what is kept. */
+  /** By the name that a refusal has in `field`. Where there are several processes, figures are of this one, except those of stored things. */
   use: Record<string, Use>;
 }
 

@@ -57,5 +57,5 @@ def check_match(if_match: str | None, revision: int) -> None:
             f"The design is at revision {revision} now; your change was made on another one, and "
             "nothing was overwritten.",
             field="If-Match",
-            remedy="Read the design again, put your change on top of it, and send that.",
+            remedy="Read the design again, apply your change to it, and send the result.",
         )

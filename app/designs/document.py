@@ -69,7 +69,7 @@ class DesignPage(BaseModel):
     """A part of a list, latest changes first."""
 
     designs: list[DesignSummary]
-    next_cursor: str | None = Field(description="Ask with it for what follows; None at the end.")
+    next_cursor: str | None = Field(description="Send it to get the next page; null at the end.")
 
 
 class DesignPatch(RequestModel):

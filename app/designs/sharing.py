@@ -40,7 +40,7 @@ class Sharing:
             open_ = select(func.count()).where(shares.c.design_id == design, _OPEN)
             if connection.execute(open_).scalar_one() >= BUDGETS.links:
                 raise OverBudgetError(
-                    f"The design has {BUDGETS.links} open links, which is as many as it may.",
+                    f"The design has {BUDGETS.links} open links, the most allowed.",
                     field="links",
                     remedy="Take some back.",
                 )
@@ -114,7 +114,7 @@ def _shared(connection: Connection, token: str) -> Row[tuple[object, ...]]:
     ).one_or_none()
     if row is None:
         raise NotFoundError(
-            "This link leads nowhere: it was revoked, or the design is deleted.",
+            "This link does not work: it was revoked, or the design is deleted.",
             field="token",
             remedy="Ask for a new link.",
         )

@@ -292,7 +292,7 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
     """
     if _count(connection, owner) >= BUDGETS.designs:
         raise OverBudgetError(
-            f"You have {BUDGETS.designs} designs, deleted ones included; no more are kept.",
+            f"You have {BUDGETS.designs} designs, including deleted ones: the most allowed.",
             field="designs",
             remedy="Export and delete some; deleted designs are removed permanently after 30 days.",
         )
@@ -425,9 +425,9 @@ def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) 
     number = (last or 0) + 1
     if number > BUDGETS.versions:
         raise OverBudgetError(
-            f"{BUDGETS.versions} versions of this design are kept, as many as there can be.",
+            f"This design has {BUDGETS.versions} versions, the most allowed.",
             field="versions",
-            remedy="Duplicate the design and go on with the copy.",
+            remedy="Duplicate the design and continue with the copy.",
         )
     kept = {column.name for column in design_versions.c} & row._mapping.keys()
     values = {n: row._mapping[n] for n in kept} | {

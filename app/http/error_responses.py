@@ -65,7 +65,7 @@ def problem_of(error: Exception) -> Problem:
         type="internal",
         title="Something went wrong in the service",
         status=500,
-        detail="The service met an error that it did not expect; its log has the details.",
+        detail="An unexpected error occurred in the service; its log has the details.",
         remedy="Nothing you painted is lost. Try again, or report it with the log.",
     )
 

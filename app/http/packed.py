@@ -16,7 +16,7 @@ WORTH_BYTES = 1_000
 """Shorter responses are sent uncompressed."""
 TAGGED: dict[int | str, dict[str, Any]] = {
     200: {"headers": {"ETag": {"$ref": "#/components/headers/ETag"}}},
-    304: {"description": "It is what If-None-Match names."},
+    304: {"description": "Not modified since the state in If-None-Match."},
 }
 """For the schema, of answers with an ETag."""
 ASKED_WITH_TAG = {

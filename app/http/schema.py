@@ -55,8 +55,8 @@ they count from 1.
 after which its field is named: `force_n: [1, 2]` and `force_interval_n: [[0.8, 1.7], [1.2, 2.3]]`.
 A strain of 0.5 is 50 %."""
 HEADERS = {
-    "ETag": "The state that was answered, for `If-None-Match` and `If-Match`.",
-    "Location": "Address of what was made.",
+    "ETag": "The state of the answer, for `If-None-Match` and `If-Match`.",
+    "Location": "Address of the new object.",
     "Retry-After": "Seconds to wait before the request is sent again.",
     "RateLimit-Limit": "Requests that may be sent at once; with logins only.",
     "RateLimit-Remaining": "Requests that may be sent now; with logins only.",

@@ -219,7 +219,7 @@ class Guard:
         host = hosts[0] if len(hosts) == 1 else ""
         if not self._knows(host):
             raise StrangeHostError(
-                "This service does not go by that name.", field="host", remedy=HOST_REMEDY
+                "This service does not have that host name.", field="host", remedy=HOST_REMEDY
             )
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
@@ -279,9 +279,9 @@ class Guard:
         if _is_sign_in(scope) or (
             scope["path"] == "/" and "text/html" in Headers(scope=scope).get("accept", "")
         ):
-            return token_page(401, "Nobody has this token. Ask for a new one." if tried else "")
+            return token_page(401, "This token is unknown. Ask for a new one." if tried else "")
         raise UnknownUserError(
-            "This service asks for a token.",
+            "This service requires a token.",
             field="token",
             remedy="Open the page as /?token=…, or send the header Authorization: Bearer ….",
         )
@@ -292,7 +292,7 @@ class Guard:
         limits["RateLimit-Limit"] = str(self.rate.burst)
         limits["RateLimit-Remaining"] = str(left)
         if wait:
-            raise TooManyError("You are asking too often.", wait)
+            raise TooManyError("You are sending requests too often.", wait)
         in_use: InUse = scope["app"].state.in_use
         in_use.check("connections", user)
 

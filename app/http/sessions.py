@@ -29,8 +29,8 @@ class SignedIn(BaseModel):
     user: str = Field(examples=["ada"])
     sessions: list[SessionSummary] = Field(description="Latest first; scripts have none.")
     use: dict[str, Use] = Field(
-        description="By the name that a refusal has in `field`; of this process, if there are "
-        "several, except for what is kept."
+        description="By the name that a refusal has in `field`. Where there are several processes, "
+        "figures are of this one, except those of stored things."
     )
 
 

@@ -26,12 +26,12 @@ ASK = """<p>A link asks this browser to sign in as <strong>{user}</strong>{inste
 gave you the link may see what you design there.</p>
 <form method="post" action="{path}">
 <input type="hidden" name="token" value="{token}"><input type="hidden" name="to" value="{to}">
-<button>Sign in as {user}</button></form><p><a href="/">Do not</a></p>"""
+<button>Sign in as {user}</button></form><p><a href="/">Cancel</a></p>"""
 FORM = """<form method="post" action="{path}">
 <p role="alert">{problem}</p>
 <p><label>Token <input type="password" name="token" required autocomplete="off"></label>
 <button>Sign in</button></p></form>
-<p>Whoever runs this service makes tokens. A link that ends in <code>/?token=…</code> signs in,
+<p>The operator of this service issues tokens. A link that ends in <code>/?token=…</code> signs in,
 too.</p>"""
 
 

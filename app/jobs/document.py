@@ -42,4 +42,4 @@ class JobPage(BaseModel):
     """A part of a list of jobs, latest first."""
 
     jobs: list[JobStatus]
-    next_cursor: str | None = Field(description="Ask with it for what follows; None at the end.")
+    next_cursor: str | None = Field(description="Send it to get the next page; null at the end.")

@@ -76,7 +76,7 @@ class Use(BaseModel):
 class OverBudgetError(ServiceError):
     """A limit of the user is reached."""
 
-    status, type, title = 429, "too-many", "You have as many as one user may"
+    status, type, title = 429, "too-many", "You have reached a limit of one user"
     default_remedy = "Close one you do not need."
 
     @classmethod
@@ -88,14 +88,14 @@ class OverBudgetError(ServiceError):
 class SpentError(OverBudgetError):
     """The user's computing time of the day is spent."""
 
-    title = "Your computing time is spent"
+    title = "Your computing time is used up"
 
     def __init__(self, most_s: float, wait_s: float) -> None:
         wait = math.ceil(wait_s)
         super().__init__(
             f"Your computations have used the {most_s / 3600:g} h of computing time of a day.",
             field="cpu_s",
-            remedy=f"Try again in {math.ceil(wait / 60)} min, or start a job, which waits.",
+            remedy=f"Try again in {math.ceil(wait / 60)} min, or start a job, which will wait.",
         )
         self.headers = {"Retry-After": str(wait)}
 

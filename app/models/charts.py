@@ -30,7 +30,7 @@ ChartText = Annotated[
     str,
     Field(
         max_length=MAX_TEXT,
-        description="K/P lines, the top row first, as seen from the face. A / may end a line, too.",
+        description="K/P lines, the top row first, as seen from the face; or separated by /.",
         examples=["KPKP\nPKPK"],
     ),
 ]
@@ -46,7 +46,9 @@ RepeatText = Annotated[
     ),
 ]
 """A repeat in an answer, spelled as in a design."""
-CellLines = Annotated[str, Field(description="Lines of x (there) and . (not), the top row first.")]
+CellLines = Annotated[
+    str, Field(description="Lines of x (part of it) and . (not part of it), the top row first.")
+]
 """Which stitches are meant, in an answer."""
 Row = Annotated[int, Field(ge=0, description="From 0, the bottom row.")]
 Column = Annotated[int, Field(ge=0, description="From 0, at the left.")]

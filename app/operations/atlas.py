@@ -96,14 +96,14 @@ def _result(found: Atlas) -> AtlasResult:
 @click.option(
     "--yarn-level",
     is_flag=True,
-    help="Then relax and stretch repeats on the yarn level, small ones first.",
+    help="Then relax and stretch repeats at the yarn level, small ones first.",
 )
 @click.option(
     "--most-stitches",
     type=click.IntRange(1, 64),
     default=MAX_STITCHES,
     show_default=True,
-    help="Of the largest repeat that goes to the yarn level.",
+    help="Of the largest repeat to relax at the yarn level.",
 )
 @click.option("--workers", type=click.IntRange(1), help="Processes; all cores if left out.")
 @click.option("--scheduler", metavar="tcp://…", help="Address of a Dask cluster to work on.")
@@ -123,7 +123,7 @@ def _command(
     progress = None if as_json else _teller("repeats")
     found = build_atlas(yarn, repeats_of(repeats), file=out, progress=progress, **place)
     if yarn_level:
-        progress = None if as_json else _teller("repeats on the yarn level")
+        progress = None if as_json else _teller("repeats at the yarn level")
         found = improve_atlas(yarn, out, most_stitches=most_stitches, progress=progress, **place)
     return _result(found)
 

@@ -69,7 +69,7 @@ class FabricEstimateResult(ResultModel):
 
     strain_at_0_1_n_per_mm: dict[Direction, float]
     strain_at_0_1_n_per_mm_interval: dict[Direction, Ends] = Field(
-        description="Of no width where it is measured, as all intervals here."
+        description="Without width where the fabric is measured, like all intervals here."
     )
     modulus_n_per_mm: dict[Direction, float]
     modulus_interval_n_per_mm: dict[Direction, Ends]

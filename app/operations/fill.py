@@ -95,8 +95,8 @@ class FillRequest(LawsRequest):
     )
     scattered: bool = Field(
         True,
-        description="Single stitches may be turned where that comes nearer; otherwise every patch "
-        "is a repeat, or stripes of two.",
+        description="Single stitches may be turned over where that comes nearer; otherwise every "
+        "patch is a repeat, or stripes of two.",
     )
     seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
     check: bool = Field(
@@ -122,7 +122,7 @@ class PatchResult(ResultModel):
         description="Of the patch, in the finite swatch if it was pulled there."
     )
     modulus_course_interval_n_per_mm: Ends = Field(
-        description="90 %; holds the interval of a large cloth of the repeat, too."
+        description="90 % interval; includes that of a large cloth of the repeat."
     )
     modulus_wale_n_per_mm: float
     modulus_wale_interval_n_per_mm: Ends

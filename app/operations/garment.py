@@ -412,7 +412,7 @@ def _pressure(place: WornResult) -> str:
     if place.mmhg is None:
         return f"{sizes}; {place.warnings[0]}"
     low, high = place.mmhg
-    return f"{sizes} presses {low:.1f} to {high:.1f} mmHg"
+    return f"{sizes} exerts {low:.1f} to {high:.1f} mmHg"
 
 
 OPERATION = Operation(

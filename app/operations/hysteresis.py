@@ -38,7 +38,7 @@ class HysteresisRequest(StitchRequest, LawsRequest):
         le=MAX_COEFFICIENT,
         description="Coefficient of friction between yarns; that of the fibre by default.",
     )
-    points: int = Field(DEFAULT_POINTS, ge=2, le=200, description="Strains on the way there.")
+    points: int = Field(DEFAULT_POINTS, ge=2, le=200, description="Number of strains in loading.")
     cycles: int = Field(2, ge=1, le=MAX_CYCLES)
     rest_sizes: bool = Field(True, description="Also find the rest size after every history.")
     intervals: bool = Field(
@@ -76,7 +76,7 @@ class HysteresisResult(IntervalResult):
         description="Of the yarn or its fibre; null where the request gave the coefficient."
     )
     friction_source: str
-    legs: list[LoopLeg] = Field(description="Ways there and back in turn.")
+    legs: list[LoopLeg] = Field(description="Loading and unloading in turn.")
     lost_per_cycle_n_per_mm: float = Field(
         description="Energy that the last cycle loses per area of fabric, N·mm/mm²."
     )
@@ -85,7 +85,7 @@ class HysteresisResult(IntervalResult):
     )
     lost_share: float = Field(description="The same as a share of the work of the pull.")
     lost_share_interval: Ends | None = None
-    left_strain: float = Field(description="Strain that is left after letting go.")
+    left_strain: float = Field(description="Strain that remains after unloading.")
     left_strain_interval: Ends | None = None
     closes_within: float = Field(
         description="Change of the greatest stress from the first cycle to the last."

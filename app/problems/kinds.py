@@ -67,7 +67,8 @@ KINDS = {
     "too-many": Kind(
         "429",
         "You send requests too often, or have reached a limit of one user; `field` names it.",
-        "Wait as many seconds as `Retry-After` says; without that header, close or delete one.",
+        "Wait as many seconds as `Retry-After` says; without that header, close or delete "
+        "something you do not need.",
     ),
     "busy": Kind(
         "503",
@@ -84,7 +85,7 @@ KINDS = {
     ),
     "internal": Kind(
         "500",
-        "The service met an error that it did not expect. Its log has the details under the "
+        "An unexpected error occurred in the service. Its log has the details under the "
         "request's id.",
         "Try again, or report it with those lines of the log.",
     ),

@@ -51,7 +51,7 @@ PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
         405: "The address does not support this method.",
         413: "The request is too large.",
         422: "An input cannot be used; the problem names the field and the remedy.",
-        429: "You are asking too often; Retry-After says when to come back.",
+        429: "Too many requests; Retry-After says when to try again.",
         503: "The service is busy or the computation took too long.",
         507: "The disk of the service is full; nothing was changed.",
     }.items()

@@ -89,7 +89,11 @@ def keep_material(document: MaterialDocument, owner: str, data_dir: Path) -> Mat
     mine = _kept_by(owner, data_dir)
     place = data_dir / FOLDER / f"{_tag(owner)}{document.identifier.replace(':', '_')}.json"
     if place not in mine and len(mine) >= MAX_KEPT:
-        raise InputError("identifier", f"you keep {len(mine)} yarns.", "Remove one of them first.")
+        raise InputError(
+            "identifier",
+            f"you have {len(mine)} yarns, the most allowed.",
+            "Remove one of them first.",
+        )
     _replaced(place).parent.mkdir(parents=True, exist_ok=True)
     if place in mine:
         shutil.copyfile(place, _replaced(place))

@@ -342,7 +342,7 @@ class DesignDocument(BaseModel):
     name: str
     material: str
     chart: str
-    """K/P lines, the top row first, as seen from the face. A / may end a line, too."""
+    """K/P lines, the top row first, as seen from the face; or separated by /."""
     note: str = ""
 
 
@@ -479,8 +479,8 @@ class FillRequest(TypedDict):
     smallest_patch: NotRequired[int]
     """Smallest side of a patch, where its part is not smaller."""
     scattered: NotRequired[bool]
-    """Single stitches may be turned where that comes nearer; otherwise every patch is a repeat,
-    or stripes of two."""
+    """Single stitches may be turned over where that comes nearer; otherwise every patch is a
+    repeat, or stripes of two."""
     seed: NotRequired[int]
     """The same seed gives the same chart."""
     check: NotRequired[bool]
@@ -661,7 +661,7 @@ class HysteresisRequest(TypedDict):
     friction: NotRequired[float | None]
     """Coefficient of friction between yarns; that of the fibre by default."""
     points: NotRequired[int]
-    """Strains on the way there."""
+    """Number of strains in loading."""
     cycles: NotRequired[int]
     rest_sizes: NotRequired[bool]
     """Also find the rest size after every history."""
@@ -775,7 +775,7 @@ class ParseRequest(TypedDict):
     """A chart as typed text."""
 
     text: str
-    """K/P lines, the top row first, as seen from the face. A / may end a line, too."""
+    """K/P lines, the top row first, as seen from the face; or separated by /."""
 
 
 class PieceInput(TypedDict):
@@ -1538,7 +1538,7 @@ class ClothPiece(BaseModel):
     chart: str
     """K/P lines, the top row first, as seen from the face."""
     outline: str
-    """Lines of x (there) and . (not), the top row first."""
+    """Lines of x (part of it) and . (not part of it), the top row first."""
 
 
 class CompareResult(BaseModel):
@@ -1727,7 +1727,7 @@ class DesignPage(BaseModel):
 
     designs: list[DesignSummary]
     next_cursor: str | None
-    """Ask with it for what follows; None at the end."""
+    """Send it to get the next page; null at the end."""
 
 
 class DesignSchema(RootModel[dict[str, Any]]):
@@ -1916,7 +1916,7 @@ class FabricEstimateResult(BaseModel):
 
     strain_at_0_1_n_per_mm: dict[Direction, float]
     strain_at_0_1_n_per_mm_interval: dict[Direction, tuple[float, float]]
-    """Of no width where it is measured, as all intervals here."""
+    """Without width where the fabric is measured, like all intervals here."""
     modulus_n_per_mm: dict[Direction, float]
     modulus_interval_n_per_mm: dict[Direction, tuple[float, float]]
     alpha: dict[Direction, float]
@@ -2061,7 +2061,7 @@ class GarmentResult(BaseModel):
     chart: str
     """K/P lines, the top row first, as seen from the face."""
     outline: str
-    """Lines of x (there) and . (not), the top row first."""
+    """Lines of x (part of it) and . (not part of it), the top row first."""
     stitches: int
     around: Direction
     """The material direction around the limb."""
@@ -2162,7 +2162,7 @@ class HysteresisResult(BaseModel):
     """Of the yarn or its fibre; null where the request gave the coefficient."""
     friction_source: str
     legs: list[LoopLeg]
-    """Ways there and back in turn."""
+    """Loading and unloading in turn."""
     lost_per_cycle_n_per_mm: float
     """Energy that the last cycle loses per area of fabric, N·mm/mm²."""
     lost_per_cycle_interval_n_per_mm: tuple[float, float] | None = None
@@ -2171,7 +2171,7 @@ class HysteresisResult(BaseModel):
     """The same as a share of the work of the pull."""
     lost_share_interval: tuple[float, float] | None = None
     left_strain: float
-    """Strain that is left after letting go."""
+    """Strain that remains after unloading."""
     left_strain_interval: tuple[float, float] | None = None
     closes_within: float
     """Change of the greatest stress from the first cycle to the last."""
@@ -2207,7 +2207,7 @@ class JobPage(BaseModel):
 
     jobs: list[JobStatus]
     next_cursor: str | None
-    """Ask with it for what follows; None at the end."""
+    """Send it to get the next page; null at the end."""
 
 
 class JobStatus(BaseModel):
@@ -2534,7 +2534,7 @@ class PatchResult(BaseModel):
     modulus_course_n_per_mm: float
     """Of the patch, in the finite swatch if it was pulled there."""
     modulus_course_interval_n_per_mm: tuple[float, float]
-    """90 %; holds the interval of a large cloth of the repeat, too."""
+    """90 % interval; includes that of a large cloth of the repeat."""
     modulus_wale_n_per_mm: float
     modulus_wale_interval_n_per_mm: tuple[float, float]
 
@@ -2734,7 +2734,7 @@ class RegionResult(BaseModel):
     yarn_m: float
     yarn_g: float | None
     cells: str
-    """Lines of x (there) and . (not), the top row first."""
+    """Lines of x (part of it) and . (not part of it), the top row first."""
 
 
 class RelaxResult(BaseModel):
@@ -2864,8 +2864,8 @@ class SignedIn(BaseModel):
     sessions: list[SessionSummary]
     """Latest first; scripts have none."""
     use: dict[str, Use]
-    """By the name that a refusal has in `field`; of this process, if there are several, except
-    for what is kept."""
+    """By the name that a refusal has in `field`. Where there are several processes, figures are
+    of this one, except those of stored things."""
 
 
 class StartResult(BaseModel):

@@ -33,7 +33,7 @@ export const DESIGNS = [
   action("duplicate", "Duplicate this design", "Mod+Shift+D", "copy", ({ studio, keeper }) => {
     const design = studio.toDocument();
     keeper.openNew({ ...design, name: `${design.name.slice(0, 190)} (copy)` });
-    studio.tell("This is the copy now; the design itself is among your designs.");
+    studio.tell("This is the copy; the original is among your designs.");
   }),
   action("yarns", "Own yarns …", "Shift+Y", "yarn", ({ open }) => open("yarns")),
   action("exports", "Export, all formats …", "Mod+E", "export", ({ open }) => open("exports")),

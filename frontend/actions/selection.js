@@ -197,7 +197,7 @@ const pattern = {
 /** @type {Action} */
 export const makeRepeat = {
   id: "make-repeat",
-  label: "Make a linked repeat of it",
+  label: "Make it a linked repeat",
   group,
   icon: "repeat",
   keys: ["Shift+P"],
@@ -220,7 +220,7 @@ export const makeRepeat = {
 /** @type {Action} */
 export const makeRegion = {
   id: "make-region",
-  label: "Make a region of it",
+  label: "Make it a region",
   group,
   icon: "regions",
   keys: ["Shift+G"],

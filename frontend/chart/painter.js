@@ -67,7 +67,7 @@ export class Painter {
     });
     studio.tool.watch(({ mode }) => (canvas.dataset.mode = mode));
     studio.document.onTear((names) =>
-      studio.tell(`Unlinked copies that are not whole any more: ${names.join(", ")}. Undo brings them back.`),
+      studio.tell(`Unlinked copies that are no longer whole: ${names.join(", ")}. Undo brings them back.`),
     );
     studio.document.onRefuse((names) =>
       studio.tell(`Locked: ${names.join(", ")}. Unlock it in the list of regions to paint there.`),

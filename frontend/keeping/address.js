@@ -28,7 +28,7 @@ export function openAddressed(studio, keeper) {
     opening(async () => keeper.openKept(await designs.read(id)), "This design cannot be opened");
   /** @param {string} token */
   const openLink = (token) =>
-    opening(async () => keeper.openShared(token, await designs.shared(token)), "This link leads nowhere");
+    opening(async () => keeper.openShared(token, await designs.shared(token)), "This link does not work");
 
   /** @param {() => Promise<void>} work @param {string} title */
   const opening = async (work, title) => {

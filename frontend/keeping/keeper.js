@@ -204,9 +204,9 @@ export class Keeper {
       studio.tellProblem({
         type: "storage",
         status: 0,
-        title: "This browser does not keep the design",
-        detail: "Its storage is full or closed to this page.",
-        remedy: "It is kept at the service while that can be reached; export it before you leave.",
+        title: "The design cannot be saved in this browser",
+        detail: "The browser's storage is full, or closed to this page.",
+        remedy: "The service saves it while it can be reached; export it before you leave.",
       });
     }
   }
@@ -337,7 +337,7 @@ export class Keeper {
       this.#sendLater(RETRY_MS);
     } else {
       this.state.value = { kind: "refused", problem: error.problem };
-      this.studio.tellProblem({ ...error.problem, title: "The service does not keep this design" });
+      this.studio.tellProblem({ ...error.problem, title: "The service does not save this design" });
     }
   }
 

@@ -34,8 +34,8 @@ export function inspector(host, studio) {
   const scopes = h("select", {
     class: "chip-select",
     id: "inspector-scope",
-    title: "Whose numbers these are",
-    "aria-label": "Whose numbers these are",
+    title: "What these numbers describe",
+    "aria-label": "What these numbers describe",
     onchange: () => {
       studio.selection.value = null;
       studio.seeing.region.value = scopes.value || null;

@@ -14,14 +14,14 @@ const LOOKS = {
   new: { label: "", icon: "check", title: "" },
   waiting: { label: "Saving …", icon: "saving", title: "Kept in this browser; on its way to the service" },
   sending: { label: "Saving …", icon: "saving", title: "Kept in this browser; on its way to the service" },
-  kept: { label: "Saved", icon: "check", title: "Kept at the service. Click for versions." },
+  kept: { label: "Saved", icon: "check", title: "Saved by the service. Click for versions." },
   offline: {
     label: "Kept here",
     icon: "offline",
     title: "The service cannot be reached: kept in this browser, and delivered when it is back",
   },
-  refused: { label: "Not saved", icon: "warning", title: "The service does not keep this; it is kept in this browser" },
-  conflict: { label: "Choose …", icon: "warning", title: "Changed elsewhere, too: choose what stays" },
+  refused: { label: "Not saved", icon: "warning", title: "The service does not save this; it is kept in this browser" },
+  conflict: { label: "Choose …", icon: "warning", title: "Also changed elsewhere: choose what to keep" },
   shared: { label: "Shared", icon: "share", title: "Opened by a link; changes are not kept" },
 };
 

@@ -202,7 +202,7 @@ export function stretchdrawer(host, studio, stretcher) {
   const show = () => {
     const { value, busy, stale, problem } = studio.stretch.value;
     run.replaceChildren(...(busy ? [icon("stop"), "Cancel"] : [icon(direction), "Stretch"]));
-    run.title = busy ? "Give the test up (J)" : "Pull the chart between two clamps (J)";
+    run.title = busy ? "Cancel the test (J)" : "Pull the chart between two clamps (J)";
     run.classList.toggle("primary", !busy);
     progress.hidden = !busy;
     const current = value !== null && !stale;
@@ -293,7 +293,7 @@ function stretchOptions(studio) {
     h(
       "p",
       { class: "muted" },
-      "Nobody measured the shear modulus; where none is given, the paper's assumption is taken.",
+      "Stretch tests hardly determine the shear modulus. Left empty, that of the law is used.",
     ),
   );
   const button = h(

@@ -227,7 +227,7 @@ function exportMenu(studio, context) {
     },
     {
       id: "export-image",
-      content: "Picture, one pixel a stitch (.png)",
+      content: "Picture, one pixel per stitch (.png)",
       perform: () => void files().then(({ exportPixels }) => exportPixels(studio)),
     },
     null,

@@ -11,7 +11,7 @@ const STOPS = [
   {
     at: "#chart-host",
     title: "This is your cloth",
-    text: "One cell is one stitch, seen from the face. Drag to paint; with the right button, the opposite. Knit beside purl makes soft joints, knit beside knit stiff ones: how they alternate is all that you design with.",
+    text: "One cell is one stitch, seen from the face. Drag to paint; with the right button, the opposite. Knit beside purl makes soft joints, knit beside knit stiff ones: how they alternate is what you design with.",
   },
   {
     at: "#rail",

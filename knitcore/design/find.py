@@ -106,7 +106,7 @@ def find_fabric(
         )
     allowed = [_allowed(atlas, limits) for atlas in atlases]
     if not any(len(indices) for indices in allowed):
-        raise InputError("limits", "no repeat keeps within them.", _easiest(atlases))
+        raise InputError("limits", "no repeat is within all of them.", _easiest(atlases))
     tables = [
         {target.label: np.stack(values_of(atlas, target))[:, indices] for target in targets}
         for atlas, indices in zip(atlases, allowed, strict=True)
@@ -172,10 +172,10 @@ def _allowed(atlas: Atlas, limits: CostLimits | None) -> NDArray[np.intp]:
 def _easiest(atlases: Sequence[Atlas]) -> str:
     costs = [cost for atlas in atlases for cost in atlas.costs]
     return (
-        "Widen one: of all repeats the least are "
+        "Relax one: the least of all repeats are "
         f"{min(c.transfers_per_stitch for c in costs):.2g} transfers and "
-        f"{min(c.crossings_per_stitch for c in costs):.2g} crossings a stitch, and a curl of "
-        f"{min(abs(c.curl) for c in costs):.2g}, but not all three in one."
+        f"{min(c.crossings_per_stitch for c in costs):.2g} crossings per stitch and a curl of "
+        f"{min(abs(c.curl) for c in costs):.2g}, but not in one repeat."
     )
 
 
@@ -212,8 +212,8 @@ def _candidate(
 
 def _most_surely(best: Candidate) -> str:
     return (
-        f"{_short(best)} in {best.material} meets this most surely, "
-        f"with a chance of {best.chance:.0%}."
+        f"{_short(best)} in {best.material} is the most likely to meet the targets, "
+        f"with a probability of {best.chance:.0%}."
     )
 
 
@@ -224,7 +224,8 @@ def _nothing(best: Candidate, targets: Sequence[Target], ranges: dict[str, Inter
         if float(target.off(np.array(best.values[target.label]))) > 1
     ]
     return (
-        f"Nothing reaches this. Nearest is {_short(best)} in {best.material}: {'; '.join(parts)}. "
+        f"No repeat meets this. The nearest is {_short(best)} in {best.material}: "
+        f"{'; '.join(parts)}. "
         "Widen a tolerance, or search more yarns and needles."
     )
 
@@ -247,9 +248,7 @@ def _departure(best: Candidate, target: Target) -> str:
 
 def _reach(target: Target, span: Interval | None, together: bool) -> str:
     if span is None:
-        return "no repeat stretches so far"
+        return "no repeat stretches that far"
     if not span.low <= target.value <= span.high:
         return f"all repeats span {span.low:.3g} to {span.high:.3g}"
-    return (
-        "others reach it, but not together with the rest" if together else "no repeat lies nearer"
-    )
+    return "others reach it, but not the other targets" if together else "no repeat is nearer"

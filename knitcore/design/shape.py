@@ -325,10 +325,10 @@ class _Run:
         line = self._direction.of("column", "row")
         return [
             f"{line.capitalize()} {worst + 1} is {off[worst]:+.0%} of the width off. Far from the "
-            f"clamps and from other bands this yarn comes to {1 - narrowing.max():.2f} to "
+            f"clamps and from other bands, this yarn narrows to {1 - narrowing.max():.2f} to "
             f"{1 - narrowing.min():.2f} of its width at a strain of {self._strain:g}; the clamps "
-            "hold the ends, and the width changes gradually between bands. A longer swatch, a "
-            "smoother profile or another strain comes nearer."
+            "hold the ends, and the width changes gradually between bands. Try a longer swatch, a "
+            "smoother profile or another strain."
         ]
 
 

@@ -242,8 +242,9 @@ def _warnings(
         if setting and product and setting != product:
             found.append(
                 f"The {swatch.fabric} swatch was knitted with {swatch.setting}, the product with"
-                f" {product_setting}: the intervals do not cover another tightness (2.0 against"
-                " 2.75 mm needles changed a modulus three times more than the loop length says)."
+                f" {product_setting}: the intervals do not cover another tightness (2.0 instead"
+                " of 2.75 mm needles changed a modulus three times more than the loop length"
+                " explains)."
             )
         ratio = swatch.loop_length_mm / loops[swatch.fabric]
         if abs(math.log(ratio)) > LOOP_LENGTH_TOLERANCE:
@@ -259,7 +260,7 @@ def _warnings(
         )
     if not swatches:
         found.append(
-            "No swatch was measured: one stockinette swatch in both directions narrows the moduli"
-            " most."
+            "No swatch was measured: testing one stockinette swatch in both directions would narrow"
+            " the intervals most."
         )
     return found

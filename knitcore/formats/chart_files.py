@@ -59,7 +59,7 @@ def _checked(file: Path) -> Path:
             "chart",
             f"{file.name} is not of a kind that holds a chart.",
             "Use a .txt file of K/P lines or written rows, a .ks file of KnitSpeak, a .png with one"
-            " pixel a stitch, a .json design or a .k knitout program.",
+            " pixel per stitch, a .json design or a .k knitout program.",
         )
     if file.stat().st_size > MAX_FILE_BYTES:
         raise InputError(

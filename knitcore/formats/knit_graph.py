@@ -139,7 +139,7 @@ def _check(row: int, course: Mapping[int, Any], below: Mapping[int, Any]) -> Non
         places = {_needle(parent): parent for parent in loop.parent_loops}
         if any(n != needle and n in course and below.get(n) is p for n, p in places.items()):
             raise InputError(
-                "knitout", f"a loop wanders to needle {needle} in course {row + 1}.", _REMEDY
+                "knitout", f"a loop moves to needle {needle} in course {row + 1}.", _REMEDY
             )
         if own is None and any(parent.parent_loops for parent in loop.parent_loops):
             raise InputError(

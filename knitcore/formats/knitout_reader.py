@@ -72,7 +72,7 @@ def knitted_chart(program: str) -> KnittedChart:
     if not yarns:
         yarns = {_carrier(min(loops, key=_time)): MAIN_YARN}
     others = sorted({_carrier(loop) for loop in loops} - set(yarns))
-    notes = [f"Yarn of carrier {c} was taken as waste." for c in others]
+    notes = [f"Yarn of carrier {c} counts as waste yarn." for c in others]
     return KnittedChart(piece_of_loops(loops, yarns), (*notes, *said))
 
 

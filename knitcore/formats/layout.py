@@ -280,15 +280,15 @@ def _region_notes(
         if not cells.any():
             notes.append(f"{region.name} has no stitches.")
         elif not seen.any():
-            notes.append(f"{region.name} is lost: it lies wholly under regions that come later.")
+            notes.append(f"{region.name} is lost: later regions cover it completely.")
         elif not kept.any():
-            notes.append(f"{region.name} is lost: it lies wholly outside the outline.")
+            notes.append(f"{region.name} is lost: it lies completely outside the outline.")
         elif region.fill is not None:
             purl = StitchChart.parse(region.fill).resized(chart.rows, chart.columns).purl
             other = int(np.count_nonzero((purl != chart.purl) & kept))
             if other:
                 notes.append(
                     f"{region.name} contradicts the chart: {other} of its {int(kept.sum())} "
-                    "stitches are not those of its fill. The chart is used."
+                    "stitches differ from its fill. The chart is used."
                 )
     yield from reversed(notes)

@@ -72,24 +72,24 @@ _ABBREVIATIONS = {
 
 _RESTS_ON: dict[Source | None, tuple[str, ...]] = {
     None: (
-        "Sizes are those of the fabrics of this yarn, stitch by stitch. Where fabrics meet they "
-        "are in part assumed: such borders were not knitted and measured.",
+        "Sizes are computed stitch by stitch from the fabrics of this yarn. Where fabrics meet "
+        "they are partly assumed, because such borders were not knitted and measured.",
     ),
-    Source.MEASURED: ("This fabric was knitted of this yarn, measured at rest and stretched.",),
+    Source.MEASURED: ("This fabric was knitted in this yarn, measured at rest and stretched.",),
     Source.ESTIMATED: (
-        "This yarn was not knitted and stretched: its sizes and stretch are estimated from its "
-        "tests and from other yarns.",
+        "This fabric was not knitted and stretched in this yarn: size and stretch are estimated "
+        "from the yarn's tests and from other yarns.",
     ),
     Source.SWEPT: (
         "Size and stretch were computed from the yarn, loop by loop; nothing was knitted.",
     ),
     Source.LEARNED: (
-        "Size and stretch are computed from stockinette, garter, rib and seed of this yarn, with "
-        "what simulations of other charts have taught; this chart was not knitted.",
+        "Size and stretch are computed from stockinette, garter, rib and seed of this yarn, "
+        "corrected by simulations of other charts; this chart was not knitted.",
     ),
     Source.LEARNED_OF_SIZE: (
         "The size at rest is your own gauge. The stretch is computed from stockinette, garter, rib "
-        "and seed of this yarn, with what simulations of other charts have taught.",
+        "and seed of this yarn, corrected by simulations of other charts.",
     ),
 }
 """What the numbers of an answer rest on, in a knitter's words; None for a piece with an outline."""
@@ -316,7 +316,7 @@ def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequen
         name = f"{yarn_name(index)}: {own.name}" if is_coloured(piece) else own.name
         flow.text(": ".join(filter(None, (name.capitalize(), facts))), colour=tinted(own.colour))
     flow.text("Lengths are for the stitches alone: add tails, cast-on and a swatch.")
-    flow.text("Needles of the size with which a swatch has the gauge below.")
+    flow.text("Needles of the size that gives the gauge below.")
 
 
 def _gauge(flow: _Flow, facts: _Facts) -> None:
@@ -335,7 +335,7 @@ def _gauge(flow: _Flow, facts: _Facts) -> None:
     if facts.answer is not None:
         pulled = [_pulled(facts.answer.along(direction)) for direction in Direction]
         flow.row((f"Stretch under {PULL_N_PER_MM * 100:g} N on 10 cm", *pulled), places)
-    flow.text("In brackets 90 % intervals: nine pieces of ten should lie inside.")
+    flow.text("In brackets are 90 % intervals: nine pieces in ten should lie inside.")
 
 
 def _pulled(along: Along) -> str:
@@ -375,7 +375,7 @@ def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
         flow.row(cells_told, places, colour=region.colour)
     flow.text(
         "Stitches are counted from the right edge; sizes are of each part's widest row and "
-        "highest column, as it lies beside its neighbours. By itself its fabric has another gauge."
+        "highest column, beside its neighbours. By itself, its fabric has another gauge."
     )
 
 
@@ -401,9 +401,9 @@ def _abbreviations(flow: _Flow, lines: Sequence[str]) -> None:
     used = {short for short in _ABBREVIATIONS if {short, short.capitalize()} & written}
     flow.heading("Abbreviations")
     told = (f"{short}: {_ABBREVIATIONS[short]}" for short in _ABBREVIATIONS if short in used)
-    flow.text("; ".join(told) + ". A number after k or p says how many stitches.")
+    flow.text("; ".join(told) + ". A number after k or p is a number of stitches.")
     if any("*" in line for line in lines):
-        flow.text("Work what stands after * once, then repeat it as often as is said.")
+        flow.text("Work the stitches after * once, then repeat them as often as stated.")
 
 
 def _instructions(
@@ -439,13 +439,13 @@ def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
 
 
 def _evidence(flow: _Flow, facts: _Facts) -> None:
-    flow.heading("What the numbers rest on")
+    flow.heading("Where the numbers come from")
     source = None if facts.answer is None else facts.answer.provenance
     for sentence in (*_RESTS_ON[source], *(() if facts.answer is None else facts.answer.notes)):
         flow.text(sentence, bullet=True)
     for sentence in (
         "The report of this design has all numbers, their intervals and methods.",
-        "Knit a swatch: where its gauge differs, it is right and this pattern is not.",
+        "Knit a swatch. If its gauge differs from this pattern's, trust the swatch.",
     ):
         flow.text(sentence, bullet=True)
 

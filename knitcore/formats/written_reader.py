@@ -152,7 +152,7 @@ class _Reader:
     def _add(self, line: Line, work: Work) -> None:
         if self._needle + work.first + work.last != len(work.stitches):
             raise line.wrong(
-                f"it needs other than the {self._needle} stitches that are on the needle.",
+                f"it does not fit the {self._needle} stitches on the needle.",
                 "Write out rows with another count.",
             )
         self._rows.append(work)

@@ -268,11 +268,11 @@ def _notes(
     hand: Hand, rows: int, garter: Gauge, ease: float, material: Material
 ) -> tuple[str, ...]:
     notes = [
-        "Knit the wrist support on 2.0 mm needles (US 0) and all else on 2.75 mm (US 2), as the "
-        "study did: each row changes needles at the support's edges."
+        "Knit the wrist support on 2.0 mm needles (US 0) and the rest on 2.75 mm (US 2), as in the "
+        "study: each row changes needles at the edges of the support."
         if material.sample == STUDY_GLOVE
-        else "The study's glove has its wrist support on 2.0 mm needles and all else on 2.75 mm. "
-        f"The material {STUDY_GLOVE} was measured so, {material.identifier} on one needle size."
+        else "The study's glove has its wrist support on 2.0 mm needles and the rest on 2.75 mm. "
+        f"The material {STUDY_GLOVE} was measured on both, {material.identifier} on one."
     ]
     wanted = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
     if abs(rows / wanted - 1) > PALM_TOLERANCE:

@@ -142,7 +142,7 @@ def sock_leg(
         gauges=gauges,
         notes=(
             "The leg only: a heel is turned with short rows and a foot is a tube of its own, which "
-            "a chart of whole rows cannot show. Knit them on from the ankle's stitches.",
+            "a chart of whole rows cannot show. Knit them from the stitches at the ankle.",
         ),
         linear_density_tex=linear_density_tex,
     )

@@ -207,6 +207,6 @@ def _warnings(
     if axial <= -0.5:
         found.append(
             f"Axially free, the tube would shorten by {-axial:.0%}: the linear Poisson ratio does"
-            " not hold so far."
+            " not hold that far."
         )
     return [*found, ELASTIC_MEAN]

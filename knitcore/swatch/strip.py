@@ -322,7 +322,7 @@ def check_lock_up(sheet: Sheet, direction: Direction, strain: float) -> None:
         why = (
             "this swatch locks up before that"
             if limit < MAX_STRAIN
-            else "no fabric stretches so far"
+            else "no fabric stretches that far"
         )
         most = float(np.floor(1000 * limit) / 1000)
         raise InputError(

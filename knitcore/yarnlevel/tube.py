@@ -152,7 +152,7 @@ def _turned(begin: BentCell, turn: float, cancelled: Cancelled | None) -> tuple[
         options={"fatol": _SETTLED * begin.energy.yarn.radius_mm, "maxiter": _STEPS},
     )  # fmt: skip
     if not found.success:
-        raise ConvergenceError("The repeat finds no shape in so narrow a tube. Give it more wales.")
+        raise ConvergenceError("No relaxed shape was found in a tube this narrow. Use more wales.")
     here = moved(np.asarray(found.x))
     curvature = turn / float(here.state[COURSE])
     return here, here.lagrangian(Deformation(curvature_per_mm=curvature)).value

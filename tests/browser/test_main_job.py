@@ -59,11 +59,11 @@ def test_a_button_that_gets_other_words_shows_them_at_once(flat_studio: Page) ->
     run, tip = flat_studio.locator("#stretch-run"), flat_studio.locator(".tip")
     run.hover()
     expect(tip).to_contain_text("Pull the chart")
-    run.evaluate("button => { button.title = 'Give the test up (J)' }")
+    run.evaluate("button => { button.title = 'Cancel the test (J)' }")
     expect(tip).to_contain_text("Give the test up")
     flat_studio.mouse.move(5, 5)
     expect(tip).to_be_hidden()
-    expect(run).to_have_attribute("title", "Give the test up (J)")
+    expect(run).to_have_attribute("title", "Cancel the test (J)")
 
 
 def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:

@@ -51,7 +51,7 @@ export function create(studio, { keeper }) {
     const { value } = keeper.state;
     if (value.kind !== "conflict") return;
     const { theirs, parts } = value.conflict;
-    text.textContent = `Both changed the ${parts.join(", the ")}, and not in a way that can be put together. Nothing is lost whatever you choose.`;
+    text.textContent = `Both changed the ${parts.join(", the ")} in ways that cannot be merged. Whatever you choose, nothing is lost.`;
     sides.replaceChildren(side("Mine", studio.toDocument()), side("Theirs", theirs.document));
     status.replaceChildren();
     if (!element.open) element.showModal();

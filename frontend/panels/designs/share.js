@@ -18,8 +18,8 @@ import { textButton } from "../../widgets/buttons.js";
 
 /** @type {Record<ShareMode, [string, string]>} */
 const MODES = {
-  read: ["To look", "Whoever has the link sees the design as it is then, and can try things that are not kept."],
-  copy: ["To copy", "Whoever has the link can also make a copy of their own. Yours stays as it is."],
+  read: ["To look", "Anyone with the link sees the design as it is then, and can try changes that are not saved."],
+  copy: ["To copy", "Anyone with the link can also make a copy of their own. Yours stays as it is."],
 };
 
 /**

@@ -55,7 +55,7 @@ export function create(studio, { keeper, open }) {
     h(
       "p",
       { class: "muted" },
-      "Every stroke is saved automatically. A version is a state that you can come back to; restoring one keeps the present state, too.",
+      "Every stroke is saved automatically. A version is a state that you can come back to; restoring one also saves the present state.",
     ),
     form,
     status,

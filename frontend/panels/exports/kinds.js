@@ -110,7 +110,7 @@ export const KINDS = [
   {
     to: "design",
     name: "Project file",
-    note: "everything of this design, to be opened again",
+    note: "everything in this design, to open again",
     group: "To keep and to compute with",
     options: ["note"],
     text: true,
@@ -118,7 +118,7 @@ export const KINDS = [
   {
     to: "png",
     name: "Picture",
-    note: "one pixel a stitch; purls are dark, no stitch is see-through",
+    note: "one pixel per stitch; purls are dark, cells without a stitch transparent",
     group: "To keep and to compute with",
     options: [],
   },

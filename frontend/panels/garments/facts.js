@@ -30,7 +30,7 @@ export function facts(garment, unit) {
     h(
       "p",
       { class: "muted" },
-      "Sizes are those of each fabric by itself, by which its stitches are counted. In the piece its neighbours widen or narrow it; a pattern gives those sizes.",
+      "Sizes are those of each fabric by itself, from which its stitches are counted. In the piece its neighbours widen or narrow it; a pattern gives those sizes.",
     ),
     ...pressure(garment, unit),
     h(

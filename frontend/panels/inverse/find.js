@@ -275,7 +275,7 @@ export function findTab(studio, context) {
             "span",
             {
               class: candidate.reached ? "reached-mark" : "muted",
-              title: "How surely all targets are met within their tolerances, by the 90 % intervals",
+              title: "Probability that all targets are met within their tolerances, from the 90 % intervals",
             },
             candidate.reached && icon("check"),
             `${percent(candidate.chance)} sure`,
@@ -349,7 +349,7 @@ function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) 
   const within = candidates.filter((candidate) => candidate.reached).length;
   if (reached)
     return [
-      `The surest of ${searched} repeats.`,
+      `The most likely of ${searched} repeats.`,
       within === 1 ? "One of these is within all tolerances." : `${within} of these are within all tolerances.`,
     ].join(" ");
   const beyond = Object.entries(ranges).flatMap(([label, [low, high]]) => {
@@ -361,7 +361,7 @@ function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) 
       : [];
   });
   return [
-    `None of ${searched} repeats reaches all of it; the surest stand first.`,
+    `None of ${searched} repeats meets all targets; the most likely come first.`,
     ...(beyond.length ? beyond : targets.length > 1 ? ["Each target can be met, but not all at once."] : []),
     elsewhere.some((candidate) => candidate.reached)
       ? "Another yarn does, see below."

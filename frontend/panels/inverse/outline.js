@@ -180,7 +180,7 @@ export function outlineTab(studio) {
         h(
           "span",
           {},
-          `Stretched, the widths are ${percent(found.rms, 1)} off in the mean and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`,
+          `Stretched, the widths are ${percent(found.rms, 1)} off on average and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`,
         ),
       ),
       h(
@@ -270,7 +270,7 @@ export function outlineTab(studio) {
       h(
         "p",
         { class: "muted inverse-hint" },
-        "Drag the points: how wide the swatch shall be when it is stretched between clamps. The whole chart is filled with bands.",
+        "Drag the points: how wide the swatch should be when it is stretched between clamps. The whole chart is filled with bands.",
       ),
       svg,
       h(

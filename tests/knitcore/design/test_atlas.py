@@ -157,7 +157,7 @@ def test_a_limb_beyond_the_lock_up_gives_nan() -> None:
     target = Target(Quantity.PRESSURE_WALE, 20.0, limb=WornTube(100.0, 900.0))
     found = find_fabric([ATLAS], [target])
     assert not found.reached
-    assert "no repeat stretches so far" in found.message
+    assert "no repeat stretches that far" in found.message
 
 
 def test_limits_of_knitting_cost() -> None:
@@ -264,7 +264,7 @@ def test_unreachable_targets_are_reported_with_the_nearest_repeat() -> None:
     assert not found.reached
     stiffest = int(ATLAS.column("modulus_course_n_per_mm").argmax())
     assert found.candidates[0].repeat == ATLAS.keys[stiffest]
-    assert "Nothing reaches this" in found.message
+    assert "No repeat meets this" in found.message
     assert "all repeats span" in found.message
 
 
@@ -276,7 +276,7 @@ def test_targets_that_can_be_met_singly_but_not_together() -> None:
     ]
     found = find_fabric([ATLAS], targets)
     assert not found.reached
-    assert "not together with the rest" in found.message
+    assert "but not the other targets" in found.message
 
 
 def test_within_all_tolerances_comes_before_better_on_the_average() -> None:

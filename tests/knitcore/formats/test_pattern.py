@@ -48,7 +48,7 @@ def pages() -> tuple[Page, ...]:
 def test_a_pattern_has_all_that_a_knitter_needs(pages: tuple[Page, ...]) -> None:
     words = "\n".join(label.text for label in labels(pages))
     headings = ("Materials", "Gauge and size", "Notes", "Parts", "Abbreviations", "Instructions")
-    for part in (*headings, "Finishing", "What the numbers rest on", "Wash cold.", "4.0 m"):
+    for part in (*headings, "Finishing", "Where the numbers come from", "Wash cold.", "4.0 m"):
         assert part in words
     assert re.search(r"Rows 1–6: ribbed hem\n.*k1, p1|Rows 1–6: ribbed hem\n.*p1, k1", words)
     assert re.search(r"\d+ % \(\d+ to \d+\)", words)
