@@ -55,7 +55,7 @@ class Settings(BaseSettings):
     )
     trusted_proxies: tuple[IPvAnyNetwork, ...] = Field(
         (),
-        description="Addresses or networks of proxies whose headers about the client are believed "
+        description="Addresses or networks of proxies whose headers about the client are trusted "
         "(X-Forwarded-For, X-Forwarded-Proto).",
     )
     connections_per_address: int = Field(

@@ -1,6 +1,6 @@
 """The learned answer against yarn-level sweeps: ``python -m benchmarks.mixed_charts FILE.json``.
 
-The file is a list of charts relaxed and swept on the yarn level: ``chart`` (rows from the top
+The file is a list of charts relaxed and swept at the yarn level: ``chart`` (rows from the top
 separated by ``/``), ``yarn`` (acrylic, cotton or a yarn of the training library), ``size`` (mm of
 the mean stitch, course and wale), ``stress_n_per_mm`` and ``strain`` by direction. A chart that the
 packaged model has learned from is predicted by the model without it. Materials are the yarn level's

@@ -1,4 +1,4 @@
-"""The shear of a repeat on the yarn level at large angles, free of force: ``python -m
+"""The shear of a repeat at the yarn level at large angles, free of force: ``python -m
 benchmarks.yarnlevel_shear [K] [acrylic]`` (chart of a repeat and material; some 30 s of CPU).
 
 The relaxed cell is skewed in small steps, each balanced by Newton's method with the Hessian of the

@@ -34,7 +34,7 @@ class SegmentMap:
         Segment between the stitches (row, column) and (row, column + 1).
     wale_odd : bool array (rows - 1, columns), or (rows, columns) if periodic
         Segment between the stitches (row, column) and (row + 1, column).
-    periodic : whether the chart is a repeat that goes on beyond its edges.
+    periodic : whether the chart is a repeat that continues beyond its edges.
     """
 
     course_odd: NDArray[np.bool_]

@@ -279,7 +279,7 @@ def delete_share(design: DesignId, share: ShareId, links: Links, owner: Owner) -
 
 @router.get("/shared/{token}", summary="What a link shows")
 def get_shared(token: Token, links: Links) -> SharedDesign:
-    """The design's present state, for whoever has the link."""
+    """The design's present state, for anyone who has the link."""
     return links.open(token)
 
 

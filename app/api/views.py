@@ -90,7 +90,7 @@ class CameraRequest(RequestModel):
 
 @router.put("/views/{design}", summary="Show a design in its 3D view")
 async def put_view(design: DesignId, body: ViewRequest, request: Request) -> ViewResult:
-    """Draw the design's scene; whoever watches `/view/{design}/` sees it change at once."""
+    """Draw the design's scene; everyone who watches `/view/{design}/` sees it change at once."""
     state = request.app.state
     found, name = _found(body, request), private_name(design)
     context = state.answers.context()

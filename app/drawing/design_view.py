@@ -113,7 +113,7 @@ class ViewResult(BaseModel):
 
 
 def is_large(request: ViewRequest) -> bool:
-    """Whether a worker shall lay its stitches: it is not drawn whole, and no test is as large."""
+    """Whether a worker should lay its stitches: it is not drawn whole, and no test is as large."""
     return size_of_chart(request.chart) > MAX_LETTERS
 
 

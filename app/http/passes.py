@@ -1,4 +1,4 @@
-"""Passes: whoever holds one may watch one view, even from a frame without cookies or origin.
+"""Passes: the holder of one may watch one view, even from a frame without cookies or origin.
 
 The 3D view runs in a sandboxed frame: a process of its own in browsers that isolate such frames,
 and a place from which a message of viser's cannot reach our page. Browsers send no cookie from

@@ -1,4 +1,4 @@
-"""Characterise a yarn: its pure fabrics on the yarn level, as one table."""
+"""Characterise a yarn: its pure fabrics at the yarn level, as one table."""
 
 from __future__ import annotations
 

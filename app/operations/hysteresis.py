@@ -149,7 +149,7 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
         yarn=YarnResult.of(used, used.yarn),
         notes=[
             "As-knitted: pulled along the columns by "
-            f"{TAKE_DOWN_N_PER_MM:g} N/mm, then let go; stretched: by {WORN_N_PER_MM:g} N/mm. "
+            f"{TAKE_DOWN_N_PER_MM:g} N/mm, then released; stretched: by {WORN_N_PER_MM:g} N/mm. "
             "Agitated: shaken until friction holds nothing."
         ],
     )
@@ -182,7 +182,7 @@ def _text(r: HysteresisResult) -> list[str]:
     lines += [
         f"lost in a cycle     {r.lost_per_cycle_n_per_mm:.4g} N·mm/mm², "
         f"{r.lost_share:.0%}{_between(r.lost_share_interval, '.0%')} of the work",
-        f"strain left         {r.left_strain:.3f}{_between(r.left_strain_interval, '.3f')}",
+        f"remaining strain    {r.left_strain:.3f}{_between(r.left_strain_interval, '.3f')}",
     ]
     for rest in r.rest_sizes:
         lines.append(
@@ -200,7 +200,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _text,
-        help="Pull the repeat CHART and let go, with friction between its yarns: loop, lost energy "
+        help="Load and unload the repeat CHART, with friction between its yarns: loop, lost energy "
         "and rest sizes.",
     ),
 )

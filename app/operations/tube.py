@@ -1,4 +1,4 @@
-"""A repeat relaxed in the round: a long tube of so many wales."""
+"""A repeat relaxed in the round: a long tube with a given number of wales."""
 
 from __future__ import annotations
 

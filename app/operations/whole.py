@@ -1,4 +1,4 @@
-"""Relaxing a whole chart at the yarn level, as a job that goes on where it was stopped."""
+"""Relaxing a whole chart at the yarn level, as a job that continues where it was stopped."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class KeptSheet(BaseModel):
 def whole(request: WholeRequest, context: Context) -> WholeResult:
     """Shape of least energy of a whole chart of up to 4,000 stitches, which repeats.
 
-    A job that was stopped, or whose machine was, goes on after the last round that ended.
+    A job that was stopped, or whose machine was, continues after the last round that ended.
     """
     chart = to_chart(request.chart)
     used = request.yarn(chart, context)

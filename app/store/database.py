@@ -319,7 +319,7 @@ class _File:
         self._identity = facts.st_dev, facts.st_ino
 
     def check(self) -> None:
-        """Refuse to go on without the file.
+        """Refuse to continue without the file.
 
         Raises
         ------

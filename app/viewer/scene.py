@@ -17,13 +17,13 @@ from knitcore.arrays import Array
 from knitcore.geometry.instances import level_of
 
 STILL_S = 0.4
-"""Tubes that a stretch has flattened are drawn anew after so long without another change."""
+"""Tubes that a stretch has flattened are drawn again after this time without another change."""
 MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
 """Seen on light and on dark."""
 SCALE_BELOW = (1.8, 0.05)
-"""The scale lies so many stitches below the fabric, and this share of its height at least."""
+"""The scale lies this many stitches below the fabric, and this share of its height at least."""
 PAPER = (255, 252, 246)
 
 

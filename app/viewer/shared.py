@@ -74,7 +74,7 @@ def shared_still(
     *,
     cancelled: Callable[[], bool],
 ) -> bytes:
-    """A picture without background, of so many pixels: a PNG."""
+    """A picture without background, with this many pixels: a PNG."""
     scene = build_scene(request, found, Context(data_dir, cancelled=cancelled))
     return still_png(scene.drawing(), width, height)
 

@@ -9,7 +9,7 @@ steps, each a kernel regression on the chart's densities and the yarn's dimensio
    the same stretched size, so that d ln strain / d ln size is ``slope * (1 + e) / (e + 0.15)``,
    with slopes about -0.9.
 
-A known size (a gauge, or a relaxation on the yarn level) replaces the first step. Stress is
+A known size (a gauge, or a relaxation at the yarn level) replaces the first step. Stress is
 compared in units of B / L³. ``scripts/training/learned.py`` fits both regressions, calibrates
 their intervals on charts left out, and reports the errors for those. Real fabric folds less than
 the yarn level predicts: see :data:`MAX_FOLDED`.

@@ -50,7 +50,7 @@ def mixed(
     repeat : the repeat.
     found : its densities.
     gauge : its measured relaxed size, if known.
-    swept : its sweep on the yarn level, if there is one.
+    swept : its sweep at the yarn level, if there is one.
 
     Raises
     ------

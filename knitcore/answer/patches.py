@@ -203,7 +203,7 @@ def patches_of(
     ----------
     chart : a repeat or a whole piece, as for :func:`knitcore.answer.choose.choose`.
     gauge : measured relaxed size of the whole chart's mean stitch, if known.
-    swept : sweep of its repeat on the yarn level, if there is one; a simulated material has those
+    swept : sweep of its repeat at the yarn level, if there is one; a simulated material has those
         of the packaged samples.
 
     Raises

@@ -1,4 +1,4 @@
-"""Charts as pictures with one pixel a stitch: a purl is dark, as the dot of a printed chart.
+"""Charts as pictures with one pixel per stitch: a purl is dark, as the dot of a printed chart.
 
 A piece with an outline or with yarns of its own is a picture with a palette, its "no stitch"
 transparent and its yarns light where they knit and dark where they purl; the names of the yarns are

@@ -11,7 +11,7 @@ and the weights at a place that two stitches share are the mean of both: where t
 the next stitch of its course, and where its foot hangs in the head of the stitch below. So joins
 have neither gap nor kink, crossings keep the order and about the distance that they have in the
 relaxed fabrics, and pure fabrics are exactly relaxed. A purl is the mirror image of a knit, so 16
-surroundings (a few more with their neighbours) stand for all.
+surroundings (a few more with their neighbours) represent all.
 """
 
 from __future__ import annotations

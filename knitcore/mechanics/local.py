@@ -175,7 +175,7 @@ class LocalModuli:
                 "chart",
                 f"has {chart.columns}x{chart.rows} stitches, the maps have "
                 f"{self.codes.shape[1]}x{self.codes.shape[0]}.",
-                "Compute the maps anew after a change of size.",
+                "Compute the maps again after a change of size.",
             )
         (row, row_grown), (column, column_grown) = (
             windows_of(rows, chart.rows),

@@ -44,7 +44,7 @@ field of small stretch hardly tells kappa from the coupling."""
 LOG_SHEAR_PRIOR = (float(np.log(0.02)), 1.0)
 """Mean and standard deviation of ln(C_xyxy / (N/mm)). In acrylic garter, for which it was chosen,
 0.02 N/mm is 0.2 sqrt(Y_x Y_y), the mean of a strip fit's prior; other fabrics may be far from it.
-Its deviation is also that of a shear modulus which nobody fitted (``swatch/uncertainty.py``)."""
+Its deviation is also that of a shear modulus that was not fitted (``swatch/uncertainty.py``)."""
 CELLS_ACROSS = 64
 SAMPLED_POINTS = 4000
 

@@ -83,7 +83,7 @@ class MeasuredField:
         return MeasuredField(self.width, self.length, kept)
 
     def thinned(self, points: int) -> MeasuredField:
-        """The same test with at most so many points a frame, evenly chosen."""
+        """The same test with at most this many points per frame, evenly chosen."""
         frames = []
         for frame in self.frames:
             step = slice(None, None, max(1, -(-len(frame.points) // points)))

@@ -27,7 +27,7 @@ MAX_HALVINGS = 7
 FORCING = 1e-2
 """Relative accuracy of the linear systems far from balance."""
 PATIENCE = 3
-"""Conjugate gradient steps before the tangent is factorised anew."""
+"""Conjugate gradient steps before the tangent is factorised again."""
 CLOSE = 0.05
 """Unbalanced force over the force at the clamps up to which an extrapolation is trusted."""
 FAR = 0.01

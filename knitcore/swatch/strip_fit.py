@@ -51,7 +51,7 @@ KAPPA_STARTS = ((0.4, 0.02), (0.05, 0.4))
 LOG_SHEAR_PRIOR = (math.log(0.2), 0.35)
 """Mean and standard deviation of ln(C_xyxy / sqrt(Y_x Y_y)): 0.15 to 0.35 in jersey pulled on the
 bias (``benchmarks/bias_strip.py``), 0.1 to 0.2 in a displacement field of acrylic garter, 0.08 and
-0.15 on the yarn level (acrylic stockinette and garter). That is a deviation of 0.7; half of it
+0.15 at the yarn level (acrylic stockinette and garter). That is a deviation of 0.7; half of it
 here, because the sum of squares counts neighbouring points, which err alike, as if independent."""
 SHEAR_STIFFENING = 4.0
 """1/rad², of jersey pulled on the bias: its force to 30 %. Straight pulls do not see it."""

@@ -21,7 +21,7 @@ Bools = NDArray[np.bool_]
 _LEAF = 12
 """Blocks that are not divided any more."""
 _STALE = 1.1
-"""An order is found anew where its work has grown by this factor."""
+"""An order is found again where its work has grown by this factor."""
 
 
 class Dissection:

@@ -53,7 +53,7 @@ class Leg:
     ----------
     strain, transverse_strain : (n,) along and across the pull, from the agitated rest size.
     stress_n_per_mm : (n,) nominal stress, over the agitated rest width.
-    loading : whether the fabric is pulled, not let go.
+    loading : whether the fabric is pulled, not released.
     """
 
     strain: Array
@@ -98,7 +98,7 @@ class Hysteresis:
 
     @property
     def left_strain(self) -> float:
-        """Strain that is left when the fabric has been let go."""
+        """Strain that remains when the fabric has been released."""
         return float(self.legs[-1].strain[-1])
 
     @property
@@ -138,7 +138,7 @@ def hysteresis(
     cycles: int = 2,
     cancelled: Cancelled | None = None,
 ) -> Hysteresis:
-    """Pull in one direction and let go until free of force, the other direction free throughout.
+    """Pull in one direction and release until free of force, the other direction free throughout.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from knitcore.yarnlevel.topology import Guard
 SKIN = 0.9
 """Reach of a new list of near pairs beyond 2r, in radii."""
 RENEW = 0.4
-"""Least certain reach of the list beyond 2r, in radii, before it is made anew."""
+"""Least certain reach of the list beyond 2r, in radii, before it is renewed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""A repeat relaxed in the round: the yarn of a tube of so many wales, free of force.
+"""A repeat relaxed in the round: the yarn of a tube with a given number of wales, free of force.
 
 The cell is bent along its courses until its stitches go once around
 (:mod:`knitcore.yarnlevel.bent_cell`): every stitch turns by 2π over the number of wales. The size

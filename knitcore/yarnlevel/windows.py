@@ -34,7 +34,7 @@ class Extent:
     ----------
     stitches : (n,) which ones the window's cell holds, those around it included.
     free : (n,) which of them move.
-    cut : whether the sheet goes on beyond; else the window is as large as the sheet, and repeats.
+    cut : whether the sheet continues beyond; else the window is as large as the sheet, and repeats.
     """
 
     stitches: Ints
@@ -129,7 +129,7 @@ class WindowEnergy(CellEnergy):
 
     Parameters
     ----------
-    cut : (2,) whether the sheet goes on beyond the window's cell, across and up.
+    cut : (2,) whether the sheet continues beyond the window's cell, across and up.
     moving : (rows * S,) samples that depend on free control points.
     resting_curve : (rows * S, 4, 3) the curve around.
     own_rows : rows of the cell that have free stitches.

@@ -1,4 +1,4 @@
-"""A chart's own sweep on the yarn level, as a simulated and as a measured material have it."""
+"""A chart's own sweep at the yarn level, as a simulated and as a measured material have it."""
 
 from __future__ import annotations
 

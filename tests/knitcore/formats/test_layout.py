@@ -142,7 +142,7 @@ def test_errors_name_their_place(change: dict[str, object], field: str, says: st
         ({"regions": [region("a", [])]}, "a has no stitches"),
         (
             {"regions": [region("a", [(0, 0, 1)]), region("b", [(0, 0, 2)])]},
-            "a is lost: it lies wholly under",
+            "a is lost: later regions cover it",
         ),
         ({"regions": [region("a", [(0, 0, 3)], fill="P")]}, "a contradicts the chart: 3 of its 3"),
         ({"outline": "x.x\nxxx"}, "row 2 is in two parts"),
