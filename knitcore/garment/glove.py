@@ -3,9 +3,9 @@
 Columns run from the forearm to the finger tips, rows around the hand: half of the thumb, the backs
 of the fingers from index to little finger, their fronts in the reverse order, and the other half of
 the thumb, which is grafted to the first row. Stockinette lies around the wrist along its stiff
-direction, the wales; ribs let the fingers bend, garter the hand close, seed the thumb move both
-ways. Between fingers a few rows end at the crotch, and between thumb and hand a gusset of seed
-tapers from the thumb down to its crotch on either side. Thumb and gusset begin at the wrist
+direction, the wales; rib lets the fingers bend, garter lets the hand close, and seed lets the thumb
+move both ways. Between fingers a few rows end at the crotch, and between thumb and hand a gusset of
+seed tapers from the thumb down to its crotch on either side. Thumb and gusset begin at the wrist
 support, not at the cuff, so that they do not widen the wrist. Steps at the finger tips are on
 right-side rows and steps at the wrist on wrong-side rows, which begin there: stitches are bound off
 and cast on without cutting the yarn.

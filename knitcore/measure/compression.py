@@ -3,8 +3,8 @@
     F = A k (rho_0 / p) ((rho_0 / rho)**p - 1),   rho = depth_core - depth
 
 with A the probe's width times the yarn's diameter, depth_core the depth at 3 N (the yarn's
-incompressible core) and rho_0 = depth_core - depth_0, where depth_0 is the depth at which the force
-leaves 1 mN for good. k and p by least squares over the readings from 1 mN to 1 N.
+incompressible core) and rho_0 = depth_core - depth_0, where depth_0 is the depth beyond which the
+force stays above 1 mN. k and p by least squares over the readings from 1 mN to 1 N.
 """
 
 from __future__ import annotations

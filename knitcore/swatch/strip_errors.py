@@ -31,8 +31,9 @@ TYPICAL_LOG_ERROR = 0.046
 """Error of the force of a pull predicted from the others: rms over acrylic's eight tests
 (``benchmarks/true_to_tests.py --left-out`` prints it)."""
 LOG_SHEAR_DOUBT = 0.7
-"""Standard deviation of ln C_xyxy beside what the fit says: tests along course and wale hardly see
-it, and what is known of it differs by as much (:data:`knitcore.swatch.strip_fit.LOG_SHEAR_PRIOR`).
+"""Standard deviation of ln C_xyxy beside what the fit says: tests along course and wale are hardly
+sensitive to it, and what is known of it varies as much
+(:data:`knitcore.swatch.strip_fit.LOG_SHEAR_PRIOR`).
 """
 NEIGHBOURS = 3.5
 """Errors of neighbouring points are correlated; this many count as one."""

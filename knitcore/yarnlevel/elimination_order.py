@@ -1,8 +1,8 @@
 """Order of elimination by nested dissection: a sheet is cut in two, each half again, cuts last.
 
-What is left of a half never touches the other, so only the cuts fill up. Folded fabric touches in
-places that the chart does not tell, so the cuts are found in the pattern itself: the Fiedler vector
-halves it, and a least vertex cover of what crosses the halves is the cut (König's theorem).
+What is left of a half never touches the other, so only the cuts fill up. Where folded fabric
+touches cannot be known from the chart, so the cuts are found in the pattern itself: the Fiedler
+vector halves it, and a least vertex cover of what crosses the halves is the cut (König's theorem).
 """
 
 from __future__ import annotations

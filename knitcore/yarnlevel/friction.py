@@ -5,7 +5,8 @@ either strand. A step adds the slide of the pair over its slip length to this fo
 exceeds the coefficient of friction times the normal force (an elastic-plastic return mapping, as
 for Coulomb friction with a small elastic slip: Wriggers, Computational Contact Mechanics, 2nd ed.,
 section 5.2). The normal forces are those at the beginning of the step, so the equilibrium of a step
-is the minimum of a potential. Rates do not enter. Rolling of one strand over the other is free.
+is the minimum of a potential. The model is independent of rate. Rolling of one strand over the
+other is free.
 """
 
 from __future__ import annotations

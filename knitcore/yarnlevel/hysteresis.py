@@ -103,7 +103,7 @@ class Hysteresis:
 
     @property
     def stiffer_at_turn(self) -> float:
-        """Stiffness in the first step back over that in the last step there, in the last cycle.
+        """Stiffness in the first step of unloading over that in the last of loading (last cycle).
 
         Without friction it is near 1; the finer the steps, the nearer it comes to the tangents'.
         """

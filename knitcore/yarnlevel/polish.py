@@ -2,8 +2,8 @@
 
 The Hessian of a sheet of thousands of stitches is never made. Its windows' are, once for a descent;
 their factors together are the first guess of its inverse, to which the stiffness of the two sizes
-of a stitch is added. Steps of windows keep the lengths of yarn, so the descent does too, but for
-what yarn passes from window to window; the next descent has its windows elsewhere.
+of a stitch is added. Steps of windows keep the lengths of yarn, so the descent does too, except for
+yarn that passes from window to window; the next descent has its windows elsewhere.
 """
 
 from __future__ import annotations

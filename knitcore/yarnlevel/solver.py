@@ -2,13 +2,12 @@
 
 The Hessian is exact (48 unknowns a stitch, half of that with a wale axis), dense in small cells and
 sparse in large ones. Where the energy is not convex, H + mu I is factorised with increasing mu
-until a factor exists (Levenberg-Marquardt); inverse iterations with the factor then tell how
-negative the lowest curvature is, and the next steps are damped just beyond it, so that they leave a
-saddle fast. The length of each course is a constraint: a step and the change of the tensions follow
-from one system (Newton on the Lagrangian), and the augmented Lagrangian with these tensions is the
-merit function, which must fall. Inextensible yarn makes its valley narrow and curved, so that a
-step along it leaves it; steps with the factor of the last Hessian return to it at a fraction of the
-cost.
+until a factor exists (Levenberg-Marquardt); inverse iterations with the factor then find the lowest
+curvature, and the next steps are damped just beyond it, so that they leave a saddle fast. The
+length of each course is a constraint: a step and the change of the tensions follow from one system
+(Newton on the Lagrangian), and the augmented Lagrangian with these tensions is the merit function,
+which must fall. Inextensible yarn makes its valley narrow and curved, so that a step along it
+leaves it; steps with the factor of the last Hessian return to it at a fraction of the cost.
 
 On convergence the Hessian distinguishes a minimum from a saddle, where a state can be trapped by a
 symmetry of the first shape; a saddle is left along its direction of most negative curvature.

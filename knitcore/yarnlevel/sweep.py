@@ -1,4 +1,4 @@
-"""Stretch a relaxed repeat course-wise or wale-wise, there and back, in any branch.
+"""Stretch a relaxed repeat course-wise or wale-wise, out and back, in any branch.
 
 At every size of the stretched direction the other one is free of force. The force is the partial
 derivative of the energy with respect to the size at the minimum, so no energies are differenced.

@@ -121,9 +121,9 @@ def relax_whole(
 ) -> RelaxedRepeat:
     """Shape of least energy of a chart of up to some thousand stitches, free of force.
 
-    The chart repeats; no symmetry is imposed. What is found is told honestly: ``converged`` says
-    whether the energy changed by less than the tolerance in the last round, and a note gives that
-    change and the largest force that is left.
+    The chart repeats; no symmetry is imposed. ``converged`` says whether the energy changed by less
+    than the tolerance in the last round, and a note gives that change and the largest force that is
+    left.
 
     Parameters
     ----------

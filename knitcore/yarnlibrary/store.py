@@ -1,7 +1,7 @@
 """Relaxed stitches that come with the package.
 
 ``data/stitches.json`` holds sizes, energies and laws, ``data/stitches.npz`` control points;
-``scripts/stored_stitches.py`` makes both. ``data/lowest.json`` tells which of them are minima
+``scripts/stored_stitches.py`` makes both. ``data/lowest.json`` records which of them are minima
 without their mirrors (``scripts/lowest_stitches.py``).
 """
 
