@@ -29,7 +29,7 @@ MAX_RUNS = 20_000
 class DesignDocument(DesignLayout, RequestModel):
     """A design as a file holds it; ``knitcore`` reads the same on the command line.
 
-    Documents of older versions are taken, too, and come back as this one.
+    Documents of older versions are accepted, too, and returned in this version.
     """
 
     format: Literal["knitcore-design"] = FORMAT

@@ -127,7 +127,7 @@ class DesignStore:
     async def paint(self, owner: str, design: str, strokes: Strokes) -> Painted:
         """Merge strokes into the present chart, also if others have painted since.
 
-        Asynchronous, because people paint more often than they do all the rest.
+        Asynchronous, because strokes are more frequent than all other changes.
 
         Raises
         ------

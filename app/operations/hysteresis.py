@@ -96,7 +96,7 @@ class HysteresisResult(IntervalResult):
 
 
 def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult:
-    """Stress of the repeat on the way there and back with dry friction between its yarns, the
+    """Stress of the repeat in loading and unloading, with dry friction between its yarns, the
     energy that a cycle loses, and the range of sizes at which it may rest.
 
     Raises

@@ -2,8 +2,8 @@
 
 Every process reads them for itself, workers too. An identifier ends in a mark of the file's
 content, because designs, atlases and results of jobs refer to it: a file that was changed is
-another material. The state that a user replaced last is still found, because somebody may be
-computing with it.
+another material. The state that a user replaced last is still found, because a computation may be
+using it.
 """
 
 from __future__ import annotations

@@ -156,7 +156,7 @@ def fit_simulated(
         if strip.length_mm is None:
             notes.append(
                 f"{test.source} does not say how far apart the clamps are (length_mm), so the"
-                " fabric is taken to narrow evenly."
+                " fabric is assumed to narrow evenly."
             )
         if strip.pulls == 1:
             notes.append(f"{test.source} has one pull, so the scatter between pulls is unknown.")
