@@ -44,7 +44,7 @@ PATTERNS = (
         "welt-2-2", "2-row welts", welt(2, 2), "Ridges that shorten the cloth along the wales."
     ),
     _pattern("basket", "Basket 2×2", "PPKK PPKK KKPP KKPP", "Blocks of two; thick and springy."),
-    _pattern("moss", "Moss", "PK PK KP KP", "Seed drawn out to two rows."),
+    _pattern("moss", "Moss", "PK PK KP KP", "Seed, with each row knitted twice."),
     _pattern("broken-rib", "Broken rib", "KK KP", "Rib every other row; lies flat."),
     _pattern(
         "diamonds",

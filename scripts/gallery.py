@@ -29,11 +29,11 @@ KINDS = {
 }
 HEAD = """# Gallery
 
-Ten designs, each of 24 × 24 stitches, with their mechanics and files to continue from. The chart is
-on the left, its extensibility beside it (as wide as it gives along the rows, as high as along the
-columns, one scale for each), and on the right its stress–strain curves with their 90 % intervals.
-The design opens in [the studio](studio.md); the knitout program has been knitted on a virtual
-machine. Made by `make gallery`.
+Ten designs, each of 24 × 24 stitches, with their mechanics and files to work with. The chart is on
+the left; beside it is a rectangle as wide as its extensibility along the rows and as high as that
+along the columns (the scale differs between designs); on the right are its stress–strain curves with
+their 90 % intervals. The design opens in [the studio](studio.md); the knitout program has been
+knitted on a virtual machine. Made by `make gallery`.
 """
 
 
@@ -77,7 +77,7 @@ def designs() -> Iterator[Design]:
         "Steps",
         StitchChart((row // 2 + column) % 6 < 3),
         "cotton",
-        "A 3×3 rib that moves over by one stitch every other row: its folds cannot run on.",
+        "A 3×3 rib that moves over by one stitch every other row, which interrupts its folds.",
     )
     yield Design(
         "soft-lines",

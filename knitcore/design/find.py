@@ -175,7 +175,7 @@ def _easiest(atlases: Sequence[Atlas]) -> str:
         "Relax one: the least of all repeats are "
         f"{min(c.transfers_per_stitch for c in costs):.2g} transfers and "
         f"{min(c.crossings_per_stitch for c in costs):.2g} crossings per stitch and a curl of "
-        f"{min(abs(c.curl) for c in costs):.2g}, but not in one repeat."
+        f"{min(abs(c.curl) for c in costs):.2g}, but no repeat has all three."
     )
 
 

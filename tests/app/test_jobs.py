@@ -219,7 +219,7 @@ def test_progress_and_cancel(database: Database, compute: Compute) -> None:
 
 @pytest.mark.parametrize(
     ("what", "type_", "says"),
-    [("die", "busy", "died"), ("fail", "internal", "did not expect"), ("wait", "busy", "0.3 s")],
+    [("die", "busy", "died"), ("fail", "internal", "unexpected error"), ("wait", "busy", "0.3 s")],
 )
 def test_an_unexpected_error_fails_only_its_own_job(
     database: Database, compute: Compute, what: str, type_: str, says: str

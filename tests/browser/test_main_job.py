@@ -60,7 +60,7 @@ def test_a_button_that_gets_other_words_shows_them_at_once(flat_studio: Page) ->
     run.hover()
     expect(tip).to_contain_text("Pull the chart")
     run.evaluate("button => { button.title = 'Cancel the test (J)' }")
-    expect(tip).to_contain_text("Give the test up")
+    expect(tip).to_contain_text("Cancel the test")
     flat_studio.mouse.move(5, 5)
     expect(tip).to_be_hidden()
     expect(run).to_have_attribute("title", "Cancel the test (J)")

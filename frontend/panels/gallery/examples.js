@@ -55,7 +55,7 @@ export const EXAMPLES = [
     note: "Blocks that lean against each other.",
     chart: tiled("PPPPKKKK/PPPPKKKK/PPPPKKKK/PPPPKKKK/KKKKPPPP/KKKKPPPP/KKKKPPPP/KKKKPPPP", 24, 32),
   },
-  { id: "moss", name: "Moss", note: "Seed drawn out to two rows.", chart: tiled("PK/PK/KP/KP", 24, 30) },
+  { id: "moss", name: "Moss", note: "Seed, with each row knitted twice.", chart: tiled("PK/PK/KP/KP", 24, 30) },
   { id: "diamonds", name: "Diamonds", note: "Soft lines across a stiff ground.", chart: tiled(DIAMONDS, 24, 32) },
   {
     id: "sampler",

@@ -104,7 +104,7 @@ def test_a_person_without_a_session_is_asked_for_a_token(lab: TestClient) -> Non
     assert "form-action 'self'" in page.headers["content-security-policy"]
     assert re.search(r'<input type="password" name="token"', page.text)
     wrong = lab.post("/sign-in", data={"token": "x" * 43})
-    assert "Nobody has this token" in wrong.text
+    assert "This token is unknown" in wrong.text
     right = lab.post("/sign-in", data={"token": _token(lab, "ada").token}, follow_redirects=False)
     assert (right.status_code, right.headers["location"]) == (303, "/")
     assert lab.get(SESSION).json()["user"] == "ada"

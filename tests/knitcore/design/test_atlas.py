@@ -169,9 +169,9 @@ def test_limits_of_knitting_cost() -> None:
     assert 0 < len(easy.candidates) < len(free.candidates)
     assert all(c.cost.transfers_per_stitch == 0 for c in easy.candidates)
     assert all(abs(c.cost.curl) <= 0.5 for c in easy.candidates)
-    with pytest.raises(InputError, match="keeps within") as caught:
+    with pytest.raises(InputError, match="no repeat is within") as caught:
         find_fabric([ATLAS], [target], limits=CostLimits(0.0, 0.0, 0.0))
-    assert "Widen one" in caught.value.remedy
+    assert "Relax one" in caught.value.remedy
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

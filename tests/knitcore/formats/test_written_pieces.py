@@ -81,7 +81,7 @@ def test_yarns_are_named() -> None:
         ("Row 1: Bind off 4 sts, knit.", "leaves no stitch"),
         ("Row 1: Ssk, k2. (4 sts)", "says 4 sts, but 3 are"),
         ("Row 1: Cast on 2 sts, k4.", "works 4 stitches, but 6 are"),
-        ("Rows 1-2: Bind off 1 st, k3.", "other than the 3 stitches"),
+        ("Rows 1-2: Bind off 1 st, k3.", "does not fit the 3 stitches"),
         ("Yarn B: red (#ff0000)\nRow 1: Knit.", "the next is A"),
         (
             "Yarn A: red (#ff0000)\nYarn B: blue (#0000ff)\nRow 1: Knit.",
