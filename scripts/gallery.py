@@ -31,8 +31,8 @@ HEAD = """# Gallery
 
 Ten designs, each of 24 × 24 stitches, with their mechanics and files to work with. The chart is on
 the left; beside it is a rectangle as wide as its extensibility along the rows and as high as that
-along the columns (the scale differs between designs); on the right are its stress–strain curves with
-their 90 % intervals. The design opens in [the studio](studio.md); the knitout program has been
+along the columns (the scale differs between designs); on the right are its stress–strain curves
+with their 90 % intervals. The design opens in [the studio](studio.md); the knitout program has been
 knitted on a virtual machine. Made by `make gallery`.
 """
 
