@@ -18,7 +18,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
 
 from knitcore.answer.densities import densities_of
 from knitcore.answer.learned import packaged_model
@@ -111,9 +110,16 @@ def _interpolated(
         if len(known) > MOST_KNOWN:
             known.clear()
         known.update(found)
-    layers = np.moveaxis(np.array([found[key] for key in keys]).reshape(*count, -1), -1, 0)
-    at = np.meshgrid(rows.places, columns.places, indexing="ij")
-    return np.stack([map_coordinates(layer, at, order=1) for layer in layers], axis=-1)
+    values = np.array([found[key] for key in keys]).reshape(*count, -1)
+    return _between(_between(values, rows.places), columns.places, axis=1)
+
+
+def _between(values: Array, places: Array, axis: int = 0) -> Array:
+    """Values at places between those along an axis, linearly."""
+    before = places.astype(int)
+    weight = np.expand_dims(places - before, tuple(range(1, values.ndim - axis)))
+    low, high = (values.take(at, axis) for at in (before, before + 1))
+    return low + weight * (high - low)
 
 
 def _sizes_and_folds(windows: NDArray[np.bool_], material: Material) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import dctn, idctn
 
 from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.arrays import Array
@@ -108,6 +107,8 @@ def _edges(wanted: Array, weight: float) -> Array:
     """Places (lines, steps + 1) of the edges between stitches whose steps along each line are
     nearest to the wanted ones (lines, steps); those from line to line, times the weight, to 0.
     """
+    from scipy.fft import dctn, idctn  # loads for .3 s, which a prediction does not wait for
+
     pull = -np.diff(wanted, axis=1, prepend=0.0, append=0.0)
     wave = dctn(pull, norm="ortho")
     across, along = (2 - 2 * np.cos(np.pi * np.arange(n) / n) for n in pull.shape)

@@ -44,7 +44,13 @@ def test_a_prediction_needs_the_light_library_only_and_loads_no_solver() -> None
     assert told.returncode == 0, told.stderr
     assert '"provenance":"measured"' in told.stdout
     loaded = set(told.stderr.split())
-    assert not loaded & {"numba", "scipy.optimize", "pydantic_settings", "app.operations.curve"}
+    assert not loaded & {
+        "numba",
+        "scipy",
+        "numpy.f2py",
+        "pydantic_settings",
+        "app.operations.curve",
+    }
 
 
 @pytest.mark.parametrize("command", ["fit a.csv b.csv", "measure bending a.png", "serve"])
