@@ -86,7 +86,7 @@ def write_design_of(chart: str, material: str, name: str, out: Path | None) -> N
         out.write_text(write_design(design), encoding="utf-8")
 
 
-def write_csv(file: Path, head: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+def write_table(file: Path, head: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Write a table with the names of its columns."""
     with file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)

@@ -26,7 +26,7 @@ def keep_no_large_blocks() -> None:
         adjust(M_MMAP_THRESHOLD, LARGE_BYTES)
 
 
-def settle() -> None:
+def freeze_loaded_objects() -> None:
     """After the start: exclude existing objects from garbage collection, since they stay."""
     gc.collect()
     gc.freeze()

@@ -58,7 +58,7 @@ class StitchChart:
         grid = np.array(self.purl, dtype=bool)
         if grid.ndim != 2 or 0 in grid.shape:
             raise InputError("chart", "the chart has no stitches.", "Give at least one row of K/P.")
-        check_size(*grid.shape)
+        check_chart_size(*grid.shape)
         grid.setflags(write=False)
         object.__setattr__(self, "purl", grid)
 
@@ -103,7 +103,7 @@ class StitchChart:
                     "Give every row the same number of stitches.",
                 )
             rows.append(row)
-            check_size(len(rows), len(row))
+            check_chart_size(len(rows), len(row))
         if not rows:
             raise InputError("chart", "the chart has no stitches.", "Give at least one row of K/P.")
         symbols = np.frombuffer("".join(rows).encode("ascii"), dtype=np.uint8)
@@ -116,7 +116,7 @@ class StitchChart:
         Rows 1, 3, 5 … and columns 1, 3, 5 … begin with a knit at the bottom left.
         """
         kind = Fabric(fabric) if isinstance(fabric, Fabric) else Fabric.parse(fabric)
-        check_size(rows, columns)
+        check_chart_size(rows, columns)
         row = np.arange(rows)[:, None] * kind.wale_odd
         column = np.arange(columns)[None, :] * kind.course_odd
         return cls((row + column) % 2 == 1)
@@ -158,12 +158,12 @@ class StitchChart:
         """The chart repeated ``down`` times along the wales and ``across`` times along courses."""
         if down < 1 or across < 1:
             raise InputError("tile", "the counts must be positive.", "Use whole numbers from 1.")
-        check_size(self.rows * down, self.columns * across)
+        check_chart_size(self.rows * down, self.columns * across)
         return StitchChart(np.tile(self.purl, (down, across)))
 
     def resized(self, rows: int, columns: int) -> StitchChart:
         """The chart continued periodically, from its bottom left, to the given size."""
-        check_size(rows, columns)
+        check_chart_size(rows, columns)
         return StitchChart(
             self.purl[np.ix_(np.arange(rows) % self.rows, np.arange(columns) % self.columns)]
         )
@@ -240,7 +240,7 @@ class StitchChart:
         most = showing.MAX_CELLS
         size = f"{self.columns} columns × {self.rows} rows, the face side"
         cut = f"; the lower left {most} × {most}" if max(self.purl.shape) > most else ""
-        return showing.figure(showing.stitches(self.purl), size + cut)
+        return showing.captioned(showing.stitches(self.purl), size + cut)
 
 
 def check_stitches(stitches: int, most: int, what: str = "it", instead: str = "") -> None:
@@ -260,7 +260,7 @@ def check_stitches(stitches: int, most: int, what: str = "it", instead: str = ""
         raise InputError("chart", f"{what} has {stitches} stitches.", remedy, most=most)
 
 
-def check_size(rows: int, columns: int) -> None:
+def check_chart_size(rows: int, columns: int) -> None:
     """Refuse a chart that is empty or over-large.
 
     Raises

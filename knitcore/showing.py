@@ -32,7 +32,7 @@ def svg(width: float, height: float, title: str, parts: Iterable[str]) -> str:
     )
 
 
-def figure(picture: str, *lines: str) -> str:
+def captioned(picture: str, *lines: str) -> str:
     """A picture or table with lines of text below it."""
     told = "".join(f"<div>{escape(line)}</div>" for line in lines if line)
     return f'<figure style="margin:0">{picture}<figcaption>{told}</figcaption></figure>'
@@ -43,7 +43,7 @@ def beside(*parts: str) -> str:
     return f'<div style="display:flex;flex-wrap:wrap;gap:1.5em">{"".join(parts)}</div>'
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+def html_table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """A table; the first cell of a row is its head."""
     lines = [f"<tr>{''.join(f'<th>{escape(cell)}</th>' for cell in head)}</tr>"]
     for first, *others in rows:

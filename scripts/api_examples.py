@@ -14,7 +14,7 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
-from app.http.schema import operations
+from app.http.schema import documented_operations
 from app.http.sessions import Sessions
 from app.identity import LOCAL_USER
 from app.jobs.store import OPEN
@@ -75,7 +75,7 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
     place["session"] = sessions.begin("a token's id", LOCAL_USER)
     own: dict[str, Any] = {}
     answers = {}
-    found = dict(operations(client.get("/openapi.json").json()))
+    found = dict(documented_operations(client.get("/openapi.json").json()))
     for name in in_order(found):
         method, path = name.split()
         if path.endswith(ENDLESS):

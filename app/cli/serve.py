@@ -97,7 +97,7 @@ def serve_on(settings: Settings, listener: socket.socket) -> None:
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)
-            memory.settle()
+            memory.freeze_loaded_objects()
 
         def handle_exit(self, sig: int, frame: FrameType | None) -> None:
             app.state.stopping = True  # so that open streams end instead of holding it up

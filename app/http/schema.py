@@ -91,7 +91,7 @@ def install_schema(app: FastAPI) -> None:
     def complete() -> dict[str, Any]:
         schema = made()
         asked, found = _read("requests.json"), _read("answers.json")
-        for name, operation in operations(schema):
+        for name, operation in documented_operations(schema):
             _mark_problems(operation["responses"])
             for status, response in operation["responses"].items():
                 _add_headers(int(status), response)
@@ -124,7 +124,7 @@ def install_schema(app: FastAPI) -> None:
         return tagged(content(), request.headers)
 
 
-def operations(schema: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+def documented_operations(schema: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     """All operations of a schema with their names, such as ``GET /healthz``."""
     for path, methods in schema["paths"].items():
         for method, operation in methods.items():

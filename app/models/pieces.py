@@ -190,7 +190,7 @@ def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
     }
 
 
-def table(columns: dict[str, list[float]]) -> list[str]:
+def text_table(columns: dict[str, list[float]]) -> list[str]:
     """Lines of a table with a heading."""
     return [
         " ".join(f"{name:>12}" for name in columns),

@@ -79,7 +79,7 @@ class ClothPiece(ResultModel):
     outline: CellLines
 
 
-def piece_of(
+def cloth_piece(
     corners_mm: Array,
     rectangle_mm: tuple[float, float],
     cloth: EvenCloth,
@@ -99,7 +99,7 @@ def piece_of(
     return ClothPiece(id=identifier, chart=chart.text, outline=outline), corners
 
 
-def corners_of(corners_mm: Array, there: NDArray[np.bool_]) -> list[list[Corner]]:
+def corner_lists(corners_mm: Array, there: NDArray[np.bool_]) -> list[list[Corner]]:
     """Corners (lines, points, 3) as an answer has them, null where there are none."""
     lines = zip(corners_mm.round(3).tolist(), there.tolist(), strict=True)
     return [

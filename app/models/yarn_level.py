@@ -132,7 +132,7 @@ def _lengths(request: YarnLevelRequest, used: ChartYarn, rows: int, columns: int
     return [row * (columns // len(row)) for row in table]
 
 
-def relaxed_cell(
+def relax_requested(
     repeat: StitchChart,
     used: ChartYarn,
     request: YarnLevelRequest,

@@ -17,8 +17,8 @@ from knitcore.yarnlevel.bending import (
     MAX_STITCHES,
     Curl,
     FabricBending,
-    bending,
     bending_length_mm,
+    bending_response,
 )
 from knitcore.yarnlevel.bent_cell import BendingResponse
 from knitcore.yarnlevel.relax import Branch, OnSplines, RelaxedRepeat, relax
@@ -104,12 +104,12 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     notes = [_FRICTIONLESS]
     found = free = None
     try:
-        found = bending(mirrored)
+        found = bending_response(mirrored)
     except ConvergenceError as error:
         notes.append(f"With the symmetries of the chart: {error}")
     if found is None or (not found.minimum and repeat.stitches <= COMPARED_UP_TO):
         try:
-            free = bending(relaxed(Branch.FREE))
+            free = bending_response(relaxed(Branch.FREE))
         except (ConvergenceError, UnravelledError) as error:
             notes.append(f"Without them: {error}")
     shown = found or free

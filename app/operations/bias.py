@@ -8,7 +8,7 @@ from pydantic import Field
 
 from app.context import Context
 from app.models.base import EndsOfList, Floats
-from app.models.pieces import PieceTestRequest, PieceTestResult, Size, table
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
 from app.operations.registry import Command, Operation
 from knitcore.piece.standard import bias_test
 
@@ -61,7 +61,7 @@ def _lines(r: BiasResult) -> list[str]:
         "sideways N": r.sideways_n,
         "waist": r.waist_strain,
     }
-    return table(columns)
+    return text_table(columns)
 
 
 OPERATION = Operation(

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from app.context import Context
 from app.models.base import EndsOfList, Floats
-from app.models.pieces import PieceTestRequest, PieceTestResult, Size, table
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
 from app.operations.registry import Command, Operation
 from knitcore.piece.standard import biaxial_test
 
@@ -59,7 +59,7 @@ def _lines(r: BiaxialResult) -> list[str]:
         "low  N": r.force_y_interval_n[0],
         "high  N": r.force_y_interval_n[1],
     }
-    return table(columns)
+    return text_table(columns)
 
 
 OPERATION = Operation(

@@ -9,7 +9,7 @@ from typing import Any, Literal, Self
 import click
 from pydantic import Field, RootModel, model_validator
 
-from app.command_options import write_csv
+from app.command_options import write_table
 from app.context import Context
 from app.models.base import Positive, RequestModel, ResultModel
 from app.models.charts import MaterialName
@@ -281,7 +281,7 @@ def _command(
     rows = [(result.identifier, row) for result in results for row in result.rows]
     of_row = set(FabricRow.model_fields)
     table = ([yarn, *row.model_dump(mode="json", include=of_row).values()] for yarn, row in rows)
-    write_csv(out / "table.csv", ["yarn", *FabricRow.model_fields], table)
+    write_table(out / "table.csv", ["yarn", *FabricRow.model_fields], table)
     points = (
         [yarn, row.fabric, row.setting, direction, *point]
         for yarn, row in rows
@@ -289,7 +289,7 @@ def _command(
         for point in zip(*(getattr(curve, name) for name in QUANTITIES), strict=True)
     )
     head = ["yarn", "fabric", "setting", "direction", *QUANTITIES]
-    write_csv(out / "curves.csv", head, points)
+    write_table(out / "curves.csv", head, points)
     return YarnsResult(results)
 
 

@@ -14,7 +14,7 @@ from app.models.base import Known, RequestModel, ResultModel
 from app.models.charts import OutlineInput
 from app.models.laws import FabricRequest
 from app.models.posed import PosedView
-from app.models.weighed import Corners, TimeLimit, corners_of
+from app.models.weighed import Corners, TimeLimit, corner_lists
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words
@@ -116,7 +116,7 @@ def _result(piece: CurledPiece, request: CurlRequest) -> CurlResult:
         columns=piece.chart.columns,
         flat_width_mm=float(flat[0]),
         flat_height_mm=float(flat[1]),
-        corners_mm=corners_of(piece.corners_mm, piece.used) if request.corners else None,
+        corners_mm=corner_lists(piece.corners_mm, piece.used) if request.corners else None,
         notes=list(piece.notes),
     )
 

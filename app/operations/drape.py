@@ -16,9 +16,9 @@ from app.models.weighed import (
     Corners,
     WantsCorners,
     WeighedRequest,
-    corners_of,
+    cloth_piece,
+    corner_lists,
     notes_of,
-    piece_of,
 )
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
@@ -73,7 +73,7 @@ def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
     cloth = request.cloth(repeat, context)
     found = request.pass_to(drape_cloth, cloth, cancelled=context.cancelled)
     rectangle = request.piece_mm / request.across
-    piece, corners = piece_of(
+    piece, corners = cloth_piece(
         found.corners_mm, (rectangle, rectangle), cloth, repeat, OPERATION.key(request)
     )
     turn = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
@@ -85,7 +85,7 @@ def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
         coefficient_of_states=(min(found.coefficients), max(found.coefficients)),
         bending_length_course_mm=cloth.bending_length_mm(0),
         bending_length_wale_mm=cloth.bending_length_mm(1),
-        corners_mm=corners_of(found.corners_mm, np.isfinite(found.corners_mm[..., 0]))
+        corners_mm=corner_lists(found.corners_mm, np.isfinite(found.corners_mm[..., 0]))
         if request.corners
         else None,
         notes=notes_of(cloth),

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from app.command_options import out_option, write_csv
+from app.command_options import out_option, write_table
 from app.context import Context
 from app.models.base import Floats, RequestModel, ResultModel
 from app.models.checks import CheckedBy
@@ -146,7 +146,7 @@ def _command(
             for direction, r in found.residuals.items()
             for row in zip(r.strain_along, r.strain_across, r.stress, r.fitted, strict=True)
         )
-        write_csv(residuals, ["direction", *ResidualPoints.model_fields], points)
+        write_table(residuals, ["direction", *ResidualPoints.model_fields], points)
     return _result(found, residuals=False)
 
 

@@ -330,7 +330,7 @@ def _worn(place: Worn) -> WornResult:
     return WornResult.of(found, place)
 
 
-def measured(asked: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
+def measured_options(asked: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
     """Options of a garment's measurements; :func:`read_measured` reads them."""
     for option in (
         click.option("--per", type=click.Choice(list(_LENGTHS)), default="10 cm"),
@@ -374,7 +374,7 @@ def read_measured(
 
 
 @click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))
-@measured
+@measured_options
 def _asked(
     template: str, settings: tuple[str, ...], gauge: str | None, per: str
 ) -> dict[str, object]:

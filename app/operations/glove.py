@@ -12,7 +12,7 @@ from app.command_options import out_option
 from app.context import Context
 from app.models.base import IntervalResult
 from app.models.posed import Body, PosedView
-from app.operations.garment import Glove, KnitterRequest, measured, read_measured
+from app.operations.garment import Glove, KnitterRequest, measured_options, read_measured
 from app.operations.limb import HEADING, LimbPlaceResult
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
@@ -96,7 +96,7 @@ def _view(found: GloveOnHand) -> PosedView:
     )
 
 
-@measured
+@measured_options
 def _hand(settings: tuple[str, ...], gauge: str | None, per: str) -> dict[str, object]:
     return read_measured("glove", settings, gauge, per)
 

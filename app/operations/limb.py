@@ -19,7 +19,7 @@ from app.models.posed import Body, PosedView
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
-from knitcore.answer.limb import MAX_GIRTHS, PLACES, Limb, LimbPlace, on_limb
+from knitcore.answer.limb import MAX_GIRTHS, PLACES, LimbPlace, MeasuredLimb, on_limb
 from knitcore.answer.patches import SIDE
 from knitcore.chart import check_stitches
 from knitcore.errors import InputError
@@ -170,7 +170,7 @@ def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
     chart, material = request.fabric(context)
     check_stitches(chart.stitches, MAX_STITCHES)
     girths = request.girths
-    on = Limb(tuple(g.at_mm for g in girths), tuple(g.girth_mm for g in girths))
+    on = MeasuredLimb(tuple(g.at_mm for g in girths), tuple(g.girth_mm for g in girths))
     return worn_tube(chart, material, on, request.direction)
 
 

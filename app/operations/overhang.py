@@ -17,8 +17,8 @@ from app.models.weighed import (
     Corners,
     WantsCorners,
     WeighedRequest,
+    cloth_piece,
     notes_of,
-    piece_of,
 )
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
@@ -73,7 +73,7 @@ def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResul
         sheet, rectangle = found.corners_mm.transpose(1, 0, 2), found.rectangle_mm
     else:  # turned about the vertical, so that the face stays above
         sheet, rectangle = found.corners_mm[:, ::-1], found.rectangle_mm[::-1]
-    piece, corners = piece_of(sheet, rectangle, cloth, repeat, OPERATION.key(request))
+    piece, corners = cloth_piece(sheet, rectangle, cloth, repeat, OPERATION.key(request))
     table = TABLE_MM * np.array([(-1.0, -0.5), (0.0, -0.5), (0.0, 0.5), (-1.0, 0.5)])
     result = OverhangResult.of(
         found,

@@ -9,7 +9,7 @@ from pydantic import Field
 from app.command_options import loop_lengths
 from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
-from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
+from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, UnravelledError
@@ -111,7 +111,7 @@ def _relaxed(
     request: RelaxRequest, repeat: StitchChart, used: ChartYarn, context: Context
 ) -> RelaxResult:
     sizes = request.cell_course_mm, request.cell_wale_mm
-    cell = relaxed_cell(repeat, used, request, context, sizes)
+    cell = relax_requested(repeat, used, request, context, sizes)
     free = [
         log_interval(size, YARN_LEVEL_SIZE_LOG_SD) if held is None else None
         for size, held in zip((cell.cell_course_mm, cell.cell_wale_mm), sizes, strict=True)

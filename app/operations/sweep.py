@@ -10,7 +10,7 @@ from app.command_options import loop_lengths
 from app.context import Context
 from app.models.base import EndsOfList, Floats, IntervalResult
 from app.models.laws import ElasticConstants
-from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
+from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError
@@ -99,7 +99,7 @@ def sweep(request: SweepRequest, context: Context) -> SweepResult:
 def _result(
     request: SweepRequest, repeat: StitchChart, used: ChartYarn, context: Context
 ) -> SweepResult:
-    zero = relaxed_cell(repeat, used, request, context)
+    zero = relax_requested(repeat, used, request, context)
 
     def stretch(
         direction: Direction, max_strain: float, points: int, max_stress: float | None = None

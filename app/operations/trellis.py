@@ -10,7 +10,7 @@ from pydantic import Field
 
 from app.context import Context
 from app.models.base import EndsOfList, Floats
-from app.models.pieces import PieceTestRequest, PieceTestResult, Size, table
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
 from app.operations.registry import Command, Operation
 from knitcore.piece.standard import trellis_test
 
@@ -59,7 +59,7 @@ def _lines(r: TrellisResult) -> list[str]:
         "N·mm": r.moment_n_mm,
         "N/mm": r.shear_stress_n_per_mm,
     }
-    return table(columns)
+    return text_table(columns)
 
 
 OPERATION = Operation(

@@ -20,7 +20,7 @@ from knitcore.materials.uncertainty import (
     log_interval,
 )
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.whole import MAX_ROUNDS, Sheet, relax_whole
+from knitcore.yarnlevel.whole import MAX_ROUNDS, WholeShape, relax_whole
 
 
 class WholeRequest(StitchRequest):
@@ -72,7 +72,7 @@ class KeptSheet(BaseModel):
     energies_n_mm: list[float]
 
     @classmethod
-    def of(cls, sheet: Sheet) -> KeptSheet:
+    def of(cls, sheet: WholeShape) -> KeptSheet:
         """For storage."""
         return cls(
             controls=sheet.controls.tolist(), sizes_mm=sheet.sizes_mm.tolist(),
@@ -80,9 +80,9 @@ class KeptSheet(BaseModel):
             fine=sheet.fine, energies_n_mm=list(sheet.energies_n_mm),
         )  # fmt: skip
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> WholeShape:
         """As the library takes it."""
-        return Sheet(
+        return WholeShape(
             np.array(self.controls), np.array(self.sizes_mm), np.array(self.tension_n),
             self.core_radius_mm, self.fine, tuple(self.energies_n_mm),
         )  # fmt: skip

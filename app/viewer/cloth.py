@@ -37,7 +37,7 @@ class _Node:
         return bool((np.abs(np.log(sizes / self.sizes)) <= RESIZE).all())
 
 
-class Cloth:
+class ShownStitches:
     """The stitches of a scene.
 
     A shape keeps its node: a stretch, a colour or a stroke moves stitches from node to node, and

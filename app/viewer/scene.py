@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from app.drawing.colours import SKIN
 from app.drawing.fabric import Box, Drawing, FabricScene, Ground
 from app.viewer.camera import CameraSide, place_camera
-from app.viewer.cloth import UNITS_PER_MM, Cloth
+from app.viewer.cloth import UNITS_PER_MM, ShownStitches
 from knitcore.arrays import Array
 from knitcore.geometry.instances import level_of
 
@@ -34,7 +34,7 @@ class SceneWriter:
         self._server = server
         self._lock = threading.RLock()
         self._drawing: Drawing | None = None
-        self._cloth = Cloth(server)
+        self._cloth = ShownStitches(server)
         self._timer: threading.Timer | None = None
         self._layers: dict[str, Any] = {}
         self._framed: tuple[float, ...] | None = None

@@ -207,8 +207,8 @@ class Answer:
         )
         extensible = f"The rectangle is the extensibility: {give[0]:.3g} × {give[1]:.3g} mm/N."
         told = f"{self.provenance}: {self.method}. 90 % intervals: {self.interval_source}"
-        table = showing.table(head, rows)
-        return showing.figure(table + pictures, extensible, told, *self.notes)
+        table = showing.html_table(head, rows)
+        return showing.captioned(table + pictures, extensible, told, *self.notes)
 
     # -- under the names that command line, REST and files use ------------------------------
 

@@ -53,7 +53,7 @@ class ChartCurve:
         drawn = [(str(self.provenance), self.strain, self.stress_n_per_mm, ends)]
         picture = showing.curves(drawn, "strain", "stress, N/mm")
         band = f"The band is the 90 % interval of the strain. {self.interval_source}"
-        return showing.figure(picture, band)
+        return showing.captioned(picture, band)
 
 
 def increasing(stress_n_per_mm: ArrayLike) -> Array:

@@ -18,7 +18,7 @@ MAX_GIRTHS = 100
 
 
 @dataclass(frozen=True)
-class Limb:
+class MeasuredLimb:
     """A limb by its girths, which change evenly between the places where they were taken.
 
     Attributes
@@ -105,8 +105,8 @@ def on_limb(
     InputError
         If the lists do not fit each other or their places do not increase.
     """
-    limb = Limb(tuple(at_mm), tuple(girths_mm))
-    rest = Limb(limb.at_mm, tuple(rests_mm))
+    limb = MeasuredLimb(tuple(at_mm), tuple(girths_mm))
+    rest = MeasuredLimb(limb.at_mm, tuple(rests_mm))
     at = np.linspace(limb.at_mm[0], limb.at_mm[-1], places)
     sizes = zip(at.tolist(), limb.girth_mm(at).tolist(), rest.girth_mm(at).tolist(), strict=True)
     return tuple(place_on(along, *size) for size in sizes)

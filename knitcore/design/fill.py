@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.bounds import check_range
-from knitcore.chart import StitchChart, check_size
+from knitcore.chart import StitchChart, check_chart_size
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import entry_of, predict_repeat
 from knitcore.design.explain import OFF, Patch, unreached
@@ -427,7 +427,7 @@ def _checked(course: Array, wale: Array, smallest_patch: int) -> Array:
     maps = [np.asarray(course, dtype=float), np.asarray(wale, dtype=float)]
     if maps[0].ndim != 2 or maps[0].shape != maps[1].shape:
         raise InputError("target", "the two maps differ in size.", "Give rows x columns for both.")
-    check_size(*maps[0].shape)
+    check_chart_size(*maps[0].shape)
     both = np.stack(maps)
     if np.isnan(both).all():
         raise InputError("target", "there is no target anywhere.", "Paint at least one stitch.")

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.chart import check_size
+from knitcore.chart import check_chart_size
 from knitcore.errors import InputError
 
 Parts = NDArray[np.intp]
@@ -41,7 +41,7 @@ def target_maps(targets: Sequence[PartTarget], rows: int, columns: int) -> tuple
     InputError
         If a part lies outside the chart, or contradicts another.
     """
-    check_size(rows, columns)
+    check_chart_size(rows, columns)
     maps = np.full((2, rows, columns), np.nan)
     owner = np.full((2, rows, columns), -1)
     for number, target in enumerate(targets):
@@ -65,7 +65,7 @@ def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Part
     InputError
         If a part lies outside the chart.
     """
-    check_size(rows, columns)
+    check_chart_size(rows, columns)
     parts = np.zeros((rows, columns), dtype=np.intp)
     for target in targets:
         numbers = np.unique(2 * parts + _cells(target, rows, columns), return_inverse=True)[1]

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 
 from knitcore.arrays import Array
 from knitcore.bounds import check_positive, check_range
-from knitcore.chart import StitchChart, check_size
+from knitcore.chart import StitchChart, check_chart_size
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.progress import SearchProgress
 from knitcore.errors import Cancelled, InputError
@@ -367,7 +367,7 @@ def _checked(
             "Give every width as a multiple of the width at rest.",
         )
     lines = (across, len(wanted)) if direction is Direction.COURSE else (len(wanted), across)
-    check_size(*lines)
+    check_chart_size(*lines)
     if across < 3 or across * len(wanted) > _MAX_STITCHES:
         raise InputError(
             "across",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from knitcore.errors import InputError
-from knitcore.garment.piece import Piece, Run
+from knitcore.garment.piece import Piece, YarnRun
 
 MAX_CARRIERS = 10
 """Carriers of a Shima Seiki SWG091N2 and of the virtual machine; one is kept for waste yarn."""
@@ -22,7 +22,7 @@ class CarrierRow:
     ended : carriers that knitted the row below and are taken out.
     """
 
-    runs: tuple[tuple[Run, int], ...]
+    runs: tuple[tuple[YarnRun, int], ...]
     new: frozenset[int]
     ended: tuple[int, ...]
 
@@ -52,7 +52,7 @@ def plan_carriers(piece: Piece) -> CarrierPlan:
     """
     yarns: dict[int, int] = {}
     free: dict[int, list[int]] = {}
-    active: dict[int, Run] = {}
+    active: dict[int, YarnRun] = {}
     rows = []
     for row in range(piece.chart.rows):
         runs = piece.runs(row)
@@ -80,7 +80,7 @@ def plan_carriers(piece: Piece) -> CarrierPlan:
     return CarrierPlan(tuple(rows), yarns)
 
 
-def _inherited(active: dict[int, Run], runs: tuple[Run, ...]) -> dict[int, int]:
+def _inherited(active: dict[int, YarnRun], runs: tuple[YarnRun, ...]) -> dict[int, int]:
     """Carriers by the index of the run that continues with them."""
     shared = sorted(
         (
@@ -98,6 +98,6 @@ def _inherited(active: dict[int, Run], runs: tuple[Run, ...]) -> dict[int, int]:
     return taken
 
 
-def carrier_fits(below: Run, run: Run) -> bool:
+def carrier_fits(below: YarnRun, run: YarnRun) -> bool:
     """Whether a run of one row can continue with the yarn of one in the row below."""
     return below.yarn == run.yarn and below.start < run.stop and run.start < below.stop

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-from knitcore.formats.yarn_mesh import course_centre_lines, export, solid, yarn_radius_mm
+from knitcore.formats.yarn_mesh import course_centre_lines, mesh_file, solid, yarn_radius_mm
 from knitcore.materials import Material
 from knitcore.shell.curl import CurledPiece
 
@@ -26,7 +26,7 @@ def write_curled_glb(
     """
     corners = corners_mm if stitches is None else _continued(corners_mm, stitches)
     lines = course_centre_lines(chart, corners, material, stitches)
-    return export(solid(lines, yarn_radius_mm(chart, material)), 0.001, "glb")
+    return mesh_file(solid(lines, yarn_radius_mm(chart, material)), 0.001, "glb")
 
 
 def write_curled_npz(piece: CurledPiece) -> bytes:

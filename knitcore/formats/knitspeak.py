@@ -23,7 +23,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_size
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
 from knitcore.errors import InputError
 from knitcore.formats.written import in_brackets, row_words
 from knitcore.formats.written_words import MAX_CHARACTERS, Line, lines_of
@@ -195,7 +195,7 @@ def _count(rows: list[_Row]) -> int:
     """The smallest number of stitches that fits all rows."""
     fixed = [row for row in rows if not row.unit]
     if fixed:
-        check_size(1, len(fixed[0].head))
+        check_chart_size(1, len(fixed[0].head))
         return len(fixed[0].head)
     fits = (n for n in range(1, MAX_STITCHES_PER_SIDE + 1) if all(row.worked(n) for row in rows))
     count = next(fits, None)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, PngImagePlugin, UnidentifiedImageError
 
-from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_size
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
 from knitcore.errors import InputError
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
@@ -86,7 +86,7 @@ def read_png_piece(file: Path) -> Piece:
     """
     try:
         with Image.open(file, formats=["PNG"]) as image:
-            check_size(image.height, image.width)  # before any pixel is decoded
+            check_chart_size(image.height, image.width)  # before any pixel is decoded
             said = image.info.get(TEXT_KEY) if image.mode == "P" else None
             if isinstance(said, str):
                 return _piece(np.asarray(image)[::-1].astype(np.intp), said, file.name)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from knitcore.arrays import Array
-from knitcore.chart import MAX_STITCHES_PER_SIDE, check_size
+from knitcore.chart import MAX_STITCHES_PER_SIDE, check_chart_size
 from knitcore.errors import InputError
 
 MAX_BYTES = 80_000_000
@@ -46,7 +46,7 @@ def read_wanted_moduli(file: Path) -> tuple[Array, Array]:
             "target", f"{file.name} holds no stitch.", "Give one line for each stitch."
         )
     rows, columns = max(entry[0] for entry in entries), max(entry[1] for entry in entries)
-    check_size(rows, columns)
+    check_chart_size(rows, columns)
     maps = np.full((2, rows, columns), np.nan)
     for row, column, course, wale in entries:
         maps[:, row - 1, column - 1] = course, wale

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 
-from knitcore.chart import StitchChart, check_size
+from knitcore.chart import StitchChart, check_chart_size
 from knitcore.errors import InputError
 from knitcore.formats.written_words import Line, Work, lines_of, read_row
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, yarn_name
@@ -74,7 +74,7 @@ def read_piece_rows(text: str) -> Piece:
             'Begin with "Cast on 20 sts." (add "and join in the round" for rounds).',
         )
     stitches = int(cast_on[1])
-    check_size(1, stitches)
+    check_chart_size(1, stitches)
     construction = Construction.ROUND if cast_on[2] else Construction.FLAT
     wrong_first = _WRONG_FIRST.search(cast_on[3]) is not None
     reader = _Reader(stitches, construction, Side.WS if wrong_first else Side.RS)
@@ -135,7 +135,7 @@ class _Reader:
                 f"it is for row {start}, but row {len(self._rows) + 1} comes next.",
                 "Number the rows from 1 without gaps.",
             )
-        check_size(stop, self._needle)
+        check_chart_size(stop, self._needle)
         if side is not None and Side(side.upper()) is not self._side(start - 1):
             raise line.wrong(
                 f"row {start} is a {self._side(start - 1)} row.",

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from knitcore.chart import MAX_STITCHES_PER_SIDE, check_size
+from knitcore.chart import MAX_STITCHES_PER_SIDE, check_chart_size
 from knitcore.errors import InputError
 from knitcore.garment.piece import yarn_name
 
@@ -124,7 +124,7 @@ def _edges(line: Line, words: str, needle: int) -> tuple[int, int, str]:
         last, words = int(at_end[1]), words[at_end.end() :]
     if (loss := _LOSS_AT_END.search(words)) is not None:
         last, words = last - int(loss[1]), words[: loss.start()]
-    check_size(1, max(needle + max(first, 0) + max(last, 0), 1))
+    check_chart_size(1, max(needle + max(first, 0) + max(last, 0), 1))
     return first, last, words
 
 

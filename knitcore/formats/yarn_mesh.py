@@ -17,7 +17,7 @@ from knitcore.fabric import Fabric
 from knitcore.garment.piece import Piece
 from knitcore.geometry.laid_out import laid_corners_mm
 from knitcore.geometry.loops import loop_centre_line, loop_kinds
-from knitcore.geometry.tubes import TriangleMesh, tube
+from knitcore.geometry.tubes import TriangleMesh, tube_mesh
 from knitcore.materials import Material
 from knitcore.shell.surface import Surface
 
@@ -81,7 +81,7 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
 
 def solid(lines: Iterable[NDArray[np.float64]], radius_mm: float) -> TriangleMesh:
     """Closed tubes around centre lines, mm."""
-    tubes = [_closed(tube(line, radius_mm, SIDES)) for line in lines]
+    tubes = [_closed(tube_mesh(line, radius_mm, SIDES)) for line in lines]
     offsets = np.cumsum([0, *(len(t.vertices) for t in tubes[:-1])])
     return TriangleMesh(
         np.concatenate([t.vertices for t in tubes]),
@@ -91,15 +91,15 @@ def solid(lines: Iterable[NDArray[np.float64]], radius_mm: float) -> TriangleMes
 
 def write_glb(chart: StitchChart | Piece, material: Material) -> bytes:
     """Binary glTF 2.0 in metres."""
-    return export(yarn_mesh(chart, material), 0.001, "glb")
+    return mesh_file(yarn_mesh(chart, material), 0.001, "glb")
 
 
 def write_stl(chart: StitchChart | Piece, material: Material) -> bytes:
     """Binary STL in mm."""
-    return export(yarn_mesh(chart, material), 1.0, "stl")
+    return mesh_file(yarn_mesh(chart, material), 1.0, "stl")
 
 
-def export(mesh: TriangleMesh, scale: float, kind: str) -> bytes:
+def mesh_file(mesh: TriangleMesh, scale: float, kind: str) -> bytes:
     """A file of a kind that trimesh writes (``glb``, ``stl``)."""
     import trimesh
 

@@ -27,7 +27,7 @@ MAIN_YARN: Final = PieceYarn("main yarn", "#efe9dd")
 
 
 @dataclass(frozen=True)
-class Run:
+class YarnRun:
     """Adjacent stitches of one yarn in a row: columns ``start`` … ``stop - 1``."""
 
     start: int
@@ -92,11 +92,11 @@ class Piece:
         """Whether it is a rectangle of the main yarn, with nothing beyond its chart."""
         return self.is_rectangle and self.yarns == (MAIN_YARN,)
 
-    def runs(self, row: int) -> tuple[Run, ...]:
+    def runs(self, row: int) -> tuple[YarnRun, ...]:
         """The yarns of a row from left to right."""
         first, last = self.shaped.spans[row]
         found = runs(self.yarn_of[row, first:last])
-        return tuple(Run(first + start, first + stop, yarn) for start, stop, yarn in found)
+        return tuple(YarnRun(first + start, first + stop, yarn) for start, stop, yarn in found)
 
     def cells(self, yarn: int) -> NDArray[np.bool_]:
         """The stitches of one yarn."""

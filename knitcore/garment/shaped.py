@@ -109,7 +109,7 @@ class ShapedChart:
 
     def _repr_html_(self) -> str:
         size = f"{self.stitches} stitches in {self.chart.columns} columns × {self.chart.rows} rows"
-        return showing.figure(showing.stitches(self.chart.purl, self.stitch), size)
+        return showing.captioned(showing.stitches(self.chart.purl, self.stitch), size)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, ShapedChart) or not np.array_equal(self.stitch, other.stitch):

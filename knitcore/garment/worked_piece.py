@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore.chart import StitchChart, check_size
+from knitcore.chart import StitchChart, check_chart_size
 from knitcore.errors import InputError
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
@@ -122,7 +122,7 @@ def piece_from_rows(rows: Sequence[PieceRow], yarns: Sequence[PieceYarn]) -> Pie
             )
     offset = min(start for start, _ in spans)
     width = max(stop for _, stop in spans) - offset
-    check_size(len(rows), width)
+    check_chart_size(len(rows), width)
     purl = np.zeros((len(rows), width), dtype=bool)
     stitch, yarn_of = purl.copy(), np.zeros(purl.shape, dtype=np.intp)
     for index, ((start, stop), row) in enumerate(zip(spans, rows, strict=True)):

@@ -19,7 +19,7 @@ class TriangleMesh:
     faces: NDArray[np.uint32]
 
 
-def tube(centre_line: NDArray[np.float64], radius_mm: float, sides: int = 8) -> TriangleMesh:
+def tube_mesh(centre_line: NDArray[np.float64], radius_mm: float, sides: int = 8) -> TriangleMesh:
     """A tube of constant radius around one line, open at both ends.
 
     Parameters

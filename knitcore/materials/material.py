@@ -206,4 +206,4 @@ class Material:
                 )
             )
         title = f"{self.name} ({self.identifier})"
-        return showing.figure(showing.table(head, rows), title, self.note)
+        return showing.captioned(showing.html_table(head, rows), title, self.note)

@@ -17,7 +17,7 @@ from pathlib import Path
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.measure.tables import numbers, read_table, rows_by_label
-from knitcore.measure.workbooks import MAX_BYTES, Cell, Sheet, is_workbook, read_workbook
+from knitcore.measure.workbooks import MAX_BYTES, Cell, Worksheet, is_workbook, read_workbook
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ def _yarn(name: str) -> str:
 # -- workbooks -----------------------------------------------------------------------------------
 
 
-def _of_workbook(file_name: str, sheets: dict[str, Sheet]) -> list[CompressionTest]:
+def _of_workbook(file_name: str, sheets: dict[str, Worksheet]) -> list[CompressionTest]:
     diameters = _diameters(sheets)
     tests = [
         _of_sheet(file_name, name, sheet, diameters)
@@ -79,7 +79,7 @@ def _of_workbook(file_name: str, sheets: dict[str, Sheet]) -> list[CompressionTe
 
 
 def _of_sheet(
-    file_name: str, name: str, sheet: Sheet, diameters: dict[tuple[str, int], float]
+    file_name: str, name: str, sheet: Worksheet, diameters: dict[tuple[str, int], float]
 ) -> CompressionTest:
     where = f"{file_name}, sheet {name!r}"
     header = next(
@@ -124,7 +124,7 @@ def _of_sheet(
     )
 
 
-def _readings(rows: Sheet, *columns: int) -> dict[int, list[Cell]]:
+def _readings(rows: Worksheet, *columns: int) -> dict[int, list[Cell]]:
     """The columns, without the rows at the end in which all of them are empty."""
     found = [[row[c] if c < len(row) else "" for c in columns] for row in rows]
     while found and not any(map(str, found[-1])):
@@ -132,7 +132,7 @@ def _readings(rows: Sheet, *columns: int) -> dict[int, list[Cell]]:
     return {c: [row[i] for row in found] for i, c in enumerate(columns)}
 
 
-def _diameters(sheets: dict[str, Sheet]) -> dict[tuple[str, int], float]:
+def _diameters(sheets: dict[str, Worksheet]) -> dict[tuple[str, int], float]:
     """Diameters by (column name, sample number)."""
     found: dict[tuple[str, int], float] = {}
     for name, sheet in sheets.items():

@@ -11,7 +11,7 @@ from typing import Any
 from knitcore.errors import InputError
 
 Cell = str | float
-Sheet = list[list[Cell]]
+Worksheet = list[list[Cell]]
 
 MAX_BYTES = 50 * 2**20
 MAX_UNPACKED_BYTES = 256 * 2**20
@@ -31,7 +31,7 @@ def is_workbook(path: Path) -> bool:
         return file.read(8).startswith((_XLS, _XLSX))
 
 
-def read_workbook(path: Path) -> dict[str, Sheet]:
+def read_workbook(path: Path) -> dict[str, Worksheet]:
     """The cells of each sheet that has any, in the order of the sheets.
 
     A formula counts as the value that was saved with it, an empty cell as ``""``; empty cells at
@@ -46,11 +46,11 @@ def read_workbook(path: Path) -> dict[str, Sheet]:
         raise _too_large(path)
     with path.open("rb") as file:
         of_kind = _xlsx_sheets if file.read(4) == _XLSX else _xls_sheets
-    found: dict[str, Sheet] = {}
+    found: dict[str, Worksheet] = {}
     room = MAX_CELLS
     try:
         for name, rows in of_kind(path):
-            sheet: Sheet = []
+            sheet: Worksheet = []
             filled = 0
             for row in rows:
                 sheet.append(_cells(row))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.geometry.tubes import tube
+from knitcore.geometry.tubes import tube_mesh
 from knitcore.shell.curl import CurledPiece
 from knitcore.yarnlevel.results import RelaxedCell
 
@@ -37,7 +37,7 @@ def _(of: RelaxedCell) -> Any:
 
     drawn = go.Figure()
     for line in of.tiled_lines():
-        mesh = tube(line, of.yarn.core_radius_mm, SIDES)
+        mesh = tube_mesh(line, of.yarn.core_radius_mm, SIDES)
         x, y, z = mesh.vertices.T
         i, j, k = mesh.faces.T
         drawn.add_mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, color=YARN, hoverinfo="skip")

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
-from knitcore.yarnlevel.bending import bending
+from knitcore.yarnlevel.bending import bending_response
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.yarns import yarn_for
@@ -76,7 +76,7 @@ def _stored() -> Mapping[str, Mapping[Fabric, Bend]]:
 @lru_cache(maxsize=256)
 def _bend(fabric: Fabric, yarn: YarnModel, loop_length_mm: float) -> Bend:
     repeat = StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
-    found = bending(relax(repeat, yarn, loop_length_mm))
+    found = bending_response(relax(repeat, yarn, loop_length_mm))
     curls = fabric is Fabric.STOCKINETTE  # the others look the same from the back
     return Bend(
         curvature_course_per_mm=found.course.curvature_per_mm if curls else 0.0,

@@ -25,7 +25,7 @@ from knitcore.materials.loops import loop_lengths_mm
 from knitcore.phases import pure_fabric, quarter_phases
 from knitcore.shell.bends import bends_of
 from knitcore.shell.sheet import TWIST, Net, StitchSheet
-from knitcore.yarnlevel.bending import MAX_STITCHES, ROLLS_FROM, bending, bending_length_mm
+from knitcore.yarnlevel.bending import MAX_STITCHES, ROLLS_FROM, bending_length_mm, bending_response
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlibrary.yarns import yarn_for
 
@@ -238,7 +238,7 @@ def _bent(
     if repeat.stitches > MAX_STITCHES:
         return _mean_bend(repeat, material)
     used = yarn_for(material, repeat)
-    found = bending(relax(repeat, used.yarn, used.loop_length_mm))
+    found = bending_response(relax(repeat, used.yarn, used.loop_length_mm))
     return (
         (found.course.rigidity_n_mm, found.wale.rigidity_n_mm),
         (found.course.curvature_per_mm, found.wale.curvature_per_mm),

@@ -98,7 +98,7 @@ class CurledPiece:
         picture = showing.in_space(net, "The piece as it lies", thickness=0.6, tilt=1.0)
         size = f"{self.width_mm:.0f} × {self.height_mm:.0f} × {self.depth_mm:.0f} mm at rest"
         ends = f"sides {self.curl_course_mm:+.1f} mm, top and bottom {self.curl_wale_mm:+.1f} mm"
-        return showing.figure(picture, f"{size}; towards the face: {ends}", *self.notes)
+        return showing.captioned(picture, f"{size}; towards the face: {ends}", *self.notes)
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def curl(
     CancelledError
         If ``cancelled`` says so.
     """
-    check_size(chart, stitches)
+    check_piece(chart, stitches)
     if pull is not None and min(chart.rows, chart.columns) < _BETWEEN:
         raise InputError("chart", "is too small for clamps.", f"Give {_BETWEEN} rows and columns.")
     shape = (chart.rows + 1, chart.columns + 1, 3)
@@ -215,7 +215,7 @@ def _pulled(sheet: StitchSheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
     return x, held
 
 
-def check_size(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> None:
+def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> None:
     """InputError if a piece is larger than what is calculated."""
     check_stitches(chart.stitches, MAX_STITCHES)
     if stitches is not None and (stitches.shape != chart.purl.shape or not stitches.any()):

@@ -12,7 +12,7 @@ from knitcore.choice import Choice
 from knitcore.errors import Cancelled
 from knitcore.materials import Material
 from knitcore.shell.cloth import stitch_weights_n
-from knitcore.shell.curl import TIME_LIMIT_S, check_size
+from knitcore.shell.curl import TIME_LIMIT_S, check_piece
 from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.sheet import sheet_of
 
@@ -74,7 +74,7 @@ def hang(
     CancelledError
         If ``cancelled`` says so.
     """
-    check_size(chart)
+    check_piece(chart)
     weights = stitch_weights_n(chart, material, linear_density_g_per_m)
     sheet = sheet_of(chart, material)
     load = np.zeros_like(sheet.flat_mm)

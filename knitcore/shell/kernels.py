@@ -248,7 +248,7 @@ def touches(
 ) -> float:
     """Energy of contact; ``points`` (k, 4) corners of a point, ``pairs`` (m, 2) points."""
     total = 0.0
-    at = placed(x, points)
+    at = points_on(x, points)
     reach = (1.0 + NAP) * thickness_mm
     for k in range(pairs.shape[0]):
         i, j = pairs[k]
@@ -272,7 +272,7 @@ def touches(
 
 
 @numba.njit(cache=True)
-def placed(x: Array, points: Ints) -> Array:
+def points_on(x: Array, points: Ints) -> Array:
     """(k, 3): where the points of the sheet are."""
     at = np.empty((points.shape[0], 3))
     for i in range(points.shape[0]):

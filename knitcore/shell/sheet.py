@@ -168,7 +168,7 @@ class StitchSheet:
     @cached_property
     def home_mm(self) -> Array:
         """(k, 2): places of these points in the flat sheet."""
-        return kernels.placed(self.flat_mm, self.points)[:, :2].copy()
+        return kernels.points_on(self.flat_mm, self.points)[:, :2].copy()
 
     def pairs(self, x: Array, skin_mm: float = 0.0) -> Ints:
         """Points that touch or are nearly so near, and are not neighbours in the sheet.
@@ -177,7 +177,7 @@ class StitchSheet:
         ----------
         skin_mm : by so much they may be farther apart.
         """
-        at = kernels.placed(x, self.points)
+        at = kernels.points_on(x, self.points)
         reach = (1.0 + kernels.NAP) * self.thickness_mm + skin_mm
         return kernels.near_pairs(at, self.home_mm, reach, APART * self.thickness_mm)
 

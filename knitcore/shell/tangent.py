@@ -14,7 +14,7 @@ from knitcore.shell.kernels import (
     NAP,
     bent,
     metric_energy,
-    placed,
+    points_on,
     pressed,
     turn_slope,
     width_slope,
@@ -253,7 +253,7 @@ def _touches(
     x: Array, points: Ints, pairs: Ints, thickness_mm: float, stiffness: float, convex: bool
 ) -> tuple[Ints, Array]:
     """Corners (m, 2) and blocks (m, 3, 3) of the pairs in touch."""
-    at = placed(x, points)
+    at = points_on(x, points)
     touching = np.zeros(pairs.shape[0], np.bool_)
     reach = (1.0 + NAP) * thickness_mm
     for k in range(pairs.shape[0]):

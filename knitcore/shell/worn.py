@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.limb import Limb, LimbPlace, place_on
+from knitcore.answer.limb import LimbPlace, MeasuredLimb, place_on
 from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.answer.patches import patches_of
 from knitcore.arrays import Array
@@ -51,7 +51,7 @@ class TubeOnLimb:
 
 
 def worn_tube(
-    chart: StitchChart, material: Material, limb: Limb, around: Direction = Direction.COURSE
+    chart: StitchChart, material: Material, limb: MeasuredLimb, around: Direction = Direction.COURSE
 ) -> TubeOnLimb:
     """The whole chart as a tube on a limb.
 

@@ -94,7 +94,7 @@ class Cells(NamedTuple):
     tension_field: bool
 
 
-class Tangent(NamedTuple):
+class CellTangents(NamedTuple):
     """Tangents of the cells with their centres eliminated, and the blocks that recover the centres.
 
     Attributes
@@ -396,7 +396,7 @@ def _add_triangle(
 
 
 @njit(cache=True)
-def _eliminate_centre(k: Array, kc: Array, kcc: Array, tangent: Tangent, cell: int) -> None:
+def _eliminate_centre(k: Array, kc: Array, kcc: Array, tangent: CellTangents, cell: int) -> None:
     """Write a cell's tangent without its centre, and what recovers the centre."""
     det = kcc[0, 0] * kcc[1, 1] - kcc[1, 0] * kcc[1, 0]
     i00, i01, i11 = kcc[1, 1] / det, -kcc[1, 0] / det, kcc[0, 0] / det
@@ -412,7 +412,7 @@ def _eliminate_centre(k: Array, kc: Array, kcc: Array, tangent: Tangent, cell: i
 
 
 @njit(cache=True)
-def _clear(tangent: Tangent, cell: int) -> None:
+def _clear(tangent: CellTangents, cell: int) -> None:
     """Write the tangent of a cell without cloth."""
     tangent.matrix[cell] = 0.0
     tangent.centre_rows[cell] = 0.0
@@ -425,7 +425,7 @@ def assemble(
     laws: NDArray[Any],
     state: Nodes,
     force: Nodes,
-    tangent: Tangent | None,
+    tangent: CellTangents | None,
     first: int,
     last: int,
 ) -> float:
@@ -496,7 +496,7 @@ def assemble(
 
 
 @njit(cache=True)
-def condense(columns: int, force: Nodes, tangent: Tangent) -> Array:
+def condense(columns: int, force: Nodes, tangent: CellTangents) -> Array:
     """Gradient on the corners after the centres have been eliminated, shape (corners, 2)."""
     out = force.corners.copy()
     for cell in range(len(force.centres)):
@@ -510,7 +510,7 @@ def condense(columns: int, force: Nodes, tangent: Tangent) -> Array:
 
 
 @njit(cache=True)
-def centre_step(columns: int, step: Array, force: Nodes, tangent: Tangent) -> Array:
+def centre_step(columns: int, step: Array, force: Nodes, tangent: CellTangents) -> Array:
     """Newton step of the centres (cells, 2) that goes with a step of the corners (corners, 2)."""
     out = np.empty_like(force.centres)
     for cell in range(len(out)):
@@ -526,7 +526,7 @@ def centre_step(columns: int, step: Array, force: Nodes, tangent: Tangent) -> Ar
 
 
 @njit(cache=True)
-def apply(columns: int, tangent: Tangent, step: Array) -> Array:
+def apply(columns: int, tangent: CellTangents, step: Array) -> Array:
     """Condensed tangent times a step of the corners, (corners, 2)."""
     out, v, w = np.zeros_like(step), np.empty(8), np.empty(8)
     for cell in range(len(tangent.matrix)):

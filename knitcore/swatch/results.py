@@ -205,4 +205,4 @@ class StripTest(SwatchTest):
             end = f"at a strain of {self.strain[-1]:.2f}: {self.force_n[-1]:.3g} N"
             told = f"{told}; {end}, waist {self.waist_strain[-1]:+.3f}"
         net = self._net_html()
-        return showing.figure(showing.beside(curve, net), told, self.problem or "")
+        return showing.captioned(showing.beside(curve, net), told, self.problem or "")

@@ -14,7 +14,7 @@ from knitcore.errors import InputError
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.swatch import kernel
 from knitcore.swatch.grid import QuarterGrid
-from knitcore.swatch.kernel import Cells, Nodes, Tangent
+from knitcore.swatch.kernel import Cells, CellTangents, Nodes
 from knitcore.swatch.models import EnergyModel, SheetModel
 from knitcore.threads import side_by_side
 
@@ -44,7 +44,7 @@ class Linearisation:
 
     energy: float
     force: Nodes
-    tangent: Tangent
+    tangent: CellTangents
     columns: int
 
     def with_force(self, force: Nodes) -> Linearisation:
@@ -160,7 +160,7 @@ class Sheet:
             cells = len(state.centres)
             force, tangent = (
                 _empty_like(state),
-                Tangent(np.empty((cells, 36)), np.empty((cells, 2, 8)), np.empty((cells, 3))),
+                CellTangents(np.empty((cells, 36)), np.empty((cells, 2, 8)), np.empty((cells, 3))),
             )
         else:
             force, tangent = reuse.force, reuse.tangent
@@ -168,7 +168,7 @@ class Sheet:
         return Linearisation(energy, force, tangent, self.grid.columns)
 
     def _assemble(
-        self, laws: NDArray[np.void], state: State, force: Nodes, tangent: Tangent | None
+        self, laws: NDArray[np.void], state: State, force: Nodes, tangent: CellTangents | None
     ) -> float:
         count = len(state.centres)
 

@@ -105,7 +105,7 @@ def bending_length_mm(rigidity_n_mm: float, weight_n_per_mm2: float) -> float:
     return math.cbrt(rigidity_n_mm / weight_n_per_mm2)
 
 
-def bending(relaxed: RelaxedRepeat) -> FabricBending:
+def bending_response(relaxed: RelaxedRepeat) -> FabricBending:
     """Moments, bending rigidities and shear modulus of a relaxed repeat.
 
     Parameters

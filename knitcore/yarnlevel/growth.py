@@ -18,7 +18,7 @@ from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.solver import COURSE, SPARSE_FROM, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.start import COURSE_PER_LOOP, WALE_PER_LOOP, start_state
-from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.topology import Clearance
 from knitcore.yarnlevel.yarn import YarnModel
 
 FIRST_OPENING = 0.2
@@ -90,7 +90,7 @@ def grow(
     steps = evaluations = 0
     for stage in range(_STAGES):
         found = minimise(
-            replace(energy, yarn=stiffened(replace(yarn, core_radius_mm=core))),
+            replace(energy, yarn=with_stiff_shell(replace(yarn, core_radius_mm=core))),
             state,
             tension=tension,
             fixed=(COURSE, WALE) if stage == 0 else (),
@@ -121,7 +121,7 @@ def does_not_fit(yarn: YarnModel, core_mm: float) -> str:
     )
 
 
-def stiffened(yarn: YarnModel) -> YarnModel:
+def with_stiff_shell(yarn: YarnModel) -> YarnModel:
     """The yarn with a shell so stiff that its strands push each other apart."""
     return replace(yarn, contact_stiffness_n_per_mm3=_STIFFENED * yarn.contact_stiffness_n_per_mm3)
 
@@ -145,4 +145,4 @@ def _min_distance(energy: CellEnergy, state: Array) -> float:
     touch = 2.0 * energy.yarn.radius_mm
     curve = energy.curve(state)
     pairs, _ = energy.pairs(curve, state, touch)
-    return Guard(energy.cell, state, curve, pairs, touch, touch).min_distance_mm
+    return Clearance(energy.cell, state, curve, pairs, touch, touch).min_distance_mm

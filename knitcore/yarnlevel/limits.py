@@ -39,7 +39,7 @@ def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:
         )
 
 
-def check_size(name: str, size_mm: float | None, loop_length_mm: float) -> None:
+def check_stitch_size(name: str, size_mm: float | None, loop_length_mm: float) -> None:
     """Refuse a size of the stitch that its yarn cannot span.
 
     Raises

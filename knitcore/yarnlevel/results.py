@@ -103,7 +103,7 @@ class RelaxedCell:
         size = f"stitch {self.cell_course_mm:.3f} × {self.cell_wale_mm:.3f} mm"
         energy = f"energy of a stitch {self.energy_n_mm:.4f} N·mm: {self.bending_share:.0%} bending"
         contact = f"{self.contact_share:.0%} contact; branch {self.branch}"
-        return showing.figure(picture, f"{size}, {energy}, {contact}", *self.notes)
+        return showing.captioned(picture, f"{size}, {energy}, {contact}", *self.notes)
 
     def tiled_lines(self, least: int = 4) -> list[Array]:
         """The centre lines of as many repeats as make ``least`` stitches each way, (points, 3)."""
@@ -199,7 +199,7 @@ class Sweep:
         drawn = [(f"pulled {self.direction}-wise", self.strain, self.stress_n_per_mm, None)]
         told = f"{len(self.cells)} relaxed cells; {len(self.jumps)} jumps"
         picture = showing.curves(drawn, "strain", "stress, N/mm")
-        return showing.figure(picture, told, *self.notes)
+        return showing.captioned(picture, told, *self.notes)
 
     def _strain(self, direction: Direction) -> Array:
         rest = self.zero.cell_mm(direction)

@@ -12,11 +12,11 @@ from knitcore.arrays import Array
 from knitcore.errors import Cancelled, ConvergenceError, KnitcoreError, UnravelledError
 from knitcore.yarnlevel.clasps import cell_is_knitted
 from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.growth import STAGE, Start, grow, shaken, stiffened
+from knitcore.yarnlevel.growth import STAGE, Start, grow, shaken, with_stiff_shell
 from knitcore.yarnlevel.results import StartReport
 from knitcore.yarnlevel.solver import Minimum, Options, minimise
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
-from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.topology import Clearance
 
 SAME_ENERGY = 1e-3
 """Starts whose energies agree within this are the same minimum."""
@@ -154,7 +154,7 @@ class Search:
         if outcome(energy, found) not in (RELAXED, UNSETTLED):
             # between the old samples the cores may overlap: push them apart first
             apart = self._minimised(
-                replace(energy, yarn=stiffened(energy.yarn)), state, tension, STAGE
+                replace(energy, yarn=with_stiff_shell(energy.yarn)), state, tension, STAGE
             )
             found = self._minimised(energy, apart.state, apart.tension, options)
         became = outcome(energy, found)
@@ -221,9 +221,9 @@ def _shaken_safely(energy: CellEnergy, state: Array, seed: int) -> Array:
     curve = energy.curve(state)
     reach = 3.0 * radius
     pairs, _ = energy.pairs(curve, state, reach)
-    guard = Guard(energy.cell, state, curve, pairs, reach, 2.0 * radius)
+    clearance = Clearance(energy.cell, state, curve, pairs, reach, 2.0 * radius)
     # half of the way to the hard cores at most
-    room = 0.25 * max(guard.min_distance_mm - 2.0 * energy.yarn.core_radius_mm, 0.0)
+    room = 0.25 * max(clearance.min_distance_mm - 2.0 * energy.yarn.core_radius_mm, 0.0)
     moved = shaken(energy.cell, state, min(0.02 * radius, 0.3 * room), seed=seed)
-    scale = guard.longest_step(moved, energy.curve(moved), radius)
+    scale = clearance.longest_step(moved, energy.curve(moved), radius)
     return np.asarray(state + scale * (moved - state))

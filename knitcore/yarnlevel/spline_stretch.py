@@ -14,7 +14,7 @@ from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarnlevel.slides import slides_at
 from knitcore.yarnlevel.solver import COURSE, WALE, Options, minimise
 from knitcore.yarnlevel.splines import MAX_STITCHES_RULED, RelaxedRepeat, relaxed_repeat
-from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.topology import Clearance
 
 STRAIGHT = 0.97
 """A stitch is pulled straight when its size nears this part of its loop length."""
@@ -107,7 +107,9 @@ def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
     curve = energy.curve(cell.state)
     touch = 2.0 * cell.yarn.radius_mm
     pairs, _ = energy.pairs(curve, cell.state, touch)
-    guard = Guard(cell.cell, cell.state, curve, pairs, touch, touch)
-    slides = slides_at(cell.cell, cell.state, pairs, guard.distances_mm, touch, energy.mean_loop_mm)
+    clearance = Clearance(cell.cell, cell.state, curve, pairs, touch, touch)
+    slides = slides_at(
+        cell.cell, cell.state, pairs, clearance.distances_mm, touch, energy.mean_loop_mm
+    )
     tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(slides))])
     return replace(cell, slides=slides, tension_n=tension)

@@ -18,7 +18,7 @@ from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_ce
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import Start, grow
-from knitcore.yarnlevel.limits import check_loop, check_size
+from knitcore.yarnlevel.limits import check_loop, check_stitch_size
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
 from knitcore.yarnlevel.search import (
     RELAXED,
@@ -122,7 +122,7 @@ def relax_splines(
         check_loop(yarn, float(length))
     uniform = bool(np.ptp(lengths) == 0.0)
     for name, size in zip(("cell_course_mm", "cell_wale_mm"), sizes_mm, strict=True):
-        check_size(name, size, float(lengths.mean()))
+        check_stitch_size(name, size, float(lengths.mean()))
     draft = (mirrored_cell if branch is Branch.MIRRORED else free_cell)(repeat, COARSE)
     if not uniform:
         draft = plain_cell(repeat, COARSE)

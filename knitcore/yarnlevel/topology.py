@@ -32,7 +32,7 @@ SAFETY = 0.95
 
 
 @dataclass(frozen=True, eq=False)
-class Guard:
+class Clearance:
     """The distances at a state, and the step they allow.
 
     Parameters

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from knitcore.arrays import Array
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
-from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.topology import Clearance
 
 SKIN = 0.9
 """Reach of a new list of near pairs beyond 2r, in radii."""
@@ -64,7 +64,7 @@ class Trajectory:
     @property
     def min_distance_mm(self) -> float:
         """Smallest distance between different stretches of yarn."""
-        return self.guard.min_distance_mm
+        return self.clearance.min_distance_mm
 
     def slope(self, tension: Array, *, hessian: bool, sparse: bool = False) -> Slope:
         """Derivatives of the Lagrangian here."""
@@ -93,7 +93,7 @@ class Trajectory:
             return replace(found, fraction=straight * found.fraction)
         state = here.state + step
         fraction, curve = self._allowed(state)
-        approach = fraction * self.guard.approach_mm(state, curve)
+        approach = fraction * self.clearance.approach_mm(state, curve)
         if fraction < 1.0:
             state = here.state + fraction * step
             curve = here.curve + fraction * (curve - here.curve)
@@ -105,7 +105,7 @@ class Trajectory:
         if state[-2] <= 0.0 or state[-1] <= 0.0:
             return 0.0, self.here.curve
         curve = self._energy.curve(state)
-        return self.guard.longest_step(state, curve, self._cap), curve
+        return self.clearance.longest_step(state, curve, self._cap), curve
 
     def advance(self, step: CertifiedStep) -> None:
         """Take a certified step from here."""
@@ -116,7 +116,7 @@ class Trajectory:
 
     def _stand(self, at: Configuration) -> None:
         self.here = at
-        self.guard = Guard(
+        self.clearance = Clearance(
             self._energy.cell, at.state, at.curve, self._pairs, self._reach,
             2.0 * self._radius,
         )  # fmt: skip

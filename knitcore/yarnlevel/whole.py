@@ -37,7 +37,7 @@ from knitcore.yarnlevel.growth import (
     START_HEIGHT,
     core_that_fits,
     does_not_fit,
-    stiffened,
+    with_stiff_shell,
 )  # fmt: skip
 from knitcore.yarnlevel.limits import check_loop
 from knitcore.yarnlevel.neighbours import reaches
@@ -48,7 +48,7 @@ from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.splines import COARSE, ROUGH, RelaxedRepeat, relax_splines, relaxed_repeat
 from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
-from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.topology import Clearance
 from knitcore.yarnlevel.trajectory import SKIN
 from knitcore.yarnlevel.windows import Window, each, row_lengths, touch, window_energy, windows
 from knitcore.yarnlevel.yarn import YarnModel
@@ -71,7 +71,7 @@ _PATIENCE = 12
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class WholeShape:
     """A chart on its way to its shape of least energy, from which it can be continued.
 
     Attributes
@@ -114,8 +114,8 @@ def relax_whole(
     flat: bool = False,
     tolerance: float = 1e-4,
     rounds: int = 40,
-    resume: Sheet | None = None,
-    kept: Callable[[Sheet], None] | None = None,
+    resume: WholeShape | None = None,
+    kept: Callable[[WholeShape], None] | None = None,
     progress: Callable[[float, float], None] | None = None,
     cancelled: Cancelled | None = None,
 ) -> RelaxedRepeat:
@@ -180,11 +180,11 @@ class _Work:
     flat: bool
     tolerance: float
     rounds: int
-    kept: Callable[[Sheet], None] | None
+    kept: Callable[[WholeShape], None] | None
     progress: Callable[[float, float], None] | None
     cancelled: Cancelled | None
 
-    def relaxed(self, resume: Sheet | None) -> RelaxedRepeat:
+    def relaxed(self, resume: WholeShape | None) -> RelaxedRepeat:
         clock = time.process_time()
         sheet = self._first() if resume is None else self._checked(resume)
         if not sheet.fine:
@@ -206,7 +206,7 @@ class _Work:
             seconds=time.process_time() - clock, evaluations=0, notes=(note,),
         )  # fmt: skip
 
-    def energy(self, sheet: Sheet) -> CellEnergy:
+    def energy(self, sheet: WholeShape) -> CellEnergy:
         """Energy of the whole sheet."""
         grid, spacing = (
             (COARSE, SPACING_PER_BENDING) if sheet.fine else (ROUGH, STIFF_SPACING_PER_BENDING)
@@ -216,7 +216,7 @@ class _Work:
             spacing_per_bending=spacing,
         )  # fmt: skip
 
-    def _first(self) -> Sheet:
+    def _first(self) -> WholeShape:
         repeat = self.chart.repeat().stitches
         uniform = bool(np.ptp(self.loop_lengths_mm) == 0.0)
         if uniform and repeat <= _REPEAT and repeat < self.chart.stitches:
@@ -224,10 +224,10 @@ class _Work:
         cell = plain_cell(self.chart, ROUGH)
         height = START_HEIGHT * self.yarn.radius_mm
         state = start_state(cell, float(self.loop_lengths_mm.mean()), height)
-        sheet = Sheet(cell.controls(state), state[-2:], np.zeros(self.chart.purl.shape), 0.0)
+        sheet = WholeShape(cell.controls(state), state[-2:], np.zeros(self.chart.purl.shape), 0.0)
         return self._fitted(sheet, FIRST_OPENING)
 
-    def _tiled(self) -> Sheet:
+    def _tiled(self) -> WholeShape:
         """The chart's repeat, relaxed and laid out."""
         found = relax_splines(
             self.chart, self.yarn, self.loop_lengths_mm[0], branch=Branch.MIRRORED,
@@ -237,24 +237,24 @@ class _Work:
         cell = plain_cell(self.chart, COARSE)
         state = tiled_state(found.cell, found.state, cell)
         tension = np.resize(found.tension_n[: found.cell.rows], cell.rows)
-        return Sheet(
+        return WholeShape(
             cell.controls(state), state[-2:], np.tile(tension[:, None], cell.wales),
             self.yarn.core_radius_mm, fine=True,
         )  # fmt: skip
 
-    def _checked(self, resume: Sheet) -> Sheet:
+    def _checked(self, resume: WholeShape) -> WholeShape:
         grid = COARSE if resume.fine else ROUGH
         if resume.controls.shape != (self.chart.rows, self.chart.columns * grid.controls, 3):
             raise InputError("resume", "belongs to another chart.", "Leave it out.")
         return resume
 
-    def _fitted(self, sheet: Sheet, opening: float) -> Sheet:
+    def _fitted(self, sheet: WholeShape, opening: float) -> WholeShape:
         """The sheet with as thick a core as fits."""
-        distance = self._guard(self.energy(sheet), sheet).min_distance_mm
+        distance = self._clearance(self.energy(sheet), sheet).min_distance_mm
         core = core_that_fits(self.yarn, distance, opening)
         return replace(sheet, core_radius_mm=core)
 
-    def _grown(self, sheet: Sheet) -> Sheet:
+    def _grown(self, sheet: WholeShape) -> WholeShape:
         """The sheet with its yarn's whole core."""
         stuck = 0
         for round_ in range(MAX_ROUNDS):
@@ -262,7 +262,7 @@ class _Work:
                 return sheet
             if stuck > _PATIENCE:
                 break
-            yarn = stiffened(replace(self.yarn, core_radius_mm=sheet.core_radius_mm))
+            yarn = with_stiff_shell(replace(self.yarn, core_radius_mm=sheet.core_radius_mm))
             energy = replace(self.energy(sheet), yarn=yarn)
             grown = self._fitted(self._one_pass(sheet, energy, _GROWING, round_), OPENING)
             stuck = 0 if grown.core_radius_mm > sheet.core_radius_mm else stuck + 1
@@ -271,7 +271,7 @@ class _Work:
             self._tell(sheet)
         raise ConvergenceError(does_not_fit(self.yarn, sheet.core_radius_mm))
 
-    def _settled(self, sheet: Sheet) -> Sheet:
+    def _settled(self, sheet: WholeShape) -> WholeShape:
         """Rounds until the energy settles."""
         while sheet.change > self.tolerance and len(sheet.energies_n_mm) < self.rounds:
             number = len(sheet.energies_n_mm)
@@ -291,7 +291,7 @@ class _Work:
             self._tell(sheet)
         return sheet
 
-    def _refined(self, sheet: Sheet) -> Sheet:
+    def _refined(self, sheet: WholeShape) -> WholeShape:
         """The sheet on the finer grid."""
         fine = plain_cell(self.chart, COARSE)
         state = refined_state(plain_cell(self.chart, ROUGH), sheet.state, fine)
@@ -300,8 +300,8 @@ class _Work:
         return self._fitted(refined, OPENING)
 
     def _one_pass(
-        self, sheet: Sheet, energy: CellEnergy, options: Options, number: int = 0
-    ) -> Sheet:
+        self, sheet: WholeShape, energy: CellEnergy, options: Options, number: int = 0
+    ) -> WholeShape:
         """The sheet after its windows have been relaxed in turn, two apart at a time."""
         controls, tension = sheet.controls.copy(), sheet.tension_n.copy()
         curve = energy.curve(sheet.state)
@@ -342,27 +342,27 @@ class _Work:
             raise UnravelledError("No window of the chart could be relaxed.")
         return replace(sheet, controls=controls, tension_n=tension)
 
-    def _windows(self, energy: CellEnergy, sheet: Sheet, number: int) -> list[Window]:
+    def _windows(self, energy: CellEnergy, sheet: WholeShape, number: int) -> list[Window]:
         """Windows with as many resting stitches around them as strands reach."""
         cell = energy.cell
-        pairs = self._guard(energy, sheet).pairs
+        pairs = self._clearance(energy, sheet).pairs
         around = reaches(pairs, cell.grid.samples, (cell.rows, cell.wales))
         return windows(around, _WINDOW, _FIRSTS[number % len(_FIRSTS)])
 
-    def _guard(self, energy: CellEnergy, sheet: Sheet) -> Guard:
+    def _clearance(self, energy: CellEnergy, sheet: WholeShape) -> Clearance:
         reach = (2.0 + SKIN) * self.yarn.radius_mm
         curve = energy.curve(sheet.state)
         pairs, _ = energy.pairs(curve, sheet.state, reach)
-        return Guard(energy.cell, sheet.state, curve, pairs, reach, 2.0 * self.yarn.radius_mm)
+        return Clearance(energy.cell, sheet.state, curve, pairs, reach, 2.0 * self.yarn.radius_mm)
 
-    def _minimum(self, energy: CellEnergy, sheet: Sheet) -> tuple[Minimum, float]:
+    def _minimum(self, energy: CellEnergy, sheet: WholeShape) -> tuple[Minimum, float]:
         """The sheet as a minimum, and the largest force that is left, N."""
-        guard = self._guard(energy, sheet)
-        terms = energy.value(sheet.state, guard.curve, guard.pairs)
+        clearance = self._clearance(energy, sheet)
+        terms = energy.value(sheet.state, clearance.curve, clearance.pairs)
         tension = sheet.tension_n.mean(axis=1)
-        start = np.searchsorted(guard.pairs[:, 0], np.arange(len(guard.curve) + 1))
+        start = np.searchsorted(clearance.pairs[:, 0], np.arange(len(clearance.curve) + 1))
         slope = energy.derivatives(
-            sheet.state, guard.curve, guard.pairs, start, tension, hessian=False
+            sheet.state, clearance.curve, clearance.pairs, start, tension, hessian=False
         )
         left = slope.gradient[:-2].reshape(*sheet.controls.shape)
         if self.flat:  # the plane carries the mean over a stitch
@@ -370,12 +370,12 @@ class _Work:
             heights -= heights.mean(axis=2, keepdims=True)
         found = Minimum(
             state=sheet.state, tension=tension, terms=terms, force=slope.gradient[-2:].copy(),
-            min_distance_mm=guard.min_distance_mm, converged=sheet.change <= self.tolerance,
+            min_distance_mm=clearance.min_distance_mm, converged=sheet.change <= self.tolerance,
             stable=False, steps=0, evaluations=0,
         )  # fmt: skip
         return found, float(np.abs(left).max())
 
-    def _tell(self, sheet: Sheet) -> None:
+    def _tell(self, sheet: WholeShape) -> None:
         if self.kept is not None:
             self.kept(sheet)
         if self.progress is not None:

@@ -17,7 +17,7 @@ from app.context import Context
 from app.drawing.design_view import ViewRequest, build_scene
 from app.viewer import scene as scene_module
 from app.viewer.camera import CameraSide
-from app.viewer.cloth import FINEST, Cloth
+from app.viewer.cloth import FINEST, ShownStitches
 from app.viewer.views import View, new_view
 
 SMALL = {"chart": "KPKP\nPKPK\nKPKP", "material": "acrylic"}
@@ -82,15 +82,15 @@ def test_tubes_are_scaled_at_once_and_drawn_anew_once_they_keep_still(
 ) -> None:
     monkeypatch.setattr(scene_module, "STILL_S", 0.01)
     anew = threading.Event()
-    lay = Cloth.lay
+    lay = ShownStitches.lay
 
-    def note(cloth: Cloth, *args: Any, exact: bool) -> bool:
+    def note(cloth: ShownStitches, *args: Any, exact: bool) -> bool:
         flattened = lay(cloth, *args, exact=exact)
         if exact:
             anew.set()
         return flattened
 
-    monkeypatch.setattr(Cloth, "lay", note)
+    monkeypatch.setattr(ShownStitches, "lay", note)
     scene = build_scene(ViewRequest.model_validate(SMALL), None, Context(Path()))
     view.show(scene.drawing())
     before = _nodes(view)

@@ -87,8 +87,8 @@ def test_shapes_and_sweeps_show_themselves(made) -> None:  # type: ignore[no-unt
 
 
 def test_names_are_escaped() -> None:
-    assert "<b>" not in showing.figure("", "<b>bold</b>")
-    assert "&lt;b&gt;" in showing.table(["<b>"], [])
+    assert "<b>" not in showing.captioned("", "<b>bold</b>")
+    assert "&lt;b&gt;" in showing.html_table(["<b>"], [])
 
 
 def test_results_print_in_one_short_line() -> None:

@@ -37,7 +37,9 @@ def midpoint_tables() -> tuple[Array, Array]:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def sample(controls: Array, places: Array, slopes: Array) -> tuple[Array, Array, Array, Array]:
+def contact_points(
+    controls: Array, places: Array, slopes: Array
+) -> tuple[Array, Array, Array, Array]:
     """Contact points (N, 3), unit tangents (N, 3), lengths and arclengths (N,)."""
     per = places.shape[0]
     count = controls.shape[0] * per
@@ -105,7 +107,7 @@ def contact_energy(
     ``factor`` is that of an ordered pair. Adds the derivatives to ``gradient`` (curves, 6, 3) and
     ``cell_gradient`` (2,), the latter at fixed control points.
     """
-    points, tangents, lengths, arclengths = sample(controls, places, slopes)
+    points, tangents, lengths, arclengths = contact_points(controls, places, slopes)
     per = places.shape[0]
     count = points.shape[0]
     total_length = lengths.sum()

@@ -10,7 +10,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.yarnlevel.published.certificate import is_certified, is_clasped
-from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
+from knitcore.yarnlevel.published.minimise import HeldLengths, Minimum, minimise
 from knitcore.yarnlevel.published.stitch import Stitch
 
 SEGMENT_FLOOR = 0.014
@@ -23,9 +23,9 @@ _SHORTER = (1.0, 0.25)
 
 def free_constraints(
     loop_length_mm: float, cell_course_mm: float | None = None, cell_wale_mm: float | None = None
-) -> Constraints:
+) -> HeldLengths:
     """Constraints of a relaxation without slide quenching."""
-    return Constraints(cell_course_mm, cell_wale_mm, SEGMENT_FLOOR * loop_length_mm)
+    return HeldLengths(cell_course_mm, cell_wale_mm, SEGMENT_FLOOR * loop_length_mm)
 
 
 def is_knitted(stitch: Stitch, minimum: Minimum) -> bool:

@@ -57,7 +57,7 @@ _ROUNDS, _NEAR_ROUNDS = 8, 6
 
 
 @dataclass(frozen=True, eq=False)
-class Constraints:
+class HeldLengths:
     """Constraints of a minimisation besides the loop length.
 
     Parameters
@@ -119,7 +119,7 @@ def minimise(
     stitch: Stitch,
     start: Array,
     loop_length_mm: float,
-    constraints: Constraints,
+    constraints: HeldLengths,
     *,
     tolerance: float = 1e-10,
     max_iterations: int = 400,
@@ -190,7 +190,7 @@ def _even_rows(stitch: Stitch) -> Array:
 class _Problem:
     """A stitch in dimensionless unknowns, with the last evaluation kept."""
 
-    def __init__(self, stitch: Stitch, loop_length_mm: float, constraints: Constraints) -> None:
+    def __init__(self, stitch: Stitch, loop_length_mm: float, constraints: HeldLengths) -> None:
         self.stitch = stitch
         self.loop_length_mm = loop_length_mm
         self.constraints = constraints

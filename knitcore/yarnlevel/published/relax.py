@@ -18,7 +18,7 @@ from knitcore.errors import (
 )
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.limits import check_loop, check_size
+from knitcore.yarnlevel.limits import check_loop, check_stitch_size
 from knitcore.yarnlevel.published.certificate import is_clasped
 from knitcore.yarnlevel.published.continuation import (
     Continuation,
@@ -26,7 +26,7 @@ from knitcore.yarnlevel.published.continuation import (
     has_room,
     is_knitted,
 )
-from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
+from knitcore.yarnlevel.published.minimise import HeldLengths, Minimum, minimise
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
@@ -75,7 +75,7 @@ def relax_published(
     stitch = Stitch(Fabric.parse(fabric), yarn, Convention.parse(convention))
     check_loop(yarn, loop_length_mm)
     for name, size in (("cell_course_mm", cell_course_mm), ("cell_wale_mm", cell_wale_mm)):
-        check_size(name, size, loop_length_mm)
+        check_stitch_size(name, size, loop_length_mm)
     if starts < 1:
         raise InputError("starts", f"{starts} is too few.", "Give 1 or more.")
     constraints = free_constraints(loop_length_mm)
@@ -183,7 +183,7 @@ def _report(stitch: Stitch, number: int, minimum: Minimum) -> StartReport:
 
 
 def _settle(
-    stitch: Stitch, start: Array, loop_length_mm: float, constraints: Constraints
+    stitch: Stitch, start: Array, loop_length_mm: float, constraints: HeldLengths
 ) -> Minimum:
     """Minimise from a start whose yarns may overlap: grow the core, then the rest."""
     certified = is_clasped(stitch, start)

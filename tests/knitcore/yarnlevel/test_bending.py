@@ -10,7 +10,7 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.yarnlevel.bending import FabricBending, bending
+from knitcore.yarnlevel.bending import FabricBending, bending_response
 from knitcore.yarnlevel.bent_cell import BentCell, Deformation, settled
 from knitcore.yarnlevel.relax import RelaxedRepeat, relax
 from knitcore.yarnlevel.samples import load_samples
@@ -29,7 +29,7 @@ def _relaxed(repeat: str, fabric: str = "stockinette") -> RelaxedRepeat:
 
 @cache
 def _bending(repeat: str, fabric: str = "stockinette") -> FabricBending:
-    return bending(_relaxed(repeat, fabric))
+    return bending_response(_relaxed(repeat, fabric))
 
 
 @cache
@@ -132,7 +132,7 @@ def test_a_repeat_that_is_held_flat_is_refused() -> None:
     sample = load_samples()[0]
     held = relax(StitchChart.parse("K"), sample.yarn, sample.loop_length_mm, flat=True)
     with pytest.raises(InputError, match="flat"):
-        bending(held)
+        bending_response(held)
 
 
 def test_stockinette_curls_as_in_real_fabric() -> None:

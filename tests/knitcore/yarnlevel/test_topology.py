@@ -9,7 +9,7 @@ from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.start import start_state
-from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.topology import Clearance
 from knitcore.yarnlevel.yarn import YarnModel
 
 YARN = YarnModel(0.046, 6e-4, 2.4, 0.74, 0.1)
@@ -21,10 +21,10 @@ def _energy(text, kind, per_span=5):
     return CellEnergy(cell, YARN, np.full(cell.rows, 11.3), Convention.PUBLISHED)
 
 
-def _guard(energy, state):
+def _clearance(energy, state):
     curve = energy.curve(state)
     pairs, _ = energy.pairs(curve, state, REACH)
-    return Guard(energy.cell, state, curve, pairs, REACH, 2 * YARN.radius_mm)
+    return Clearance(energy.cell, state, curve, pairs, REACH, 2 * YARN.radius_mm)
 
 
 @pytest.mark.parametrize(("text", "kind"), [("K", mirrored_cell), ("KP\nKK", plain_cell)])
@@ -35,35 +35,35 @@ def test_a_step_through_the_yarn_is_cut_before_it_meets(text, kind):
     through = state.copy()
     z = energy.cell.dof[..., 2][energy.cell.sign[..., 2] != 0]
     through[z] *= -1.0
-    guard = _guard(energy, state)
-    allowed = guard.longest_step(through, energy.curve(through), 1e9)
+    clearance = _clearance(energy, state)
+    allowed = clearance.longest_step(through, energy.curve(through), 1e9)
     assert 0.0 < allowed < 0.5
     fine = _energy(text, kind, per_span=20)
     for fraction in np.linspace(0.0, allowed, 9):
         between = state + fraction * (through - state)
-        assert _guard(fine, between).min_distance_mm > 0.0
+        assert _clearance(fine, between).min_distance_mm > 0.0
 
 
 def test_small_steps_and_rest_pass():
     energy = _energy("K", mirrored_cell)
     state = start_state(energy.cell, 11.3, 0.6)
-    guard = _guard(energy, state)
-    assert guard.longest_step(state, energy.curve(state), 1.0) == 1.0
+    clearance = _clearance(energy, state)
+    assert clearance.longest_step(state, energy.curve(state), 1.0) == 1.0
     moved = state + 0.005 * np.random.default_rng(0).standard_normal(len(state))
-    assert guard.longest_step(moved, energy.curve(moved), 1.0) == 1.0
+    assert clearance.longest_step(moved, energy.curve(moved), 1.0) == 1.0
 
 
 def test_the_cap_on_a_pair_holds():
     energy = _energy("KP\nKK", plain_cell)
     state = start_state(energy.cell, 11.3, 0.6)
-    guard = _guard(energy, state)
+    clearance = _clearance(energy, state)
     moved = state + 0.1 * np.random.default_rng(0).standard_normal(len(state))
-    fraction = guard.longest_step(moved, energy.curve(moved), 0.05)
+    fraction = clearance.longest_step(moved, energy.curve(moved), 0.05)
     between = state + fraction * (moved - state)
-    change = guard.changes_mm(between, energy.curve(between))
+    change = clearance.changes_mm(between, energy.curve(between))
     assert fraction < 1.0
     assert change.max() == pytest.approx(0.05, rel=1e-6)
-    after = _guard(energy, between)
-    old = dict(zip(map(tuple, guard.pairs.tolist()), guard.distances_mm, strict=True))
+    after = _clearance(energy, between)
+    old = dict(zip(map(tuple, clearance.pairs.tolist()), clearance.distances_mm, strict=True))
     new = dict(zip(map(tuple, after.pairs.tolist()), after.distances_mm, strict=True))
     assert max(abs(new[pair] - old[pair]) for pair in new.keys() & old.keys()) <= 0.05 + 1e-9

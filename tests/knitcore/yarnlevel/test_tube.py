@@ -6,7 +6,7 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Fabric
-from knitcore.yarnlevel.bending import bending
+from knitcore.yarnlevel.bending import bending_response
 from knitcore.yarnlevel.relax import RelaxedRepeat, relax
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.tube import in_the_round
@@ -24,7 +24,7 @@ def test_a_wide_tube_follows_the_linear_response(
 ) -> None:
     tube = in_the_round(stockinette, 2000, face_outside=face_outside)
     curvature = (1.0 if face_outside else -1.0) * 2.0 / tube.diameter_mm
-    response = bending(stockinette).course
+    response = bending_response(stockinette).course
     higher = tube.cell_wale_mm / tube.flat_wale_mm - 1.0
     assert higher / curvature == pytest.approx(response.strain_across_mm, rel=5e-3)
     area = tube.flat_course_mm * tube.flat_wale_mm

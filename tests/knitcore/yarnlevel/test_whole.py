@@ -19,8 +19,8 @@ from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.start import start_state
-from knitcore.yarnlevel.topology import Guard
-from knitcore.yarnlevel.whole import Sheet, relax_whole
+from knitcore.yarnlevel.topology import Clearance
+from knitcore.yarnlevel.whole import WholeShape, relax_whole
 from knitcore.yarnlevel.windows import each, row_lengths, touch, window_energy, windows
 
 SAMPLE = sample("acrylic", Fabric.STOCKINETTE)
@@ -39,7 +39,7 @@ def sheet() -> tuple[CellEnergy, np.ndarray]:
     curve = energy.curve(state)
     touch = 2.0 * SAMPLE.yarn.radius_mm
     pairs, _ = energy.pairs(curve, state, touch)
-    nearest = Guard(cell, state, curve, pairs, touch, touch).min_distance_mm
+    nearest = Clearance(cell, state, curve, pairs, touch, touch).min_distance_mm
     core = core_that_fits(SAMPLE.yarn, nearest, FIRST_OPENING)
     return replace(energy, yarn=replace(SAMPLE.yarn, core_radius_mm=core)), state
 
@@ -177,7 +177,7 @@ def test_wrong_input_is_refused() -> None:
         relax_whole(chart, SAMPLE.yarn, [11.0, 11.0, 11.0])
     with pytest.raises(InputError, match="tolerance"):
         relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=0.5)
-    other = Sheet(np.zeros((2, 24, 3)), np.ones(2), np.zeros((2, 2)), 0.1)
+    other = WholeShape(np.zeros((2, 24, 3)), np.ones(2), np.zeros((2, 2)), 0.1)
     with pytest.raises(InputError, match="another chart"):
         relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, resume=other)
 
@@ -191,7 +191,7 @@ def test_a_whole_chart_can_be_cancelled() -> None:
 def test_a_whole_chart_of_stockinette_relaxes_like_one_stitch_and_can_be_resumed() -> None:
     chart = StitchChart(np.zeros((10, 13), bool))
     one = relax(StitchChart.parse("K"), SAMPLE.yarn, SAMPLE.loop_length_mm)
-    sheets: list[Sheet] = []
+    sheets: list[WholeShape] = []
     shares: list[float] = []
     whole = relax_whole(
         chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=1e-3, kept=sheets.append,

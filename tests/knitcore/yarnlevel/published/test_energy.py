@@ -57,7 +57,7 @@ def test_contact_agrees_with_the_sum_over_ordered_pairs(fabric):
     # the authors' sum: every point with every point of every image, each way
     stitch, unknowns = case(fabric)
     controls, yarn = stitch.controls(unknowns), stitch.yarn
-    points, _, lengths, arclengths = contact.sample(controls, *contact.midpoint_tables())
+    points, _, lengths, arclengths = contact.contact_points(controls, *contact.midpoint_tables())
     course, wale = unknowns[-2:]
     images = contact.course_images(fabric)
     total = 0.0
