@@ -71,6 +71,13 @@ def test_the_library_does_not_import_the_service() -> None:
         assert not {module.split(".")[0] for module in imports(file)} & outside, file
 
 
+@pytest.mark.parametrize("folder", ["knitcore", "app", "scripts"])
+def test_nothing_imports_the_scripts_or_the_benchmarks_that_use_it(folder: str) -> None:
+    above = {"benchmarks", "scripts"} - {folder}
+    for file in (ROOT / folder).rglob("*.py"):
+        assert not {module.split(".")[0] for module in imports(file)} & above, file
+
+
 APP_FLOORS = (
     {"command_options", "identity", "listeners", "memory", "problems", "version"},
     {"limits", "settings"},

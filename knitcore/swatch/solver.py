@@ -101,7 +101,6 @@ class PathSolver:
         self.tolerance = tolerance or Tolerance()
         self.cancelled = cancelled or (lambda: False)
         self.factor: Factor = factor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
-        self.factorisations = 0
         self._has_factor = False
         self._factor_is_current = False
         self._accepted: Linearisation | None = None  # of the last balanced state
@@ -273,7 +272,6 @@ class PathSolver:
     def _factorise(self, lin: Linearisation) -> None:
         self._has_factor = False  # a factorisation that failed half-way is useless
         self.factor.factorise(lin.tangent.matrix)
-        self.factorisations += 1
         self._has_factor = True
         self._factor_is_current = True
 

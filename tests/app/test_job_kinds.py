@@ -20,16 +20,27 @@ from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.store.database import Database
 from app.store.schema import migrate
-from tests.app.job_requests import job_requests
 from tests.app.jobs import answers, killed_in_the_middle
 
 SLOW = frozenset({"relax", "sweep", "whole", "characterise"})
 """Their own tests wait for what they answer."""
+SMALLER: dict[str, dict[str, Any]] = {
+    "stretch": {"steps": 2},
+    "piece": {"steps": 1},
+    "bias": {"mesh_mm": 20, "steps": 1},
+    "biaxial": {"mesh_mm": 50, "steps": 1},
+    "trellis": {"mesh_mm": 50, "steps": 1},
+}
+"""What their examples are given besides, so that there is less to compute."""
 
 
 @pytest.fixture(scope="module")
 def requests() -> dict[str, dict[str, Any]]:
-    return job_requests()
+    """The examples, by kind."""
+    return {
+        kind: {**(operation.example or {}), **SMALLER.get(kind, {})}
+        for kind, operation in KINDS.items()
+    }
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """Write docs/evidence.md: every claim of accuracy, computed from the comparisons.
 
-    python scripts/evidence.py FOLDER
+    python -m benchmarks.evidence FOLDER
 
 FOLDER is the paper's public data (``uniaxial``, ``dic``, ``bending``, ``compression``), the bands
 of graded jersey of another (``graded``, see ``benchmarks/bias_strip.py``), and swatches knitted by
@@ -16,11 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
-
-from benchmarks.against_knitted import errors, rms  # noqa: E402
-from benchmarks.bias_strip import (  # noqa: E402
+from benchmarks import evidence_figures as figures
+from benchmarks.against_knitted import errors, rms
+from benchmarks.bias_strip import (
     BOTH,
     LAWS,
     LENGTHS_MM,
@@ -29,31 +27,31 @@ from benchmarks.bias_strip import (  # noqa: E402
     band,
     graded,
 )
-from benchmarks.knitdb import STOCKINETTE, factor, ranks, read  # noqa: E402
-from benchmarks.true_to_tests import (  # noqa: E402
+from benchmarks.knitdb import STOCKINETTE, factor, ranks, read
+from benchmarks.true_to_tests import (
     STRESSES,
     Summary,
     left_out,
     of_library,
     strips,
 )
-from knitcore import predict  # noqa: E402
-from knitcore.arrays import Array  # noqa: E402
-from knitcore.fabric import Direction, Fabric  # noqa: E402
-from knitcore.materials import Interval, Laws, material, paper_figures  # noqa: E402
-from knitcore.materials.uncertainty import Z_SCORE, log_interval  # noqa: E402
-from knitcore.measure.bending import measure_bending  # noqa: E402
-from knitcore.measure.compression import average_compression, fit_compression  # noqa: E402
-from knitcore.measure.compression_files import read_compression  # noqa: E402
-from knitcore.measure.uniaxial_files import read_stretch_test  # noqa: E402
-from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure  # noqa: E402
-from knitcore.swatch.calibration import FIELD_NOISE_PERCENT, ForceCurve, calibrate  # noqa: E402
-from knitcore.swatch.comparison import Edges, compare  # noqa: E402
-from knitcore.swatch.measured import load_field  # noqa: E402
-from knitcore.swatch.models import EnergyModel, SheetModel  # noqa: E402
-from scripts import evidence_figures as figures  # noqa: E402
-from scripts.refit_laws import carried  # noqa: E402
+from knitcore import predict
+from knitcore.arrays import Array
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials import Interval, Laws, material, paper_figures
+from knitcore.materials.uncertainty import Z_SCORE, log_interval
+from knitcore.measure.bending import measure_bending
+from knitcore.measure.compression import average_compression, fit_compression
+from knitcore.measure.compression_files import read_compression
+from knitcore.measure.uniaxial_files import read_stretch_test
+from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure
+from knitcore.swatch.calibration import FIELD_NOISE_PERCENT, ForceCurve, calibrate
+from knitcore.swatch.comparison import Edges, compare
+from knitcore.swatch.measured import load_field
+from knitcore.swatch.models import EnergyModel, SheetModel
+from scripts.refit_laws import carried
 
+ROOT = Path(__file__).resolve().parent.parent
 DENSITY_G_PER_M = 0.5
 """Of the acrylic yarn; the paper does not print it."""
 CALIBRATED = "calibrated on the first two pictures"
@@ -61,7 +59,7 @@ DRAWN = ("the paper's model and law", "published law", "refitted law", CALIBRATE
 """Rows of the displacement field that are drawn."""
 HEAD = """# Evidence
 
-How far to trust each number. `python scripts/evidence.py FOLDER` makes this page from the public
+How far to trust each number. `python -m benchmarks.evidence FOLDER` makes this page from the public
 data of Singal et al. (raw stretch tests, displacement pictures, compression tests) and from the
 present library. No figure here is typed by hand.
 """

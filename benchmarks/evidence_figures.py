@@ -1,4 +1,4 @@
-"""Plots of docs/evidence.md, drawn by scripts/evidence.py from the numbers that it writes."""
+"""Plots of docs/evidence.md, drawn by benchmarks/evidence.py from the numbers that it writes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from docs.figures.measure_figures import COLOURS, Plot
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Interval, material
 from knitcore.materials.uncertainty import Z_SCORE, log_interval
-from knitcore.measure.bending import BendingResult
+from knitcore.measure.bending import MeasuredBending
 from knitcore.measure.compression import CompressionSample
 
 Array = NDArray[np.float64]
@@ -148,7 +148,7 @@ def yarn_models(errors: Mapping[str, Array]) -> None:
     plot.save("evidence-yarn-models.svg")
 
 
-def bending(found: BendingResult, paper_n_mm2: float) -> None:
+def bending(found: MeasuredBending, paper_n_mm2: float) -> None:
     """Bending modulus of every photo over the hanging length."""
     plot = Plot((0, 300), (0, 80), ("hanging length, mm", "B, mN·mm²"), (4, 5))
     plot.line((0, 300), [1000 * paper_n_mm2] * 2, GREY, "4")
