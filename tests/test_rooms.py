@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import importlib.util
+import re
 from pathlib import Path
 
 import pytest
@@ -76,6 +78,17 @@ def test_nothing_imports_the_scripts_or_the_benchmarks_that_use_it(folder: str) 
     above = {"benchmarks", "scripts"} - {folder}
     for file in (ROOT / folder).rglob("*.py"):
         assert not {module.split(".")[0] for module in imports(file)} & above, file
+
+
+@pytest.mark.parametrize("folder", ["benchmarks", "docs", "examples", "scripts"])
+def test_what_programs_beside_the_product_import_from_it_exists(folder: str) -> None:
+    for file in (ROOT / folder).rglob("*.py"):
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        for node in (n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)):
+            if re.match(r"(knitcore|app)\b", node.module or ""):
+                module = importlib.import_module(str(node.module))
+                missing = {n.name for n in node.names if not hasattr(module, n.name)}
+                assert all(importlib.util.find_spec(f"{module.__name__}.{n}") for n in missing)
 
 
 APP_FLOORS = (
