@@ -276,7 +276,9 @@ class LearnedModel:
         phases = present(shares)
         records = [material.record(PHASES[phase]) for phase in phases]
         flat = shares[:, phases] @ [(r.stitch_course_mm, r.stitch_wale_mm) for r in records]
-        numbers = shares[:, phases] @ pure_numbers(material, phases)[phases, :-1]
+        of_fabrics = pure_numbers(material, phases)[phases, :-1]
+        share = shares[:, phases, None]
+        numbers = np.where(share > 0, share * of_fabrics, 0.0).sum(axis=1)
         samples = self.sample(found.features, numbers)
         simulated = all(record.origin is Origin.SIMULATED for record in records)
         fold, _ = self.folded(*self.folding(samples), found, simulated=simulated)

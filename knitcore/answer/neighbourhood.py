@@ -102,7 +102,7 @@ def _interpolated(
     windows = sliding_window_view(around, (WINDOW, WINDOW))[::HALF, ::HALF]
     count, windows = windows.shape[:2], windows.reshape(-1, WINDOW, WINDOW)
     keys = [packed.tobytes() for packed in np.packbits(windows.reshape(len(windows), -1), axis=1)]
-    found = {key: known[key] for key in set(keys) & known.keys()}
+    found = {key: value for key in keys if (value := known.get(key)) is not None}
     new = {key: window for key, window in zip(keys, windows, strict=True) if key not in found}
     if new:
         values = _sizes_and_folds(np.array(list(new.values())), material)
