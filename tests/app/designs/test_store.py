@@ -204,7 +204,7 @@ def test_the_designs_of_one_owner_are_limited(
     with pytest.raises(OverBudgetError, match="the most allowed"):
         designs.create("ada", RIB)
     designs.keep_version("ada", made.id, "first")
-    with pytest.raises(OverBudgetError, match="as many"):
+    with pytest.raises(OverBudgetError, match="the most allowed"):
         designs.keep_version("ada", made.id, "second")
 
 
