@@ -2643,7 +2643,7 @@ export interface TargetInput {
   /** Relative (0.1 is 10 %); a difference for Poisson's ratios. */
   tolerance?: number;
   weight?: number;
-  /** Load at which a stretch is wanted, per width of cloth. */
+  /** Load of a target stretch, per width of cloth. */
   load_n_per_mm?: number;
   /** For a pressure. */
   limb?: LimbInput | null;

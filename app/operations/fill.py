@@ -239,7 +239,7 @@ def _lines(r: FillResult) -> list[str]:
 OPERATION = Operation(
     fill,
     tag="design",
-    summary="A chart for a map of wanted stiffness",
+    summary="A chart for a map of target stiffness",
     example={
         "material": "acrylic",
         "modulus_course_n_per_mm": [[0.2, 0.2, 0.2, 0.2], [0.2, 0.2, 0.2, 0.2]],
@@ -248,7 +248,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Make a chart for TARGET: a CSV of row, column and wanted moduli, such as "
+        help="Make a chart for TARGET: a CSV of row, column and target moduli, such as "
         "`export --to csv` writes.",
         names=dict.fromkeys((*MAPS, "rows", "columns", "wishes", "chart")),
         run=_command,

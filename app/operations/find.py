@@ -50,7 +50,7 @@ class TargetInput(RequestModel):
         USUAL_LOAD_N_PER_MM,
         gt=0,
         le=0.5,
-        description="Load at which a stretch is wanted, per width of cloth.",
+        description="Load of a target stretch, per width of cloth.",
     )
     limb: LimbInput | None = Field(None, description="For a pressure.")
 
@@ -279,7 +279,7 @@ def _value(c: CandidateResult, label: str) -> str:
 OPERATION = Operation(
     find,
     tag="design",
-    summary="Fabrics with wanted properties",
+    summary="Fabrics with target properties",
     example={
         "materials": ["acrylic"],
         "targets": [{"quantity": "modulus_course_n_per_mm", "value": 0.2, "tolerance": 0.1}],

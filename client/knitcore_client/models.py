@@ -1111,7 +1111,7 @@ class TargetInput(TypedDict):
     """Relative (0.1 is 10 %); a difference for Poisson's ratios."""
     weight: NotRequired[float]
     load_n_per_mm: NotRequired[float]
-    """Load at which a stretch is wanted, per width of cloth."""
+    """Load of a target stretch, per width of cloth."""
     limb: NotRequired[LimbInput | None]
     """For a pressure."""
 

@@ -177,11 +177,11 @@ class AsyncOperations:
         return await self._ask(Extensions, "GET", "/extensions", {})
 
     async def fill(self, **request: Unpack[FillRequest]) -> FillResult:
-        """A chart for a map of wanted stiffness."""
+        """A chart for a map of target stiffness."""
         return await self._ask(FillResult, "POST", "/fill", request)
 
     async def find(self, **request: Unpack[FindRequest]) -> FindResult:
-        """Fabrics with wanted properties."""
+        """Fabrics with target properties."""
         return await self._ask(FindResult, "POST", "/find", request)
 
     async def fit(self, **request: Unpack[FitRequest]) -> FitResult:
@@ -536,11 +536,11 @@ class Operations:
         return self._ask(Extensions, "GET", "/extensions", {})
 
     def fill(self, **request: Unpack[FillRequest]) -> FillResult:
-        """A chart for a map of wanted stiffness."""
+        """A chart for a map of target stiffness."""
         return self._ask(FillResult, "POST", "/fill", request)
 
     def find(self, **request: Unpack[FindRequest]) -> FindResult:
-        """Fabrics with wanted properties."""
+        """Fabrics with target properties."""
         return self._ask(FindResult, "POST", "/find", request)
 
     def fit(self, **request: Unpack[FitRequest]) -> FitResult:

@@ -70,12 +70,12 @@ export function create(studio, { keeper }) {
     max: "300",
     step: "1",
     value: String(TARGET_MMHG),
-    "aria-label": "Wanted pressure in mmHg",
+    "aria-label": "Target pressure in mmHg",
     oninput: changed,
   });
   let byPressure = true;
   const easeRow = labelled("Ease, %", ease, "negative is tighter");
-  const targetRow = labelled("Wanted pressure, mmHg", target);
+  const targetRow = labelled("Target pressure, mmHg", target);
   const fit = choice(
     "planner-fit",
     "How tight",

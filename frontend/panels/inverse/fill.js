@@ -92,7 +92,7 @@ export function fillTab(studio) {
   /** @param {Part} part @param {number} at */
   const item = (part, at) => {
     const inputs = AXES.map(({ axis, label }) => {
-      const input = field(`Wanted modulus along ${label}, N/mm: ${part.name}`, 0, {
+      const input = field(`Target modulus along ${label}, N/mm: ${part.name}`, 0, {
         min: "0.0001",
         step: "any",
         required: false,
@@ -186,7 +186,7 @@ export function fillTab(studio) {
   const show = () => {
     list.replaceChildren(
       ...(parts.length
-        ? [h("li", { class: "muted inverse-hint" }, "Modulus in N/mm, now → wanted"), ...parts.map(item)]
+        ? [h("li", { class: "muted inverse-hint" }, "Modulus in N/mm, now → target"), ...parts.map(item)]
         : [
             h(
               "li",

@@ -41,7 +41,7 @@ export function outlineTab(studio) {
   svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
   svg.setAttribute("class", "outline-plot");
   svg.setAttribute("role", "group");
-  svg.setAttribute("aria-label", "Wanted width of the stretched swatch over its width at rest");
+  svg.setAttribute("aria-label", "Target width of the stretched swatch over its width at rest");
   const x = (/** @type {number} */ share) => PAD.left + share * (WIDTH - PAD.left - PAD.right);
   const y = (/** @type {number} */ width) =>
     PAD.top + ((HIGH - width) / (HIGH - LOW)) * (HEIGHT - PAD.top - PAD.bottom);
@@ -96,7 +96,7 @@ export function outlineTab(studio) {
         class: "outline-handle",
         tabindex: 0,
         role: "slider",
-        "aria-label": `Wanted width at ${percent(place)} of the length`,
+        "aria-label": `Target width at ${percent(place)} of the length`,
         "aria-valuemin": LOW,
         "aria-valuemax": HIGH,
         "aria-valuenow": widths[k],
