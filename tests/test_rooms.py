@@ -31,6 +31,23 @@ FLOORS = (
 )
 """Rooms of ``knitcore`` from the ground up; one imports from lower floors only."""
 
+APP_FLOORS = (
+    {"command_options", "identity", "listeners", "memory", "problems", "version"},
+    {"limits", "settings"},
+    {"results"},
+    {"context"},
+    {"models"},
+    {"drawing", "store"},
+    {"operations"},
+    {"compute", "http"},
+    {"designs", "doctor"},
+    {"health", "jobs", "viewer"},
+    {"api"},
+    {"main"},
+    {"cli"},
+)
+"""Rooms of the service from the ground up; one imports from lower floors only."""
+
 
 def imports(file: Path) -> set[str]:
     found: set[str] = set()
@@ -73,6 +90,13 @@ def test_the_library_does_not_import_the_service() -> None:
         assert not {module.split(".")[0] for module in imports(file)} & outside, file
 
 
+@pytest.mark.parametrize("floors", [FLOORS, APP_FLOORS], ids=["knitcore", "app"])
+def test_the_documentation_draws_the_floors(floors: tuple[set[str], ...]) -> None:
+    drawn = "\n".join("  ".join(sorted(rooms)) for rooms in reversed(floors))
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    assert f"```text\n{drawn}\n```" in text
+
+
 @pytest.mark.parametrize("folder", ["knitcore", "app", "scripts"])
 def test_nothing_imports_the_scripts_or_the_benchmarks_that_use_it(folder: str) -> None:
     above = {"benchmarks", "scripts"} - {folder}
@@ -89,24 +113,6 @@ def test_what_programs_beside_the_product_import_from_it_exists(folder: str) -> 
                 module = importlib.import_module(str(node.module))
                 missing = {n.name for n in node.names if not hasattr(module, n.name)}
                 assert all(importlib.util.find_spec(f"{module.__name__}.{n}") for n in missing)
-
-
-APP_FLOORS = (
-    {"command_options", "identity", "listeners", "memory", "problems", "version"},
-    {"limits", "settings"},
-    {"results"},
-    {"context"},
-    {"models"},
-    {"drawing", "store"},
-    {"operations"},
-    {"compute", "http"},
-    {"designs", "doctor"},
-    {"health", "jobs", "viewer"},
-    {"api"},
-    {"main"},
-    {"cli"},
-)
-"""Rooms of the service from the ground up; one imports from lower floors only."""
 
 
 def app_room(module: str) -> str | None:
