@@ -8,7 +8,7 @@ from sqlalchemy import Connection, Row, func, insert, select, update
 
 from app.designs.document import Design, NewShare, Share, SharedDesign, ShareMode, Shares
 from app.designs.idempotency import Retry, once
-from app.designs.store import add, copied, document_of, find, most_of_one
+from app.designs.store import add, copied, document_of, find_design, most_of_one
 from app.limits.budgets import BUDGETS, OverBudgetError
 from app.problems.errors import NotFoundError, RefusedError
 from app.store.database import Database
@@ -36,7 +36,7 @@ class Sharing:
         given = {"id": secrets.token_urlsafe(12), "mode": mode.value, "created_at": now()}
 
         def action(connection: Connection) -> None:
-            find(connection, owner, design, change=True)
+            find_design(connection, owner, design, change=True)
             open_ = select(func.count()).where(shares.c.design_id == design, _OPEN)
             if connection.execute(open_).scalar_one() >= BUDGETS.links:
                 raise OverBudgetError(
@@ -53,7 +53,7 @@ class Sharing:
     def given(self, owner: str, design: str) -> Shares:
         """The links of a design that still open it."""
         with self._database.read() as connection:
-            find(connection, owner, design)
+            find_design(connection, owner, design)
             rows = connection.execute(
                 select(shares.c.id, shares.c.mode, shares.c.created_at)
                 .where(shares.c.design_id == design, _OPEN)
@@ -69,7 +69,7 @@ class Sharing:
         """Close a link for good."""
 
         def action(connection: Connection) -> None:
-            find(connection, owner, design)
+            find_design(connection, owner, design)
             closed = connection.execute(
                 update(shares)
                 .where(shares.c.id == share, shares.c.design_id == design, _OPEN)

@@ -76,14 +76,14 @@ class DesignStore:
         """A copy of the caller's design."""
 
         def action(connection: Connection) -> Design:
-            return add(connection, owner, copied(find(connection, owner, design)))
+            return add(connection, owner, copied(find_design(connection, owner, design)))
 
         return once(self._database, retry, Design, action)
 
     def get(self, owner: str, design: str) -> Design:
         """A design that is not deleted."""
         with self._database.read() as connection:
-            return full(find(connection, owner, design))
+            return design_of(find_design(connection, owner, design))
 
     def page(
         self, owner: str, *, limit: int, cursor: str | None, deleted: bool, part: str = ""
@@ -108,7 +108,7 @@ class DesignStore:
         content = _content(document)
 
         def action(connection: Connection) -> Design:
-            row = find(connection, owner, design, change=True)
+            row = find_design(connection, owner, design, change=True)
             check_match(if_match, row.revision)
             return _changed(connection, row, content)
 
@@ -118,7 +118,7 @@ class DesignStore:
         """Change some fields."""
 
         def action(connection: Connection) -> Design:
-            row = find(connection, owner, design, change=True)
+            row = find_design(connection, owner, design, change=True)
             check_match(if_match, row.revision)
             return _changed(connection, row, patch.model_dump(exclude_none=True))
 
@@ -136,7 +136,7 @@ class DesignStore:
         """
 
         def action(connection: Connection) -> Painted:
-            row = find(connection, owner, design, change=True)
+            row = find_design(connection, owner, design, change=True)
             if (row.rows, row.columns) != (strokes.rows, strokes.columns):
                 raise ConflictError(
                     f"The chart has {row.columns}x{row.rows} stitches now; these strokes were "
@@ -161,7 +161,7 @@ class DesignStore:
         """Put a design aside; it can be recovered for 30 days."""
 
         def action(connection: Connection) -> None:
-            row = find(connection, owner, design, change=True)
+            row = find_design(connection, owner, design, change=True)
             if if_match is not None:
                 check_match(if_match, row.revision)
             connection.execute(
@@ -174,7 +174,7 @@ class DesignStore:
         """Bring a deleted design back."""
 
         def action(connection: Connection) -> Design:
-            row = find(connection, owner, design, change=True, deleted=True)
+            row = find_design(connection, owner, design, change=True, deleted=True)
             return _changed(connection, row, {"deleted_at": None})
 
         return self._told(owner, self._database.write(action))
@@ -185,7 +185,7 @@ class DesignStore:
         """Keep the present state under a name."""
 
         def action(connection: Connection) -> VersionSummary:
-            row = find(connection, owner, design, change=True)
+            row = find_design(connection, owner, design, change=True)
             return _keep(connection, row, name, automatic=False)
 
         return once(self._database, retry, VersionSummary, action)
@@ -193,7 +193,7 @@ class DesignStore:
     def versions(self, owner: str, design: str) -> Versions:
         """The kept states, oldest first."""
         with self._database.read() as connection:
-            find(connection, owner, design)
+            find_design(connection, owner, design)
             rows = connection.execute(
                 select(*_VERSION_SUMMARY)
                 .where(design_versions.c.design_id == design)
@@ -205,7 +205,7 @@ class DesignStore:
     def version(self, owner: str, design: str, number: int) -> Version:
         """A kept state."""
         with self._database.read() as connection:
-            find(connection, owner, design)
+            find_design(connection, owner, design)
             row = _version(connection, design, number)
         document = document_of(row, row.design_name)
         return Version.model_validate({**row._mapping, "document": document})
@@ -214,7 +214,7 @@ class DesignStore:
         """Restore a version; the present state is saved as a version first."""
 
         def action(connection: Connection) -> Design:
-            row = find(connection, owner, design, change=True)
+            row = find_design(connection, owner, design, change=True)
             check_match(if_match, row.revision)
             kept = _version(connection, design, number)
             _keep(connection, row, f"Before “{kept.name}” was restored"[:200], automatic=True)
@@ -260,7 +260,7 @@ def _finding(change: bool, deleted: bool) -> Select[Any]:
     return chosen.with_for_update() if change else chosen
 
 
-def find(
+def find_design(
     connection: Connection, owner: str, design: str, *, change: bool = False, deleted: bool = False
 ) -> Row[Any]:
     """An owner's design; with ``change`` it is locked until the transaction ends.
@@ -306,7 +306,7 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
         "changed_at": at,
     }
     connection.execute(insert(designs).values(values))
-    return full(connection.execute(select(designs).where(designs.c.id == values["id"])).one())
+    return design_of(connection.execute(select(designs).where(designs.c.id == values["id"])).one())
 
 
 def _count(connection: Connection, owner: str) -> int:
@@ -337,7 +337,7 @@ def copied(row: Row[Any]) -> dict[str, Any]:
     return {n: getattr(row, n) for n in kept} | {"name": f"{row.name[:190]} (copy)"}
 
 
-def full(row: Row[Any]) -> Design:
+def design_of(row: Row[Any]) -> Design:
     """A row as clients get it."""
     return Design.model_validate({**row._mapping, "document": document_of(row)})
 
@@ -359,7 +359,7 @@ def _changed(connection: Connection, row: Row[Any], values: dict[str, Any]) -> D
         values = _sized(connection, row.owner, values, row)
     stamped = values | {"revision": row.revision + 1, "changed_at": now()}
     connection.execute(_CHANGE, stamped | {"design": row.id})
-    return full(connection.execute(select(designs).where(designs.c.id == row.id)).one())
+    return design_of(connection.execute(select(designs).where(designs.c.id == row.id)).one())
 
 
 def _content(document: DesignDocument) -> dict[str, Any]:

@@ -96,24 +96,7 @@ def fit_compression(
         )
     for name, value in (("diameter_mm", diameter), ("probe_width_mm", probe_width_mm)):
         check_range(f"{test.name}, {name}", value, 0.01, 50, "mm", "its size")
-    touch, core = _touch_and_core(test)
-    depth_core, depth_0 = float(test.depth_mm[core]), float(test.depth_mm[touch])
-    thickness = depth_core - depth_0
-    if thickness <= 0:
-        raise InputError(
-            f"{test.name}, depth",
-            "does not grow while the force does.",
-            "Depth must increase towards the yarn, in mm.",
-        )
-    part = slice(touch, core)
-    used = (test.force_n[part] <= FIT_LIMIT_N) & (test.depth_mm[part] < depth_core)
-    depth, force = test.depth_mm[part][used], test.force_n[part][used]
-    if len(depth) < MIN_READINGS:
-        raise InputError(
-            test.name,
-            f"has {len(depth)} readings between 1 mN and 1 N.",
-            f"Record at least {MIN_READINGS}.",
-        )
+    depth, force, depth_core, thickness = _loading(test)
     area = probe_width_mm * diameter
 
     def law(at: Array, k: float, p: float) -> Array:
@@ -149,6 +132,35 @@ def fit_compression(
         force_n=force,
         fitted_n=fitted,
     )
+
+
+def _loading(test: CompressionTest) -> tuple[Array, Array, float, float]:
+    """Depths (mm) and forces (N) to fit, from contact up to :data:`FIT_LIMIT_N`; the depth (mm) at
+    which the core is reached, and that depth over the depth at contact.
+
+    Raises
+    ------
+    InputError
+        If the readings are too few, or depth does not grow with force.
+    """
+    touch, core = _touch_and_core(test)
+    depth_core = float(test.depth_mm[core])
+    thickness = depth_core - float(test.depth_mm[touch])
+    if thickness <= 0:
+        raise InputError(
+            f"{test.name}, depth",
+            "does not grow while the force does.",
+            "Depth must increase towards the yarn, in mm.",
+        )
+    depth, force = test.depth_mm[touch:core], test.force_n[touch:core]
+    used = (force <= FIT_LIMIT_N) & (depth < depth_core)
+    if used.sum() < MIN_READINGS:
+        raise InputError(
+            test.name,
+            f"has {used.sum()} readings between 1 mN and 1 N.",
+            f"Record at least {MIN_READINGS}.",
+        )
+    return depth[used], force[used], depth_core, thickness
 
 
 def average_compression(samples: Sequence[CompressionSample]) -> list[CompressionMean]:
