@@ -71,8 +71,8 @@ def worn_tube(
     if count < LEAST_AROUND:
         raise InputError(
             "chart",
-            f"{count} stitches around a limb make no tube.",
-            f"Give at least {LEAST_AROUND}, or let the other direction run around it.",
+            "is too narrow for a tube around a limb.",
+            f"Give at least {LEAST_AROUND} stitches, or let the other direction run around it.",
         )
     sizes = neighbourhood_sizes(chart, material)
     if not by_row:

@@ -106,7 +106,7 @@ def test_on_a_cone_lengths_are_measured_along_the_skin() -> None:
 
 
 def test_too_few_stitches_make_no_tube() -> None:
-    with pytest.raises(InputError, match="make no tube"):
+    with pytest.raises(InputError, match="at least 4 stitches, or"):
         worn_tube(StitchChart.parse("KK/KK"), ACRYLIC, MeasuredLimb((0.0, 9.0), (50.0, 60.0)))
 
 
