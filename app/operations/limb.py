@@ -98,14 +98,11 @@ class LimbPlaceResult(ResultModel):
     @property
     def line(self) -> str:
         """In words, for a table."""
-        pressure = (
-            self.problem
-            if self.mmhg is None or self.mmhg_with_spread is None
-            else (
-                f"{self.mmhg[0]:5.1f} to {self.mmhg[1]:5.1f} "
-                f"({self.mmhg_with_spread[0]:.1f} to {self.mmhg_with_spread[1]:.1f})"
-            )
-        )
+        if self.mmhg is None or self.mmhg_with_spread is None:
+            pressure = "loose" if self.ease > 0.0 else self.problem
+        else:
+            low, high = self.mmhg_with_spread
+            pressure = f"{self.mmhg[0]:5.1f} to {self.mmhg[1]:5.1f} ({low:.1f} to {high:.1f})"
         return (
             f"{self.at_mm:4.0f} mm {self.girth_mm:4.0f} mm {self.rest_mm:4.0f} mm  "
             f"{self.ease:+4.0%}  {pressure:27} {self.lock_up_share:.0%}"

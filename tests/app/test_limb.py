@@ -96,6 +96,16 @@ def test_limb_at_the_command_line(tmp_path: Path) -> None:
     assert out.stat().st_size > 1000
 
 
+def test_where_the_tube_is_loose_the_table_says_so() -> None:
+    girths = ["--girth", "0:110", "--girth", "15:170"]
+    arguments = ["limb", "stockinette", "--size", "40x6", "--material", "acrylic"]
+    result = CliRunner().invoke(main, [*arguments, *girths])
+    assert result.exit_code == 0, result.stderr
+    first, *_, last = result.stdout.splitlines()[2:-1]
+    assert first.split()[-2] == "loose"
+    assert "(" in last
+
+
 @pytest.mark.parametrize("girths", [["0"], ["a:b"], ["0:1:2:3"]])
 def test_girths_that_cannot_be_read_are_refused(girths: list[str]) -> None:
     arguments = ["limb", "stockinette", "--size", "40x4", "--material", "acrylic"]

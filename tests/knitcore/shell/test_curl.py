@@ -121,6 +121,21 @@ def test_a_basket_pillows() -> None:
     assert piece.depth_mm > 2.0 * piece.thickness_mm
 
 
+def test_shifted_stripes_fold_into_ridges_of_knits_and_valleys_of_purls() -> None:
+    """As the Miura chart of Niu, Dion and Kamien does along its rows."""
+    shifts = [*range(7), *range(5, 0, -1)]
+    stripes = "/".join("K" * at + "P" * 6 + "K" * (6 - at) for at in shifts for _ in range(2))
+    piece = curl(StitchChart.parse(stripes).tile(1, 2), ACRYLIC)
+    assert piece.converged
+    along = np.diff(piece.corners_mm[..., [0, 2]], axis=1)
+    along = along[1:] + along[:-1]
+    turn = np.linalg.det(np.stack([along[:, :-1], along[:, 1:]], axis=-1))
+    purl = piece.chart.purl
+    inside = purl[:, 1:] == purl[:, :-1]
+    as_named = np.where(purl[:, 1:], turn, -turn)[inside]
+    assert as_named[as_named > 0].sum() > 0.8 * np.abs(as_named).sum()
+
+
 def test_a_single_stitch_is_flat() -> None:
     piece = curl(StitchChart.parse("K"), ACRYLIC)
     assert piece.converged
