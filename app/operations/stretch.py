@@ -234,9 +234,9 @@ def _messages(test: StripTest) -> list[str]:
     if full and test.steps and test.is_past_the_law():
         first = next(step for step in range(test.steps) if test.is_past_the_law(step))
         messages.append(
-            f"From a strain of {test.strain[first]:.3g} on some cloth is past "
-            f"{EXTENSION_START:.0%} of its lock-up. There the law is extrapolated: do not rely "
-            "on the force."
+            f"Beyond a stretch of {100 * test.strain[first]:.0f} % some cloth has used more than "
+            f"{100 * EXTENSION_START:.0f} % of what it has until it locks: its law is extrapolated "
+            "there; do not rely on the force."
         )
     elif used >= 1:
         messages.append(
@@ -244,7 +244,7 @@ def _messages(test: StripTest) -> list[str]:
             "leaves out the lock-up, so it continues where real cloth cannot."
         )
     elif used >= NEAR_LOCK_UP:
-        messages.append(f"Some stitches are at {used:.0%} of their lock-up.")
+        messages.append(f"Some stitches are at {100 * used:.0f} % of their lock-up.")
     return messages
 
 

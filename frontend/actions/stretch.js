@@ -27,6 +27,15 @@ export const STRETCH = [
     perform: () => byId("stretch-play").click(),
   },
   {
+    id: "save-stretch",
+    label: "Save the stretch test as a table (CSV)",
+    group: "Stretch test",
+    icon: "export",
+    keys: [],
+    enabled: (studio) => studio.currentStretch() !== null,
+    perform: () => byId("stretch-save").click(),
+  },
+  {
     id: "step-back",
     label: "One step of the stretch back",
     group: "Stretch test",

@@ -1,5 +1,7 @@
 /**
- * What a strip test says beside its curve: where the first stitch locks.
+ * What a strip test says beside its curve: where the first stitch locks; its steps as a table.
+ *
+ * @import {StretchResult} from "../types.js"
  *
  * @typedef {{strain: number[], force_n: number[], stitch_fields?: {utilisation?: number[][]}}} Test from
  *   small to large strains; it begins at rest
@@ -19,6 +21,26 @@ export function firstLock({ strain, force_n, stitch_fields }) {
   const at = used && crossing(used, TAUT, strain);
   if (!used || at === null || at === undefined) return null;
   return { strain: at, force: /** @type {number} */ (crossing(used, TAUT, force_n)) };
+}
+
+/**
+ * All steps with their 90 % intervals, as CSV for a spreadsheet.
+ *
+ * @param {Pick<StretchResult, "strain" | "force_n" | "force_interval_n" | "stress_n_per_mm" | "waist_strain" | "waist_strain_interval">} test
+ */
+export function table(test) {
+  const columns = {
+    strain: test.strain,
+    force_n: test.force_n,
+    force_low_n: test.force_interval_n[0],
+    force_high_n: test.force_interval_n[1],
+    stress_n_per_mm: test.stress_n_per_mm,
+    waist_strain: test.waist_strain,
+    waist_strain_low: test.waist_strain_interval[0],
+    waist_strain_high: test.waist_strain_interval[1],
+  };
+  const rows = test.strain.map((_, k) => Object.values(columns).map((values) => values[k]));
+  return [Object.keys(columns), ...rows].map((row) => `${row.join(",")}\n`).join("");
 }
 
 /** @param {readonly number[]} values */

@@ -12,6 +12,7 @@ import { firstLock, most } from "../core/striptest.js";
 import { h } from "../dom.js";
 import { REST } from "../studio.js";
 import { icon } from "../icons.js";
+import { iconButton } from "../widgets/buttons.js";
 import { numberField } from "../widgets/fields.js";
 
 /** @typedef {"%" | "N"} Unit of a pull */
@@ -112,6 +113,12 @@ export function stretchdrawer(host, studio, stretcher) {
     done,
   );
   const options = stretchOptions(studio);
+  const save = iconButton(
+    "export",
+    "Save the test as a table (CSV)",
+    () => void import("../services/exporter.js").then(({ exportStretch }) => exportStretch(studio)),
+    { id: "stretch-save" },
+  );
   const note = h("div", { class: "stretch-note", role: "status", id: "stretch-note" });
 
   const play = h("button", {
@@ -133,7 +140,7 @@ export function stretchdrawer(host, studio, stretcher) {
     },
   });
   const figures = h("dl", { class: "stretch-figures figures", id: "stretch-figures" });
-  const player = h("div", { class: "player" }, play, slider, figures);
+  const player = h("div", { class: "player" }, play, slider, figures, save);
 
   host.append(
     h(
@@ -207,7 +214,7 @@ export function stretchdrawer(host, studio, stretcher) {
     progress.hidden = !busy;
     const current = value !== null && !stale;
     player.classList.toggle("idle", !current);
-    slider.disabled = play.disabled = !current;
+    slider.disabled = play.disabled = save.disabled = !current;
     if (value) slider.max = String(value.strain.length - 1);
     showStep();
     note.className = problem ? "stretch-note error" : "stretch-note";

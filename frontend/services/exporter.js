@@ -4,6 +4,7 @@
  * @import {Studio} from "../studio.js"
  */
 
+import { table } from "../core/striptest.js";
 import { h } from "../dom.js";
 
 /** @param {Studio} studio */
@@ -16,6 +17,12 @@ export function exportProject(studio) {
 export function exportText(studio) {
   const blob = new Blob([`${studio.document.grid.text}\n`], { type: "text/plain" });
   download(`${fileName(studio)}.txt`, blob);
+}
+
+/** The steps of the stretch test on show. @param {Studio} studio */
+export function exportStretch(studio) {
+  const test = studio.currentStretch();
+  if (test) download(`${fileName(studio)}-stretch.csv`, new Blob([table(test)], { type: "text/csv" }));
 }
 
 /** Knits white, purls black, one pixel a stitch. @param {Studio} studio */

@@ -163,9 +163,9 @@ def test_the_full_model_reports_where_its_law_is_extrapolated(client: TestClient
     answer = client.post("/api/v1/stretch", json=body).json()
     assert answer["converged"]
     (message,) = answer["messages"]
-    found = re.match(r"From a strain of (\S+) on", message)
+    found = re.match(r"Beyond a stretch of (\S+) %", message)
     assert found
-    assert 0.7 < float(found[1]) < 1.2
+    assert 70 < float(found[1]) < 120
     assert "extrapolated" in message
     before = client.post("/api/v1/stretch", json=body | {"strain": 0.7, "steps": 7}).json()
     assert before["messages"] == []

@@ -126,6 +126,11 @@ def test_a_stretch_close_to_the_lock_up_is_marked(flat_studio: Page) -> None:
     note = flat_studio.locator("#stretch-note")
     expect(note).to_contain_text("not a certified test.")
     expect(note).to_contain_text(re.compile(r"the tightest has used 9\d % of its stretch"))
+    with flat_studio.expect_download() as saved:
+        flat_studio.click("#stretch-save")
+    head, *steps = saved.value.path().read_text().splitlines()
+    assert head.startswith("strain,force_n,")
+    assert float(steps[-1].split(",")[0]) == pytest.approx(0.6)
 
 
 @pytest.mark.slow
