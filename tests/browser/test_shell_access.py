@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Page, expect
 
 from tests.browser.axe import THEMES, violations
-from tests.browser.page import kept_chart
+from tests.browser.page import drop, kept_chart
 
 
 def open_yarn_form(page: Page) -> None:
@@ -64,6 +66,28 @@ def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page)
             found += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}")]
             page.locator(f"#{name} header").get_by_label("Close").click()
             expect(page.locator(f"#{name}")).to_be_hidden()
+    assert not found, "\n".join(found)
+
+
+@pytest.mark.slow
+def test_nothing_serious_is_wrong_where_targets_and_pictures_are_given(flat_studio: Page) -> None:
+    page, found = flat_studio, []
+    picture = io.BytesIO()
+    Image.effect_mandelbrot((60, 40), (-2, -1, 1, 1), 20).save(picture, "PNG")
+    for theme in THEMES:
+        page.emulate_media(color_scheme=theme)
+        for key, tab in (("Shift+F", "find"), ("Shift+W", "fill")):
+            page.keyboard.press(key)
+            expect(page.locator(f"#inverse-{tab}-content")).to_be_visible()
+            found += [f"{theme} {tab}: {wrong}" for wrong in violations(page, "#inverse")]
+            page.click("#inverse-close")
+        page.click("#stretch-more")
+        found += [f"{theme} options: {wrong}" for wrong in violations(page, "#stretch-options")]
+        page.keyboard.press("Escape")
+        drop(page, "purls.png", "image/png", picture.getvalue())
+        expect(page.locator("#picture-dialog")).to_be_visible()
+        found += [f"{theme} picture: {wrong}" for wrong in violations(page, "#picture-dialog")]
+        page.keyboard.press("Escape")
     assert not found, "\n".join(found)
 
 

@@ -201,7 +201,8 @@ export function create(studio, { keeper }) {
       const before = same ? which.value : "";
       offer(which, all);
       // Opened for a version, or with what was compared last; else with the latest other thing there is.
-      const wanted = k ? (against.value ?? (before || (all[1]?.value ?? NOW))) : before || NOW;
+      const last = against.value ? "" : before;
+      const wanted = last || (k ? (against.value ?? all[1]?.value ?? NOW) : NOW);
       which.value = all.some(({ value }) => value === wanted) ? wanted : NOW;
       if (which.value !== before) side.yarnId = "";
     });
