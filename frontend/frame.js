@@ -5,10 +5,8 @@
  *   page to frame    {pass} the right to watch, {hold} whether frames wait while somebody paints
  *   frame to page    {view: "loaded" | "seen" | "none" where the browser draws nothing in 3D}, {slow} whether drawing takes long
  *
- * A plain script without imports, after aside.js: the service puts it into viser's page.
+ * A plain script without imports: the service puts it into viser's page.
  */
-
-/* global Aside */
 
 (() => {
   /** Frames that take longer mean a slow machine. */
@@ -63,8 +61,6 @@
   let later = [];
   /** Frames that it has waited. */
   let waited = 0;
-  /** Whether they are built, and the rest has just been handed on. */
-  let mixed = false;
   /** @type {(messages: Message[]) => void} */
   let handOn = () => {};
 
@@ -99,7 +95,6 @@
     if (++waited < PATIENCE && ![...cloth].every(built)) viser()?.requestRender();
     else {
       waited = 0;
-      mixed = true;
       handOn(later.splice(0));
     }
   }
@@ -155,15 +150,13 @@
   let slow = false;
   /** Where viser draws. @type {WebGL2RenderingContext | null} */
   let gl = null;
-  /** How it draws without a GPU. @type {Aside | null} */
-  let aside = null;
   /** Frames since the first scene came; below 0 there is none. */
   let fed = -1;
   /** How long a frame takes, in ms. */
   let cost = 0;
 
   window.requestAnimationFrame = (callback) => {
-    if (!held && !aside?.busy && rest() === 0) return request((time) => frame(callback, time));
+    if (!held && rest() === 0) return request((time) => frame(callback, time));
     // Our own numbers are far from the browser's, so the two never meet.
     const id = -next++;
     waiting.set(id, callback);
@@ -183,7 +176,7 @@
 
   function release() {
     clearTimeout(pause);
-    if (held || aside?.busy) return;
+    if (held) return;
     const left = rest();
     if (left > 0) pause = setTimeout(release, left);
     else draw();
@@ -199,44 +192,31 @@
   /** @param {FrameRequestCallback} callback @param {number} time */
   function frame(callback, time) {
     const start = performance.now();
-    // While new shapes are being built, and for a frame after, there may be something of the old and of the new cloth.
-    const whole = !later.length && !mixed;
-    mixed = false;
     const query = !seen && fed >= FIRST_FRAMES ? gl?.createQuery() : null;
     if (query) gl?.beginQuery(gl.ANY_SAMPLES_PASSED, query);
     callback(time);
-    if (query) gl?.endQuery(gl.ANY_SAMPLES_PASSED);
+    if (query) {
+      gl?.endQuery(gl.ANY_SAMPLES_PASSED);
+      answer(query);
+    }
     steer();
     if (fed >= 0) fed++;
-    const drawn = () => {
+    // What the browser itself does for the frame counts, too.
+    setTimeout(() => {
       lastEnd = performance.now();
       cost = (cost + lastEnd - start) / 2;
       if (slow !== cost > SHORT_MS) {
         slow = !slow;
         tell({ slow });
       }
-      if (query) answer(query);
       catchUp();
-      release();
-    };
-    // What the browser itself does for the frame counts, too.
-    if (aside) aside.show(whole, request, drawn);
-    else setTimeout(drawn);
+    });
   }
 
-  /**
-   * Zoom to the pointer, not to the middle, and turn half as fast as viser does; and what viser asks for is news:
-   * a label takes several frames where a glyph takes long.
-   */
+  /** Zoom to the pointer, not to the middle, and turn half as fast as viser does. */
   function steer() {
-    const client = viser();
-    const control = client?.cameraControl;
+    const control = viser()?.cameraControl;
     if (!control || control.dollyToCursor) return;
-    const { requestRender } = client;
-    client.requestRender = () => {
-      wake(false);
-      requestRender();
-    };
     Object.assign(control, { dollyToCursor: true, azimuthRotateSpeed: TURNING, polarRotateSpeed: TURNING });
   }
 
@@ -286,10 +266,9 @@
     const probe = document.createElement("canvas");
     software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
     gl = /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, { ...options, antialias: !software }));
-    if (software && gl) aside = new Aside(gl);
     // On a slow machine viser draws fewer pixels, and a canvas of another size is empty until it is drawn again:
     // that is not left to wait, even while somebody paints.
-    else new MutationObserver(draw).observe(this, { attributeFilter: ["width", "height"] });
+    new MutationObserver(draw).observe(this, { attributeFilter: ["width", "height"] });
     return gl;
   };
 

@@ -28,7 +28,7 @@ log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
-SCRIPTS = ("notices.js", "yarn.js", "aside.js", "frame.js")
+SCRIPTS = ("notices.js", "yarn.js", "frame.js")
 """Ours, before viser's own."""
 OPENING_S = 8.0
 """So long a browser waits for a view: its page is loaded while the first scene is being made."""

@@ -7,7 +7,7 @@ import { test } from "node:test";
 
 const ROOT = join(import.meta.dirname, "..");
 const FLOORS = [
-  ["types", "aside", "frame", "notices", "theme"],
+  ["types", "frame", "notices", "theme"],
   ["core"],
   ["api", "dom", "icons"],
   ["tools", "yarn"],
