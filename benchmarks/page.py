@@ -312,7 +312,7 @@ def main() -> None:
         print("needs Chromium for the rest (scripts/ensure-browsers chromium)")
         return
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
-        service = Service(Path(folder))
+        service = Service(Path(folder), workers="2")  # as `knitcore serve` on two cores
         service.start().close()
         try:
             own = [flag for flag in FLAGS if flag != FORCED]
