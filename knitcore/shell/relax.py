@@ -147,7 +147,7 @@ class _Descent:
         self.steps = self.factors = 0
         self._past: deque[tuple[Array, Array, float]] = deque(maxlen=MEMORY)
         self._factor: SheetFactor | None = None
-        self._quick = False
+        self._quick = False  # leaves contact out of the factor, which comes five times as soon
         self._age = 0
         self._list()
         self.energy, self._gradient = self._at(x)
@@ -181,12 +181,17 @@ class _Descent:
         near = _Descent(part, self.x[corners], held, None, None)
         near.load(np.where(held, 0.0, near._gradient - self._gradient[corners]))
         near._unit, near._quick = self._unit, True
-        near.step()
-        near.run(time_limit_s - (time.process_time() - clock), np.inf, cancelled)
-        self.x = self.x.copy()
-        self.x[corners] = near.x
-        self._list_again()
-        self.energy, self._gradient = self._at(self.x)
+        while near.residual > TOLERANCE and near.step():
+            check_cancelled(cancelled)
+            x = self.x.copy()
+            x[corners] = near.x
+            energy, gradient = self._at(x)
+            if energy >= self.energy:
+                return  # it runs into the rest
+            self.x, self.energy, self._gradient = x, energy, gradient
+            self._list_again()
+            if time.process_time() - clock > time_limit_s:
+                return
 
     def step(self) -> bool:
         """One step downhill; False where there is none."""
