@@ -97,24 +97,32 @@ FRAMES = """async (number) => {
 
 ENDED = """() => {
     performance.setResourceTimingBufferSize(5000);
+    addEventListener("pointerdown", () => (window.begun = performance.now()), true);
     addEventListener("pointerup", () => (window.ended = performance.now()), true);
+    window.firstShapes = [];
+    const own = window.fetch;
+    window.fetch = async (address, options) => {
+        const start = performance.now();
+        const answer = await own(address, options); // throws where the next change came first
+        if (address === "/api/v1/curl" && JSON.parse(options.body).time_limit_s < 1) {
+            firstShapes.push({ start, end: performance.now() });
+        }
+        return answer;
+    };
 }"""
 FIRST_SHAPE = """async () => {
-    const since = (start, path) => performance.getEntriesByType("resource").find(
-        (entry) => entry.startTime >= start && entry.responseEnd && entry.name.includes(path));
-    while (performance.now() < window.ended + 5000) {
-        const shape = since(window.ended, "/api/v1/curl");
-        const shown = shape && since(shape.responseEnd, "/api/v1/views/");
-        if (shown) {
-            const at = [shape.startTime, shape.responseEnd, shown.responseEnd];
-            return at.map((ms) => ms - window.ended);
-        }
-        await new Promise((done) => setTimeout(done, 10));
+    while (performance.now() < window.ended + 1500) {
+        await new Promise((done) => setTimeout(done, 50));
     }
-    return null;
+    const shape = firstShapes.findLast(({ start }) => start > window.begun);
+    const shown = shape && performance.getEntriesByType("resource").find((entry) =>
+        entry.startTime >= shape.end && entry.responseEnd && entry.name.includes("/api/v1/views/"));
+    return shown
+        ? [shape.start, shape.end, shown.responseEnd].map((ms) => ms - window.ended)
+        : null;
 }"""
-"""Milliseconds from a stroke until its first shape is asked for, answered, and in the view; null
-if it changed nothing."""
+"""Milliseconds from the end of a stroke until its first shape is asked for (which may be sooner,
+after its last change), answered, and in the view; null if it changed nothing."""
 
 
 def report(what: str, value: float, unit: str, target: float) -> None:

@@ -103,7 +103,7 @@ def settle(
         was at rest before a few stitches were changed, that is most of the way.
     max_steps : evaluations of the energy after which it ends, not converged.
     time_limit_s : CPU time after which it ends, not converged.
-    cancelled : called before every step; True stops with CancelledError.
+    cancelled : called several times in every step; True stops with CancelledError.
 
     Raises
     ------
@@ -111,10 +111,10 @@ def settle(
         If ``cancelled`` says so.
     """
     clock = time.process_time()
-    descent = _Descent(sheet, x.copy(), held, load_n, floor_mm)
+    descent = _Descent(sheet, x.copy(), held, load_n, floor_mm, cancelled)
     if near:
-        descent.settle_near(time_limit_s, cancelled)
-    descent.run(time_limit_s - (time.process_time() - clock), max_steps, cancelled)
+        descent.settle_near(time_limit_s)
+    descent.run(time_limit_s - (time.process_time() - clock), max_steps)
     return Shape(
         descent.x, descent.energy, descent.residual, descent.residual <= TOLERANCE, descent.steps,
         time.process_time() - clock,
@@ -129,8 +129,10 @@ class _Descent:
         held: NDArray[np.bool_] | None,
         load_n: Array | None,
         floor_mm: float | None,
+        cancelled: Cancelled | None,
     ) -> None:
         self._sheet = sheet
+        self._cancelled = cancelled
         self.x = x
         self._load = load_n
         self._floor = -np.inf if floor_mm is None else floor_mm
@@ -162,15 +164,14 @@ class _Descent:
         self._load = forces_n
         self.energy, self._gradient = self._at(self.x)
 
-    def run(self, time_limit_s: float, max_steps: float, cancelled: Cancelled | None) -> None:
+    def run(self, time_limit_s: float, max_steps: float) -> None:
         """Descend until it is at rest, or CPU time or steps are used up."""
         clock = time.process_time()
         while self.residual > TOLERANCE and time.process_time() - clock < time_limit_s:
-            check_cancelled(cancelled)
             if self.steps >= max_steps or not self.step():
                 break
 
-    def settle_near(self, time_limit_s: float, cancelled: Cancelled | None) -> None:
+    def settle_near(self, time_limit_s: float) -> None:
         """Settle a part of the sheet under the forces that the rest exerts on it now."""
         clock = time.process_time()
         sheet, force = self._sheet, np.linalg.norm(self._gradient, axis=1)
@@ -178,11 +179,10 @@ class _Descent:
         box = map(_around, where, (sheet.rows, sheet.columns))
         part, corners, rim = sheet.part(*box)
         held = ~self._free[corners] | rim[:, None]
-        near = _Descent(part, self.x[corners], held, None, None)
+        near = _Descent(part, self.x[corners], held, None, None, self._cancelled)
         near.load(np.where(held, 0.0, near._gradient - self._gradient[corners]))
         near._unit, near._quick = self._unit, True
         while near.residual > TOLERANCE and near.step():
-            check_cancelled(cancelled)
             x = self.x.copy()
             x[corners] = near.x
             energy, gradient = self._at(x)
@@ -239,6 +239,7 @@ class _Descent:
         shift[:, 2] += self._sheet.touch_n_per_mm * (self.x[:, 2] < self._floor)
         pairs = self._pairs[:0] if self._quick else self._pairs
         matrix = self._tangent.matrix(self.x, pairs, self._free, convex=True, shift=shift)
+        check_cancelled(self._cancelled)
         try:
             apart = self._tangent.is_apart(matrix)
             self._factor = SheetFactor(matrix, self._sheet.columns + 1, again=apart)
@@ -263,6 +264,7 @@ class _Descent:
         return -np.asarray(way)
 
     def _at(self, x: Array) -> tuple[float, Array]:
+        check_cancelled(self._cancelled)
         self.steps += 1
         energy, gradient = self._sheet.energy(x, self._pairs)
         if self._load is not None:
