@@ -288,7 +288,8 @@ class _Descent:
 
 
 def _around(places: NDArray[np.int64], stitches: int) -> slice:
-    """The corners of a row or column around these."""
+    """The corners of a row or column around these; few different sides, so that orders of
+    elimination are used again."""
     first, last = max(int(places.min()) - _AROUND, 0), min(int(places.max()) + _AROUND, stitches)
     side = min(-((first - last) // _AROUND) * _AROUND, stitches)
     first = min(first, stitches - side)
