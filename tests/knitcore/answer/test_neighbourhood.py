@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 
 from knitcore import StitchChart
+from knitcore.answer import neighbourhood
 from knitcore.answer.learned import learned
 from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.fabric import PHASES
@@ -43,3 +44,19 @@ def test_a_ribbed_hem_is_narrower_than_any_texture_above_it(above: str) -> None:
     assert np.all(sizes[4, :, 0] < sizes[75, :, 0])
     steps = np.abs(np.diff(np.log(sizes[:, 20, 0])))
     assert steps.max() < 0.25  # it narrows over several rows
+
+
+def test_sizes_do_not_depend_on_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Values of windows are kept: those that a stroke leaves alone are not computed again."""
+    purl = np.random.default_rng(4).random((30, 34)) < 0.5
+    changed = purl.copy()
+    changed[10, 12:15] ^= True
+    yarns = [material("acrylic"), material("cotton")]
+    monkeypatch.setattr(neighbourhood, "MOST_KNOWN", 0)
+    alone = [neighbourhood_sizes(StitchChart(changed), yarn) for yarn in yarns]
+    monkeypatch.undo()
+    for yarn in yarns:
+        neighbourhood_sizes(StitchChart(purl), yarn)
+    after = [neighbourhood_sizes(StitchChart(changed), yarn) for yarn in yarns]
+    assert np.allclose(after, alone, rtol=1e-12)
+    assert not np.allclose(alone[0], alone[1], rtol=1e-3)
