@@ -23,7 +23,8 @@ from app.limits.turns import Turns
 log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")
 
-POLL_S = 0.25
+POLL_S = 0.05
+"""How soon a computation that nobody waits for is noticed."""
 GRACE_S = 3.0
 """How long a job may take to notice that it was cancelled before its process is stopped."""
 START_S = 120.0

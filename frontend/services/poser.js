@@ -14,7 +14,7 @@ import { figure, percent } from "../core/format.js";
 import { outlineText } from "../core/snapshot.js";
 import { REST } from "../studio.js";
 
-const DELAY_MS = 40;
+const DELAY_MS = 25;
 /** CPU time of the first shape, and that after which the second is shown as a preview, too. */
 const PATIENCE_S = [0.03, 40];
 

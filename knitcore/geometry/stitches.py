@@ -31,7 +31,7 @@ from knitcore.geometry.fabrics import (
     fabric_lines,
     stored_material,
 )
-from knitcore.geometry.lattice import Lattice, resting_lattice
+from knitcore.geometry.lattice import Lattice, flat_lattice, resting_lattice
 from knitcore.materials import Material
 from knitcore.phases import (
     ABOVE,
@@ -85,7 +85,8 @@ def stitch_shapes(chart: StitchChart, material: Material, *, folded: bool = True
 
     Parameters
     ----------
-    folded : whether relaxed repeats keep their folds; False where the sheet itself is folded.
+    folded : whether relaxed repeats keep their folds; False where the sheet itself is folded, which
+        then places its stitches: the lattice is straight.
 
     Raises
     ------
@@ -99,7 +100,8 @@ def stitch_shapes(chart: StitchChart, material: Material, *, folded: bool = True
     if stored is not None:
         return _of_stored(chart, material, stored, radius)
     lines, index = _of_quarters(chart, fabrics)
-    return StitchShapes(lines, index, resting_lattice(chart, material), radius, fabrics.source)
+    lattice = (resting_lattice if folded else flat_lattice)(chart, material)
+    return StitchShapes(lines, index, lattice, radius, fabrics.source)
 
 
 # -- a repeat that was relaxed -----------------------------------------------------------------

@@ -189,9 +189,9 @@ class _Descent:
             if energy >= self.energy:
                 return  # it runs into the rest
             self.x, self.energy, self._gradient = x, energy, gradient
-            self._list_again()
             if time.process_time() - clock > time_limit_s:
                 return
+            self._list_again()
 
     def step(self) -> bool:
         """One step downhill; False where there is none."""
