@@ -1257,16 +1257,6 @@ export interface GaugeResult {
   source: string;
 }
 
-/** Circumferences at one place. */
-export interface Girth {
-  /** Along the limb, from where the tube begins. */
-  at_mm: number;
-  /** Around the limb. */
-  girth_mm: number;
-  /** Around the unworn tube. Left out at all places, the whole chart is the tube. */
-  rest_mm?: number | null;
-}
-
 /** The therapeutic glove; measurements default to an adult's hand. */
 export interface Glove {
   ease?: number;
@@ -1626,7 +1616,7 @@ export interface LimbRequest {
   /** Around the limb. */
   direction?: Direction;
   /** From one end to the other; between them sizes change evenly. */
-  girths: Girth[];
+  girths: TubeGirth[];
 }
 
 /** Fit along the limb; no medical class. */
@@ -2700,6 +2690,16 @@ export interface TrellisResult {
   moment_n_mm: number[];
   /** Moment over the relaxed area. */
   shear_stress_n_per_mm: number[];
+}
+
+/** Circumferences at one place. */
+export interface TubeGirth {
+  /** Along the limb, from where the tube begins. */
+  at_mm: number;
+  /** Around the limb. */
+  girth_mm: number;
+  /** Around the unworn tube. Left out at all places, the whole chart is the tube. */
+  rest_mm?: number | null;
 }
 
 /** A repeat, its yarn, and how many stitches go around. */

@@ -38,7 +38,7 @@ from knitcore.formats.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
 from knitcore.geometry.instances import MAX_STITCHES
 from knitcore.geometry.lattice import flat_lattice
-from knitcore.geometry.placing import PlacedStitches, at_rest, carried, lying
+from knitcore.geometry.placing import PlacedStitches, carried, lying, unstretched
 from knitcore.geometry.rectangles import extensibility_rectangles, stitch_labels
 from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import Material
@@ -140,7 +140,7 @@ def build_scene(
     posed = _posed(request, found, chart)
     step = _checked_step(request, stretch, chart)
     shapes = stitch_shapes(chart, material, folded=posed is None)
-    placement, room = at_rest(shapes), None
+    placement, room = unstretched(shapes), None
     if posed is not None:
         placement = lying(posed.corners_mm.astype(float))
     if stretch is not None:

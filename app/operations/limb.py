@@ -41,7 +41,7 @@ BY_PATCHES = (
 )
 
 
-class Girth(RequestModel):
+class TubeGirth(RequestModel):
     """Circumferences at one place."""
 
     at_mm: float = Field(ge=0, le=3000, description="Along the limb, from where the tube begins.")
@@ -58,7 +58,7 @@ class LimbRequest(FabricRequest):
     """A tube of a chart, and a limb by its girths."""
 
     direction: Direction = Field(Direction.COURSE, description="Around the limb.")
-    girths: list[Girth] = Field(
+    girths: list[TubeGirth] = Field(
         min_length=2,
         max_length=MAX_GIRTHS,
         description="From one end to the other; between them sizes change evenly.",

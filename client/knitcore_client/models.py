@@ -573,17 +573,6 @@ class GaugeInput(TypedDict):
     """Counted on your own relaxed swatch; give stitches and rows, or neither."""
 
 
-class Girth(TypedDict):
-    """Circumferences at one place."""
-
-    at_mm: float
-    """Along the limb, from where the tube begins."""
-    girth_mm: float
-    """Around the limb."""
-    rest_mm: NotRequired[float | None]
-    """Around the unworn tube. Left out at all places, the whole chart is the tube."""
-
-
 class Glove(TypedDict):
     """The therapeutic glove; measurements default to an adult's hand."""
 
@@ -710,7 +699,7 @@ class LimbRequest(TypedDict):
     """Identifier of a material of the library."""
     direction: NotRequired[Direction]
     """Around the limb."""
-    girths: list[Girth]
+    girths: list[TubeGirth]
     """From one end to the other; between them sizes change evenly."""
 
 
@@ -1145,6 +1134,17 @@ class TrellisRequest(TypedDict):
     """Side of the square."""
     grain_deg: NotRequired[float]
     """Angle from a bar of the frame to the rows."""
+
+
+class TubeGirth(TypedDict):
+    """Circumferences at one place."""
+
+    at_mm: float
+    """Along the limb, from where the tube begins."""
+    girth_mm: float
+    """Around the limb."""
+    rest_mm: NotRequired[float | None]
+    """Around the unworn tube. Left out at all places, the whole chart is the tube."""
 
 
 class TubeRequest(TypedDict):

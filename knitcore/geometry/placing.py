@@ -48,7 +48,7 @@ class PlacedStitches:
         )
 
 
-def at_rest(shapes: StitchShapes) -> PlacedStitches:
+def unstretched(shapes: StitchShapes) -> PlacedStitches:
     """The fabric as it lies."""
     lattice = shapes.lattice
     return PlacedStitches(*_turned(lattice.centres_mm, lattice.sizes_mm), 1.0)
@@ -127,7 +127,7 @@ def placed_lines(shapes: StitchShapes, placement: PlacedStitches) -> Array:
 def _depth(shapes: StitchShapes, sizes_mm: Array) -> float:
     """The change of thickness that conserves the yarn's length, within bounds."""
     number = np.bincount(shapes.index.ravel(), minlength=len(shapes.lines))
-    rest = mean_sizes_mm(shapes, at_rest(shapes))
+    rest = mean_sizes_mm(shapes, unstretched(shapes))
     now = mean_sizes_mm(shapes, PlacedStitches(sizes_mm, sizes_mm, sizes_mm[..., 0], 1.0))
 
     def length(sizes: Array, depth: float) -> float:

@@ -31,7 +31,7 @@ MAX_SHIFT = 1e4
 
 
 @dataclass(frozen=True, eq=False)
-class Equilibrium:
+class PieceEquilibrium:
     """A balanced state.
 
     Attributes
@@ -82,7 +82,7 @@ class Balance:
         check_cancelled(self.cancelled)
         return self.energy.at(displacement, self.constraints.tapes)
 
-    def follow(self, shares: Array) -> Iterator[Equilibrium]:
+    def follow(self, shares: Array) -> Iterator[PieceEquilibrium]:
         """Equilibria at increasing shares of the load.
 
         Raises
@@ -112,7 +112,7 @@ class Balance:
                     continue
                 iterations += count
                 reached, step = goal, 2 * step
-            yield Equilibrium(float(target), state, found.energy, found.force, iterations)
+            yield PieceEquilibrium(float(target), state, found.energy, found.force, iterations)
 
     def _along_tangent(
         self, state: Array, found: Assembled, solve: Solve, shares: tuple[float, float]

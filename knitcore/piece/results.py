@@ -13,7 +13,7 @@ from knitcore.errors import InputError
 from knitcore.law.stiffening import EXTENSION_START, StiffeningForm
 from knitcore.piece.assembly import PieceEnergy
 from knitcore.piece.conditions import Condition, Constraints
-from knitcore.piece.equilibrium import Equilibrium
+from knitcore.piece.equilibrium import PieceEquilibrium
 from knitcore.piece.outline import CutPiece
 from knitcore.swatch.fields import fibre_strains, response, stiffening_of
 
@@ -63,7 +63,7 @@ class PieceTest:
     piece: CutPiece
     energy: PieceEnergy
     constraints: Constraints
-    found: tuple[Equilibrium, ...]
+    found: tuple[PieceEquilibrium, ...]
     problem: str | None
     seconds: float
 

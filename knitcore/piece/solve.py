@@ -12,7 +12,7 @@ from knitcore.errors import Cancelled, Progress
 from knitcore.piece.assembly import PieceEnergy
 from knitcore.piece.cloth import Cloth
 from knitcore.piece.conditions import Condition, Constraints
-from knitcore.piece.equilibrium import Balance, Equilibrium
+from knitcore.piece.equilibrium import Balance, PieceEquilibrium
 from knitcore.piece.mesh import mesh_of
 from knitcore.piece.outline import CutPiece
 from knitcore.piece.results import PieceTest
@@ -72,7 +72,7 @@ def solve(
     begin = time.perf_counter()
     energy = PieceEnergy(mesh_of(piece, mesh_mm), cloth, piece.turn)
     constraints = Constraints(energy.basis, piece, conditions)
-    found: list[Equilibrium] = []
+    found: list[PieceEquilibrium] = []
     problem = None
     try:
         with one_blas_thread():

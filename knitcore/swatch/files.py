@@ -26,12 +26,12 @@ def write_fields(test: SwatchTest, path: Path | str) -> None:
     if suffix not in SUFFIXES:
         raise InputError("out", f"{target.name} has an unknown suffix.", "Use .npz or .vtu.")
     if suffix == ".npz":
-        write_npz(test, target)
+        _write_npz(test, target)
     else:
-        write_vtu(test, target)
+        _write_vtu(test, target)
 
 
-def write_npz(test: SwatchTest, path: Path) -> None:
+def _write_npz(test: SwatchTest, path: Path) -> None:
     """All steps at the nodes.
 
     ``x_mm``, ``y_mm`` (rows + 1, columns + 1) are rest positions; ``ux_mm``, ``uy_mm``,
@@ -54,8 +54,9 @@ def write_npz(test: SwatchTest, path: Path) -> None:
     np.savez_compressed(path, allow_pickle=False, **arrays)
 
 
-def write_vtu(test: SwatchTest, path: Path, step: int = -1) -> None:
-    """One step on the rest shape, quarter cells as quadrilaterals; warp by ``displacement_mm``.
+def _write_vtu(test: SwatchTest, path: Path) -> None:
+    """The last step on the rest shape, quarter cells as quadrilaterals to warp by
+    ``displacement_mm``.
 
     Cells without fabric are left out.
 
@@ -68,7 +69,7 @@ def write_vtu(test: SwatchTest, path: Path, step: int = -1) -> None:
 
     if test.steps == 0:
         raise InputError("out", "no step converged, so there is no field.", "Use a smaller strain.")
-    fields = test.fields(step)
+    fields = test.fields(-1)
     grid = test.sheet.grid
     used, cloth = grid.used_corners, grid.cloth.ravel()
     flat = np.zeros(fields.x_mm.size)

@@ -85,7 +85,7 @@ def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def contact_energy(
+def curve_contact_energy(
     controls: Array,
     cell_course: float,
     cell_wale: float,

@@ -10,7 +10,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.yarnlevel.published.certificate import is_certified, is_clasped
-from knitcore.yarnlevel.published.minimise import HeldLengths, Minimum, minimise
+from knitcore.yarnlevel.published.minimise import BezierMinimum, HeldLengths, minimise_bezier
 from knitcore.yarnlevel.published.stitch import Stitch
 
 SEGMENT_FLOOR = 0.014
@@ -28,13 +28,13 @@ def free_constraints(
     return HeldLengths(cell_course_mm, cell_wale_mm, SEGMENT_FLOOR * loop_length_mm)
 
 
-def is_knitted(stitch: Stitch, minimum: Minimum) -> bool:
+def is_admissible(stitch: Stitch, minimum: BezierMinimum) -> bool:
     """Whether the yarn is knotted as it should be, has not passed through yarn, and no core
     overlaps another."""
     return minimum.certified and has_room(stitch, minimum) and is_clasped(stitch, minimum.unknowns)
 
 
-def has_room(stitch: Stitch, minimum: Minimum) -> bool:
+def has_room(stitch: Stitch, minimum: BezierMinimum) -> bool:
     """Whether every core is outside every other."""
     return minimum.evaluation.closest_mm > 2.0 * stitch.yarn.core_radius_mm
 
@@ -48,7 +48,7 @@ class Continuation:
     stitch : the stitch.
     loop_length_mm : length of its yarn, mm.
     held, held_mm : stretches of yarn that keep their length, as in
-        :class:`~knitcore.yarnlevel.published.minimise.Constraints`.
+        :class:`~knitcore.yarnlevel.published.minimise.HeldLengths`.
     """
 
     stitch: Stitch
@@ -56,16 +56,18 @@ class Continuation:
     held: Array = field(default_factory=lambda: np.empty((0, 8)))
     held_mm: Array = field(default_factory=lambda: np.empty(0))
 
-    def minimise_at(self, course_mm: float | None, wale_mm: float | None, start: Array) -> Minimum:
+    def minimise_at(
+        self, course_mm: float | None, wale_mm: float | None, start: Array
+    ) -> BezierMinimum:
         """Minimise at given sizes (None: free) from a start, whose sizes are replaced."""
         free = free_constraints(self.loop_length_mm, course_mm, wale_mm)
         rules = replace(free, held=self.held, held_mm=self.held_mm)
         first = _resized(start, course_mm, wale_mm)
-        return minimise(self.stitch, first, self.loop_length_mm, rules, near=True)
+        return minimise_bezier(self.stitch, first, self.loop_length_mm, rules, near=True)
 
     def go(
         self, path: Sequence[Array], course_mm: float | None, wale_mm: float | None
-    ) -> tuple[Minimum, int] | None:
+    ) -> tuple[BezierMinimum, int] | None:
         """Go from the last unknowns of a path to given sizes (None: free).
 
         Returns
@@ -101,7 +103,7 @@ class Continuation:
 
     def _step(
         self, known: list[Array], course_mm: float | None, wale_mm: float | None
-    ) -> Minimum | None:
+    ) -> BezierMinimum | None:
         """One minimisation, started on the line through the last two states if there are two."""
         last = known[-1]
         starts = [last]
@@ -117,7 +119,7 @@ class Continuation:
             found = self.minimise_at(course_mm, wale_mm, start)
             if (
                 found.converged
-                and is_knitted(self.stitch, found)
+                and is_admissible(self.stitch, found)
                 and is_certified(self.stitch, last, _resized(start, course_mm, wale_mm))
             ):
                 return found

@@ -77,7 +77,7 @@ class HeldLengths:
 
 
 @dataclass(frozen=True, eq=False)
-class Minimum:
+class BezierMinimum:
     """End of a minimisation.
 
     Parameters
@@ -115,7 +115,7 @@ def length_powers(stitch: Stitch) -> Array:
     return np.array(powers)
 
 
-def minimise(
+def minimise_bezier(
     stitch: Stitch,
     start: Array,
     loop_length_mm: float,
@@ -124,7 +124,7 @@ def minimise(
     tolerance: float = 1e-10,
     max_iterations: int = 400,
     near: bool = False,
-) -> Minimum:
+) -> BezierMinimum:
     """Lowest energy near a start.
 
     Parameters
@@ -264,7 +264,7 @@ class _Problem:
         even = _EVEN_BY_LENGTH[:, None] * lengths[_EVEN_CURVE] + self.even
         return np.vstack([lengths[_DISTINCT], even]) * self.scale / self.loop_length_mm
 
-    def report(self, x: Array, converged: bool, certified: bool) -> Minimum:
+    def report(self, x: Array, converged: bool, certified: bool) -> BezierMinimum:
         """Multipliers by least squares give the force along a held size of the cell."""
         lower, upper = self.bounds()
         at_bound = (x - lower < 1e-9) | (upper - x < 1e-9)
@@ -282,7 +282,7 @@ class _Problem:
         lagrangian = gradient - multipliers @ normals
         evaluation = self.evaluate(x)
         violation = float(np.max(np.abs(self.equal(x)), initial=0.0))
-        return Minimum(
+        return BezierMinimum(
             x * self.scale,
             evaluation,
             lagrangian[-2:] * self.energy_scale / self.loop_length_mm,

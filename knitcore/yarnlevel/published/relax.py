@@ -24,9 +24,9 @@ from knitcore.yarnlevel.published.continuation import (
     Continuation,
     free_constraints,
     has_room,
-    is_knitted,
+    is_admissible,
 )
-from knitcore.yarnlevel.published.minimise import HeldLengths, Minimum, minimise
+from knitcore.yarnlevel.published.minimise import BezierMinimum, HeldLengths, minimise_bezier
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
@@ -100,16 +100,16 @@ def relax_published(
         best, more = held
         evaluations += more
     seconds = time.process_time() - began
-    least = min(m.energy_n_mm for m in found if m.converged and is_knitted(stitch, m))
+    least = min(m.energy_n_mm for m in found if m.converged and is_admissible(stitch, m))
     others = sum(
-        m.converged and m.energy_n_mm > least * 1.001 and is_knitted(stitch, m) for m in found
+        m.converged and m.energy_n_mm > least * 1.001 and is_admissible(stitch, m) for m in found
     )
     notes = (f"{others} of {starts} starts ended in a higher minimum.",) if others else ()
     cell = relaxed_cell(stitch, loop_length_mm, best, evaluations, seconds, notes)
     return replace(cell, starts=tuple(_report(stitch, n, m) for n, m in enumerate(found, start=1)))
 
 
-def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
+def lowest(stitch: Stitch, found: list[BezierMinimum]) -> BezierMinimum:
     """The lowest converged and knitted minimum.
 
     Raises
@@ -138,7 +138,7 @@ def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
 def relaxed_cell(
     stitch: Stitch,
     loop_length_mm: float,
-    minimum: Minimum,
+    minimum: BezierMinimum,
     evaluations: int,
     seconds: float = 0.0,
     notes: tuple[str, ...] = (),
@@ -169,7 +169,7 @@ def relaxed_cell(
     )
 
 
-def _report(stitch: Stitch, number: int, minimum: Minimum) -> StartReport:
+def _report(stitch: Stitch, number: int, minimum: BezierMinimum) -> StartReport:
     """Outcome of a start."""
     if not minimum.converged:
         outcome = "not converged"
@@ -184,7 +184,7 @@ def _report(stitch: Stitch, number: int, minimum: Minimum) -> StartReport:
 
 def _settle(
     stitch: Stitch, start: Array, loop_length_mm: float, constraints: HeldLengths
-) -> Minimum:
+) -> BezierMinimum:
     """Minimise from a start whose yarns may overlap: grow the core, then the rest."""
     certified = is_clasped(stitch, start)
     closest = stitch.evaluate(start).closest_mm
@@ -193,7 +193,7 @@ def _settle(
         room = 0.45 * closest
         for share in (0.0, 0.5, 0.8):
             thinner = replace(stitch.yarn, core_radius_mm=room + share * max(core - room, 0.0))
-            grown = minimise(
+            grown = minimise_bezier(
                 replace(stitch, yarn=thinner),
                 start,
                 loop_length_mm,
@@ -203,5 +203,5 @@ def _settle(
             )
             certified = certified and grown.certified
             start = grown.unknowns
-    found = minimise(stitch, start, loop_length_mm, constraints)
+    found = minimise_bezier(stitch, start, loop_length_mm, constraints)
     return replace(found, certified=certified and found.certified)

@@ -131,7 +131,7 @@ class Stitch:
             length_gradient,
         )
         cell_gradient = np.zeros(2)
-        touch, closest = contact.contact_energy(
+        touch, closest = contact.curve_contact_energy(
             controls,
             parameters[shape.CELL_COURSE],
             parameters[shape.CELL_WALE],

@@ -7,7 +7,7 @@ import numpy as np
 from knitcore.chart import StitchChart
 from knitcore.geometry.instances import quaternions
 from knitcore.geometry.lattice import flat_lattice
-from knitcore.geometry.placing import at_rest, lying, placed_lines
+from knitcore.geometry.placing import lying, placed_lines, unstretched
 from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import material
 
@@ -22,7 +22,7 @@ def _corners() -> np.ndarray:
 
 
 def test_a_flat_sheet_is_the_fabric_at_rest() -> None:
-    flat = placed_lines(SHAPES, at_rest(SHAPES))
+    flat = placed_lines(SHAPES, unstretched(SHAPES))
     on_sheet = placed_lines(SHAPES, lying(_corners()))
     assert np.allclose(on_sheet - on_sheet[0, 0, 0], flat - flat[0, 0, 0], atol=1e-9)
     assert np.allclose(quaternions(lying(_corners())), (1.0, 0.0, 0.0, 0.0), atol=1e-6)

@@ -10,7 +10,7 @@ from knitcore import Fabric, StitchChart
 from knitcore.geometry.fabrics import POINTS, cell_lines, fabric_lines
 from knitcore.geometry.instances import LEVELS, level_of, stitch_meshes
 from knitcore.geometry.lattice import flat_lattice
-from knitcore.geometry.placing import DEPTH, at_rest, carried, placed_lines
+from knitcore.geometry.placing import DEPTH, carried, placed_lines, unstretched
 from knitcore.geometry.stitches import StitchShapes, stitch_shapes
 from knitcore.geometry.tubes import resampled
 from knitcore.materials import load_library, material
@@ -26,7 +26,7 @@ MIXED = StitchChart.parse(
 
 def _strand_distance_mm(shapes: StitchShapes) -> float:
     """Smallest distance between yarn that is not the same strand, inside the chart."""
-    lines = placed_lines(shapes, at_rest(shapes))[:, :, :-1]
+    lines = placed_lines(shapes, unstretched(shapes))[:, :, :-1]
     rows, columns, points = lines.shape[:3]
     row = np.repeat(np.arange(rows), columns * points)
     along = np.tile(np.arange(columns * points) / points, rows)
@@ -42,7 +42,7 @@ def _strand_distance_mm(shapes: StitchShapes) -> float:
 @settings(max_examples=40, deadline=None)
 def test_neighbours_in_a_course_join_without_gap_or_kink(chart: StitchChart) -> None:
     shapes = stitch_shapes(chart, ACRYLIC)
-    lines = placed_lines(shapes, at_rest(shapes))
+    lines = placed_lines(shapes, unstretched(shapes))
     gap = np.linalg.norm(lines[:, :-1, -1] - lines[:, 1:, 0], axis=-1)
     assert gap.max(initial=0.0) < 0.1 * shapes.yarn_radius_mm  # where textures draw each other in
     left, right = lines[:, :-1], lines[:, 1:]
@@ -58,7 +58,7 @@ def test_neighbours_in_a_course_join_without_gap_or_kink(chart: StitchChart) -> 
 @settings(max_examples=40, deadline=None)
 def test_turning_the_fabric_over_turns_its_yarn_over(chart: StitchChart) -> None:
     shapes, turned = (stitch_shapes(c, ACRYLIC) for c in (chart, chart.turn_over()))
-    lines, back = (placed_lines(s, at_rest(s)) for s in (shapes, turned))
+    lines, back = (placed_lines(s, unstretched(s)) for s in (shapes, turned))
     width = sum(s.lattice.centres_mm[..., 0].mean() for s in (shapes, turned))
     expected = lines[:, ::-1, ::-1] * (-1.0, 1.0, -1.0) + (width, 0.0, 0.0)
     np.testing.assert_allclose(back, expected, atol=2e-3)  # as exactly as a cell is relaxed
@@ -118,7 +118,7 @@ def test_a_wild_chart_has_no_more_shapes_than_a_browser_can_take() -> None:
     rng = np.random.default_rng(5)
     shapes = stitch_shapes(StitchChart(rng.random((60, 60)) < 0.5), ACRYLIC)
     assert len(shapes.lines) <= 128
-    lines = placed_lines(shapes, at_rest(shapes))
+    lines = placed_lines(shapes, unstretched(shapes))
     np.testing.assert_allclose(lines[:, :-1, -1], lines[:, 1:, 0], atol=0.05)
 
 
@@ -129,7 +129,7 @@ def test_a_stretched_fabric_keeps_its_yarn_and_becomes_thinner() -> None:
     assert DEPTH[0] <= pulled.depth < 1.0
     lengths: list[NDArray[np.float64]] = [
         np.linalg.norm(np.diff(placed_lines(shapes, p), axis=2), axis=-1).sum()
-        for p in (at_rest(shapes), pulled)
+        for p in (unstretched(shapes), pulled)
     ]
     assert lengths[1] == pytest.approx(lengths[0], rel=0.02)
 
@@ -146,15 +146,15 @@ def test_meshes_follow_the_chart_s_size() -> None:
     shapes = stitch_shapes(MIXED, ACRYLIC)
     for most, points, sides in LEVELS:
         assert level_of(most) == (points, sides)
-        meshes = stitch_meshes(shapes, at_rest(shapes), points, sides)
+        meshes = stitch_meshes(shapes, unstretched(shapes), points, sides)
         assert meshes.vertices.shape == (len(shapes.lines), (points + 2) * sides, 3)
     assert resampled(shapes.lines, POINTS) == pytest.approx(shapes.lines)
 
 
 def test_some_shapes_are_drawn_as_among_all() -> None:
     shapes = stitch_shapes(MIXED, ACRYLIC)
-    every = stitch_meshes(shapes, at_rest(shapes), 14, 6)
-    some = stitch_meshes(shapes, at_rest(shapes), 14, 6, [3, 1])
+    every = stitch_meshes(shapes, unstretched(shapes), 14, 6)
+    some = stitch_meshes(shapes, unstretched(shapes), 14, 6, [3, 1])
     np.testing.assert_allclose(some.vertices, every.vertices[[3, 1]], atol=1e-6)
     np.testing.assert_allclose(some.light, every.light[[3, 1]], atol=1e-6)
-    assert stitch_meshes(shapes, at_rest(shapes), 14, 6, []).vertices.shape == (0, 96, 3)
+    assert stitch_meshes(shapes, unstretched(shapes), 14, 6, []).vertices.shape == (0, 96, 3)

@@ -7,8 +7,8 @@ from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.certificate import is_certified, is_clasped
-from knitcore.yarnlevel.published.continuation import free_constraints, is_knitted
-from knitcore.yarnlevel.published.minimise import minimise
+from knitcore.yarnlevel.published.continuation import free_constraints, is_admissible
+from knitcore.yarnlevel.published.minimise import minimise_bezier
 from knitcore.yarnlevel.published.relax import lowest, relax_published
 from knitcore.yarnlevel.published.shape import unknown_names
 from knitcore.yarnlevel.published.starts import first_shapes
@@ -51,7 +51,9 @@ def test_packaged_shapes_are_stationary(known):
     stitch = Stitch(known.fabric, known.yarn)
     start = first_shapes(stitch, known.loop_length_mm, 2)[known.yarn_id == "cotton"]
     before = stitch.evaluate(start)
-    after = minimise(stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm))
+    after = minimise_bezier(
+        stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
+    )
     assert before.lengths_mm.sum() == pytest.approx(known.loop_length_mm, rel=1e-5)
     assert before.energy_n_mm == pytest.approx(after.energy_n_mm, rel=1e-3)
     assert np.abs(after.force_n).max() < 5e-4  # N; garter ends on a constraint
@@ -61,7 +63,7 @@ def test_random_starts_end_in_one_minimum():
     known = sample("cotton", Fabric.SEED)
     stitch = Stitch(known.fabric, known.yarn)
     energies = [
-        minimise(
+        minimise_bezier(
             stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
         ).energy_n_mm
         for start in first_shapes(stitch, known.loop_length_mm, 5)[2:]
@@ -130,7 +132,9 @@ def test_jammed_unravelled_and_unfinished_stitches_are_refused():
     known = sample("acrylic", "rib")
     stitch = Stitch(known.fabric, known.yarn)
     start = first_shapes(stitch, known.loop_length_mm, 1)[0]
-    good = minimise(stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm))
+    good = minimise_bezier(
+        stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
+    )
     assert lowest(stitch, [good]) is good
     thick = replace(known.yarn, core_radius_mm=0.501 * good.evaluation.closest_mm)
     with pytest.raises(ConvergenceError, match="jammed"):
@@ -156,8 +160,10 @@ def test_strands_that_passed_through_each_other_are_noticed(fabric):
     known = sample("acrylic", fabric)
     stitch = Stitch(fabric, known.yarn)
     start = first_shapes(stitch, known.loop_length_mm, 1)[0]
-    minimum = minimise(stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm))
-    assert is_knitted(stitch, minimum)
+    minimum = minimise_bezier(
+        stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
+    )
+    assert is_admissible(stitch, minimum)
     swapped = minimum.unknowns.copy()
     swapped[unknown_names(fabric).index("tilt")] *= -1.0
     # all stitches turned over: another fabric in stockinette only, but no way there in any
