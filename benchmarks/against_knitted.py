@@ -27,6 +27,8 @@ def errors() -> dict[str, np.ndarray]:
         knitted, model = material(yarn), rs_fabrics(yarn)
         for fabric in Fabric:
             stored = stored_stitch(StitchChart.of_fabric(fabric, 2, 2), yarn)
+            assert stored is not None
+            assert stored.law is not None
             record = knitted.record(fabric)
             for direction in Direction:
                 size = stored.cell_course_mm if direction.axis == 0 else stored.cell_wale_mm

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Callable
 
 import numpy as np
 
@@ -39,7 +40,7 @@ def squares(stitches: int) -> str:
     return "\n".join([one] * stitches + [other] * stitches)
 
 
-PIECES = {
+PIECES: dict[str, Callable[[int], StitchChart]] = {
     "stockinette": lambda side: tiled("K", side),
     "stockinette in garter": framed,
     "garter": lambda side: tiled("K\nP", side),

@@ -47,10 +47,10 @@ def laid_flat_mm(repeat: StitchChart, yarn: Material) -> float:
     sheet = sheet_of(chart, yarn)
     held = np.zeros((chart.rows + 1, chart.columns + 1, 3), dtype=bool)
     held[:, ::wide, 2] = True
-    held = held.reshape(-1, 3)
+    in_plane = held.reshape(-1, 3)
     begin = sheet.flat_mm + shake_mm(sheet.flat_mm.shape)
-    begin[held] = 0.0
-    flat = settle(sheet, begin, held=held)
+    begin[in_plane] = 0.0
+    flat = settle(sheet, begin, held=in_plane)
     assert flat.converged
     line = flat.x.reshape(chart.rows + 1, -1, 3)[:, :, 0].mean(axis=0)
     return float(line[-1 - wide] - line[wide]) / (chart.columns - 2 * wide)
@@ -74,8 +74,8 @@ def main() -> None:
         repeat = StitchChart.parse("K" * knits + "P" * purls)
         cells = []
         for yarn in map(material, MATERIALS):
-            told = choose(repeat, yarn).course.relaxed_mm
-            cells += [f"{laid_flat_mm(repeat, yarn):.2f}", f"{told:.2f}"]
+            width = choose(repeat, yarn).course.relaxed_mm
+            cells += [f"{laid_flat_mm(repeat, yarn):.2f}", f"{width:.2f}"]
         print(f"| {knits}×{purls} rib, width | {' | '.join(cells)} |", flush=True)
 
 

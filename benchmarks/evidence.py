@@ -9,6 +9,7 @@ others (``knitdb``, see ``benchmarks/knitdb.py``). Takes some minutes.
 
 from __future__ import annotations
 
+import math
 import sys
 import textwrap
 from itertools import groupby, product
@@ -178,12 +179,13 @@ def pressures(folder: Path) -> list[str]:
             record = material("acrylic").record(fabric)
             for share in (0.25, 0.5, 0.75):
                 strain = share * float(strip.strain[-1])
-                stress, waist = (np.interp(strain, strip.strain, v) for v in strip.means)
+                stress, waist = (float(np.interp(strain, strip.strain, v)) for v in strip.means)
                 worn = rest * (1 + strain)
-                held = 2 * np.pi * stress / worn * 1000 * MMHG_PER_KPA
+                held = 2 * math.pi * stress / worn * 1000 * MMHG_PER_KPA
                 free = held / (1 + waist)
                 found = limb_pressure(record.law, strip.direction, rest, worn).mmhg
-                factor = np.exp(Z_SCORE * record.uncertainty.log_stress(strip.direction, stress))
+                sd = float(record.uncertainty.log_stress(strip.direction, stress))
+                factor = math.exp(Z_SCORE * sd)
                 low, high = found.low / factor, found.high * factor
                 inside += int(low <= free and held <= high)
                 ranges.append((fabric, Interval(held, free), Interval(low, high)))
@@ -308,7 +310,7 @@ def gradings(folder: Path) -> list[str]:
         "| strain | measured | simulated, κ = 0 | simulated, with κ |",
         "|---|---|---|---|",
     ]
-    found = [
+    simulated = [
         np.array(
             [
                 graded(folder, poisson, coupled=coupled, ends=(end,)).side_by_side_force(STRAINS)
@@ -318,14 +320,14 @@ def gradings(folder: Path) -> list[str]:
         )
         for coupled in (False, True)
     ]
-    ends = np.array([band(folder, "discont4.5to6.5_ww", STRAINS, (end,)) for end in BOTH])
+    measured = np.array([band(folder, "discont4.5to6.5_ww", STRAINS, (end,)) for end in BOTH])
     for place, strain in enumerate(STRAINS):
-        ranges = [values[:, place] for values in (ends, *found)]
-        told = " | ".join(f"{values.min():.1f} to {values.max():.1f}" for values in ranges)
-        lines.append(f"| {strain:.0%} | {told} |")
+        columns = [values[:, place] for values in (measured, *simulated)]
+        spans = " | ".join(f"{values.min():.1f} to {values.max():.1f}" for values in columns)
+        lines.append(f"| {strain:.0%} | {spans} |")
     names = ("measured", "simulated, κ = 0", "simulated, with κ")
-    spans = (np.array([v.min(axis=0), v.max(axis=0)]) for v in (ends, *found))
-    figures.side_by_side(dict(zip(names, spans, strict=True)), STRAINS)
+    bands = (np.array([v.min(axis=0), v.max(axis=0)]) for v in (measured, *simulated))
+    figures.side_by_side(dict(zip(names, bands, strict=True)), STRAINS)
     lines += [
         "",
         "![Force of the strip with two loop lengths](figures/evidence-loop-length.svg)",

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,6 +27,7 @@ from knitcore import StitchChart, material, predict
 from knitcore.answer.densities import densities
 from knitcore.answer.learned import packaged_model
 from knitcore.answer.mixture import Mixture
+from knitcore.arrays import Array
 from knitcore.materials.uncertainty import Z_SCORE
 
 STOCKINETTE = "Stockinette"
@@ -57,10 +59,10 @@ def main() -> None:
     inside = np.abs(ratio - true)[others] <= Z_SCORE * spread[others]
     print(f"cover {inside.mean():.2f} of {inside.size} in the 90 % intervals")
 
-    def missed(most: float) -> np.ndarray:
+    def missed(most: float) -> Array:
         fitted_to = replace(model, most_folded=most)
         sizes = np.log([fitted_to.answer(found, of).size_mm for found in made_of])
-        return sizes - sizes[first] - true
+        return np.asarray(sizes - sizes[first] - true)
 
     best, left_out = fitted(missed, len(names))
     print(
@@ -80,7 +82,7 @@ def read(folder: Path) -> tuple[list[str], np.ndarray, list[StitchChart]]:
     return names, sizes, [StitchChart.parse(text) for text in texts]
 
 
-def fitted(missed, count: int) -> tuple[float, str]:
+def fitted(missed: Callable[[float], Array], count: int) -> tuple[float, str]:
     """Best value of the fitted number, and the rms factor of swatches that it was not fitted to."""
     tried = np.linspace(0.3, 3.0, 28)
     table = np.array([missed(most) for most in tried])  # (values, swatches, 2)

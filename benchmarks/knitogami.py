@@ -49,7 +49,7 @@ def turns(corners_mm: Array) -> Array:
     line /= np.linalg.norm(line, axis=2)[..., None]
     across = np.cross(normal[:, :-1], normal[:, 1:])
     sine = np.einsum("ijm,ijm->ij", across, line)
-    return np.arctan2(sine, np.einsum("ijm,ijm->ij", normal[:, :-1], normal[:, 1:]))
+    return np.asarray(np.arctan2(sine, np.einsum("ijm,ijm->ij", normal[:, :-1], normal[:, 1:])))
 
 
 def folds(piece: CurledPiece) -> tuple[float, list[float]]:

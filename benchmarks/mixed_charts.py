@@ -17,13 +17,16 @@ from __future__ import annotations
 import argparse
 import json
 from collections import defaultdict
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from knitcore.answer.densities import densities
 from knitcore.answer.learned import STRESS_GRID, LearnedAnswer, packaged_model
 from knitcore.answer.relaxed import RelaxedSize
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials.uncertainty import Z_SCORE
@@ -33,6 +36,12 @@ GAUGE_LOG_SD = 0.03
 RELAXED_LOG_SD = 0.003
 """Spread of the ends of a relaxation's starts."""
 
+Entry = dict[str, Any]
+"""A chart and what was simulated of it."""
+Missed = defaultdict[tuple[str, str, str], list[tuple[float, float]]]
+"""By kind, quantity and name: logarithms of the error and of its standard deviation."""
+Strains = Callable[[Direction, Array], Array]
+
 
 def main() -> None:
     """Print the table."""
@@ -41,7 +50,7 @@ def main() -> None:
     entries = json.loads(parser.parse_args().file.read_text(encoding="utf-8"))
     materials, learned_from = simulated_materials(), rows()
     draw = np.random.default_rng(0)
-    missed = defaultdict(list)
+    missed: Missed = defaultdict(list)
     seen = 0
     for entry in entries:
         chart = StitchChart.parse(entry["chart"])
@@ -51,8 +60,8 @@ def main() -> None:
         gauge = size * np.exp(GAUGE_LOG_SD * draw.standard_normal(2))
         for name, known in (
             ("learned", None),
-            ("gauge", RelaxedSize(*gauge, log_sd=GAUGE_LOG_SD)),
-            ("known size", RelaxedSize(*size, log_sd=RELAXED_LOG_SD)),
+            ("gauge", RelaxedSize(gauge[0], gauge[1], GAUGE_LOG_SD)),
+            ("known size", RelaxedSize(size[0], size[1], RELAXED_LOG_SD)),
         ):
             answer = model.answer(densities(chart), materials[entry["yarn"]], known)
             if known is None:
@@ -63,7 +72,16 @@ def main() -> None:
                     entry,
                     *like_the_mean(answer, chart, learned_from),
                 )
-            record(missed, kind_of(chart), name, entry, *of_answer(answer, entry))
+            record(
+                missed,
+                kind_of(chart),
+                name,
+                entry,
+                answer.size_mm,
+                answer.strain,
+                answer.size_log_sd,
+                answer.strain_log_sd,
+            )
     print(f"{len(entries)} charts, {seen} of them predicted by a model without them")
     for (kind, quantity, name), pairs in sorted(missed.items()):
         off, spread = np.array(pairs).T
@@ -73,33 +91,31 @@ def main() -> None:
         print(f"{kind:5} {quantity:11} {name:11} {len(off):3}  {median:.2f}/{most:.2f}{cover}")
 
 
-def of_answer(answer: LearnedAnswer, entry):
-    """Sizes, strains by direction, and the standard deviations of their logarithms."""
-    stress = np.array(entry["stress_n_per_mm"])
-    return (
-        answer.size_mm,
-        [answer.strain(d, stress) for d in Direction],
-        answer.size_log_sd,
-        [answer.strain_log_sd(d, stress) for d in Direction],
-    )
-
-
-def like_the_mean(answer: LearnedAnswer, chart: StitchChart, learned_from: list[Row]):
+def like_the_mean(
+    answer: LearnedAnswer, chart: StitchChart, learned_from: list[Row]
+) -> tuple[Array, Strains]:
     """The mixture with the mean correction of the chart's class."""
     alike = [r for r in learned_from if kind_of(r.chart) == kind_of(chart) and r.chart != chart]
     fold = np.mean([row.fold for row in alike], axis=0)
     ratio = np.nanmean([row.ratio[:12] for row in alike], axis=0).reshape(2, -1)
 
-    def strain(direction: Direction, stress):
+    def strain(direction: Direction, stress: Array) -> Array:
         at = np.log(stress / answer.mixture.bending_stress_n_per_mm)
         factor = np.exp(np.interp(at, np.log(STRESS_GRID), ratio[direction.axis]))
-        return factor * answer.mixture.strain(direction, stress)
+        return np.asarray(factor * answer.mixture.strain(direction, stress))
 
     return answer.mixture.size_mm * np.exp(fold), strain
 
 
 def record(
-    missed, kind: str, name: str, entry, size, strains, size_sd=None, strain_sd=None
+    missed: Missed,
+    kind: str,
+    name: str,
+    entry: Entry,
+    size: Array,
+    strains: Strains,
+    size_sd: Array | None = None,
+    strain_sd: Strains | None = None,
 ) -> None:
     """Note by how much sizes and strains are missed."""
     stress = np.array(entry["stress_n_per_mm"])
@@ -109,10 +125,10 @@ def record(
             missed[kind, side, name].append((np.log(size[i] / entry["size"][i]), spread))
     for direction in Direction:
         true = np.array(entry["strain"][str(direction)])
-        given = strains(direction, stress) if callable(strains) else strains[direction.axis]
-        spread = np.full(len(stress), np.nan) if strain_sd is None else strain_sd[direction.axis]
-        for at, off, sd in zip(stress, np.log(given / true), spread, strict=True):
-            missed[kind, f"{direction} {at:g}", name].append((off, sd))
+        off = np.log(strains(direction, stress) / true)
+        spread = strain_sd(direction, stress) if strain_sd else np.full(len(stress), np.nan)
+        for at, one, sd in zip(stress, off, spread, strict=True):
+            missed[kind, f"{direction} {at:g}", name].append((one, sd))
 
 
 if __name__ == "__main__":

@@ -105,7 +105,7 @@ class Painter:
         """Whether the service has another chart than was painted."""
         found = (await client.get(f"/api/v1/designs/{self.design}")).json()
         drawn = "\n".join(line.decode() for line in self.chart)
-        return found["document"]["chart"] != drawn or found["revision"] != self.acknowledged
+        return bool(found["document"]["chart"] != drawn or found["revision"] != self.acknowledged)
 
 
 def resident_mb(pid: int) -> float:
@@ -120,7 +120,8 @@ def cpu_s(pid: int) -> float:
 
 def held(pid: int) -> tuple[int, int]:
     """Threads and file handles of a process."""
-    return tuple(len(os.listdir(f"/proc/{pid}/{what}")) for what in ("task", "fd"))
+    threads, handles = (len(os.listdir(f"/proc/{pid}/{what}")) for what in ("task", "fd"))
+    return threads, handles
 
 
 async def disk_pauses(until: float) -> list[float]:
@@ -148,9 +149,11 @@ async def paint_all(
     for painter in painters:
         painter.waits_s.clear()
     cpu, own, start = cpu_s(pid), time.process_time(), time.perf_counter()
-    disk, *_ = await asyncio.gather(
-        disk_pauses(start + seconds), *(p.paint(client, start + seconds) for p in painters)
-    )
+    async with asyncio.TaskGroup() as tasks:
+        pauses = tasks.create_task(disk_pauses(start + seconds))
+        for painter in painters:
+            tasks.create_task(painter.paint(client, start + seconds))
+    disk = pauses.result()
     spent = time.perf_counter() - start
     ms = [1000 * wait for painter in painters for wait in painter.waits_s]
     used = cpu_s(pid) - cpu
@@ -270,7 +273,7 @@ async def look(client: httpx.AsyncClient, service: Service, number: int) -> None
         name = f"view-{number}-{view}"
         body = {"chart": chart, "material": "acrylic"}
         (await client.put(f"/api/v1/views/{name}", json=body)).raise_for_status()
-        protocol = [f"viser-v{viser.__version__}"]
+        protocol = [websockets.Subprotocol(f"viser-v{viser.__version__}")]
         sockets.append(await websockets.connect(f"{address}/view/{name}", subprotocols=protocol))
     for socket in sockets:
         await socket.recv()

@@ -19,6 +19,7 @@ from knitcore.answer.learned import packaged_model
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material, Origin, material
 from knitcore.materials.uncertainty import Z_SCORE
@@ -41,12 +42,15 @@ def main() -> None:
             model = packaged_model(frozenset({chart.canonical().key}))
             kind = "rib" if chart.rows == 1 else "welt" if chart.columns == 1 else "2-D"
             size = np.array([stored.cell_course_mm, stored.cell_wale_mm])
-            for name, known in (("learned", None), ("with size", RelaxedSize(*size, log_sd=0.0))):
+            measured = RelaxedSize(stored.cell_course_mm, stored.cell_wale_mm, 0.0)
+            for name, known in (("learned", None), ("with size", measured)):
                 found = model.answer(densities(chart), simulated, known)
                 for direction in Direction:
                     own = free_strains_at_stress(stored.law, direction, STRESS)
-                    off = [np.log(found.size_mm[direction.axis] / size[direction.axis])]
-                    off = np.append(off, np.log(found.strain(direction, STRESS) / own))
+                    off = np.append(
+                        np.log(found.size_mm[direction.axis] / size[direction.axis]),
+                        np.log(found.strain(direction, STRESS) / own),
+                    )
                     spread = np.append(
                         found.size_log_sd[direction.axis], found.strain_log_sd(direction, STRESS)
                     )
@@ -70,10 +74,15 @@ def _simulated(yarn: str) -> Material:
         assert found is not None
         return found
 
+    def law(fabric: Fabric) -> ConstitutiveLaw:
+        found = stored(fabric).law
+        assert found is not None
+        return found
+
     fabrics = {
         fabric: replace(
             measured.record(fabric),
-            law=stored(fabric).law,
+            law=law(fabric),
             stitch_course_mm=stored(fabric).cell_course_mm,
             stitch_wale_mm=stored(fabric).cell_wale_mm,
             loop_length_mm=stored(fabric).loop_length_mm,

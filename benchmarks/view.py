@@ -19,6 +19,7 @@ import zstandard
 
 from app.context import Context
 from app.drawing.design_view import StretchStep, ViewRequest, build_scene
+from app.models.stretched import StretchView
 from app.operations.stretch import StretchRequest, stretch
 from app.viewer.views import View, new_view
 from knitcore.chart import StitchChart
@@ -64,6 +65,7 @@ def stretch_bytes() -> tuple[int, float]:
     asked = {"chart": chart, "material": "acrylic"}
     test = StretchRequest(**asked, direction="wale", strain=0.3, steps=20)
     run = stretch(test, HERE).view
+    assert isinstance(run, StretchView)
     view = new_view()
 
     def frame(step: int) -> None:

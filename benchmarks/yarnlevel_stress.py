@@ -24,7 +24,7 @@ from knitcore.yarnlevel.growth import Start
 from knitcore.yarnlevel.published.certificate import is_clasped
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.relax import RelaxedRepeat, relax
+from knitcore.yarnlevel.relax import OnSplines, RelaxedRepeat, relax
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.yarn import YarnModel
@@ -54,7 +54,8 @@ def trial(seed: int) -> str:
             "random", course=float(rng.uniform(0.7, 1.5)), wale=float(rng.uniform(0.7, 1.5)),
             noise=float(rng.uniform(0.0, 0.4)), seed=seed,
         )  # fmt: skip
-        branch = "free" if rng.random() < 0.2 and rows * columns <= 4 else "mirrored"
+        small = rows * columns <= 4
+        branch: OnSplines = "free" if rng.random() < 0.2 and small else "mirrored"
         found = relax(chart, yarn, length, branch=branch, starts=[start])
         outcome = _judged(found)
         if outcome == "relaxed" and seed % 10 == 0:

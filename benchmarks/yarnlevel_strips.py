@@ -1,6 +1,6 @@
 """Strips of the yarn level's fabrics in the acrylic stretch tests: strain at equal stress.
 
-    python benchmarks/yarnlevel_strips.py FOLDER [--friction 0.26] [--draws 40] [--specimens 10]
+    python -m benchmarks.yarnlevel_strips FOLDER [--friction 0.26] [--draws 40] [--specimens 10]
 
 FOLDER holds the authors' acrylic tests. Each fabric is relaxed and stretched at the yarn level with
 the yarn as measured in it (the convention of ``yarnlevel_experiments.py``). Its law goes into a
@@ -20,9 +20,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from true_to_tests import strips
-from yarnlevel_experiments import _FAR, _POINTS, as_measured
 
+from benchmarks.true_to_tests import strips
+from benchmarks.yarnlevel_experiments import _FAR, _POINTS, as_measured
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import ConvergenceError, KnitcoreError, UnravelledError

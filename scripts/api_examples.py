@@ -92,7 +92,9 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
         answer.raise_for_status()
         print(name, answer.status_code)
         kind = answer.headers.get("content-type", "")
-        content = answer.json() if answer.content and kind.startswith("application/json") else None
+        content: Any = None
+        if answer.content and kind.startswith("application/json"):
+            content = answer.json()
         if name == "POST /api/v1/designs":
             place["design"] = content["id"]
         elif name == "POST /api/v1/jobs":

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import textwrap
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -167,7 +167,7 @@ def _list(of: Schema) -> str:
 def _object(of: Schema) -> str:
     values, keys = of.get("additionalProperties"), of.get("propertyNames", {})
     key = _type(keys) if "$ref" in keys else "str"
-    return f"dict[{key}, {_type(values) if isinstance(values, Mapping) else 'Any'}]"
+    return f"dict[{key}, {_type(values) if isinstance(values, dict) else 'Any'}]"
 
 
 def _operations() -> str:

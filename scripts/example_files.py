@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image
 
 from app.models.uploads import EXAMPLES
-from knitcore.fabric import Direction
+from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
 from knitcore.swatch import SheetModel
 from tests.knitcore.measure.synthetic import hanging_yarn, pull, save_photo
@@ -36,7 +36,7 @@ def photo(file: Path) -> None:
 
 def field(file: Path) -> None:
     """A swatch at rest and pulled, with tenths of pixels, which pack well."""
-    seen, frame = camera_arrays(material("acrylic").law("garter"), SheetModel())
+    seen, frame = camera_arrays(material("acrylic").law(Fabric.GARTER), SheetModel())
     tenths = np.round(seen[:2], 1)
     tenths[(tenths == 0) & (seen[:2] != 0)] = 1e-3  # only zeros are outside the fabric
     np.savez_compressed(file, displacement=tenths.astype(np.float16), frame=frame[:2])

@@ -19,7 +19,7 @@ import argparse
 import csv
 import math
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -278,7 +278,7 @@ def pulled_evenly(tests: dict[Key, StretchTest], strips: dict[Key, MeasuredStrip
 
 
 def left_out(
-    records: dict[Fabric, FabricRecord],
+    records: Mapping[Fabric, FabricRecord],
     strips: dict[Key, MeasuredStrip],
     corrections: dict[Key, ClampCorrection],
     own: dict[Fabric, StripFit],

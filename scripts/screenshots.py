@@ -11,10 +11,10 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal
+from typing import Literal, cast
 
 from PIL import Image
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from tests.app.service import Service
@@ -24,7 +24,7 @@ from tests.browser.page import wait_for_colour
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 MAX_BYTES = 200_000
-SCREEN = {"width": 1440, "height": 900}
+SCREEN: ViewportSize = {"width": 1440, "height": 900}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 LOOPS_PX = 5000
 """Coloured pixels of a drawn fabric."""
@@ -317,7 +317,8 @@ def keep(name: str, picture: bytes) -> None:
 def palette(image: Image.Image, colours: int) -> Image.Image:
     """The colours that large areas have, exactly, and for the rest what covers them best."""
     counted = sorted(image.getcolors(image.width * image.height) or [], reverse=True)
-    common = [value for _, colour in counted[: colours // 2] for value in colour]
+    large = cast("list[tuple[int, tuple[int, ...]]]", counted[: colours // 2])
+    common = [value for _, colour in large for value in colour]
     others = image.quantize(colours - len(common) // 3).getpalette() or []
     chosen = Image.new("P", (1, 1))
     chosen.putpalette(common + others)

@@ -14,7 +14,7 @@ STIFFNESS = ((0.240872, 0.0362245, 0.0), (0.0362245, 0.0599528, 0.0), (0.0, 0.0,
 STIFFENING = ((1.16995, 0.0223765), (0.802057, 0.0219965))
 
 
-def solve(cells, displacement):
+def solve(cells: int, displacement: float) -> float:
     mesh = d.RectangleMesh(d.Point(0, 0), d.Point(3.15, 1.0), cells, cells, "crossed")
     space = d.VectorFunctionSpace(mesh, "Lagrange", 1)
     u, test, trial = d.Function(space), d.TestFunction(space), d.TrialFunction(space)
@@ -31,10 +31,10 @@ def solve(cells, displacement):
     energy = density * d.dx
     force = d.derivative(energy, u, test)
     d.solve(force == 0, u, held, J=d.derivative(force, u, trial))
-    return d.assemble(energy)
+    return float(d.assemble(energy))
 
 
-def main():
+def main() -> None:
     d.set_log_level(40)
     solve(4, 0.1)  # compiles the forms
     for cells in map(int, sys.argv[1:]):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.estimate.mixed_model import leave_one_out
 from knitcore.estimate.model import library_table, mask_of
 from knitcore.fabric import Direction, Fabric
@@ -21,6 +22,8 @@ from knitcore.materials import material
 from knitcore.measure.elastica import heavy_elastica
 from knitcore.measure.law_fit import fit_direction
 from knitcore.mechanics.pressure import limb_pressure
+
+Numbers = Sequence[float] | Array
 
 HERE = Path(__file__).parent
 WIDTH, HEIGHT, MARGIN = 560, 360, 56
@@ -56,8 +59,8 @@ class Plot:
 
     def line(
         self,
-        xs: Sequence[float],
-        ys: Sequence[float],
+        xs: Numbers,
+        ys: Numbers,
         colour: str,
         dash: str = "",
         width: float = 2,
@@ -70,7 +73,7 @@ class Plot:
             f' stroke-dasharray="{dash}"{faint}/>'
         )
 
-    def dots(self, xs: Sequence[float], ys: Sequence[float], colour: str, r: float = 2.5) -> None:
+    def dots(self, xs: Numbers, ys: Numbers, colour: str, r: float = 2.5) -> None:
         for a, b in map(self.place, xs, ys):
             self.parts.append(f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{r}" fill="{colour}"/>')
 
