@@ -18,14 +18,14 @@ def paint(chart: str, rows: int, columns: int, runs: Iterable[Run]) -> str:
     Raises
     ------
     InputError
-        If a run leaves the chart.
+        If a run reaches beyond the chart.
     """
     text = bytearray(chart, "ascii")
     for number, run in enumerate(runs):
         if run.row >= rows or run.column + len(run.stitches) > columns:
             raise InputError(
                 f"runs.{number}",
-                f"leaves the chart of {columns}x{rows} stitches.",
+                f"reaches beyond the chart of {columns}x{rows} stitches.",
                 "Paint within the chart.",
             )
         start = (rows - 1 - run.row) * (columns + 1) + run.column

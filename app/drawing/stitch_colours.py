@@ -148,7 +148,7 @@ def region_labels(chart: StitchChart, regions: Sequence[DesignRegion]) -> NDArra
     Raises
     ------
     InputError
-        If a run leaves the chart.
+        If a run reaches beyond the chart.
     """
     labels = np.full((chart.rows, chart.columns), -1, dtype=np.intp)
     for number, region in enumerate(regions):
@@ -158,7 +158,7 @@ def region_labels(chart: StitchChart, regions: Sequence[DesignRegion]) -> NDArra
             if row >= chart.rows or column + length > chart.columns:
                 raise InputError(
                     "regions",
-                    f"{region.name!r} leaves the chart in row {row + 1}.",
+                    f"{region.name!r} reaches beyond the chart in row {row + 1}.",
                     "Keep its runs inside the chart.",
                 )
             labels[row, column : column + length] = number

@@ -152,7 +152,7 @@ function readRegion(item, rows, columns) {
     const whole = Array.isArray(run) && run.length === 3 && run.every(Number.isInteger);
     const [row, column, length] = whole ? run : [-1, 0, 0];
     if (row < 0 || row >= rows || column < 0 || length < 1 || column + length > columns) {
-      throw new DesignError(`Region ${name} leaves the chart of ${columns} × ${rows} stitches.`);
+      throw new DesignError(`Region ${name} reaches beyond the chart of ${columns} × ${rows} stitches.`);
     }
   }
   return {
@@ -185,7 +185,7 @@ function readRepeat(item, rows, columns) {
       row + high > rows ||
       column + wide > columns
     ) {
-      throw new DesignError(`A placement of repeat ${name} leaves the chart of ${columns} × ${rows}.`);
+      throw new DesignError(`A placement of repeat ${name} reaches beyond the chart of ${columns} × ${rows}.`);
     }
     return { row, column, rows: high, columns: wide };
   });

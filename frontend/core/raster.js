@@ -1,5 +1,5 @@
 /**
- * Stitches of the tools' shapes, as spans of rows; pure functions. Shapes may leave the chart.
+ * Stitches of the tools' shapes, as spans of rows; pure functions. Shapes may reach beyond the chart.
  *
  * @import {Grid} from "./grid.js"
  * @typedef {[row: number, column: number]} Cell

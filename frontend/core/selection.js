@@ -69,7 +69,7 @@ export function selectionOf(bitmap, { rows, columns }) {
 
 /**
  * @param {Selection | null} selection
- * @param {Span[]} spans may leave the chart
+ * @param {Span[]} spans may reach beyond the chart
  * @param {Grid} grid
  * @param {Combination} how
  * @param {Symmetry} [symmetry]

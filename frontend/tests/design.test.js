@@ -71,13 +71,13 @@ test("what is wrong with a file is said in words", () => {
     [{ ...WHOLE, chart: "KP\nK" }, /rows of K and P/],
     [{ ...WHOLE, chart: "K".repeat(401) }, /401 stitches/],
     [{ ...WHOLE, outline: "xx" }, /outline/],
-    [{ ...WHOLE, regions: [{ ...WHOLE.regions[0], runs: [[0, 3, 2]] }] }, /Region Rib leaves/],
+    [{ ...WHOLE, regions: [{ ...WHOLE.regions[0], runs: [[0, 3, 2]] }] }, /Region Rib reaches beyond/],
     [{ ...WHOLE, regions: [{ ...WHOLE.regions[0], colour: "red" }] }, /colour of region Rib/],
     [{ ...WHOLE, regions: [WHOLE.regions[0], WHOLE.regions[0]] }, /one id/],
     [{ ...WHOLE, repeats: [{ ...WHOLE.repeats[0], motif: "KP/P" }] }, /motif of repeat Seed/],
     [
       { ...WHOLE, repeats: [{ ...WHOLE.repeats[0], placements: [{ row: 2, column: 0, rows: 2, columns: 4 }] }] },
-      /leaves the chart/,
+      /reaches beyond the chart/,
     ],
     [{ ...WHOLE, shelf: "none" }, /not a list/],
   ];

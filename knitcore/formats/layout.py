@@ -122,15 +122,15 @@ def region_cells(region: DesignRegion, rows: int, columns: int) -> NDArray[np.bo
     Raises
     ------
     InputError
-        If a run leaves the chart.
+        If a run reaches beyond the chart.
     """
     cells = np.zeros((rows, columns), dtype=bool)
     for row, column, length in region.runs:
         if row >= rows or column + length > columns:
             raise InputError(
                 "regions",
-                f"{region.name} leaves the chart in row {row + 1}: its stitches {column + 1} to "
-                f"{column + length} do not fit {columns}x{rows}.",
+                f"{region.name} reaches beyond the chart in row {row + 1}: its stitches "
+                f"{column + 1} to {column + length} do not fit {columns}x{rows}.",
                 "Keep regions within the chart; when a chart is resized, cut them.",
             )
         cells[row, column : column + length] = True
@@ -217,7 +217,7 @@ def check_layout(chart: StitchChart, layout: DesignLayout) -> None:
             if place.row + place.rows > chart.rows or place.column + place.columns > chart.columns:
                 raise InputError(
                     "repeats",
-                    f"a placement of {repeat.name} leaves the chart of "
+                    f"a placement of {repeat.name} reaches beyond the chart of "
                     f"{chart.columns}x{chart.rows} stitches.",
                     "Move or cut it.",
                 )

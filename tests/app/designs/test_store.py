@@ -135,7 +135,7 @@ def test_strokes_are_painted_in_place_or_refused(designs: DesignStore) -> None:
     made = designs.create("ada", RIB)
     _paint(designs, "ada", made.id, _strokes((0, 1, "KK"), (1, 3, "K"), (0, 2, "P")))
     assert designs.get("ada", made.id).document.chart == "KPKK\nKKPP"
-    with pytest.raises(InputError, match="leaves the chart"):
+    with pytest.raises(InputError, match="reaches beyond the chart"):
         _paint(designs, "ada", made.id, _strokes((0, 3, "KK")))
     with pytest.raises(ConflictError, match="4x2"):
         _paint(designs, "ada", made.id, _strokes((0, 0, "K"), rows=3))

@@ -109,7 +109,7 @@ MOTIF = {"id": "m", "name": "moss", "motif": "KP/PK"}
 @pytest.mark.parametrize(
     ("change", "field", "says"),
     [
-        ({"regions": [region("a", [(2, 0, 1)])]}, "regions", "a leaves the chart in row 3"),
+        ({"regions": [region("a", [(2, 0, 1)])]}, "regions", "a reaches beyond the chart in row 3"),
         ({"regions": [region("a", [(1, 2, 2)])]}, "regions", "stitches 3 to 4 do not fit 3x2"),
         ({"regions": [region("a", [(0, 0, 0)])]}, "regions.0.runs.0.2", "greater than"),
         ({"regions": [region("a", []), region("a", [])]}, "regions", "two have the id a"),
@@ -126,7 +126,7 @@ MOTIF = {"id": "m", "name": "moss", "motif": "KP/PK"}
                 ]
             },
             "repeats",
-            "a placement of moss leaves the chart",
+            "a placement of moss reaches beyond the chart",
         ),
     ],
 )
