@@ -19,7 +19,14 @@ from app.models.posed import Body, PosedView
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
-from knitcore.answer.limb import MAX_GIRTHS, PLACES, LimbPlace, MeasuredLimb, on_limb
+from knitcore.answer.limb import (
+    LEAST_GIRTH_MM,
+    MAX_GIRTHS,
+    PLACES,
+    LimbPlace,
+    MeasuredLimb,
+    on_limb,
+)
 from knitcore.answer.patches import SIDE
 from knitcore.chart import check_stitches
 from knitcore.errors import InputError
@@ -45,10 +52,10 @@ class TubeGirth(RequestModel):
     """Circumferences at one place."""
 
     at_mm: float = Field(ge=0, le=3000, description="Along the limb, from where the tube begins.")
-    girth_mm: float = Field(gt=0, le=3000, description="Around the limb.")
+    girth_mm: float = Field(ge=LEAST_GIRTH_MM, le=3000, description="Around the limb.")
     rest_mm: float | None = Field(
         None,
-        gt=0,
+        ge=LEAST_GIRTH_MM,
         le=3000,
         description="Around the unworn tube. Left out at all places, the whole chart is the tube.",
     )

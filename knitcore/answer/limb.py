@@ -15,6 +15,8 @@ from knitcore.errors import InputError
 PLACES = 21
 """Places along the limb, evenly spaced."""
 MAX_GIRTHS = 100
+LEAST_GIRTH_MM = 10.0
+"""Half of what the thinnest finger measures around."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class MeasuredLimb:
     Raises
     ------
     InputError
-        If the lists do not fit each other or the places do not increase.
+        If the lists do not fit each other, the places do not increase, or a girth is too small.
     """
 
     at_mm: tuple[float, ...]
@@ -42,9 +44,13 @@ class MeasuredLimb:
                 "the lists differ in length.",
                 f"Give 2 to {MAX_GIRTHS} places, and as many sizes.",
             )
-        if min(np.diff(self.at_mm)) <= 0.0 or min(self.girths_mm) <= 0.0:
+        if min(np.diff(self.at_mm)) <= 0.0:
+            raise InputError("girths", "the places do not increase.", "Give them in order.")
+        if min(self.girths_mm) < LEAST_GIRTH_MM:
             raise InputError(
-                "girths", "a place or a size is out of order.", "Give increasing places and sizes."
+                "girths",
+                f"{min(self.girths_mm):g} mm around is no limb and no tube.",
+                f"Give {LEAST_GIRTH_MM:g} mm or more: the length around, not the width.",
             )
 
     def girth_mm(self, at_mm: Array) -> Array:

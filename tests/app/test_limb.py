@@ -106,6 +106,14 @@ def test_where_the_tube_is_loose_the_table_says_so() -> None:
     assert "(" in last
 
 
+def test_a_girth_that_no_limb_has_is_refused_by_name(client: TestClient) -> None:
+    girths = [{"at_mm": 0, "girth_mm": 0.001}, {"at_mm": 20, "girth_mm": 200}]
+    answer = client.post("/api/v1/limb", json=TUBE | {"girths": girths})
+    assert answer.status_code == 422
+    assert "girth_mm" in answer.json()["field"]
+    assert "10" in answer.json()["remedy"]
+
+
 @pytest.mark.parametrize("girths", [["0"], ["a:b"], ["0:1:2:3"]])
 def test_girths_that_cannot_be_read_are_refused(girths: list[str]) -> None:
     arguments = ["limb", "stockinette", "--size", "40x4", "--material", "acrylic"]
