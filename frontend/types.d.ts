@@ -1331,7 +1331,9 @@ export interface HangRequest {
   /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */
   linear_density_g_per_m: number;
   chart: string | PureFabricChart;
-  /** The whole top edge, or its two corners. */
+  /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
+  outline?: string | null;
+  /** The edge of the highest stitches, or its ends. */
   by?: HungBy;
   /** Also return the corners of the sheet. */
   corners?: boolean;

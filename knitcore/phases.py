@@ -83,6 +83,33 @@ def quarter_phases(
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
 
 
+def continued(chart: StitchChart, stitch: NDArray[np.bool_]) -> StitchChart:
+    """A chart with its pattern mirrored about the stitches at its outline into "no stitch".
+
+    So a segment that would cross the outline has the parity of the one on the stitch's other side,
+    the rule of :func:`surroundings`, wherever the outline's two sides ask for the same.
+
+    Parameters
+    ----------
+    stitch : bool (rows, columns), where there is a stitch: one at least.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    if stitch.all():
+        return chart
+    near = distance_transform_edt(
+        ~stitch, sampling=(stitch.size, 1), return_distances=False, return_indices=True
+    )  # in the same row, if that has a stitch
+    mirrored = 2 * near - np.indices(stitch.shape)
+    mirrored = mirrored.clip(0, np.reshape(stitch.shape, (2, 1, 1)) - 1)
+    purl = chart.purl[tuple(np.where(stitch[tuple(mirrored)], mirrored, near))]
+    for step in (1, -1):  # cells just above a stitch, then those just below one
+        inside, grid = stitch[::step], purl[::step]
+        edge = inside[:-2] & inside[1:-1] & ~inside[2:]
+        grid[2:][edge] = grid[:-2][edge]
+    return StitchChart(purl)
+
+
 def pure_fabric(chart: StitchChart) -> Fabric | None:
     """The pure fabric that a chart is up to its edges, if it is one.
 

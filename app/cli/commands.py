@@ -20,7 +20,7 @@ import click
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from app.cli.common import emit, json_option, resolve_piece, user_data_dir
+from app.cli.common import emit, json_option, user_data_dir
 from app.command_options import resolve_chart
 from app.context import Context
 from app.models.base import UNIT, IntervalResult
@@ -145,7 +145,7 @@ class _Options:
         """The chart, and other fields of the request that its file holds."""
         chart, size = given["chart"], given["size"]
         fields = self._model.model_fields
-        if "regions" in fields and size is None and Path(chart).suffix:
+        if "outline" in fields and size is None and Path(chart).suffix:
             from app.operations.import_ import design_in
 
             held = design_in(Path(chart))
@@ -155,11 +155,7 @@ class _Options:
                 return {"chart": StitchChart.of_fabric(chart).repeat().text}
             of = resolve_chart(chart, size)
             return {"chart": {"fabric": chart.lower(), "columns": of.columns, "rows": of.rows}}
-        piece = resolve_piece(chart, size)
-        asked: dict[str, Any] = {"chart": piece.chart.text}
-        if "outline" in fields and not piece.is_rectangle:
-            asked["outline"] = piece.shaped.outline
-        return asked
+        return {"chart": resolve_chart(chart, size).text}
 
     def _named(self, field: str) -> str:
         option = self._described.names.get(field) or field.removesuffix(UNIT).replace("_", "-")

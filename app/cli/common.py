@@ -1,4 +1,4 @@
-"""What commands share: the piece of a file, the settings, the database and two ways of printing."""
+"""What commands share: the settings, the database and two ways of printing."""
 
 from __future__ import annotations
 
@@ -10,25 +10,13 @@ from typing import TYPE_CHECKING
 import click
 from pydantic import BaseModel
 
-from app.command_options import resolve_chart
 from knitcore.errors import InputError
-from knitcore.garment.piece import Piece
 
 if TYPE_CHECKING:
     from app.settings import Settings
     from app.store.database import Database
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-
-
-def resolve_piece(chart: str, size: str | None) -> Piece:
-    """As :func:`~app.command_options.resolve_chart`, with the outline of a file that has one."""
-    stitches = resolve_chart(chart, size)
-    if not Path(chart).suffix:
-        return Piece.plain(stitches)
-    from knitcore.formats.chart_files import read_piece
-
-    return read_piece(chart)
 
 
 def user_settings() -> Settings:

@@ -20,7 +20,7 @@ from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words
 from knitcore.fabric import Direction
 from knitcore.formats.curled import write_curled_glb, write_curled_npz
-from knitcore.garment.shaped import ShapedChart, outline_marks
+from knitcore.garment.shaped import outline_marks
 from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece, Pull
 from knitcore.shell.curl import curl as curl_piece
 
@@ -91,8 +91,6 @@ def curl(request: CurlRequest, context: Context) -> Viewed[CurlResult]:
 def _curled(request: CurlRequest, context: Context) -> CurledPiece:
     chart, material = request.fabric(context)
     stitches = None if request.outline is None else outline_marks(request.outline)
-    if stitches is not None and stitches.shape == chart.purl.shape and stitches.any():
-        chart = ShapedChart(chart, stitches).continued()
     before = context.before
     shape = (chart.rows + 1, chart.columns + 1, 3)
     begin = before.corners_mm if isinstance(before, PosedView) else None

@@ -10,11 +10,19 @@ from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from app.context import Context
 from app.models.base import ResultModel
-from app.models.charts import ChartInput, to_chart
+from app.models.charts import ChartInput, OutlineInput, to_chart
 from app.models.posed import PosedView
-from app.models.weighed import FRICTIONLESS, Corners, TimeLimit, WantsCorners, WeighedRequest
+from app.models.weighed import (
+    FRICTIONLESS,
+    Corners,
+    TimeLimit,
+    WantsCorners,
+    WeighedRequest,
+    corner_lists,
+)
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
+from knitcore.garment.shaped import outline_marks
 from knitcore.shell.curl import TIME_LIMIT_S
 from knitcore.shell.hang import HungBy
 from knitcore.shell.hang import hang as hang_piece
@@ -24,7 +32,8 @@ class HangRequest(WeighedRequest):
     """A whole piece and what holds it."""
 
     chart: ChartInput
-    by: HungBy = Field(HungBy.EDGE, description="The whole top edge, or its two corners.")
+    outline: OutlineInput = None
+    by: HungBy = Field(HungBy.EDGE, description="The edge of the highest stitches, or its ends.")
     corners: WantsCorners = False
     time_limit_s: TimeLimit = TIME_LIMIT_S
 
@@ -50,12 +59,15 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
     Edges curl against the weight. Pieces may have up to 10,000 stitches.
     """
     chart, material = to_chart(request.chart), context.material(request.material)
-    found = request.pass_to(hang_piece, chart, material, cancelled=context.cancelled)
+    stitches = None if request.outline is None else outline_marks(request.outline)
+    found = request.pass_to(
+        hang_piece, chart, material, stitches=stitches, cancelled=context.cancelled
+    )
     result = HangResult.of(
         found,
         id=OPERATION.key(request),
         weight_g=1000.0 * found.weight_n / STANDARD_GRAVITY,
-        corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
+        corners_mm=corner_lists(found.corners_mm, found.used) if request.corners else None,
         notes=[FRICTIONLESS],
     )
     return Viewed(result, PosedView(found.corners_mm.astype(np.float32)))

@@ -614,8 +614,10 @@ class HangRequest(TypedDict):
     linear_density_g_per_m: float
     """Of the yarn, g/m: weigh some metres; tex divided by 1000."""
     chart: str | PureFabricChart
+    outline: NotRequired[str | None]
+    """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     by: NotRequired[HungBy]
-    """The whole top edge, or its two corners."""
+    """The edge of the highest stitches, or its ends."""
     corners: NotRequired[bool]
     """Also return the corners of the sheet."""
     time_limit_s: NotRequired[float]

@@ -53,10 +53,13 @@ PIECES = {
 IMAGES = Path(__file__).parents[1] / "images"
 
 
-def drawn(corners_mm: Array, purl: NDArray[np.bool_]) -> Image.Image:
+def drawn(
+    corners_mm: Array, purl: NDArray[np.bool_], stitches: NDArray[np.bool_] | None = None
+) -> Image.Image:
     """A sheet as quadrilaterals, the far ones first: blue the face, orange the back.
 
-    Corners (rows + 1, columns + 1, 3) may be NaN where there is nothing; ``purl`` (rows, columns).
+    Corners (rows + 1, columns + 1, 3) may be NaN where there is nothing; ``purl`` and ``stitches``
+    (rows, columns), the latter False where there is no stitch.
     """
     ahead = TOWARDS / np.linalg.norm(TOWARDS)
     right = np.cross([0.0, 0.0, 1.0], ahead)
@@ -75,11 +78,12 @@ def drawn(corners_mm: Array, purl: NDArray[np.bool_]) -> Image.Image:
     ).reshape(-1, 4, 2)
     normal = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
+    there = np.ones(purl.size, dtype=bool) if stitches is None else stitches.ravel()
     purl = purl.ravel()
     picture = Image.new("RGB", (2 * SIDE, 2 * SIDE), "white")
     pen = ImageDraw.Draw(picture)
     for k in np.argsort(quads[:, :, 2].mean(axis=1)):
-        if np.isnan(quads[k]).any():
+        if np.isnan(quads[k]).any() or not there[k]:
             continue
         light = 0.5 + 0.5 * abs(normal[k] @ np.array([-0.3, 0.5, 0.81]))
         colour = (FACE if normal[k, 2] > 0 else BACK) * light * (0.82 if purl[k] else 1.0)

@@ -90,12 +90,11 @@ async function* pulled(studio, signal) {
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* hung(studio, signal) {
   const { rows, columns } = studio.document.grid;
-  const asked = { ...studio.request, linear_density_g_per_m: studio.weight.value };
+  const asked = { ...studio.request, outline: outlineOf(studio), linear_density_g_per_m: studio.weight.value };
   for (const time_limit_s of PATIENCE_S) {
     const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.hang({ ...asked, time_limit_s }, signal);
     const length = `reaches ${figure(drop_mm / 10, 3)} cm down, stitches ${percent(lengthening, 1)} longer`;
-    const filled = studio.document.shaped ? ", its outline filled" : "";
-    const words = `Hanging${filled}: ${figure(weight_g, 2)} g, ${length}`;
+    const words = `Hanging: ${figure(weight_g, 2)} g, ${length}`;
     yield { pose: "hung", id, rows, columns, converged, words, note: notes[0] };
   }
 }
@@ -105,11 +104,10 @@ async function* hung(studio, signal) {
  * @param {AbortSignal} signal
  * @param {import("../types.js").CurlRequest["pull"]} pull
  */
-async function* curled({ document: chart, request, seeing }, signal, pull) {
-  const outline = chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null;
-  const asked = { ...request, outline, pull };
+async function* curled(studio, signal, pull) {
+  const asked = { ...studio.request, outline: outlineOf(studio), pull };
   /** The first shape begins at the old one; the last one depends on the chart only. */
-  let after = seeing.posed.value?.id ?? null;
+  let after = studio.seeing.posed.value?.id ?? null;
   for (const time_limit_s of PATIENCE_S) {
     const { id, rows, columns, converged, notes } = await api.curl({ ...asked, after, time_limit_s }, signal);
     yield { id, rows, columns, converged: converged && !after, note: notes[0] };
@@ -138,8 +136,13 @@ function pressed(places, where) {
 }
 
 /** The hand that the chart is a glove for, in the material of the design. @param {Studio} studio */
-function gloveOf({ document: chart, materialId, seeing }) {
-  const glove = seeing.glove.value;
-  if (!glove || !chart.shaped || outlineText(chart.outline, chart.grid.columns) !== glove.outline) return null;
-  return { ...glove.request, material: materialId.value };
+function gloveOf(studio) {
+  const glove = studio.seeing.glove.value;
+  if (!glove || outlineOf(studio) !== glove.outline) return null;
+  return { ...glove.request, material: studio.materialId.value };
+}
+
+/** The outline of the chart, null if it is a rectangle. @param {Studio} studio */
+function outlineOf({ document: { shaped, outline, grid } }) {
+  return shaped ? outlineText(outline, grid.columns) : null;
 }

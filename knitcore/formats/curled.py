@@ -7,11 +7,11 @@ from io import BytesIO
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.formats.yarn_mesh import course_centre_lines, mesh_file, solid, yarn_radius_mm
 from knitcore.materials import Material
 from knitcore.shell.curl import CurledPiece
+from knitcore.shell.surface import corners_of, filled
 
 
 def write_curled_glb(
@@ -24,28 +24,19 @@ def write_curled_glb(
 
     Parameters are those of :func:`~knitcore.formats.yarn_mesh.course_centre_lines`.
     """
-    corners = corners_mm if stitches is None else _continued(corners_mm, stitches)
+    corners = corners_mm if stitches is None else filled(corners_mm, corners_of(stitches))
     lines = course_centre_lines(chart, corners, material, stitches)
     return mesh_file(solid(lines, yarn_radius_mm(chart, material)), 0.001, "glb")
 
 
 def write_curled_npz(piece: CurledPiece) -> bytes:
-    """NumPy archive: ``corners_mm`` and ``flat_mm``, (rows + 1, columns + 1, 3), and ``purl``."""
+    """NumPy archive: ``corners_mm`` and ``flat_mm``, (rows + 1, columns + 1, 3), NaN where there
+    is no stitch; ``purl`` and ``stitch``, (rows, columns).
+    """
     stream = BytesIO()
+    known = np.where(piece.used[..., None], (piece.corners_mm, piece.flat_mm), np.nan)
+    stitch = np.ones_like(piece.chart.purl) if piece.stitches is None else piece.stitches
     np.savez_compressed(
-        stream, corners_mm=piece.corners_mm, flat_mm=piece.flat_mm, purl=piece.chart.purl
+        stream, corners_mm=known[0], flat_mm=known[1], purl=piece.chart.purl, stitch=stitch
     )
     return stream.getvalue()
-
-
-def _continued(corners_mm: NDArray[np.float64], stitches: NDArray[np.bool_]) -> Array:
-    """Corners that no stitch has, in the line of those beside them."""
-    found, around = corners_mm.copy(), np.pad(stitches, 1)
-    used = around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1]
-    for line, there in zip(found, used, strict=True):
-        first, *_, last = np.flatnonzero(there)
-        right, left = np.arange(last, len(line)), np.arange(first + 1)
-        slopes = line[last] - line[last - 1], line[first + 1] - line[first]
-        line[right] = line[last] + np.outer(right - last, slopes[0])
-        line[left] = line[first] + np.outer(left - first, slopes[1])
-    return found

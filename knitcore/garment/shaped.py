@@ -12,6 +12,7 @@ from knitcore import showing
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.garment.inscribed import largest_rectangle
+from knitcore.phases import continued
 
 INSIDE, OUTSIDE = "x", "."
 
@@ -82,24 +83,8 @@ class ShapedChart:
         return tuple(zip(first.tolist(), last.tolist(), strict=True))
 
     def continued(self) -> StitchChart:
-        """The chart with its pattern mirrored about its edge stitches into "no stitch".
-
-        So a segment that would cross the outline has the parity of the one on the stitch's other
-        side, the rule of :func:`knitcore.phases.surroundings` at the edges of a rectangle.
-        """
-        if self.is_rectangle:
-            return self.chart
-        purl = self.chart.purl.copy()
-        column = np.arange(self.chart.columns)
-        for row, (start, stop) in enumerate(self.spans):
-            mirrored = np.where(column < start, 2 * start - column, column)
-            mirrored = np.where(column >= stop, 2 * (stop - 1) - column, mirrored)
-            purl[row] = purl[row, mirrored.clip(start, stop - 1)]
-        for step in (1, -1):  # cells just above a stitch, then those just below one
-            inside, grid = self.stitch[::step], purl[::step]
-            edge = inside[:-2] & inside[1:-1] & ~inside[2:]
-            grid[2:][edge] = grid[:-2][edge]
-        return StitchChart(purl)
+        """The chart :func:`~knitcore.phases.continued` beyond its outline."""
+        return continued(self.chart, self.stitch)
 
     def rectangle_inside(self) -> StitchChart:
         """The largest rectangle of stitches, for which effective moduli can be given."""

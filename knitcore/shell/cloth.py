@@ -207,8 +207,10 @@ def stitch_weights_n(
     linear_density_g_per_m: float,
     *,
     periodic: bool = False,
+    stitches: NDArray[np.bool_] | None = None,
 ) -> Array:
-    """Weight of every stitch, (rows, columns), N.
+    """Weight of every stitch, (rows, columns), N; 0 where ``stitches`` (rows, columns) says that
+    there is none.
 
     Raises
     ------
@@ -216,10 +218,11 @@ def stitch_weights_n(
         If the yarn's weight is impossible, or the material lacks a loop length.
     """
     check_linear_density(linear_density_g_per_m)
-    quarters = quarter_phases(chart, periodic=periodic)
+    quarters = quarter_phases(chart, periodic=periodic, stitch=stitches)
     by_stitch = quarters.reshape(chart.rows, 2, chart.columns, 2).transpose(0, 2, 1, 3)
     loops = loop_lengths_mm(by_stitch.reshape(chart.rows, chart.columns, 4), material)
-    return np.asarray(1e-6 * STANDARD_GRAVITY * linear_density_g_per_m * loops)
+    weights = 1e-6 * STANDARD_GRAVITY * linear_density_g_per_m * loops
+    return np.asarray(weights if stitches is None else np.where(stitches, weights, 0.0))
 
 
 def _bent(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import label
 
 from knitcore import showing
 from knitcore.arrays import Array
@@ -14,10 +15,12 @@ from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
+from knitcore.phases import continued
 from knitcore.shell.folds import balances
 from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.rolled import start
 from knitcore.shell.sheet import StitchSheet, sheet_of
+from knitcore.shell.surface import corners_of
 
 MAX_STITCHES = 10_000
 """Largest piece that is calculated."""
@@ -49,7 +52,7 @@ class CurledPiece:
 
     Parameters
     ----------
-    chart : the piece.
+    chart : the piece, continued where it has no stitch.
     corners_mm : (rows + 1, columns + 1, 3), corners of the stitches, the lowest row first.
     flat_mm : (rows + 1, columns + 1, 3), the same in the flat sheet.
     thickness_mm : of the fabric.
@@ -85,11 +88,9 @@ class CurledPiece:
     @property
     def used(self) -> NDArray[np.bool_]:
         """(rows + 1, columns + 1) whether a stitch has this corner."""
-        found = np.ones(self.corners_mm.shape[:2], dtype=bool)
-        if self.stitches is not None:
-            around = np.pad(self.stitches, 1)
-            found = around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1]
-        return found
+        if self.stitches is None:
+            return np.ones(self.corners_mm.shape[:2], dtype=bool)
+        return corners_of(self.stitches)
 
     def _repr_html_(self) -> str:
         step = max(1, max(self.corners_mm.shape[:2]) // 30)
@@ -130,7 +131,8 @@ def curl(
     Parameters
     ----------
     chart : the whole piece, from the face side.
-    stitches : (rows, columns) False where the piece has none; the chart goes on there as beside it.
+    stitches : (rows, columns) False where the piece has none: around it, or in a hole. The chart
+        says nothing there.
     pull : by clamps, if any.
     begin : (rows + 1, columns + 1, 3) corners, mm, to descend from, such as those of the piece
         before a stitch was changed: the first steps come soon. By default the flat or a bent
@@ -141,8 +143,8 @@ def curl(
     Raises
     ------
     InputError
-        If the piece is too large or has no stitch, ``begin`` has another size, or the material
-        lacks data for the yarn level.
+        If the piece is too large, has no stitch or is in several parts, ``begin`` has another size,
+        or the material lacks data for the yarn level.
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
@@ -154,7 +156,9 @@ def curl(
     shape = (chart.rows + 1, chart.columns + 1, 3)
     if begin is not None and begin.shape != shape:
         raise InputError("begin", "has another size.", "Give the corners of as many stitches.")
-    sheet = sheet_of(chart, material)
+    if stitches is not None:
+        chart = continued(chart, stitches)
+    sheet = sheet_of(chart, material, stitches)
     clock = time.process_time()
     x, held = np.empty(0), None
     if pull is not None:
@@ -193,7 +197,7 @@ def curl(
         stitches=stitches,
         notes=(
             *(() if pull is None else (PULLED_NOTE,)),
-            *(() if balances(chart) else (UNBALANCED_NOTE,)),
+            *(() if balances(chart, stitches) else (UNBALANCED_NOTE,)),
             NOTE,
         ),
     )
@@ -216,11 +220,23 @@ def _pulled(sheet: StitchSheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> None:
-    """InputError if a piece is larger than what is calculated."""
+    """InputError if a piece is larger than what is calculated, or is no piece."""
     check_stitches(chart.stitches, MAX_STITCHES)
-    if stitches is not None and (stitches.shape != chart.purl.shape or not stitches.any()):
+    if stitches is None:
+        return
+    if stitches.shape != chart.purl.shape or not stitches.any():
         raise InputError(
             "outline", "does not fit the chart.", "Give as many cells, one stitch at least."
+        )
+    parts, count = label(stitches, structure=np.ones((3, 3)))
+    if count > 1:
+        sizes = np.bincount(parts.ravel())[1:]
+        row, column = np.argwhere(parts == sizes.argmin() + 1)[0]
+        raise InputError(
+            "outline",
+            f"is in {count} parts that nothing holds together; the smallest begins at stitch "
+            f"{column + 1} of row {row + 1}.",
+            "Join them by a stitch, or make them charts of their own.",
         )
 
 

@@ -26,6 +26,8 @@ MIN_FOLD = 0.2
 """Share of its length by which a row of opposed runs would fold by itself, at least. For the
 resolver baskets have about the size of flat cloth; they pillow all the same, about as much as
 relaxed baskets at the yarn level."""
+NO_STITCH = 2
+"""In place of the side to which a stitch turns."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,13 +45,20 @@ class Folds:
     sizes_mm: Array
 
 
-def folds_of(chart: StitchChart, material: Material, free: Array) -> Folds:
+def folds_of(
+    chart: StitchChart,
+    material: Material,
+    free: Array,
+    stitches: NDArray[np.bool_] | None = None,
+) -> Folds:
     """Folds of a piece.
 
     Parameters
     ----------
+    chart : continued where the piece has no stitch.
     free : (2,) turn of stockinette at rest where nothing opposes it, along the rows and along the
         columns, rad.
+    stitches : (rows, columns) see :func:`turning`.
 
     Raises
     ------
@@ -58,7 +67,7 @@ def folds_of(chart: StitchChart, material: Material, free: Array) -> Folds:
     """
     sizes, span = sizes_and_folds(chart, material)
     span = np.minimum(span, 1.0 - MIN_FOLD)
-    side = turning(chart)
+    side = turning(chart, stitches)
     run = np.stack([opposed(side), opposed(side.T).T], axis=-1)
     folded = run > 1
     count = np.where(folded, run, 2)
@@ -73,13 +82,18 @@ def folds_of(chart: StitchChart, material: Material, free: Array) -> Folds:
     return Folds(share, sizes / np.where(both, 1.0, folds_to))
 
 
-def turning(chart: StitchChart) -> NDArray[np.int8]:
+def turning(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> NDArray[np.int8]:
     """Side to which stitches turn, (rows, columns): 1 for knits, -1 for purls, 0 for those without
-    a quarter of stockinette.
+    a quarter of stockinette, `NO_STITCH` where there is none.
+
+    Parameters
+    ----------
+    stitches : (rows, columns) where the piece has stitches; all if None.
     """
-    curls = quarter_phases(chart) == Fabric.STOCKINETTE.phase
+    curls = quarter_phases(chart, stitch=stitches) == Fabric.STOCKINETTE.phase
     any_of = curls.reshape(chart.rows, 2, chart.columns, 2).any(axis=(1, 3))
-    return np.where(any_of, np.where(chart.purl, -1, 1), 0).astype(np.int8)
+    side = np.where(any_of, np.where(chart.purl, -1, 1), 0)
+    return (side if stitches is None else np.where(stitches, side, NO_STITCH)).astype(np.int8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +104,8 @@ class _Runs:
     ----------
     of : (rows, columns) number of a stitch's run.
     count : (runs,) stitches.
-    first, last : (runs,) whether it begins or ends a row.
+    first, last : (runs,) whether nothing is before or after it: it begins or ends a row, or is at
+        a hole.
     turns : (runs,) whether its stitches turn at all.
     """
 
@@ -107,10 +122,15 @@ class _Runs:
         begins[:, 1:] = side[:, 1:] != side[:, :-1]
         start = np.flatnonzero(begins)
         count = np.diff(np.append(start, rows * columns))
+        of = side.ravel()[start]
+        none = of == NO_STITCH
         return cls(
-            (np.cumsum(begins.ravel()) - 1).reshape(rows, columns), count, start % columns == 0,
-            (start + count) % columns == 0, side.ravel()[start] != 0,
-        )  # fmt: skip
+            of=(np.cumsum(begins.ravel()) - 1).reshape(rows, columns),
+            count=count,
+            first=(start % columns == 0) | none | np.roll(none, 1),
+            last=((start + count) % columns == 0) | none | np.roll(none, -1),
+            turns=(of != 0) & ~none,
+        )
 
     @property
     def single(self) -> NDArray[np.bool_]:
@@ -188,12 +208,14 @@ def rest_turns(side: NDArray[np.int8], turn: Array, free: Array, stiffness: Arra
     return np.asarray(flat + np.where(across[:, 1:] | across[:, :-1], 0.0, whole))
 
 
-def balances(chart: StitchChart) -> bool:
-    """Whether no part of a chart folds and rolls up at the same time."""
-    return all(_balances(side) for side in (turning(chart), turning(chart).T))
+def balances(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> bool:
+    """Whether no part of a piece folds and rolls up at the same time; see :func:`turning`."""
+    side = turning(chart, stitches)
+    return _balances(side) and _balances(side.T)
 
 
 def _balances(side: NDArray[np.int8]) -> bool:
-    inside = np.where(side[:, 1:] == side[:, :-1], side[:, 1:], 0).astype(float)
+    like_before = (side[:, 1:] == side[:, :-1]) & (side[:, 1:] != NO_STITCH)
+    inside = np.where(like_before, side[:, 1:], 0).astype(float)
     like = np.ones_like(inside)
     return not np.any(rest_turns(side, 0.0 * like, inside, like)[inside != 0.0])

@@ -5,16 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
 from knitcore.errors import Cancelled
 from knitcore.materials import Material
+from knitcore.phases import continued
 from knitcore.shell.cloth import stitch_weights_n
 from knitcore.shell.curl import TIME_LIMIT_S, check_piece
 from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.sheet import sheet_of
+from knitcore.shell.surface import corners_of
 
 
 class HungBy(Choice):
@@ -36,6 +39,7 @@ class HungPiece:
     width_mm, depth_mm : extent of the piece.
     lengthening : of the middle column, over its length at rest in the flat sheet.
     converged : whether every corner is in equilibrium.
+    used : (rows + 1, columns + 1) whether a stitch has this corner.
     """
 
     corners_mm: Array
@@ -45,6 +49,7 @@ class HungPiece:
     depth_mm: float
     lengthening: float
     converged: bool
+    used: NDArray[np.bool_]
 
 
 def hang(
@@ -52,6 +57,7 @@ def hang(
     material: Material,
     *,
     linear_density_g_per_m: float,
+    stitches: NDArray[np.bool_] | None = None,
     by: HungBy = HungBy.EDGE,
     time_limit_s: float = TIME_LIMIT_S,
     cancelled: Cancelled | None = None,
@@ -62,45 +68,52 @@ def hang(
     ----------
     chart : the whole piece, from the face side.
     linear_density_g_per_m : of the yarn.
-    by : the whole top edge does not move, or its two corners.
+    stitches : (rows, columns) False where the piece has none, around it or in a hole.
+    by : the top edge of its highest stitches does not move, or the two ends of that edge.
     time_limit_s : CPU time after which the current shape is returned, not converged.
 
     Raises
     ------
     InputError
-        If the piece is too large, or the material lacks data or a loop length.
+        If the piece is too large or in several parts, or the material lacks data or a loop length.
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
         If ``cancelled`` says so.
     """
-    check_piece(chart)
-    weights = stitch_weights_n(chart, material, linear_density_g_per_m)
-    sheet = sheet_of(chart, material)
+    check_piece(chart, stitches)
+    there = np.ones_like(chart.purl) if stitches is None else stitches
+    chart = continued(chart, there)
+    weights = stitch_weights_n(chart, material, linear_density_g_per_m, stitches=there)
+    sheet = sheet_of(chart, material, there).cut(there)
     load = np.zeros_like(sheet.flat_mm)
-    load[:, 1] = -sheet.shared(weights.ravel())
-    held = np.zeros((chart.rows + 1, chart.columns + 1), dtype=bool)
-    held[-1, :: chart.columns if by is HungBy.CORNERS else 1] = True
+    load[:, 1] = -sheet.shared(weights[there])
+    used = corners_of(there)
+    held = np.zeros_like(used)
+    top = np.flatnonzero(used.any(axis=1))[-1]
+    edge = np.flatnonzero(used[top])
+    held[top, edge[[0, -1]] if by is HungBy.CORNERS else edge] = True
     begin = sheet.flat_mm + shake_mm(load.shape)
     begin[held.ravel()] = sheet.flat_mm[held.ravel()]
     found = settle(
         sheet, begin, held=held.ravel(), load_n=load, time_limit_s=time_limit_s, cancelled=cancelled
     )
     corners = found.x.reshape(*held.shape, 3)
-    width, drop, depth = np.ptp(corners, axis=(0, 1))
-    middle = [
-        _length(x.reshape(*held.shape, 3)[:, chart.columns // 2]) for x in (found.x, sheet.flat_mm)
+    width, drop, depth = np.ptp(corners[used], axis=0)
+    columns = np.flatnonzero(there.any(axis=0))
+    middle = columns[len(columns) // 2]
+    long = [
+        np.linalg.norm(np.diff(x.reshape(*held.shape, 3)[:, middle], axis=0), axis=1)
+        for x in (found.x, sheet.flat_mm)
     ]
+    lengths = [each[there[:, middle]].sum() for each in long]
     return HungPiece(
         corners_mm=corners,
         weight_n=float(weights.sum()),
         drop_mm=float(drop),
         width_mm=float(width),
         depth_mm=float(depth),
-        lengthening=middle[0] / middle[1] - 1.0,
+        lengthening=float(lengths[0] / lengths[1]) - 1.0,
         converged=found.converged,
+        used=used,
     )
-
-
-def _length(line: Array) -> float:
-    return float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())

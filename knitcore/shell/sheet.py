@@ -231,8 +231,15 @@ def _between(corner: Ints) -> Ints:
     ).reshape(-1, 6)  # fmt: skip
 
 
-def sheet_of(chart: StitchChart, material: Material) -> StitchSheet:
-    """The sheet of a chart.
+def sheet_of(
+    chart: StitchChart, material: Material, stitches: NDArray[np.bool_] | None = None
+) -> StitchSheet:
+    """The sheet of a chart; :meth:`StitchSheet.cut` leaves out what is no stitch.
+
+    Parameters
+    ----------
+    chart : continued where the piece has no stitch (:func:`knitcore.phases.continued`).
+    stitches : (rows, columns) False where the piece has none: its edges are free there.
 
     Raises
     ------
@@ -241,15 +248,18 @@ def sheet_of(chart: StitchChart, material: Material) -> StitchSheet:
     """
     rows, columns = chart.rows, chart.columns
     phases = quarter_phases(chart)
+    if stitches is not None:
+        own = stitches.repeat(2, axis=0).repeat(2, axis=1)
+        phases = np.where(own, quarter_phases(chart, stitch=stitches), phases)
     of = _Fabrics.of(material)
-    folds = folds_of(chart, material, of.free_turns)
+    folds = folds_of(chart, material, of.free_turns, stitches)
     size = folds.sizes_mm  # (rows, columns, 2)
     net = Net.of(rows, columns)
     by_stitch = phases.reshape(rows, 2, columns, 2).transpose(0, 2, 1, 3).reshape(-1, 4)
     quarter_size = size.reshape(-1, 2).repeat(4, axis=0)
     area = 0.25 * quarter_size.prod(axis=1, keepdims=True)
     membrane = np.concatenate([quarter_size, area * of.membrane[by_stitch].reshape(-1, 4)], axis=1)
-    side = turning(chart)
+    side = turning(chart, stitches)
     along = _turning(side, chart.purl, phases, of, folds.share[..., 0])
     across = _turning(side.T, chart.purl.T, phases.T, of.turned(), folds.share[..., 1].T)
     rigidity = np.sqrt(of.rigidity_n_mm.prod(axis=1))[by_stitch].mean(axis=1)

@@ -3,9 +3,39 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
+from scipy.sparse import csr_array, eye_array, kron, vstack
+from scipy.sparse.linalg import splu
 
 from knitcore.arrays import Array
+
+
+def corners_of(stitches: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(rows + 1, columns + 1) whether a stitch (rows, columns) has this corner."""
+    around = np.pad(stitches, 1)
+    return np.asarray(around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1])
+
+
+def filled(corners_mm: Array, used: NDArray[np.bool_]) -> Array:
+    """Corners (rows + 1, columns + 1, 3), those that no stitch has in line with those beside them,
+    as nearly as can be: with the least squares of second differences along rows and columns.
+    """
+    if used.all():
+        return corners_mm
+    second = [line[2:] - 2.0 * line[1:-1] + line[:-2] for line in map(_unit, used.shape)]
+    rows, columns = map(_unit, used.shape)
+    both = vstack([kron(second[0], columns), kron(rows, second[1])], format="csc")
+    found, there = corners_mm.reshape(-1, 3).copy(), used.ravel()
+    missing = both[:, ~there]
+    found[~there] = -splu((missing.T @ missing).tocsc()).solve(
+        missing.T @ (both[:, there] @ found[there])
+    )
+    return found.reshape(corners_mm.shape)
+
+
+def _unit(count: int) -> csr_array:
+    return eye_array(count, format="csr")
 
 
 def _halved(lines: Array) -> Array:

@@ -77,9 +77,39 @@ def test_a_shaped_piece_over_rest_and_as_a_solid(client: TestClient) -> None:
     assert solid.status_code == 200, solid.text
 
 
+def test_a_piece_with_a_hole_over_rest_as_a_solid_and_hanging(client: TestClient) -> None:
+    outline = "\n".join(["xxxxxxxx", *["xx....xx"] * 4, "xxxxxxxx"])
+    body = {
+        "chart": {"fabric": "seed", "columns": 8, "rows": 6},
+        "material": "acrylic",
+        "outline": outline,
+    }
+    told = client.post("/api/v1/curl", json=body | {"corners": True}).json()
+    assert told["converged"]
+    missing = [[at is None for at in line] for line in told["corners_mm"]]
+    assert np.argwhere(missing).tolist() == [[y, x] for y in (2, 3, 4) for x in (3, 4, 5)]
+    solid = client.post("/api/v1/views/solid", json=body | {"curl": {"id": told["id"]}})
+    assert solid.status_code == 200, solid.text
+    mesh = trimesh.load_mesh(io.BytesIO(solid.content), file_type="glb")
+    width, height = 1000.0 * mesh.extents[:2]
+    assert width == pytest.approx(told["width_mm"], rel=0.1)
+    near = np.abs(1000.0 * (mesh.vertices - mesh.bounds.mean(axis=0))[:, :2])
+    assert not (near < (0.1 * width, 0.1 * height)).all(axis=1).any()
+    hung = client.post("/api/v1/hang", json=body | {"linear_density_g_per_m": 0.5}).json()
+    assert hung["converged"]
+
+
+def test_an_outline_in_two_parts_is_refused(client: TestClient) -> None:
+    body = {"chart": "KKK\nKKK", "material": "acrylic", "outline": "x.x\nx.x"}
+    answer = client.post("/api/v1/curl", json=body)
+    assert answer.status_code == 422
+    assert answer.json()["field"] == "outline"
+    assert "2 parts" in answer.text
+
+
 def test_a_shaped_design_and_clamps_at_the_command_line(tmp_path: Path) -> None:
     design = tmp_path / "shaped.json"
-    knits, outline = "\n".join(["KKKKKK"] * 3), "..xx..\nxxxxxx\nxxxxxx"
+    knits, outline = "\n".join(["KKKKKK"] * 4), "..xx..\nxxxxxx\nxx..xx\nxxxxxx"
     shaped = DesignFile(name="Shaped", material="acrylic", chart=knits, outline=outline)
     design.write_text(write_design(shaped))
     out = tmp_path / "shaped.glb"
