@@ -84,17 +84,20 @@ export function overlaybar(host, studio, view) {
   const legend = h("div", { class: "legend" });
   const readout = h("output", { class: "readout figures", id: "readout" });
 
+  let pulled = false;
   const show = () => {
     const shown = shownOverlay(studio);
+    pulled = Boolean(studio.currentStrain());
+    const needs = studio.currentStretch() ? "Needs a pull: move the slider" : "Needs a stretch test of this chart";
     OVERLAYS.forEach((overlay, i) => {
       chips[i].setAttribute("aria-checked", String(overlay === shown));
       const available = overlay.available(studio);
       chips[i].disabled = !available;
-      chips[i].title = available ? overlay.hint : `${overlay.hint}. Needs a stretch test of this chart.`;
+      chips[i].title = available ? overlay.hint : `${overlay.hint}. ${needs}.`;
     });
-    crosses.disabled = studio.currentStretch() === null;
+    crosses.disabled = !pulled;
     crosses.title = `Strain crosses: how far the cloth stretches along rows and columns; red where it narrows${
-      crosses.disabled ? ". Needs a stretch test of this chart." : ""
+      pulled ? "" : `. ${needs}.`
     }`;
     const content = shown.legend(studio, view.palette);
     legend.replaceChildren(
@@ -127,7 +130,10 @@ export function overlaybar(host, studio, view) {
   const readSoon = paced(read, READ_MS);
   view.hover.listen(readSoon);
   studio.document.onChange(readSoon);
-  studio.step.listen(read);
+  studio.step.listen(() => {
+    if (pulled !== Boolean(studio.currentStrain())) show();
+    read();
+  });
   studio.stretch.watch(() => {
     show();
     read();

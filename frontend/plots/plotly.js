@@ -61,7 +61,11 @@ async function draw(host) {
 export async function movePoint(host, trace, place) {
   const plotly = await loadPlotly();
   const atOnce = { mode: "immediate", frame: { redraw: false, duration: 0 }, transition: { duration: 0 } };
-  await plotly.animate(host, { data: [place], traces: [trace] }, atOnce);
+  try {
+    await plotly.animate(host, { data: [place], traces: [trace] }, atOnce);
+  } catch (reason) {
+    if (reason) throw reason; // without one, a newer move has taken its place
+  }
 }
 
 async function load() {

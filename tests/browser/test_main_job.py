@@ -134,6 +134,34 @@ def test_a_stretch_close_to_the_lock_up_is_marked(flat_studio: Page) -> None:
 
 
 @pytest.mark.slow
+def test_the_slider_is_dragged_back_to_rest_and_the_colours_say_so(flat_studio: Page) -> None:
+    page, failures = flat_studio, []
+    page.on("pageerror", lambda error: failures.append(error.message))
+    page.fill("#stretch-amount", "20")
+    page.click("#stretch-run")
+    slider = page.locator("#stretch-slider")
+    expect(slider).to_be_enabled()
+    page.click("#tab-curve")
+    expect(page.locator("#plot-curve .main-svg").first).to_be_visible()
+    page.click("#overlay-strain")
+    slider.evaluate(
+        """slider => [3, 2, 1, 0, -1].forEach((step) => {
+            slider.value = step;
+            slider.dispatchEvent(new Event("input"));
+        })"""
+    )
+    expect(page.locator("#stretch-figures")).to_contain_text("At rest")
+    expect(page.locator("#overlay-fabrics")).to_have_attribute("aria-checked", "true")
+    expect(page.locator(".legend")).to_contain_text("stockinette")
+    expect(page.locator("#overlay-crosses")).to_be_disabled()
+    slider.press("End")
+    expect(page.locator("#overlay-strain")).to_have_attribute("aria-checked", "true")
+    expect(page.locator(".legend")).to_contain_text("Stretch along")
+    page.wait_for_timeout(500)  # plots are moved in tasks of their own
+    assert not failures
+
+
+@pytest.mark.slow
 def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> None:
     flat_studio.fill("#stretch-amount", "10")
     flat_studio.click("#stretch-run")
