@@ -1721,6 +1721,8 @@ export interface MaterialSummary {
   name: string;
   description: string;
   fabrics: Partial<Record<Fabric, FabricSummary>>;
+  /** You may replace and remove it. */
+  added_by_you: boolean;
 }
 
 /** The library. */

@@ -30,7 +30,8 @@ Identifier = Annotated[str, Path(max_length=200, examples=["acrylic"])]
 @router.post("/materials", status_code=201, summary="Add a material of your own")
 async def post_material(body: MaterialDocument, owner: Owner, context: Here) -> MaterialSummary:
     """Everybody on this service can use it. One that you added under its identifier is replaced."""
-    return summary(await run_in_threadpool(keep_material, body, owner, context.data_dir))
+    kept = await run_in_threadpool(keep_material, body, owner, context.data_dir)
+    return summary(kept, added_by_you=True)
 
 
 @router.get("/materials/{identifier}/document", summary="A material as a file")

@@ -99,6 +99,7 @@ class MaterialSummary(ResultModel):
     name: str
     description: str
     fabrics: dict[Fabric, FabricSummary]
+    added_by_you: bool = Field(description="You may replace and remove it.")
 
 
 class MaterialDetail(ResultModel):
@@ -154,13 +155,14 @@ def material(request: MaterialRequest, context: Context) -> MaterialDetail:
     )
 
 
-def summary(found: Material) -> MaterialSummary:
+def summary(found: Material, *, added_by_you: bool) -> MaterialSummary:
     """A material in short."""
     return MaterialSummary.of(
         found,
         id=found.identifier,
         description=description(found),
         fabrics={f: FabricSummary.of(record, record.law) for f, record in found.fabrics.items()},
+        added_by_you=added_by_you,
     )
 
 

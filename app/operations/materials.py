@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from app.context import Context
+from app.identity import current_user
 from app.models.base import NoRequest, ResultModel
 from app.operations.material import (
     MaterialDetail,
@@ -14,7 +15,7 @@ from app.operations.material import (
     summary,
 )
 from app.operations.registry import Command, Operation
-from app.results.own_materials import own_materials
+from app.results.own_materials import added_by, own_materials
 from knitcore.materials import load_library, load_variants, offered_materials
 
 
@@ -29,7 +30,10 @@ def materials(request: NoRequest, context: Context) -> Materials:
     del request
     library = {**load_library(), **load_variants(), **offered_materials()}
     found = {**own_materials(context.data_dir), **library}
-    return Materials(materials=[summary(one) for one in found.values()])
+    yours = added_by(current_user.get(), context.data_dir)
+    return Materials(
+        materials=[summary(one, added_by_you=name in yours) for name, one in found.items()]
+    )
 
 
 @click.argument("name", metavar="MATERIAL", required=False)

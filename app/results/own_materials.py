@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import logging
 import shutil
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -64,8 +65,12 @@ def _materials_in(folder: Path) -> dict[str, Material]:
     if not folder.is_dir():
         return {}
     files = sorted(file for file in folder.iterdir() if file.suffix.lower() in KINDS)
+    return _readable(files[:MAX_FILES])
+
+
+def _readable(files: Sequence[Path]) -> dict[str, Material]:
     found = {}
-    for file in files[:MAX_FILES]:
+    for file in files:
         try:
             own = _read(file)
         except (InputError, OSError) as error:
@@ -101,6 +106,11 @@ def keep_material(document: MaterialDocument, owner: str, data_dir: Path) -> Mat
     new.write_text(document.model_dump_json(indent=1, exclude_defaults=True), encoding="utf-8")
     new.replace(place)
     return _read(place)
+
+
+def added_by(owner: str, data_dir: Path) -> frozenset[str]:
+    """Identifiers of the materials that a user keeps, and so may replace or remove."""
+    return frozenset(_readable(_kept_by(owner, data_dir)))
 
 
 def remove_material(identifier: str, owner: str, data_dir: Path) -> bool:

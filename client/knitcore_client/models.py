@@ -2421,6 +2421,8 @@ class MaterialSummary(BaseModel):
     name: str
     description: str
     fabrics: dict[Fabric, FabricSummary]
+    added_by_you: bool
+    """You may replace and remove it."""
 
 
 class Materials(BaseModel):

@@ -6,8 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
+from knitcore import Fabric, material
 from tests.browser.conftest import wait_for_numbers
 
 pytestmark = pytest.mark.slow
@@ -50,6 +51,39 @@ def test_a_piece_has_the_yarn_of_its_design_until_another_is_chosen(flat_studio:
     page.keyboard.press("Shift+C")
     expect(page.locator("#compare-a-yarn")).to_have_value("cotton")
     expect(page.locator("#compare-b-yarn")).to_have_value("glove-wool")
+
+
+def test_a_version_is_set_beside_the_whole_chart_as_it_is_now(flat_studio: Page) -> None:
+    page = flat_studio
+    page.focus("#chart")
+    page.keyboard.press("Control+s")
+    page.fill("#version-name", "All knit")
+    page.click("#version-keep")
+    expect(page.locator("#versions-list")).to_contain_text("All knit")
+    page.keyboard.press("Escape")
+    page.click("#ink-garter")
+    page.click("#fill-all")
+    wait_for_numbers(page)
+    page.focus("#chart")
+    page.keyboard.press("Control+s")
+    page.get_by_label("Compare with All knit").click()
+    modulus = page.locator("#compare-dialog:not(.busy) #compare-numbers tbody tr").first
+    expect(modulus).to_be_visible()
+    chosen = page.locator("#compare-dialog select option:checked").all_inner_texts()
+    assert chosen[0] == "Whole chart"
+    assert chosen[2].startswith("All knit (")
+    for value, fabric in zip(
+        modulus.locator(".value").all_inner_texts(),
+        (Fabric.GARTER, Fabric.STOCKINETTE),
+        strict=True,
+    ):
+        law = material("acrylic").law(fabric)
+        assert float(value) == pytest.approx(law.modulus_course, rel=0.01)
+    page.keyboard.press("Escape")
+    page.keyboard.press("Escape")
+    page.focus("#chart")
+    page.keyboard.press("Shift+C")  # what was compared last
+    expect(page.locator("#compare-b option:checked")).to_contain_text("All knit")
 
 
 def test_an_own_yarn_is_added_measured_and_changed(flat_studio: Page) -> None:
@@ -95,4 +129,18 @@ def test_an_own_yarn_is_added_measured_and_changed(flat_studio: Page) -> None:
     page.locator("#yarns-list li", has_text="Soft cotton").get_by_text("Evidence").click()
     expect(page.locator("#yarns-list")).to_contain_text("mN·mm² from 1 photo.")
     expect(page.locator("#yarns-list")).to_contain_text("garter: estimated from")
+
+    def as_if_others_added(route: Route) -> None:
+        answer = route.fetch()
+        theirs = [one | {"added_by_you": False} for one in answer.json()["materials"]]
+        route.fulfill(response=answer, json={"materials": theirs})
+
+    page.route("**/api/v1/materials", as_if_others_added)
+    page.reload()
+    wait_for_numbers(page)
+    page.focus("#chart")
+    page.keyboard.press("Shift+Y")
+    expect(page.get_by_label("Save Soft cotton as a file")).to_be_visible()
+    for offer in ("Change", "Remove"):
+        expect(page.get_by_label(f"{offer} Soft cotton")).to_have_count(0)
     assert said == []

@@ -36,7 +36,11 @@ export function create(studio) {
   const element = dialog(
     "yarns-dialog",
     "Own yarns",
-    h("p", { class: "muted" }, "They are offered to everybody who uses this service, and are part of its backups."),
+    h(
+      "p",
+      { class: "muted" },
+      "They are offered to everybody who uses this service, and are part of its backups. Only who added a yarn changes or removes it.",
+    ),
     status,
     list,
     h(
@@ -57,7 +61,7 @@ export function create(studio) {
     if (!own.length) list.append(h("li", { class: "muted" }, "None yet."));
   };
   /** @param {MaterialSummary} yarn */
-  const item = ({ id, name: label, description, fabrics }) =>
+  const item = ({ id, name: label, description, fabrics, added_by_you: mine }) =>
     h(
       "li",
       { class: "row" },
@@ -72,15 +76,16 @@ export function create(studio) {
         ),
       ),
       evidence(id),
-      textButton(
-        "pencil",
-        "Change",
-        async () => {
-          const document = await attempt(status, () => yarns.file(id));
-          if (document) maker.open(document);
-        },
-        { "aria-label": `Change ${label}` },
-      ),
+      mine &&
+        textButton(
+          "pencil",
+          "Change",
+          async () => {
+            const document = await attempt(status, () => yarns.file(id));
+            if (document) maker.open(document);
+          },
+          { "aria-label": `Change ${label}` },
+        ),
       textButton(
         "export",
         "Save",
@@ -92,10 +97,11 @@ export function create(studio) {
         },
         { "aria-label": `Save ${label} as a file` },
       ),
-      iconButton("trash", `Remove ${label}`, async () => {
-        const gone = await attempt(status, () => yarns.remove(id).then(() => true));
-        if (gone) await refresh(studio);
-      }),
+      mine &&
+        iconButton("trash", `Remove ${label}`, async () => {
+          const gone = await attempt(status, () => yarns.remove(id).then(() => true));
+          if (gone) await refresh(studio);
+        }),
     );
   /** What a yarn's figures rest on, asked for when it is opened. @param {string} id */
   const evidence = (id) => {

@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.main import create_app
-from app.results.own_materials import keep_material, own_materials, remove_material
+from app.results.own_materials import added_by, keep_material, own_materials, remove_material
 from app.settings import Settings
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import MeasuredCurve, material, save_material_file
@@ -128,7 +128,7 @@ def test_a_material_is_added_used_given_back_and_removed(own: TestClient) -> Non
     name = added.json()["id"]
     assert name.startswith("own:aunts-wool.")
     offered = own.get("/api/v1/materials").json()["materials"]
-    assert name in {one["id"] for one in offered}
+    assert [one["id"] for one in offered if one["added_by_you"]] == [name]
     asked = {"chart": "KP", "material": name}
     given = {"chart": "KP", "material": "acrylic"}
     mine, library = (own.post("/api/v1/predict", json=body).json() for body in (asked, given))
@@ -159,6 +159,8 @@ def test_a_replaced_material_answers_those_who_compute_with_it(own: TestClient) 
 def test_only_who_added_a_material_removes_it(folder: Path) -> None:
     document = MaterialDocument.from_material(material("acrylic"))
     kept = keep_material(document, "ann", folder.parent)
+    assert added_by("ann", folder.parent) == {kept.identifier}
+    assert added_by("bob", folder.parent) == set()
     assert not remove_material(kept.identifier, "bob", folder.parent)
     assert remove_material(kept.identifier, "ann", folder.parent)
     assert own_materials(folder.parent) == {}
