@@ -9,7 +9,7 @@
  * @property {{id: string, revision: number} | null} remote the service's name for it
  * @property {DesignDocument | null} base what the service has acknowledged last
  * @property {DesignDocument} document what it should have
- * @property {DesignDocument | null} [posted] what a first delivery without an answer has sent
+ * @property {DesignDocument | null} [posted] what the first delivery sends, every time until it is answered
  *
  * @typedef {object} Kept the design as the service has it
  * @property {string} id

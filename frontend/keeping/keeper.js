@@ -475,7 +475,9 @@ export class Keeper {
     }
     if (remote) this.state.value = { kind: "kept" };
     // Without an entry of its own, what this browser has is what the service acknowledged.
-    return { id, remote, base: remote && document, document };
+    // A new design is delivered as it was opened first, and its strokes after that: another window that opened
+    // the same one does likewise, so that both mean one design.
+    return { id, remote, base: remote && document, document, posted: remote ? null : document };
   }
 
   /** So that a reload and a bookmark lead to the design again. */

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import wait_for_numbers
 from tests.browser.page import drag
@@ -62,6 +62,37 @@ def test_windows_opened_before_the_first_stroke_share_one_design(flat_studio: Pa
     for page in (first, second):
         expect(page.locator("#kept")).to_have_attribute("data-state", "kept")
     expect(ours).to_have_text(theirs.text_content() or "")
+    assert first.evaluate("location.hash") == second.evaluate("location.hash") != ""
+
+
+def test_windows_that_both_paint_before_the_first_delivery_share_one_design(
+    flat_studio: Page,
+) -> None:
+    first = flat_studio
+    second = first.context.new_page()
+    second.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+    second.goto(first.url)
+    wait_for_numbers(second)
+    held: list[Route] = []
+
+    def hold(route: Route) -> None:
+        held.append(route)
+
+    first.context.route("**/api/v1/designs", hold)
+    drag(first, 60, 0)
+    drag(second, 0, 60, start=(-60, -40))
+    for page in (first, second):
+        expect(page.locator("#kept")).to_have_attribute("data-state", "sending")
+    segments = [page.locator("#segments-course") for page in (first, second)]
+    own_strokes = [shown.text_content() or "" for shown in segments]
+    for route in held:
+        route.continue_()
+    first.context.unroute("**/api/v1/designs")
+    for page, shown, own in zip((first, second), segments, own_strokes, strict=True):
+        expect(page.locator("#others")).to_contain_text("open in another window")
+        expect(shown).not_to_have_text(own)  # the other's stroke has come
+        expect(page.locator("#kept")).to_have_attribute("data-state", "kept")
+    expect(segments[0]).to_have_text(segments[1].text_content() or "")
     assert first.evaluate("location.hash") == second.evaluate("location.hash") != ""
 
 
