@@ -17,7 +17,7 @@ from app.context import Context
 from app.drawing.design_view import ViewRequest, build_scene
 from app.viewer import scene as scene_module
 from app.viewer.camera import CameraSide
-from app.viewer.cloth import FINEST, ShownStitches
+from app.viewer.cloth import FINEST, UNITS_PER_MM, ShownStitches
 from app.viewer.views import View, new_view
 
 SMALL = {"chart": "KPKP\nPKPK\nKPKP", "material": "acrylic"}
@@ -133,3 +133,13 @@ def test_the_light_between_the_yarn_is_sent_with_its_corners(
     assert not beyond[:, :2].any()
     assert 0 < beyond[:, 2].min() < 0.2
     assert 0.8 < beyond[:, 2].max() < 1
+
+
+def test_the_scale_says_how_long_it_is(view: View) -> None:
+    """A round length of about a fifth of the cloth's width, in its own words."""
+    nodes = view.server.scene._handle_from_node_name
+    for columns, length_mm, words in ((4, 2.0, "2 mm"), (30, 20.0, "2 cm"), (200, 100.0, "10 cm")):
+        _show(view, SMALL | {"chart": "\n".join(["K" * columns] * 4)})
+        (left, _, _), (right, _, _) = nodes["/scale"].points[0]
+        assert right - left == pytest.approx(UNITS_PER_MM * length_mm, rel=1e-5)
+        assert nodes["/scale/words"].text == words
