@@ -11,9 +11,8 @@
 (() => {
   /** Frames that take longer mean a slow machine. */
   const SHORT_MS = 30;
-  /** After an idle frame others wait so many times as long as it took, at most so long. */
-  const IDLE = 8;
-  const MAX_PAUSE_MS = 4000;
+  /** viser draws every second although nothing is new; there it waits so long. A stroke would wait for such a frame. */
+  const PAUSE_MS = 30_000;
   /** Frames in which a first scene is taken in; viser shows its own axes until then. */
   const FIRST_FRAMES = 3;
   /** Over viser's speed of turning. */
@@ -171,7 +170,7 @@
   function rest() {
     const now = performance.now();
     if (!slow || !seen || now < newsUntil) return 0;
-    return Math.max(0, lastEnd + Math.min(IDLE * cost, MAX_PAUSE_MS) - now);
+    return Math.max(0, lastEnd + PAUSE_MS - now);
   }
 
   function release() {
@@ -213,10 +212,16 @@
     });
   }
 
-  /** Zoom to the pointer, not to the middle, and turn half as fast as viser does. */
+  /** Zoom to the pointer, not to the middle, and turn half as fast as viser does; and what viser asks for itself is news. */
   function steer() {
-    const control = viser()?.cameraControl;
+    const client = viser();
+    const control = client?.cameraControl;
     if (!control || control.dollyToCursor) return;
+    const { requestRender } = client;
+    client.requestRender = () => {
+      wake(false);
+      requestRender();
+    };
     Object.assign(control, { dollyToCursor: true, azimuthRotateSpeed: TURNING, polarRotateSpeed: TURNING });
   }
 

@@ -175,6 +175,24 @@ test("a canvas that changes its size is drawn while somebody paints, too", async
   assert.equal(client.frames, frames + 1);
 });
 
+test("a slow machine draws what viser asks for, and not what it draws every second", async () => {
+  const { client, page } = await slowClient();
+  page.__viserMutable = { cameraControl: {}, requestRender: () => client.invalidate() };
+  client.resized();
+  client.frame(); // finds the camera
+  client.pass(3000);
+  const { frames } = client;
+  for (let second = 0; second < 8; second++) {
+    client.invalidate();
+    client.frame();
+    client.pass(1000);
+  }
+  assert.equal(client.frames, frames, "a frame without news did not wait");
+  page.__viserMutable.requestRender();
+  client.frame();
+  assert.equal(client.frames, frames + 1, "something new waited");
+});
+
 /** A slow client that shows cloth of one shape, and what viser is told from now on. */
 async function withCloth() {
   const { client, page, thread } = await slowClient();
@@ -191,7 +209,7 @@ async function withCloth() {
   const drawn = () => {
     client.invalidate();
     client.frame();
-    client.pass(10_000);
+    client.pass(40_000); // longer than a frame waits
     client.frame();
   };
   thread.answer("message_batch", [{ type: "BatchedMeshesMessage", name: "/fabric/1" }]);
