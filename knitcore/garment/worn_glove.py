@@ -47,7 +47,7 @@ GATHERED = 0.05
 Curve = Callable[[Array, Array], Array]
 """Points (…, 3), mm, of a part of the hand: at shares of the way around it, from the thumb's side
 over the back, and at distances from where it begins, mm."""
-Girth = Callable[[Array], Array]
+GirthAlong = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +162,7 @@ class _Loop:
     first: int
     at_mm: Array
     begins_mm: float
-    girth_mm: Girth
+    girth_mm: GirthAlong
     curve: Curve
     grown: Array | None = None
 
@@ -318,7 +318,7 @@ def _fingers(
         begin += count + CROTCH_ROWS
 
 
-def _trunk(hand: Hand) -> tuple[Girth, Curve, float]:
+def _trunk(hand: Hand) -> tuple[GirthAlong, Curve, float]:
     """Forearm, wrist and palm with the thumb's base, and where the thumb's axis leaves it."""
     support_mm = hand.cuff_mm + hand.wrist_mm
     stations = support_mm, support_mm + hand.thumb_crotch_mm
@@ -366,7 +366,9 @@ def _section(share: Array, girth_mm: Array, depth_mm: Array) -> Array:
     return np.stack([x, np.where(way <= 0.5 * girth_mm, z, -z)], axis=-1)
 
 
-def _tube(root_mm: float, begins_mm: float, angle: float, girth: Girth, length_mm: float) -> Curve:
+def _tube(
+    root_mm: float, begins_mm: float, angle: float, girth: GirthAlong, length_mm: float
+) -> Curve:
     """A cylinder with a round tip, whose axis leans to the thumb's side."""
     root, ahead = np.array([root_mm, begins_mm, 0.0]), _ahead(angle)
     aside, up = np.array([ahead[1], -ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
