@@ -1,4 +1,4 @@
-"""Compiled elimination and substitution on the tree of a dissected grid.
+"""Compiled elimination and substitution on a tree of fronts.
 
 Dense work is done by LAPACK, called without Python in between: a tree has thousands of small
 fronts, and two threads can work on two of its branches without the interpreter lock.
@@ -109,12 +109,13 @@ def eliminate(
     numbers: NDArray[np.int32],
     scalars: Block,
     boxes: Indices,
-    shapes: Indices,
-    table: Indices,
-    matrices: Array,
-    fixed: NDArray[np.bool_],
-    eliminated: Indices,
+    own: Indices,
     border: Indices,
+    places: Indices,
+    rank: Indices,
+    starts: NDArray[np.int32],
+    columns: NDArray[np.int32],
+    blocks: Array,
     factor: Block,
     work: Block,
 ) -> bool:
@@ -125,121 +126,124 @@ def eliminate(
     first, last : range of boxes.
     routines, letters : addresses and the letters "LRTN".
     numbers, scalars : room for four integers; 1 and -1.
-    boxes : (boxes, 10) offset in the factor, eliminated, border, both children, shape, first cell,
-        place in ``work``, starts in ``eliminated`` and ``border``.
-    shapes : (shapes, 9) see :func:`knitcore.gridsolver.dissection.GridFactor`.
-    table : index lists of the shapes, one after the other.
-    matrices : (cells, 36) lower triangles of cell matrices, by rows.
-    fixed : prescribed unknowns.
-    eliminated, border : unknowns by box.
-    factor, work : the factor, and room for the Schur complements that wait.
+    boxes : (boxes, 8) offset in the factor, eliminated, border, both children (or -1), place in
+        ``work``, starts in ``own`` and ``border``.
+    own, border : unknowns by box, in the order of elimination.
+    places : of each unknown of a border in its parent's front.
+    rank : of each corner in the order of elimination.
+    starts, columns, blocks : see :class:`knitcore.gridsolver.tree.BlockRows`.
+    factor, work : the factor, and room for the remainders that wait.
     """
-    for index in range(first, last):
-        offset, s, b = boxes[index, 0], boxes[index, 1], boxes[index, 2]
-        middle = offset + s * s
-        place = boxes[index, 7]
-        front = factor[offset : middle + s * b]
+    n = blocks.shape[1]
+    at = np.empty(len(rank), np.int64)  # of corners in the front
+    for box in range(first, last):
+        offset, s, b, room = boxes[box, 0], boxes[box, 1], boxes[box, 2], boxes[box, 5]
+        e0, b0 = boxes[box, 6], boxes[box, 7]
+        for k in range(0, s, n):
+            at[own[e0 + k] // n] = k
+        for k in range(0, b, n):
+            at[border[b0 + k] // n] = s + k
+        front = factor[offset : offset + s * (s + b)]
         front[:] = 0.0
-        pivot = factor[offset:middle].reshape((s, s))
-        below = factor[middle : middle + s * b].reshape((s, b))
-        schur = work[place : place + b * b].reshape((b, b))
+        pivot = front[: s * s].reshape((s, s))
+        below = front[s * s :].reshape((s, b))
+        schur = work[room : room + b * b].reshape((b, b))
         schur[:] = 0.0
-        shape = shapes[boxes[index, 5]]
-        if boxes[index, 3] >= 0:
-            for side in range(2):
-                child = boxes[index, 3 + side]
-                size = boxes[child, 2]
-                start = boxes[child, 7]
-                at, inner, outer = shape[3 * side], shape[3 * side + 1], shape[3 * side + 2]
-                _extend_add(
-                    work[start : start + size * size].reshape((size, size)),
-                    table[at : at + inner],
-                    table[at + inner : at + 2 * inner],
-                    table[at + 2 * inner : at + 2 * inner + outer],
-                    table[at + 2 * inner + outer : at + 2 * (inner + outer)],
-                    pivot,
-                    below,
-                    schur,
-                )
-        else:
-            at, count = shape[6], shape[7]
-            _add_cells(
-                matrices,
-                boxes[index, 6],
-                table[at : at + count],
-                table[at + count : at + 37 * count].reshape((count, 36)),
-                front,
-                schur.ravel(),
-            )
-            e0, b0 = boxes[index, 8], boxes[index, 9]
-            _fix(fixed, eliminated[e0 : e0 + s], border[b0 : b0 + b], pivot, below, schur)
-        if not reduce_front(routines, letters, numbers, scalars, offset, s, b, place, factor, work):
+        _assemble(own[e0 : e0 + s : n], rank, at, starts, columns, blocks, pivot, below)
+        for side in range(3, 5):
+            child = boxes[box, side]
+            if child < 0:
+                continue
+            size, place, start = boxes[child, 2], boxes[child, 5], boxes[child, 7]
+            rest = work[place : place + size * size].reshape((size, size))
+            _extend(rest, places[start : start + size], pivot, below, schur)
+        if not reduce_front(routines, letters, numbers, scalars, offset, s, b, room, factor, work):
             return False
     return True
 
 
 @njit(cache=True, nogil=True)
-def _extend_add(
-    child: Block,
-    inner: Indices,
-    inner_places: Indices,
-    outer: Indices,
-    outer_places: Indices,
+def _assemble(
+    own: Indices,
+    rank: Indices,
+    at: Indices,
+    starts: NDArray[np.int32],
+    columns: NDArray[np.int32],
+    blocks: Array,
     pivot: Block,
     below: Block,
-    schur: Block,
 ) -> None:
-    """Add the lower triangle of a child's Schur complement to its parent's front."""
-    for c in range(inner.size):
-        column, place = inner[c], inner_places[c]
-        for r in range(c, inner.size):
-            pivot[place, inner_places[r]] += child[column, inner[r]]
-        for r in range(outer.size):
-            row = outer[r]
-            below[place, outer_places[r]] += child[min(row, column), max(row, column)]
-    for c in range(outer.size):
-        column, place = outer[c], outer_places[c]
-        for r in range(c, outer.size):
-            schur[place, outer_places[r]] += child[column, outer[r]]
+    """Add the matrix between a front's own corners and those that are eliminated later."""
+    s, size = pivot.shape[0], blocks.shape[1]
+    for unknown in own:
+        i = unknown // size
+        for k in range(starts[i], starts[i + 1]):
+            j = columns[k]
+            if rank[j] < rank[i]:
+                continue
+            for m in range(size):
+                for n in range(m if i == j else 0, size):
+                    to = at[j] + n
+                    if to < s:
+                        pivot[at[i] + m, to] += blocks[k, m, n]
+                    else:
+                        below[at[i] + m, to - s] += blocks[k, m, n]
 
 
 @njit(cache=True, nogil=True)
-def _add_cells(
-    matrices: Array, first: int, cells: Indices, places: Indices, front: Block, schur: Block
-) -> None:
-    """Add the lower triangles of cell matrices to a leaf: its columns in the factor, its border."""
-    for n in range(cells.size):
-        matrix = matrices[first + cells[n]]
-        for k in range(36):
-            place = places[n, k]
-            if place >= 0:
-                front[place] += matrix[k]
+def _extend(rest: Block, places: Indices, pivot: Block, below: Block, schur: Block) -> None:
+    """Add what a child leaves, its lower triangle, to its parent's front."""
+    s = pivot.shape[0]
+    for c in range(rest.shape[0]):
+        column = places[c]
+        for r in range(c, rest.shape[0]):
+            row = places[r]
+            if row < s:
+                pivot[column, row] += rest[c, r]
+            elif column < s:
+                below[column, row - s] += rest[c, r]
             else:
-                schur[-place - 1] += matrix[k]
+                schur[column - s, row - s] += rest[c, r]
 
 
 @njit(cache=True, nogil=True)
-def _fix(
-    fixed: NDArray[np.bool_],
-    eliminated: Indices,
-    border: Indices,
-    pivot: Block,
-    below: Block,
-    schur: Block,
+def add_cells(
+    cells: Array, columns: int, fixed: NDArray[np.bool_], offsets: Indices, blocks: Array
 ) -> None:
-    """Replace the rows and columns of fixed unknowns by those of the identity."""
-    for i in range(eliminated.size):
-        if fixed[eliminated[i]]:
-            pivot[i, :] = 0.0
-            pivot[:, i] = 0.0
-            below[i, :] = 0.0
-            pivot[i, i] = 1.0
-    for i in range(border.size):
-        if fixed[border[i]]:
-            below[:, i] = 0.0
-            schur[i, :] = 0.0
-            schur[:, i] = 0.0
-            schur[i, i] = 1.0
+    """Sum cell matrices into blocks (9 a corner, from that below and left of it to that above and
+    right), with rows and columns of the identity for fixed unknowns.
+
+    Parameters
+    ----------
+    cells : (cells, 36) lower triangles by rows.
+    columns : cells in a row.
+    fixed : by unknown.
+    offsets : (4, 2) columns and rows from a cell's first corner to each.
+    blocks : (9 * corners, 2, 2)
+    """
+    blocks[:] = 0.0
+    width = columns + 1
+    for cell in range(cells.shape[0]):
+        first = cell // columns * width + cell % columns
+        k = 0
+        for i in range(8):
+            x, y = offsets[i // 2]
+            row = first + width * y + x
+            for j in range(i + 1):
+                value = cells[cell, k]
+                k += 1
+                right, up = offsets[j // 2, 0] - x, offsets[j // 2, 1] - y
+                column = row + width * up + right
+                m, n = i % 2, j % 2
+                if fixed[2 * row + m] or fixed[2 * column + n]:
+                    continue
+                blocks[9 * row + 4 + 3 * up + right, m, n] += value
+                if i != j:
+                    blocks[9 * column + 4 - 3 * up - right, n, m] += value
+    for unknown in range(fixed.size):
+        if fixed[unknown]:
+            m = unknown % 2
+            blocks[9 * (unknown // 2) + 4, m, m] = 1.0
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
@@ -256,7 +260,7 @@ def forward(
     """Forward substitution in place; ``v`` has room for the unknowns of one front."""
     for box in range(first, last):
         offset, s, b = boxes[box, 0], boxes[box, 1], boxes[box, 2]
-        e0, b0 = boxes[box, 8], boxes[box, 9]
+        e0, b0 = boxes[box, 6], boxes[box, 7]
         below = offset + s * s
         for i in range(s):
             v[i] = x[eliminated[e0 + i]]
@@ -291,7 +295,7 @@ def backward(
     zero = x.dtype.type(0.0)
     for box in range(last - 1, first - 1, -1):
         offset, s, b = boxes[box, 0], boxes[box, 1], boxes[box, 2]
-        e0, b0 = boxes[box, 8], boxes[box, 9]
+        e0, b0 = boxes[box, 6], boxes[box, 7]
         below = offset + s * s
         for i in range(s):
             v[i] = x[eliminated[e0 + i]]
