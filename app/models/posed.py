@@ -28,7 +28,7 @@ class Body:
     Attributes
     ----------
     vertices_mm, normals : (n, 3), the normals pointing to the cloth.
-    faces : (m, 3) triangles.
+    faces : (m, 3) triangles, counterclockwise from outside: other programs hide the inside.
     """
 
     vertices_mm: Floats
@@ -42,14 +42,13 @@ class Body:
         vertex = np.arange(rings * sides, dtype=np.uint32).reshape(rings, sides)
         low, high = vertex[:-1], vertex[1:]
         next_low, next_high = np.roll(low, -1, axis=1), np.roll(high, -1, axis=1)
-        faces = np.stack([low, next_low, next_high, low, next_high, high], axis=-1)
+        faces = np.stack([low, next_low, next_high, low, next_high, high], axis=-1).reshape(-1, 3)
+        points = rings_mm.reshape(-1, 3)
+        if np.linalg.det((points - points.mean(axis=0))[faces]).sum() < 0.0:
+            faces = faces[:, ::-1]
         outwards = rings_mm - rings_mm.mean(axis=1, keepdims=True)
         outwards /= np.maximum(np.linalg.norm(outwards, axis=-1, keepdims=True), 1e-9)
-        return cls(
-            rings_mm.reshape(-1, 3).astype(np.float32),
-            outwards.reshape(-1, 3).astype(np.float32),
-            faces.reshape(-1, 3),
-        )
+        return cls(points.astype(np.float32), outwards.reshape(-1, 3).astype(np.float32), faces)
 
     @classmethod
     def joined(cls, bodies: Sequence[Body]) -> Body:
