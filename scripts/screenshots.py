@@ -11,8 +11,9 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal, cast
+from typing import Literal
 
+import numpy as np
 from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
@@ -29,6 +30,9 @@ THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 LOOPS_PX = 5000
 """Coloured pixels of a drawn fabric."""
 
+ALIKE = 10
+"""Of 255: colours that differ by less are one to a palette."""
+
 Scene = Callable[[Page], str | None]
 """Brings the page into a state and names the part to picture; all of it if None."""
 
@@ -36,7 +40,7 @@ Scene = Callable[[Page], str | None]
 def drawn(page: Page) -> None:
     """Wait for the 3D view, which takes long without a GPU, and for its last frames."""
     wait_for_colour(page, "#fabric", LOOPS_PX)
-    page.wait_for_timeout(4000)
+    page.wait_for_timeout(10_000)  # the words of its scale come last
 
 
 def page(page: Page) -> str | None:
@@ -178,6 +182,7 @@ def tour(page: Page) -> str | None:
 
 
 def offline(page: Page) -> str | None:
+    wait_for_colour(page, "#fabric", LOOPS_PX)  # what is on show stays
     page.route("**/api/**", lambda route: route.abort())
     page.route("**/healthz", lambda route: route.abort())
     page.keyboard.press("x")
@@ -315,10 +320,17 @@ def keep(name: str, picture: bytes) -> None:
 
 
 def palette(image: Image.Image, colours: int) -> Image.Image:
-    """The colours that large areas have, exactly, and for the rest what covers them best."""
+    """The colours that large areas have, exactly, and for the rest what covers them best.
+
+    Of areas that look alike, as the cells of a map do, the largest stands for all: they would leave
+    no place for the few pixels of a legend.
+    """
     counted = sorted(image.getcolors(image.width * image.height) or [], reverse=True)
-    large = cast("list[tuple[int, tuple[int, ...]]]", counted[: colours // 2])
-    common = [value for _, colour in large for value in colour]
+    large = np.array([colour for _, colour in counted])
+    common: list[int] = []
+    while len(large) and len(common) < 3 * (colours // 2):
+        common += large[0].tolist()
+        large = large[np.abs(large - large[0]).max(axis=1) > ALIKE]
     others = image.quantize(colours - len(common) // 3).getpalette() or []
     chosen = Image.new("P", (1, 1))
     chosen.putpalette(common + others)
