@@ -52,6 +52,7 @@ class GridFactor:
         fronts = _fronts(columns, rows)
         self._tree = FrontTree(fronts, 2, two_threads=len(fronts) >= SIDE_BY_SIDE)
         self._matrix = _nine_point(columns, rows)
+        self._places = _places(columns)
         self._precision: type[np.floating] = np.float32
         self._factor: Block = np.empty(0)
         self._work: Block = np.empty(0)
@@ -66,7 +67,8 @@ class GridFactor:
         IndefiniteTangentError
             If the sum is not positive definite.
         """
-        add_cells(cell_matrices, self._columns, self._fixed, _OFFSETS, self._matrix.blocks)
+        near, blocks = self._matrix.columns, self._matrix.blocks
+        add_cells(cell_matrices, self._columns, self._places, self._fixed, near, blocks)
         if self._is_definite(self._precision):
             return
         if self._precision == np.float64 or not self._is_definite(np.float64):
@@ -84,8 +86,14 @@ class GridFactor:
         return self._tree.eliminate(self._matrix, self._factor, self._work)
 
 
-_OFFSETS = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
-"""Columns and rows from a cell's first corner to each."""
+def _places(columns: int) -> NDArray[np.int64]:
+    """Where the entries of a cell's matrix go, see :func:`add_cells`."""
+    x, y = np.array([0, 1, 1, 0]), np.array([0, 0, 1, 1])
+    i, j = np.tril_indices(8)
+    p, q, m, n = i // 2, j // 2, i % 2, j % 2
+    first = 9 * (y * (columns + 1) + x) + 4
+    step = 3 * (y[q] - y[p]) + x[q] - x[p]
+    return np.stack([4 * (first[p] + step) + 2 * m + n, 4 * (first[q] - step) + 2 * n + m])
 
 
 def _nine_point(columns: int, rows: int) -> BlockRows:

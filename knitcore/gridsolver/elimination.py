@@ -208,7 +208,12 @@ def _extend(rest: Block, places: Indices, pivot: Block, below: Block, schur: Blo
 
 @njit(cache=True, nogil=True)
 def add_cells(
-    cells: Array, columns: int, fixed: NDArray[np.bool_], offsets: Indices, blocks: Array
+    cells: Array,
+    columns: int,
+    places: Indices,
+    fixed: NDArray[np.bool_],
+    near: NDArray[np.int32],
+    blocks: Array,
 ) -> None:
     """Sum cell matrices into blocks (9 a corner, from that below and left of it to that above and
     right), with rows and columns of the identity for fixed unknowns.
@@ -217,33 +222,29 @@ def add_cells(
     ----------
     cells : (cells, 36) lower triangles by rows.
     columns : cells in a row.
+    places : (2, 36) where each entry and its mirror image go, from the blocks of the first corner.
     fixed : by unknown.
-    offsets : (4, 2) columns and rows from a cell's first corner to each.
+    near : (9 * corners,) the corner of each block's column; beyond the grid the row's own.
     blocks : (9 * corners, 2, 2)
     """
     blocks[:] = 0.0
-    width = columns + 1
+    flat = blocks.reshape(-1)
     for cell in range(cells.shape[0]):
-        first = cell // columns * width + cell % columns
-        k = 0
-        for i in range(8):
-            x, y = offsets[i // 2]
-            row = first + width * y + x
-            for j in range(i + 1):
-                value = cells[cell, k]
-                k += 1
-                right, up = offsets[j // 2, 0] - x, offsets[j // 2, 1] - y
-                column = row + width * up + right
-                m, n = i % 2, j % 2
-                if fixed[2 * row + m] or fixed[2 * column + n]:
-                    continue
-                blocks[9 * row + 4 + 3 * up + right, m, n] += value
-                if i != j:
-                    blocks[9 * column + 4 - 3 * up - right, n, m] += value
+        first = 36 * (cell // columns * (columns + 1) + cell % columns)
+        for k in range(36):
+            value, one, other = cells[cell, k], places[0, k], places[1, k]
+            flat[first + one] += value
+            if one != other:
+                flat[first + other] += value
     for unknown in range(fixed.size):
         if fixed[unknown]:
-            m = unknown % 2
-            blocks[9 * (unknown // 2) + 4, m, m] = 1.0
+            corner, m = divmod(unknown, 2)
+            for side in range(9):
+                other = near[9 * corner + side]
+                if other != corner or side == 4:
+                    blocks[9 * corner + side, m, :] = 0.0
+                    blocks[9 * other + 8 - side, :, m] = 0.0
+            blocks[9 * corner + 4, m, m] = 1.0
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
