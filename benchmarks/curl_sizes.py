@@ -21,8 +21,8 @@ from knitcore.shell.sheet import sheet_of
 MATERIALS = ("acrylic", "cotton")
 SIDE = 24
 """About so many stitches a side, of three whole repeats at least."""
-RIBS = (2, 3, 6, 8)
-WELTS = (2, 3, 6)
+RIBS = (2, 3, 4, 5, 6, 7, 8)
+WELTS = (2, 3, 6, 8)
 BASKETS = (3, 4)
 UNBALANCED = ((2, 1), (3, 1), (4, 2), (5, 1))
 

@@ -37,16 +37,16 @@ TimeLimit = Annotated[
     ),
 ]
 FRICTIONLESS = (
-    "Without friction and set. Friction makes real fabric seem stiffer, and keeps it in more than "
-    "one shape."
+    "Friction is left out, and so is what washing or pressing sets. Friction makes real "
+    "fabric seem stiffer, and can hold it in more than one shape."
 )
 FROM_QUARTERS = (
-    "The repeat is too large for the yarn level: its bending is the mean of the four fabrics in "
-    "it, without the stiffness that folds give."
+    "The repeat is too large for the yarn level, so its bending is the mean of the pure fabrics in "
+    "it, without the stiffness that folds add."
 )
 _CURLS = (
-    "This fabric curls. It was taken as flat at rest, as if its edges were pressed: the test is "
-    "not meant for fabric that rolls up."
+    "This fabric curls. The test is not meant for fabric that rolls up, so it was calculated as if "
+    "it lay flat at rest."
 )
 
 

@@ -16,12 +16,13 @@ from knitcore.fabric import Fabric
 from knitcore.shell.border import RULE_ROWS, RULE_STITCHES, advice
 
 _RULE = (
-    f"Knitters' rule, {RULE_STITCHES[0]} to {RULE_STITCHES[1]} stitches and {RULE_ROWS} rows, "
-    "rests on friction between the yarns and on blocking, which are not modelled here."
+    f"Knitters make borders of {RULE_STITCHES[0]} to {RULE_STITCHES[1]} stitches or "
+    f"{RULE_ROWS} rows. These hold by friction between the yarns and by blocking, which are "
+    "not modelled here."
 )
 _ROLLS = (
-    "Where a border does not hold by its weight, a wider one does no better: it bends up beside "
-    "the piece."
+    "Where the weight of a border does not keep the piece flat, a wider border does no better: the "
+    "fabric beside it rises."
 )
 
 

@@ -39,12 +39,13 @@ from knitcore.shell.worn import TubeOnLimb, worn_tube
 MAX_STITCHES = 40_000
 """Of a chart that is itself the tube."""
 FREE_ALONG = (
-    "The tube is as long as where nothing holds it along the limb; friction may keep it longer."
+    "Nothing holds the tube along the limb here, so it shortens freely; friction may keep it "
+    "longer."
 )
 
 BY_PATCHES = (
-    f"The law of a row is that of its surroundings of {SIDE} rows and more. Where textures meet, "
-    "as at a hem, the pressure therefore changes over some rows on either side, and not at once."
+    f"A row is as stiff as the fabric around it, {SIDE} rows and more. Where textures meet, as "
+    "at a hem, the pressure therefore changes over some rows on either side, and not at once."
 )
 
 

@@ -32,17 +32,17 @@ _STRIPS = 0.3
 STRIP = 4.0
 """Width of the edge strip whose curl is reported, in thicknesses."""
 PULLED_NOTE = (
-    "Pulled between clamps: the curl of the free edges against the pull. The cloth's stiffness is "
-    "that of small strains, so that forces are those of the stretch test, and not of this shape."
+    "Pulled between clamps: this is how far the free edges curl against the pull. The cloth is as "
+    "stiff here as at small strains, so take forces from the stretch test, not from this shape."
 )
 UNBALANCED_NOTE = (
     "Its knits and purls do not balance, so the whole piece rolls up; `bend` shows the same for "
     "the repeat. Laid flat it has the size that `predict` gives."
 )
 NOTE = (
-    "Without friction, set and weight: edges roll and folds close as far as they can; real fabric "
-    "does so only in part. Rely on the direction of curls and folds, and on which fabrics lie "
-    "flat, rather than on the millimetres."
+    "Without friction, weight and what washing or pressing sets, edges roll and folds close "
+    "as far as they can; real fabric does so only in part. Rely on the direction of curls and "
+    "folds, and on which fabrics lie flat, rather than on the millimetres."
 )
 
 
