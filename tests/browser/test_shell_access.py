@@ -52,6 +52,11 @@ def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page)
         found += [f"{theme} limb: {wrong}" for wrong in violations(page, "#inspector")]
         page.click("#tab-drape")
         found += [f"{theme} drape: {wrong}" for wrong in violations(page, "#inspector")]
+        page.click("#tab-curve")
+        expect(page.locator("#plot-curve .main-svg").first).to_be_visible()
+        page.click("#provenance")  # with the field for one's own gauge
+        found += [f"{theme} source: {wrong}" for wrong in violations(page, "#inspector")]
+        page.click("#provenance")
         page.focus("#chart")
         for name in MENUS:
             page.click(f"#{name}-button")
@@ -80,6 +85,10 @@ def test_nothing_serious_is_wrong_where_targets_and_pictures_are_given(flat_stud
             page.keyboard.press(key)
             expect(page.locator(f"#inverse-{tab}-content")).to_be_visible()
             found += [f"{theme} {tab}: {wrong}" for wrong in violations(page, "#inverse")]
+            if tab == "fill":
+                page.click("#fill-outline")
+                found += [f"{theme} outline: {wrong}" for wrong in violations(page, "#inverse")]
+                page.click("#fill-stiffness")
             page.click("#inverse-close")
         page.click("#stretch-more")
         found += [f"{theme} options: {wrong}" for wrong in violations(page, "#stretch-options")]
