@@ -13,9 +13,9 @@ FIELD_OF_VIEW = 0.5
 """Vertical, radians: a long lens, so that loops at the edge look like those in the middle."""
 ASPECT = 1.25
 """Width over height of the view that a fabric must fit in; panels are rarely narrower."""
-MARGIN = 1.22
+MARGIN = 1.3
 """Room around the fabric, over its size."""
-LIFT = 0.1
+LIFT = 0.08
 """So much of the view's half height lies the fabric below its middle: tools lie over its top."""
 FARTHEST = 900.0
 """Units that a camera can go back: browsers draw nothing that is 1000 units away."""

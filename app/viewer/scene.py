@@ -22,7 +22,7 @@ MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
 """Seen on light and on dark."""
-SCALE_BELOW = (1.8, 0.05)
+SCALE_BELOW = (1.8, 0.045)
 """The scale lies this many stitches below the fabric, and this share of its height at least."""
 PAPER = (255, 252, 246)
 
