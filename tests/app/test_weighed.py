@@ -80,4 +80,4 @@ def test_border_as_a_command() -> None:
     result = CliRunner().invoke(main, ["border", "stockinette", "--border", "rib", *yarn])
     assert result.exit_code == 0, result.output
     assert "top and bottom" in result.stdout
-    assert "Knitters' rule" in result.stderr
+    assert "Knitters make borders" in result.stderr
