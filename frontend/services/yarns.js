@@ -41,7 +41,9 @@ export async function adopt(studio, document) {
   const complete = Object.keys(added.fabrics).length === 4;
   if (complete) studio.materialId.value = added.id;
   studio.tell(
-    complete ? `${added.name} is added, and chosen.` : `${added.name} is added. It lacks some of the four fabrics.`,
+    complete
+      ? `${added.name} is added, and chosen.`
+      : `${added.name} is added, but not chosen: it lacks some of the four fabrics. Change it: with a bending modulus and the yarn in a stitch they are estimated.`,
   );
   return added;
 }
