@@ -11,7 +11,8 @@
 (() => {
   /** Frames that take longer mean a slow machine. */
   const SHORT_MS = 30;
-  /** viser draws every second although nothing is new; there it waits so long. A stroke would wait for such a frame. */
+  /** viser draws a frame every second even if nothing is new. On a slow machine such a frame waits this long, because a
+   * stroke made while it is drawn is not shown before it is done. */
   const PAUSE_MS = 30_000;
   /** Frames in which a first scene is taken in; viser shows its own axes until then. */
   const FIRST_FRAMES = 3;
@@ -212,7 +213,8 @@
     });
   }
 
-  /** Zoom to the pointer, not to the middle, and turn half as fast as viser does; and what viser asks for itself is news. */
+  /** Zoom to the pointer, not to the middle, and turn half as fast as viser does. A frame that viser requests shows something
+   * new, and is not left to wait. */
   function steer() {
     const client = viser();
     const control = client?.cameraControl;

@@ -14,8 +14,8 @@
   const GROOVE = 0.4;
   /** Yarn whose radius is fewer pixels shows no plies: it is drawn without them, which takes less. */
   const FEWEST_PIXELS = 1.8;
-  /** Yarn whose radius is more pixels shows fibres that stand off, before the dark between them. A program that leaves
-   * pixels out for them would take a third longer, from afar too. */
+  /** Yarn whose radius is more pixels shows fibres at its edges, with darker yarn between them. A shader that discarded
+   * pixels there would take a third longer without a GPU, for yarn seen from afar as well. */
   const FUZZY_PIXELS = 8;
   const BETWEEN_FIBRES = 0.65;
 

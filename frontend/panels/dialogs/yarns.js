@@ -39,7 +39,7 @@ export function create(studio) {
     h(
       "p",
       { class: "muted" },
-      "They are offered to everybody who uses this service, and are part of its backups. Only who added a yarn changes or removes it.",
+      "They are offered to everybody who uses this service, and are part of its backups. Only the person who added a yarn can change or remove it.",
     ),
     status,
     list,
