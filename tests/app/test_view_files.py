@@ -6,6 +6,7 @@ import asyncio
 import io
 import json
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -171,6 +172,9 @@ def test_a_click_in_the_view_is_an_event_of_the_page(client: TestClient) -> None
     state = client.app.state  # type: ignore[attr-defined]
 
     def tell() -> None:
+        deadline = time.monotonic() + 60
+        while not state.views.clicks.count(f"local/{DESIGN}") and time.monotonic() < deadline:
+            time.sleep(0.01)  # until the page listens
         state.views.clicks.tell(f"local/{DESIGN}", (2, 1))
         state.stopping = True
 
@@ -178,11 +182,11 @@ def test_a_click_in_the_view_is_an_event_of_the_page(client: TestClient) -> None
         with client.stream("GET", f"/api/v1/views/{DESIGN}/events") as stream:
             yield from stream.iter_lines()
 
-    timer = threading.Timer(0.5, tell)
-    timer.start()
+    teller = threading.Thread(target=tell)
+    teller.start()
     try:
         data = next(line for line in lines() if line.startswith("data: "))
-        timer.join()
+        teller.join()
     finally:
         state.stopping = False
     assert json.loads(data.removeprefix("data: ")) == {"row": 2, "column": 1}
