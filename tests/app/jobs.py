@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import time
@@ -52,11 +53,28 @@ def until_told(mark: str, name: str, *, cancelled: Callable[[], bool]) -> str:
     return name
 
 
-def climb(steps: int, pause_s: float, *, cancelled: object, progress: Callable[..., None]) -> int:
-    for step in range(1, steps + 1):
-        time.sleep(pause_s)
-        progress(step, steps)
+def climb(folder: str, steps: int, *, cancelled: object, progress: Callable[..., None]) -> int:
+    """Reports each step until there is a file named after it."""
+    for step in range(steps + 1):
+        while not Path(folder, str(step)).exists():
+            progress(step, steps)
+            time.sleep(0.01)
     return steps
+
+
+def shares_told_of(compute: Compute, folder: Path, steps: int) -> list[float]:
+    """What somebody who waits for :func:`climb` is told, who notes every step."""
+    shares: list[float] = []
+
+    async def never() -> bool:
+        return False
+
+    async def told(share: float) -> None:
+        shares.append(share)
+        (folder / str(round(share * steps))).touch()
+
+    assert asyncio.run(compute.run(never, climb, str(folder), steps, on_share=told)) == steps
+    return shares
 
 
 def stubborn(seconds: float, *, cancelled: Callable[[], bool]) -> None:

@@ -40,8 +40,8 @@ class Service:
         line = self._process.stdout.readline()
         assert "http://" in line, self.log.read_text()
         self.url = line.split()[3].rstrip("/")
-        client = httpx.Client(base_url=self.url, timeout=30.0)
-        deadline = time.monotonic() + 60
+        client = httpx.Client(base_url=self.url, timeout=60.0)
+        deadline = time.monotonic() + 120
         while time.monotonic() < deadline:
             try:
                 client.get("/healthz")
@@ -69,7 +69,7 @@ class Service:
         if process is None:
             return 0
         process.send_signal(how)
-        code = process.wait(30)
+        code = process.wait(120)
         assert process.stdout is not None
         process.stdout.close()
         return code

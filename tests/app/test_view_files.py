@@ -156,7 +156,7 @@ def test_clicks_reach_only_listeners_of_the_design() -> None:
         ):
             thread = threading.Thread(target=clicks.tell, args=("mine", (3, 4)))
             thread.start()
-            heard = [await asyncio.wait_for(queue.get(), 5) for queue in (mine, again)]
+            heard = [await asyncio.wait_for(queue.get(), 60) for queue in (mine, again)]
             thread.join()
             assert hers.empty()
         return heard

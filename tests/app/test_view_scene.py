@@ -101,7 +101,7 @@ def test_tubes_are_scaled_at_once_and_drawn_anew_once_they_keep_still(
     with view.writer._lock:  # not yet
         view.show(replace(scene, placement=places).drawing())
         assert _nodes(view) == before
-    assert anew.wait(10)
+    assert anew.wait(60)
     assert not _nodes(view).keys() & before.keys()
 
 

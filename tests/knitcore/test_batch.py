@@ -127,10 +127,10 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list["subprocess.Popen[str]"]
     here = ("--no-dashboard", "--host", "127.0.0.1")
     processes = [dask("scheduler", *here, "--port", "0", "--scheduler-file", str(file))]
     try:
-        for _ in range(300):
-            if file.exists() and file.read_text().endswith("}"):
-                break
-            time.sleep(0.1)
+        deadline = time.monotonic() + 60
+        while not (file.exists() and file.read_text().endswith("}")):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
         address = json.loads(file.read_text())["address"]
         worker = ("worker", address, *here, "--no-nanny", "--nthreads", "1")
         processes += [dask(*worker, "--local-directory", str(tmp_path)) for _ in range(2)]
@@ -150,8 +150,11 @@ def slow_square(number: int) -> dict[str, int]:
 def test_a_cluster_gives_the_same_though_a_worker_is_killed(
     cluster: tuple[str, list["subprocess.Popen[str]"]],
 ) -> None:
+    from distributed import Client  # takes a second
+
     address, workers = cluster
-    time.sleep(3)
+    with Client(address, timeout=60, set_as_default=False) as client:
+        client.wait_for_workers(len(workers), timeout=60)
 
     def kill_one(progress: BatchProgress) -> None:
         if progress.done == 1:

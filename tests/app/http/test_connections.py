@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
+import queue
 import socket
 import threading
 import time
@@ -13,6 +14,7 @@ from functools import partial
 
 import pytest
 import uvicorn
+import uvloop
 from starlette.types import Receive, Scope, Send
 from uvicorn.server import ServerState
 
@@ -27,25 +29,54 @@ from app.http.connections import (
     Socket,
 )
 
-KEPT_S = 1
+KEPT_S = 60
+"""Of the service's clock, which tests set forward."""
+PATIENCE_S = 60.0
 MOST = 6
 DOOR = Door(most=100, most_each=MOST)
 HEAD = b"GET / HTTP/1.1\r\nHost: here\r\n"
 
 
+class _Loop(asyncio.SelectorEventLoop):
+    """Its clock can be set forward."""
+
+    _ahead_s = 0.0
+
+    def time(self) -> float:
+        return super().time() + self._ahead_s
+
+    def set_forward(self, seconds: float) -> None:
+        """From another thread; what was due until then has been done afterwards."""
+
+        async def leap() -> None:
+            self._ahead_s += seconds
+            for _ in range(10):
+                await asyncio.sleep(0)
+
+        asyncio.run_coroutine_threadsafe(leap(), self).result(PATIENCE_S)
+
+
+_read: queue.SimpleQueue[int] = queue.SimpleQueue()
+"""Sizes of the parts of a body as they are read."""
+
+
 async def _app(scope: Scope, receive: Receive, send: Send) -> None:
     assert scope["type"] == "http"
     if scope["path"] == "/upload":
-        while (await receive()).get("more_body"):
-            pass
+        more = True
+        while more:
+            message = await receive()
+            _read.put(len(message.get("body", b"")))
+            more = message.get("more_body", False)
     await send(
         {"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"2")]}
     )
     await send({"type": "http.response.body", "body": b"ok"})
 
 
-@pytest.fixture
-def address() -> Iterator[tuple[str, int]]:
+@contextlib.contextmanager
+def _serving(loop: asyncio.AbstractEventLoop) -> Iterator[tuple[str, int]]:
+    """Address of a service that runs in a loop."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         server = uvicorn.Server(
             uvicorn.Config(
@@ -56,19 +87,47 @@ def address() -> Iterator[tuple[str, int]]:
                 log_config=None,
             )
         )
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread = threading.Thread(
+            target=loop.run_until_complete, args=[server.serve(sockets=[listener])]
+        )
         thread.start()
         yield listener.getsockname()
         server.should_exit = True
         thread.join()
+        loop.close()
 
 
-def _is_closed(client: socket.socket) -> bool:
-    client.settimeout(4 * KEPT_S)
-    try:
-        return client.recv(100) == b""
-    except TimeoutError:
-        return False
+@pytest.fixture
+def address() -> Iterator[tuple[str, int]]:
+    """Of a service as people run it."""
+    with _serving(uvloop.new_event_loop()) as found:
+        yield found
+
+
+@pytest.fixture
+def loop() -> _Loop:
+    return _Loop()
+
+
+@pytest.fixture
+def timed(loop: _Loop) -> Iterator[tuple[str, int]]:
+    """Address of a service whose time passes when a test says so."""
+    with _serving(loop) as found:
+        yield found
+
+
+def _is_closed(client: socket.socket, loop: _Loop) -> bool:
+    """Whether a connection is closed by the service within a few times ``KEPT_S``."""
+    client.settimeout(1)
+    for _ in range(4):
+        loop.set_forward(KEPT_S)
+        try:
+            return client.recv(100) == b""
+        except ConnectionResetError:  # it had not read all
+            return True
+        except TimeoutError:
+            continue
+    return False
 
 
 def _is_answered(client: socket.socket) -> bool:
@@ -81,63 +140,76 @@ def _is_answered(client: socket.socket) -> bool:
     return False
 
 
-def test_a_client_that_sends_no_request_in_time_is_disconnected(address: tuple[str, int]) -> None:
+def test_a_client_that_sends_no_request_in_time_is_disconnected(
+    timed: tuple[str, int], loop: _Loop
+) -> None:
     with (
-        socket.create_connection(address) as silent,
-        socket.create_connection(address) as half,
-        socket.create_connection(address) as served,
+        socket.create_connection(timed) as silent,
+        socket.create_connection(timed) as half,
+        socket.create_connection(timed) as served,
     ):
         half.sendall(HEAD)
         served.sendall(HEAD + b"\r\n")
         assert _is_answered(served)
         served.sendall(HEAD[:9])  # the head of a second request, begun
         for client in (silent, half, served):
-            assert _is_closed(client)
+            assert _is_closed(client, loop)
 
 
 def _upload(size: int) -> bytes:
     return f"POST /upload HTTP/1.1\r\nHost: here\r\nContent-Length: {size}\r\n\r\n".encode()
 
 
-def test_a_body_that_comes_fast_enough_is_waited_for(address: tuple[str, int]) -> None:
-    part = bytes(2 * MIN_BYTES_PER_S * KEPT_S)
-    with socket.create_connection(address, timeout=10) as client:
+def _until_read(size: int) -> None:
+    while size > 0:
+        size -= _read.get(timeout=PATIENCE_S)
+
+
+def test_a_body_that_comes_fast_enough_is_waited_for(timed: tuple[str, int], loop: _Loop) -> None:
+    part = bytes(MIN_BYTES_PER_S * KEPT_S)
+    with socket.create_connection(timed, timeout=PATIENCE_S) as client:
         client.sendall(_upload(3 * len(part)))
         for _ in range(3):
             client.sendall(part)
-            time.sleep(0.6 * KEPT_S)
+            _until_read(len(part))
+            loop.set_forward(0.8 * KEPT_S)
         assert _is_answered(client)
 
 
-def test_a_client_that_sends_a_body_byte_by_byte_is_disconnected(address: tuple[str, int]) -> None:
+def test_a_client_that_sends_a_body_byte_by_byte_is_disconnected(
+    timed: tuple[str, int], loop: _Loop
+) -> None:
     with (
-        socket.create_connection(address) as silent,
-        socket.create_connection(address) as slow,
+        socket.create_connection(timed) as silent,
+        socket.create_connection(timed) as slow,
     ):
         silent.sendall(_upload(100))
         slow.sendall(_upload(100) + b"a")
-        time.sleep(0.5 * KEPT_S)
+        _until_read(1)
+        loop.set_forward(0.5 * KEPT_S)
         slow.sendall(b"b")
-        assert _is_closed(silent)
-        assert _is_closed(slow)
+        _until_read(1)
+        assert _is_closed(silent, loop)
+        assert _is_closed(slow, loop)
 
 
 def test_an_address_has_so_many_connections(address: tuple[str, int]) -> None:
     with contextlib.ExitStack() as stack:
         clients = [
-            stack.enter_context(socket.create_connection(address, timeout=10))
+            stack.enter_context(socket.create_connection(address, timeout=PATIENCE_S))
             for _ in range(MOST + 2)
         ]
         for client in clients:
             with contextlib.suppress(OSError):  # closed already
                 client.sendall(HEAD + b"\r\n")
         assert [_is_served(client) for client in clients] == [True] * MOST + [False] * 2
-    with socket.create_connection(address, timeout=10) as next_one:
-        for _ in range(100):  # until the others are gone
-            if len(DOOR) < MOST:
-                break
-            time.sleep(0.05)
+    deadline = time.monotonic() + PATIENCE_S
+    while len(DOOR):  # until the others are gone
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    with socket.create_connection(address, timeout=PATIENCE_S) as next_one:
         next_one.sendall(HEAD + b"\r\n")
+        assert _is_answered(next_one)
 
 
 def _is_served(client: socket.socket) -> bool:
@@ -182,7 +254,7 @@ def test_endless_heads_crumbs_and_requests_ahead_are_refused(
     """
     begin, more = ENDLESS[endless]
     answers, reset = b"", False
-    with socket.create_connection(address, timeout=10) as client:
+    with socket.create_connection(address, timeout=PATIENCE_S) as client:
         try:
             client.sendall(begin + b"".join(more))
             while part := client.recv(10_000):
@@ -195,7 +267,7 @@ def test_endless_heads_crumbs_and_requests_ahead_are_refused(
 
 def test_usual_chunks_and_heads_pass(address: tuple[str, int]) -> None:
     many = b"".join(b"a%d: b\r\n" % n for n in range(MAX_HEADERS - 2))
-    with socket.create_connection(address, timeout=10) as client:
+    with socket.create_connection(address, timeout=PATIENCE_S) as client:
         client.sendall(HEAD + many + b"\r\n")
         assert _is_answered(client)
         client.sendall(CHUNKED + b"".join([_chunk(200)] * 2 * FREE_PARTS) + b"0\r\n\r\n")
@@ -250,7 +322,7 @@ def test_a_websocket_with_too_many_frames_is_closed(kind: str) -> None:
         frame = bytes([FRAMES[kind], 0x80]) + b"\0\0\0\0"
         end.data_received(frame * FRAMES_AT_ONCE)
         before = wire.closed
-        end.data_received(frame * FRAMES_AT_ONCE)
+        end.data_received(frame * 10 * FRAMES_AT_ONCE)  # more than it may send in half a minute
         return before, wire.closed
 
     assert asyncio.run(flood()) == (False, True)

@@ -61,7 +61,7 @@ def test_every_answer_is_documented(url: str) -> None:
         def run(case: schemathesis.Case) -> None:
             nonlocal count
             count += 1
-            response = case.call(timeout=20)
+            response = case.call(timeout=60)
             assert response.status_code < 500 or response.status_code == 503, response.text
             case.validate_response(
                 response,

@@ -278,7 +278,7 @@ def test_the_raw_port_of_a_view_is_closed_to_others() -> None:
     port = views.open("a-design").port
     try:
         with pytest.raises(urllib.error.HTTPError) as refused:
-            urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=5)
+            urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=60)
         assert refused.value.code == 403
         refused.value.close()
         subprotocols = [Subprotocol(f"viser-v{viser.__version__}")]
@@ -294,7 +294,7 @@ def test_the_raw_port_of_a_view_is_closed_to_others() -> None:
         with connect(
             f"ws://127.0.0.1:{port}", subprotocols=subprotocols, additional_headers=RELAY_HEADERS
         ) as socket:
-            assert socket.recv(timeout=5)
+            assert socket.recv(timeout=60)
     finally:
         views.close()
 

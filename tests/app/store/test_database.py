@@ -88,12 +88,12 @@ def test_waiting_changes_share_a_commit_and_fail_alone(database: Database) -> No
 
     def first(connection: Connection) -> None:
         begun.set()
-        go_on.wait(10)
+        go_on.wait(60)
         _insert(0)(connection)
 
     async def scenario() -> list[Any]:
         opening = asyncio.create_task(database.written(first))
-        assert await asyncio.to_thread(begun.wait, 10)
+        assert await asyncio.to_thread(begun.wait, 60)
         rest = [asyncio.create_task(database.written(_insert(n % 10))) for n in range(1, 15)]
         await asyncio.sleep(0)  # all of them have handed their change in
         go_on.set()
@@ -112,12 +112,12 @@ def test_a_change_whose_caller_has_gone_is_not_made(database: Database) -> None:
 
     def first(connection: Connection) -> None:
         begun.set()
-        go_on.wait(10)
+        go_on.wait(60)
         _insert(1)(connection)
 
     async def scenario() -> None:
         opening = asyncio.create_task(database.written(first))
-        assert await asyncio.to_thread(begun.wait, 10)
+        assert await asyncio.to_thread(begun.wait, 60)
         with pytest.raises(TimeoutError):
             await asyncio.wait_for(database.written(_insert(2)), 0.05)
         go_on.set()

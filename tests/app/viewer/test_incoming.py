@@ -151,7 +151,7 @@ def test_a_picture_is_requested_from_a_browser(
     with _shown(client, design) as socket, ThreadPoolExecutor(1) as thread:
         socket.send_bytes(_packed(**CAMERA))
         view = client.app.state.views.get(f"local/{design}")  # type: ignore[attr-defined]
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + 60
         while not view.server.get_clients() and time.monotonic() < deadline:
             time.sleep(0.01)
         address = f"/api/v1/views/{design}/picture?width=40&height=30"
@@ -160,7 +160,7 @@ def test_a_picture_is_requested_from_a_browser(
         assert client.get(address).json()["detail"].startswith("Another picture")
         sent = {"payload": _png(*size), "render_uuid": uuid}
         socket.send_bytes(_packed(type="GetRenderResponseMessage", **sent))
-        assert answer.result(30).status_code == status
+        assert answer.result(60).status_code == status
         if status == 200:
             assert answer.result().content == _png(*size)
 
