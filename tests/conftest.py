@@ -8,9 +8,13 @@ import os
 import shutil
 import tempfile
 
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
-settings.register_profile("knitcore", deadline=None)  # how long an example takes is no property
+settings.register_profile(
+    "knitcore",
+    deadline=None,  # how long an example takes is no property
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+)
 settings.load_profile("knitcore")
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart, predict
@@ -174,7 +174,6 @@ def test_limits_of_knitting_cost() -> None:
     assert "Relax one" in caught.value.remedy
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(place=st.floats(0, 0.999), byte=st.integers(0, 255), data=st.data())
 def test_a_damaged_file_is_read_or_refused(
     tmp_path: Path, place: float, byte: int, data: st.DataObject

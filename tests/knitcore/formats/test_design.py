@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import InputError
@@ -16,7 +16,6 @@ from tests.knitcore.charts import stitch_charts
 NAMES = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=40)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(chart=stitch_charts(), name=NAMES, material=st.none() | NAMES, note=NAMES)
 def test_nothing_is_lost(
     chart: object, name: str, material: str | None, note: str, tmp_path: Path

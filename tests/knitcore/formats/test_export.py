@@ -11,7 +11,7 @@ import meshio
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
@@ -58,16 +58,14 @@ def round_trip(chart: StitchChart, kind: ExportKind, folder: Path) -> StitchChar
 
 
 @pytest.mark.parametrize("kind", CHEAP)
-@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25)
 @given(chart=stitch_charts())
 def test_round_trips_are_identities(kind: ExportKind, chart: StitchChart, tmp_path: Path) -> None:
     assert round_trip(chart, kind, tmp_path) == chart
 
 
 @pytest.mark.parametrize("kind", CHEAP)
-@settings(
-    max_examples=2, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=2)
 @given(seed=st.integers(0, 2**32 - 1), rows=st.integers(150, 200), columns=st.integers(150, 200))
 def test_round_trips_of_large_charts(
     kind: ExportKind, seed: int, rows: int, columns: int, tmp_path: Path
@@ -77,9 +75,7 @@ def test_round_trips_of_large_charts(
 
 
 @pytest.mark.parametrize("kind", WHOLE)
-@settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=25)
 @given(piece=pieces())
 def test_outlines_and_yarns_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
     options = ExportOptions(layout=layout_of(piece))
@@ -90,9 +86,7 @@ def test_outlines_and_yarns_come_back(kind: ExportKind, piece: Piece, tmp_path: 
 
 
 @pytest.mark.parametrize("kind", WHOLE)
-@settings(
-    max_examples=1, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=1)
 @given(piece=pieces(most_rows=200, most_columns=200))
 def test_large_pieces_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
     options = ExportOptions(layout=layout_of(piece))

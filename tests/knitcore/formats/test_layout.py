@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -80,7 +80,6 @@ def designs(draw: st.DrawFn, most: int = 8) -> DesignFile:
     )
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(design=designs())
 def test_nothing_is_lost(design: DesignFile, tmp_path: Path) -> None:
     file = tmp_path / "design.json"
