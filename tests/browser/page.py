@@ -50,12 +50,41 @@ def coloured(picture: np.ndarray) -> int:
 
 def wait_for_colour(page: Page, selector: str, least: int) -> np.ndarray:
     """The picture of a part of the page once it has so many coloured pixels."""
-    for _ in range(40):
+    for _ in range(100):
         picture = pixels(page, selector)
         if coloured(picture) >= least:
             return picture
         page.wait_for_timeout(700)
     raise AssertionError(f"{selector} has {coloured(picture)} coloured pixels, not {least}")
+
+
+def wait_for_change(page: Page, selector: str, before: np.ndarray, least: int) -> None:
+    """Until a part of the page looks otherwise than before: some pixel differs by more."""
+    for _ in range(100):
+        picture = pixels(page, selector)
+        if picture.shape == before.shape and np.abs(picture - before).max() > least:
+            return
+        page.wait_for_timeout(700)
+    raise AssertionError(f"{selector} looks as before")
+
+
+def settle(page: Page) -> None:
+    """Until what has changed is laid out and drawn."""
+    page.evaluate(
+        """async () => {
+            for (let k = 0; k < 4; k++) await new Promise(requestAnimationFrame);
+        }"""
+    )
+
+
+def keep_messages(page: Page) -> None:
+    """Messages stay for as long as a test may take to look at them."""
+    page.evaluate(
+        """() => {
+            const later = window.setTimeout;
+            window.setTimeout = (act, ms) => (ms === 5000 ? 0 : later(act, ms));
+        }"""
+    )
 
 
 def number(page: Page, selector: str) -> float:

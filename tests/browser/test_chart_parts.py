@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import CHART
-from tests.browser.page import Chart, block, kept_chart, kept_design, purls
+from tests.browser.page import Chart, block, keep_messages, kept_chart, kept_design, purls
 
 
 def test_a_region_is_made_filled_painted_locked_and_undone(flat_studio: Page) -> None:
@@ -29,6 +29,7 @@ def test_a_region_is_made_filled_painted_locked_and_undone(flat_studio: Page) ->
     expect(panel).to_contain_text("18 sts")
     assert purls(kept_chart(flat_studio)) == garter | {(2, 5), (2, 6)}, "the fill grows along"
 
+    keep_messages(flat_studio)
     flat_studio.click("#region-1-lock")
     flat_studio.click("#ink-purl")
     chart.drag((1, 3), (1, 7))

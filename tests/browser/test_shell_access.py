@@ -10,7 +10,7 @@ from PIL import Image
 from playwright.sync_api import Page, expect
 
 from tests.browser.axe import THEMES, violations
-from tests.browser.page import drop, kept_chart
+from tests.browser.page import drop, kept_chart, settle
 
 
 def open_yarn_form(page: Page) -> None:
@@ -187,7 +187,7 @@ def test_everything_is_in_reach_on_small_screens(flat_studio: Page) -> None:
     sizes = [(1280, 720), (1024, 768), (820, 1180), (720, 450), (640, 400), (390, 844)]
     for width, height in sizes:
         page.set_viewport_size({"width": width, "height": height})
-        page.wait_for_timeout(200)
+        settle(page)
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         for part in ("#designs-button", "#action-undo", "#export-button", "#action-help", "#chart"):
             box = page.locator(part).bounding_box()

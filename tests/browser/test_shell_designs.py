@@ -15,6 +15,12 @@ from tests.browser.page import drag, kept_chart
 
 NO_3D = "**/view/**"
 SERVICE = "**/api/v1/designs**"
+AGREE = """async () => {
+    const { chart, remote } = JSON.parse(localStorage['knitcore.design']);
+    const answer = await fetch(`/api/v1/designs/${remote.id}`);
+    return (await answer.json()).document.chart === chart;
+}"""
+"""Whether the browser and the service have the same chart."""
 LINK = re.compile(r"#shared/[\w-]{20,}$")
 
 
@@ -86,10 +92,8 @@ def test_two_windows_merge_their_strokes(flat_studio: Page) -> None:
     flat_studio.bring_to_front()
     drag(flat_studio, 40, 0, start=(-120, 60))
     saved(flat_studio)
-    flat_studio.wait_for_timeout(300)
-    saved(flat_studio)
+    flat_studio.wait_for_function(AGREE)
     chart = kept_chart(flat_studio)
-    assert at_the_service(flat_studio)["chart"] == chart
     assert all(mine == "P" for mine, other in zip(chart, theirs, strict=True) if other == "P")
     assert chart.count("P") > theirs.count("P")
 

@@ -7,7 +7,7 @@ from typing import Literal
 import pytest
 from playwright.sync_api import Page, ViewportSize, expect
 
-from tests.browser.page import Chart
+from tests.browser.page import Chart, keep_messages, settle
 
 pytestmark = pytest.mark.slow
 
@@ -32,8 +32,8 @@ def inside(page: Page, part: str, whole: str) -> bool:
 
 
 def comes_inside(page: Page, part: str, whole: str) -> bool:
-    """The same within a few seconds, for what is still being laid out."""
-    for _ in range(50):
+    """The same within a minute, for what is still being laid out."""
+    for _ in range(600):
         if inside(page, part, whole):
             return True
         page.wait_for_timeout(100)
@@ -72,6 +72,7 @@ def test_the_plots_are_one_click_away(flat_studio: Page) -> None:
 
 def test_the_readout_is_whole_and_the_chart_keeps_still(flat_studio: Page) -> None:
     flat_studio.set_viewport_size(TABLET)
+    settle(flat_studio)
     before = flat_studio.locator("#chart").bounding_box()
     chart = Chart(flat_studio)
     flat_studio.mouse.move(*chart.at(10, 12))
@@ -84,6 +85,7 @@ def test_the_readout_is_whole_and_the_chart_keeps_still(flat_studio: Page) -> No
 
 
 def test_messages_do_not_cover_a_dock(flat_studio: Page) -> None:
+    keep_messages(flat_studio)
     flat_studio.keyboard.press("Control+a")
     flat_studio.click("#selection-make-repeat")
     expect(flat_studio.locator(".message")).to_be_visible()

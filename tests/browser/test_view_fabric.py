@@ -21,7 +21,7 @@ from tests.browser.conftest import (
     open_small_chart,
     wait_for_numbers,
 )
-from tests.browser.page import drag, pixels, wait_for_colour
+from tests.browser.page import drag, pixels, wait_for_change, wait_for_colour
 
 YARN = 900
 """Coloured pixels of the small fabric at least."""
@@ -50,7 +50,7 @@ def test_a_click_on_the_fabric_finds_its_stitch_and_marks_it(studio: Page) -> No
     expect(readout).to_contain_text("Row ")
     row = int(readout.inner_text().split()[1])
     assert 1 < row < ROWS
-    assert np.abs(pixels(studio, "#chart-host") - before).max() > 40
+    wait_for_change(studio, "#chart-host", before, 40)
 
 
 @pytest.mark.slow
@@ -177,9 +177,8 @@ def test_sides_and_yarn_colours_change_the_picture(studio: Page) -> None:
     face = _wait_for_live_cloth(studio)
     with studio.expect_response(lambda r: r.url.endswith("/camera") and r.ok):
         studio.click("#look-edge")
-    studio.wait_for_timeout(2_000)
-    edge = wait_for_colour(studio, "#fabric", 300)
-    assert np.abs(edge - face).max() > 60
+    wait_for_change(studio, "#fabric", face, 60)
+    wait_for_colour(studio, "#fabric", 300)
     with studio.expect_response(
         lambda r: "/views/" in r.url and r.request.method == "PUT" and r.ok
     ):
@@ -201,10 +200,14 @@ def test_a_stretch_is_scrubbed_by_keyboard_in_chart_curve_and_3d(studio: Page) -
             studio.keyboard.press(",")
     expect(caption).not_to_contain_text("Stretched along the rows by 30 %")
     expect(studio.locator("#curve-course")).to_have_attribute("aria-checked", "true")
-    curves = studio.locator("#plot-curve")
-    expect(curves.locator(".main-svg").first).to_be_visible()
-    names = curves.evaluate("plot => plot.data.map(({ name }) => name)")
-    assert {"stockinette", "garter", "rib", "seed", "90 % interval", "stretch test"} <= set(names)
+    expect(studio.locator("#plot-curve .main-svg").first).to_be_visible()
+    studio.wait_for_function(
+        """names => {
+            const shown = document.querySelector("#plot-curve").data.map(({ name }) => name);
+            return names.every((name) => shown.includes(name));
+        }""",
+        arg=["stockinette", "garter", "rib", "seed", "90 % interval", "stretch test"],
+    )
 
 
 @pytest.mark.slow
