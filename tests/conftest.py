@@ -20,8 +20,9 @@ settings.load_profile("knitcore")
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-# Tests keep all cores busy, and must not wait until nobody else wants one.
+# Tests keep all cores busy, and must not wait until nobody else wants one, nor get a tenth of it.
 os.environ.setdefault("KNITCORE_WORKER_PRIORITY", "low")
+os.environ.setdefault("KNITCORE_WORKER_NICENESS", "1")
 
 # No test writes to the user's own data folder, in this process or in one that it starts.
 _DATA = tempfile.mkdtemp(prefix="knitcore-tests-")
