@@ -19,14 +19,14 @@ ROOT = Path(__file__).resolve().parents[1]
 UV = Path(sys.executable).with_name("uv")
 PREDICT = ("predict", "garter", "--size", "5x5", "--material", "acrylic", "--json")
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800)]
 
 
 def run(*command: str | Path, cwd: Path) -> str:
     """What a command prints; it finds nothing of this checkout."""
     bare = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     done = subprocess.run(
-        command, cwd=cwd, env=bare, capture_output=True, text=True, timeout=300, check=False
+        command, cwd=cwd, env=bare, capture_output=True, text=True, timeout=600, check=False
     )
     assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
     return done.stdout
@@ -86,7 +86,7 @@ def serving(tmp_path: Path) -> Iterator[Callable[[Path], str]]:
     yield serve
     for process in started:
         process.terminate()
-        process.communicate(timeout=60)
+        process.communicate(timeout=120)
 
 
 def test_the_whole_tool_runs_without_checkout_and_node(

@@ -113,7 +113,7 @@ def test_a_full_disk_refuses_clearly_and_loses_nothing(small_disk: Path, tmp_pat
 
 
 @pytest.mark.postgres
-@pytest.mark.timeout(400 + 2 * OUTAGE_S)
+@pytest.mark.timeout(600 + 2 * OUTAGE_S)
 def test_a_database_outage_loses_nothing(postgres_url: str, tmp_path: Path) -> None:
     service = Service(tmp_path, database_url=postgres_url)
     client = service.start()
@@ -177,6 +177,7 @@ def test_clients_that_vanish_leave_nothing_behind(tmp_path: Path) -> None:
         view = websockets.sync.client.connect(
             f"{service.url.replace('http', 'ws')}/view/vanishing",
             subprotocols=[websockets.Subprotocol(f"viser-v{viser.__version__}")],
+            open_timeout=60,
         )
         assert view.recv()
         view.socket.shutdown(socket.SHUT_RDWR)

@@ -61,7 +61,7 @@ class Painter:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(120 + 60 * KILLS)
+@pytest.mark.timeout(600 + 60 * KILLS)
 def test_no_acknowledged_edit_is_lost(tmp_path: Path) -> None:
     service = Service(tmp_path)
     rng = random.Random(2024)  # noqa: S311

@@ -5,6 +5,7 @@ import json
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -282,18 +283,14 @@ def test_the_raw_port_of_a_view_is_closed_to_others() -> None:
         assert refused.value.code == 403
         refused.value.close()
         subprotocols = [Subprotocol(f"viser-v{viser.__version__}")]
+        opened = partial(
+            connect, f"ws://127.0.0.1:{port}", subprotocols=subprotocols, open_timeout=60
+        )
         for headers in ({}, {"X-Knitcore-Relay": "a guess"}, {"Origin": "http://evil.example"}):
-            with (
-                pytest.raises(InvalidStatus) as denied,
-                connect(
-                    f"ws://127.0.0.1:{port}", subprotocols=subprotocols, additional_headers=headers
-                ),
-            ):
+            with pytest.raises(InvalidStatus) as denied, opened(additional_headers=headers):
                 pass
             assert denied.value.response.status_code == 403
-        with connect(
-            f"ws://127.0.0.1:{port}", subprotocols=subprotocols, additional_headers=RELAY_HEADERS
-        ) as socket:
+        with opened(additional_headers=RELAY_HEADERS) as socket:
             assert socket.recv(timeout=60)
     finally:
         views.close()
