@@ -6,8 +6,6 @@ import asyncio
 import io
 import json
 import threading
-import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -170,25 +168,11 @@ def test_a_click_in_the_view_is_an_event_of_the_page(client: TestClient) -> None
     assert client.get("/api/v1/views/a-design-unknown/events").status_code == 404
     client.put(f"/api/v1/views/{DESIGN}", json=SMALL)
     state = client.app.state  # type: ignore[attr-defined]
-
-    def tell() -> None:
-        deadline = time.monotonic() + 60
-        while not state.views.clicks.count(f"local/{DESIGN}") and time.monotonic() < deadline:
-            time.sleep(0.01)  # until the page listens
+    with client.stream("GET", f"/api/v1/views/{DESIGN}/events") as stream:
+        lines = stream.iter_lines()
+        assert next(lines).startswith("retry")  # from now on the page listens
         state.views.clicks.tell(f"local/{DESIGN}", (2, 1))
-        state.stopping = True
-
-    def lines() -> Iterator[str]:
-        with client.stream("GET", f"/api/v1/views/{DESIGN}/events") as stream:
-            yield from stream.iter_lines()
-
-    teller = threading.Thread(target=tell)
-    teller.start()
-    try:
-        data = next(line for line in lines() if line.startswith("data: "))
-        teller.join()
-    finally:
-        state.stopping = False
+        data = next(line for line in lines if line.startswith("data: "))
     assert json.loads(data.removeprefix("data: ")) == {"row": 2, "column": 1}
 
 
