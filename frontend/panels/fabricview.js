@@ -184,7 +184,11 @@ export function fabricview(host, studio, view) {
       link.connect();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (error.offline) studio.online.value = false;
+      if (error.offline) {
+        studio.online.value = false;
+        status.replaceChildren(); // the banner over the cloth says why nothing comes
+        return;
+      }
       const { field } = error.problem;
       if (field === "curl.id" && studio.seeing.posed.value) {
         const { pose, curling } = studio.seeing;

@@ -12,7 +12,7 @@
 const PANELS = {
   account: () => import("./dialogs/account.js"),
   atlas: async () => ({ create: (await import("./inverse/inverse.js")).opening("atlas") }),
-  fill: async () => ({ create: (await import("./inverse/inverse.js")).opening("fill") }),
+  fill: () => import("./inverse/filling.js"),
   find: async () => ({ create: (await import("./inverse/inverse.js")).opening("find") }),
   compare: () => import("./compare/compare.js"),
   conflict: () => import("./designs/conflict.js"),

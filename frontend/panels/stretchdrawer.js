@@ -328,7 +328,9 @@ function stretchOptions(studio) {
  * @param {Problem} problem
  * @param {(most: number, unit: Unit) => void} pull
  */
-function refused({ title, detail, remedy, field, most }, pull) {
+function refused({ type, title, detail, remedy, field, most }, pull) {
+  // The banner says the rest.
+  if (type === "offline") return h("span", {}, "No test without the service: pull again when it is back.");
   if (!most || (field !== "strain" && field !== "force_n")) {
     return h("span", {}, h("strong", {}, title), `: ${detail} ${remedy ?? ""}`);
   }

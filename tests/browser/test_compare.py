@@ -71,7 +71,7 @@ def test_a_version_is_set_beside_the_whole_chart_as_it_is_now(flat_studio: Page)
     expect(modulus).to_be_visible()
     chosen = page.locator("#compare-dialog select option:checked").all_inner_texts()
     assert chosen[0] == "Whole chart"
-    assert chosen[2].startswith("All knit (")
+    assert chosen[2].startswith("1. All knit (")
     for value, fabric in zip(
         modulus.locator(".value").all_inner_texts(),
         (Fabric.GARTER, Fabric.STOCKINETTE),

@@ -63,15 +63,17 @@ def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
 
 def test_a_part_is_made_softer_tried_on_the_chart_and_taken_back(flat_studio: Page) -> None:
     flat_studio.keyboard.press("Shift+W")
+    for beside in ("#chart", "#fabric", "#inspector", "#fill-run"):
+        expect(flat_studio.locator(beside)).to_be_in_viewport(ratio=1)
     flat_studio.click("#fill-run")
-    expect(flat_studio.locator("#inverse-fill-content")).to_contain_text("There is no target")
+    expect(flat_studio.locator("#panel-fill")).to_contain_text("There is no target")
     flat_studio.click("#part-add")
     now = flat_studio.locator("#part-0-course-now")
     modulus = material("acrylic").law(Fabric.STOCKINETTE).modulus_course
     expect(now).to_have_text(f"{modulus:.3f}")
     flat_studio.select_option("#part-0-like", "much softer")
     expect(flat_studio.locator("#part-0-course")).to_have_value(f"{0.4 * modulus:.3f}")
-    expect(flat_studio.locator("#parts")).to_contain_text("2.5 times stiffer than wanted")
+    expect(flat_studio.locator("#parts")).to_contain_text("2.5 times too stiff")
     rib = material("acrylic").law(Fabric.RIB)
     flat_studio.fill("#part-0-course", f"{rib.modulus_course:.4f}")
     flat_studio.fill("#part-0-wale", f"{rib.modulus_wale:.4f}")
@@ -80,11 +82,11 @@ def test_a_part_is_made_softer_tried_on_the_chart_and_taken_back(flat_studio: Pa
     assert {line[:2] for line in kept_chart(flat_studio).split("\n")} <= {"KP", "PK"}
     expect(flat_studio.locator("#parts")).to_contain_text("as wanted")
     assert float(now.inner_text()) == pytest.approx(rib.modulus_course, rel=0.1)
-    assert not violations(flat_studio, "#inverse")
+    assert not violations(flat_studio, "#panel-fill")
     flat_studio.click("#fill-back")
     assert kept_chart(flat_studio) == CHART
     flat_studio.click("#fill-outline")
-    assert not violations(flat_studio, "#inverse")
+    assert not violations(flat_studio, "#panel-fill")
 
 
 def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:

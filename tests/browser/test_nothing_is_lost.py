@@ -70,8 +70,14 @@ def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
 def test_painting_continues_while_the_service_is_unreachable(flat_studio: Page) -> None:
     for path in ("**/api/**", "**/healthz"):
         flat_studio.route(path, lambda route: route.abort())
+    before = flat_studio.locator("#chart").bounding_box()
     drag(flat_studio, 60, 30)
     expect(flat_studio.locator("#offline")).to_be_visible()
+    flat_studio.click("#stretch-run")
+    expect(flat_studio.locator("#stretch-note")).to_contain_text("pull again when it is back")
+    said = flat_studio.get_by_text("service cannot be reached").filter(visible=True)
+    expect(said).to_have_count(1)
+    assert flat_studio.locator("#chart").bounding_box() == before
     drag(flat_studio, 0, 50, start=(-80, -30))
     assert kept_chart(flat_studio).count("P") > 3
     expect(flat_studio.locator("#segments-course")).to_contain_text("odd")

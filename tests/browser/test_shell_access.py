@@ -81,15 +81,15 @@ def test_nothing_serious_is_wrong_where_targets_and_pictures_are_given(flat_stud
     Image.effect_mandelbrot((60, 40), (-2, -1, 1, 1), 20).save(picture, "PNG")
     for theme in THEMES:
         page.emulate_media(color_scheme=theme)
-        for key, tab in (("Shift+F", "find"), ("Shift+W", "fill")):
-            page.keyboard.press(key)
-            expect(page.locator(f"#inverse-{tab}-content")).to_be_visible()
-            found += [f"{theme} {tab}: {wrong}" for wrong in violations(page, "#inverse")]
-            if tab == "fill":
-                page.click("#fill-outline")
-                found += [f"{theme} outline: {wrong}" for wrong in violations(page, "#inverse")]
-                page.click("#fill-stiffness")
-            page.click("#inverse-close")
+        page.keyboard.press("Shift+F")
+        expect(page.locator("#inverse-find-content")).to_be_visible()
+        found += [f"{theme} find: {wrong}" for wrong in violations(page, "#inverse")]
+        page.click("#inverse-close")
+        page.keyboard.press("Shift+W")
+        for way in ("outline", "stiffness"):
+            page.click(f"#fill-{way}")
+            found += [f"{theme} {way}: {wrong}" for wrong in violations(page, "#panel-fill")]
+        page.keyboard.press("Escape")
         page.click("#stretch-more")
         found += [f"{theme} options: {wrong}" for wrong in violations(page, "#stretch-options")]
         page.keyboard.press("Escape")

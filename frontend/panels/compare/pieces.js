@@ -44,11 +44,15 @@ export async function choices(studio, keeper) {
     ...versions.toReversed().map(({ number, name, created_at: made }) => ({
       value: `version ${number}`,
       group: "Versions",
-      label: `${name} (${ago(made)})`,
+      label: `${number}. ${name} (${ago(made)})`,
     })),
     ...others
       .filter((design) => design.id !== id)
-      .map((design) => ({ value: `design ${design.id}`, group: "My designs", label: design.name })),
+      .map(({ id: design, name, columns, rows, changed_at: changed }) => ({
+        value: `design ${design}`,
+        group: "My designs",
+        label: `${name} (${columns} × ${rows}, ${ago(changed)})`,
+      })),
   ];
 }
 

@@ -1,5 +1,5 @@
 /**
- * Fill from a target: stiffness for parts of the chart becomes stitches.
+ * Stitches from stiffness: parts of the chart, and how stiff each should be.
  *
  * @import {Studio} from "../../studio.js"
  * @import {FillResult} from "../../types.js"
@@ -35,7 +35,7 @@ const STEPS = { "a little softer": 1 / 1.3, "much softer": 1 / 2.5, "a little st
 const NEAR = 0.1;
 
 /** @param {Studio} studio */
-export function fillTab(studio) {
+export function fromStiffness(studio) {
   const { document: chart, selection } = studio;
   const run = new Run();
   const list = h("ol", { class: "target-list", id: "parts" });
@@ -166,19 +166,15 @@ export function fillTab(studio) {
           show();
         }),
       ),
-      h(
-        "div",
-        { class: "part-numbers" },
-        ...AXES.map(({ label }, i) =>
-          h(
-            "div",
-            { class: "part-number" },
-            h("span", { class: "muted" }, `along ${label}`),
-            now[i],
-            h("span", { class: "muted", "aria-hidden": "true" }, "→"),
-            inputs[i],
-            verdicts[i],
-          ),
+      ...AXES.map(({ label }, i) =>
+        h(
+          "div",
+          { class: "part-number" },
+          h("span", { class: "muted" }, label),
+          now[i],
+          h("span", { class: "muted", "aria-hidden": "true" }, "→"),
+          inputs[i],
+          verdicts[i],
         ),
       ),
     );
@@ -319,15 +315,8 @@ export function fillTab(studio) {
           void fill();
         },
       },
+      h("div", { class: "inverse-bar" }, addButton, textButton("plus", "Regions", addRegions, { id: "part-regions" })),
       list,
-      h(
-        "div",
-        { class: "inverse-bar" },
-        addButton,
-        textButton("plus", "Regions", addRegions, { id: "part-regions" }),
-        h("span", { class: "spacer" }),
-        h("button", { class: "button primary", type: "submit", id: "fill-run" }, "Fill"),
-      ),
       h(
         "details",
         { class: "inverse-more" },
@@ -335,6 +324,11 @@ export function fillTab(studio) {
         h("label", { class: "check" }, "No patch narrower than", smallest, "stitches"),
         h("label", { class: "check" }, scattered, "Scattered purls, too, where they come nearer: hard to knit by hand"),
         h("label", { class: "check" }, large, "Larger patterns, too (the first time takes up to a minute)"),
+      ),
+      h(
+        "div",
+        { class: "inverse-bar inverse-start" },
+        h("button", { class: "button primary", type: "submit", id: "fill-run" }, "Fill"),
       ),
     ),
     run.element,
@@ -361,7 +355,7 @@ function against(now, wanted) {
   if (Math.abs(share - 1) <= NEAR) return "as wanted";
   const times = Math.max(share, 1 / share);
   const more = times >= 2 ? `${times.toFixed(1)} times ` : `${percent(times - 1)} `;
-  return `${more}${share > 1 ? "stiffer" : "softer"} than wanted`;
+  return `${more}${share > 1 ? "too stiff" : "too soft"}`;
 }
 
 /** A message of the service, which speaks engineering, in the page's words. @param {string} message */

@@ -1,6 +1,6 @@
 /**
- * Inverse design beside the chart: the atlas of all repeats, the search for a fabric, and filling
- * from a target. It lies over the fabric and the inspector, so that the chart stays in sight.
+ * Inverse design beside the chart: the atlas of all repeats and the search for a fabric. It lies over the
+ * fabric and the inspector, so that the chart stays in sight.
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
@@ -9,19 +9,16 @@
 import { byId, h } from "../../dom.js";
 import { iconButton } from "../../widgets/buttons.js";
 import { atlasTab } from "./atlas.js";
-import { fillTab } from "./fill.js";
 import { findTab } from "./find.js";
-import { outlineTab } from "./outline.js";
 
 const TABS = [
   { id: "atlas", label: "Atlas" },
   { id: "find", label: "Find a fabric" },
-  { id: "fill", label: "Fill from a target" },
 ];
 
-/** @typedef {"atlas" | "find" | "fill"} TabName */
+/** @typedef {"atlas" | "find"} TabName */
 
-/** One panel for all three. @type {WeakMap<Studio, (tab: TabName) => void>} */
+/** One panel for both. @type {WeakMap<Studio, (tab: TabName) => void>} */
 const panels = new WeakMap();
 
 /**
@@ -45,33 +42,8 @@ export const opening = (tab) => (studio, context) => {
 function panel(studio, context) {
   const atlas = atlasTab(studio, context);
   const find = findTab(studio, context);
-  const stiffness = fillTab(studio);
-  const ways = [
-    { id: "stiffness", label: "Stiffness of parts", ...stiffness },
-    { id: "outline", label: "Outline under a stretch", ...outlineTab(studio) },
-  ];
-  const way = h(
-    "div",
-    { class: "segmented", role: "radiogroup", "aria-label": "What is asked for" },
-    ...ways.map(({ id, label }) =>
-      h("button", { class: "segment", role: "radio", id: `fill-${id}`, onclick: () => showWay(id) }, label),
-    ),
-  );
-  const showWay = (/** @type {string} */ chosen) => {
-    ways.forEach(({ id, element }, i) => {
-      element.hidden = id !== chosen;
-      way.children[i].setAttribute("aria-checked", String(id === chosen));
-    });
-  };
-  showWay("stiffness");
-  const fill = h(
-    "div",
-    { class: "inverse-tab scrolls" },
-    h("div", { class: "inverse-bar" }, way),
-    ...ways.map(({ element }) => element),
-  );
   /** @type {Record<TabName, HTMLElement>} */
-  const contents = { atlas: atlas.element, find: find.element, fill };
+  const contents = { atlas: atlas.element, find: find.element };
 
   const close = () => {
     section.hidden = true;
@@ -107,7 +79,7 @@ function panel(studio, context) {
   const section = h(
     "section",
     {
-      class: "inverse",
+      class: "inverse beside",
       id: "inverse",
       "aria-label": "Inverse design",
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
@@ -143,7 +115,6 @@ function panel(studio, context) {
   const show = (/** @type {TabName} */ tab) => {
     current = tab;
     section.hidden = false;
-    section.dataset.tab = tab; // filling leaves the fabric in sight
     for (const { id } of TABS) {
       contents[/** @type {TabName} */ (id)].hidden = id !== tab;
       const button = byId(`inverse-${id}`);
@@ -151,7 +122,6 @@ function panel(studio, context) {
       button.tabIndex = id === tab ? 0 : -1;
     }
     if (tab === "atlas") atlas.open();
-    if (tab === "fill") stiffness.opened();
     byId(`inverse-${tab}`).focus({ preventScroll: true });
     section.scrollIntoView(); // where the page scrolls: on phones, and zoomed in
   };

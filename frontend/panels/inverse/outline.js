@@ -1,5 +1,5 @@
 /**
- * Fill from a wanted outline: how wide the stretched swatch shall be, line by line.
+ * Stitches from a wanted outline: how wide the stretched swatch shall be, line by line.
  *
  * @import {Studio} from "../../studio.js"
  * @import {Direction} from "../../types.js"
@@ -17,9 +17,9 @@ import { Run } from "../../widgets/jobrun.js";
 import { textButton } from "../../widgets/buttons.js";
 
 const SVG = "http://www.w3.org/2000/svg";
-const WIDTH = 480;
-const HEIGHT = 190;
-const PAD = { left: 44, right: 12, top: 10, bottom: 34 };
+const WIDTH = 316;
+const HEIGHT = 200;
+const PAD = { left: 34, right: 10, top: 10, bottom: 48 };
 const LOW = 0.7;
 const HIGH = 1.05;
 const MAX_STITCHES = 10_000;
@@ -27,7 +27,7 @@ const MAX_STITCHES = 10_000;
 const PLACES = [0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9];
 
 /** @param {Studio} studio */
-export function outlineTab(studio) {
+export function fromOutline(studio) {
   const run = new Run();
   const answer = h("div", { class: "inverse-answer", id: "outline-answer" });
   /** @type {Direction} */ let direction = "wale";
@@ -74,11 +74,11 @@ export function outlineTab(studio) {
       add("text", { x: PAD.left - 6, y: y(tick) + 4, class: "tick end" }, tick.toFixed(1));
     }
     const [first, last] = direction === "wale" ? ["bottom row", "top row"] : ["first column", "last column"];
-    add("text", { x: PAD.left, y: HEIGHT - 10, class: "tick" }, first);
-    add("text", { x: WIDTH - PAD.right, y: HEIGHT - 10, class: "tick end" }, last);
+    add("text", { x: PAD.left, y: HEIGHT - 28, class: "tick" }, first);
+    add("text", { x: WIDTH - PAD.right, y: HEIGHT - 28, class: "tick end" }, last);
     add(
       "text",
-      { x: (PAD.left + WIDTH - PAD.right) / 2, y: HEIGHT - 10, class: "tick middle" },
+      { x: (PAD.left + WIDTH - PAD.right) / 2, y: HEIGHT - 8, class: "tick middle" },
       "stretched width over width at rest",
     );
     const shares = Array.from({ length: 81 }, (_, i) => i / 80);
@@ -280,7 +280,10 @@ export function outlineTab(studio) {
         pulls,
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
         h("label", { class: "check" }, "bands of at least", band, "lines"),
-        h("span", { class: "spacer" }),
+      ),
+      h(
+        "div",
+        { class: "inverse-bar inverse-start" },
         h("button", { class: "button primary", type: "submit", id: "outline-run" }, "Fill"),
       ),
     ),
