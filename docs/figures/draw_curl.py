@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageFont
 
 from knitcore.chart import StitchChart
 from knitcore.materials import material
@@ -21,6 +21,10 @@ Array = NDArray[np.float64]
 
 FACE, BACK = np.array([92, 138, 184]), np.array([226, 150, 84])
 SIDE = 330
+FONT = ImageFont.load_default(21)
+CAPTION = 60
+"""Height of two lines below a picture, pixels."""
+
 TOWARDS = np.array([0.42, -0.62, 0.66])
 """From where the pieces are seen."""
 
@@ -93,13 +97,15 @@ def drawn(
 
 
 def save(pictures: Mapping[str, Image.Image], path: Path, *, across: int) -> None:
-    """Pictures beside each other, so many in a row, each over its name."""
-    sheet = Image.new("RGB", (across * SIDE, -(-len(pictures) // across) * (SIDE + 22)), "white")
+    """Pictures beside each other, so many in a row, each over its name; a colon ends its line."""
+    down = -(-len(pictures) // across)
+    sheet = Image.new("RGB", (across * SIDE, down * (SIDE + CAPTION)), "white")
     pen = ImageDraw.Draw(sheet)
     for place, (name, picture) in enumerate(pictures.items()):
-        at = (place % across) * SIDE, (place // across) * (SIDE + 22)
+        at = (place % across) * SIDE, (place // across) * (SIDE + CAPTION)
         sheet.paste(picture, at)
-        pen.text((at[0] + 12, at[1] + SIDE), name, fill=(40, 40, 40))
+        words = name.replace(": ", ":\n")
+        pen.text((at[0] + 12, at[1] + SIDE), words, fill=(40, 40, 40), font=FONT)
     sheet.quantize(128).save(path, optimize=True)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from draw_curl import IMAGES, SIDE, drawn, save
+from draw_curl import FONT, IMAGES, SIDE, drawn, save
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
@@ -38,12 +38,12 @@ def main() -> None:
     for name, repeat in (("garter", "K/P"), ("seed", "KP/PK"), ("1x1 rib", "KP")):
         strip = overhang(_cloth(repeat), 0)
         lines[f"{name} {strip.bending_length_mm:.0f} mm"] = strip.corners_mm[:, 1, ::2]
-    pictures["strips at 41.5 degrees, bending length"] = _profiles(lines)
+    pictures["strips at 41.5 degrees: bending length"] = _profiles(lines)
     lines = {}
     for name, repeat in (("garter", "K/P"), ("1x1 rib", "KP")):
         found = advice(_cloth("K"), _cloth(repeat), 0)
         lines[f"{name} {1.2 * found.width_mm:.0f} mm wide"] = found.line_mm
-    pictures["stockinette between borders, on a table"] = _profiles(lines)
+    pictures["stockinette between borders: on a table"] = _profiles(lines)
     save(pictures, IMAGES / "weight.png", across=3)
 
 
@@ -62,7 +62,7 @@ def _profiles(lines: dict[str, NDArray[np.float64]]) -> Image.Image:
         x = 0.05 * SIDE + (line[:, 0] - line[:, 0].min()) * scale
         y = top + (line[:, 1].max() - line[:, 1]) * scale
         pen.line(list(zip(x, y, strict=True)), fill=(92, 138, 184), width=3)
-        pen.text((12, top - 24), name, fill=(40, 40, 40))
+        pen.text((12, top - 30), name, fill=(40, 40, 40), font=FONT)
     return picture
 
 

@@ -14,7 +14,7 @@ export function create(studio) {
   const stiffness = fromStiffness(studio);
   const ways = [
     { id: "stiffness", label: "Stiffness", ...stiffness },
-    { id: "outline", label: "Outline when stretched", ...fromOutline(studio) },
+    { id: "outline", label: "Outline under a stretch", ...fromOutline(studio) },
   ];
   const choice = h(
     "div",
