@@ -2855,7 +2855,7 @@ export interface WholeRequest {
   /** Hold the stitches in one plane, as a fabric laid flat; not published. */
   flat?: boolean;
   convention?: Convention;
-  /** Stop when a round changes the energy by less than this part of it. */
+  /** Stop when a round changes the energy by less than this part of it, and the sizes by less than ten times this part. */
   tolerance?: number;
   /** Most rounds on each of two grids. */
   rounds?: number;
@@ -2881,6 +2881,16 @@ export interface WholeResult {
   min_distance_mm: number;
   /** Whether the last round met the tolerance. */
   converged: boolean;
+  /** On the finer of the two grids. */
+  rounds: number;
+  /** Part of the energy that the last round took away. */
+  energy_change: number;
+  /** Larger relative change of width and height in the last round. */
+  size_change: number;
+  /** Part of the energy that further rounds may take away: the last change times the rounds. */
+  may_fall: number;
+  /** That is left on the yarn. */
+  largest_force_n: number;
   /** CPU time since the job was last started. */
   seconds: number;
   yarn: YarnResult;

@@ -31,10 +31,11 @@ class WholeRequest(StitchRequest):
     )
     convention: Convention = Convention.PUBLISHED
     tolerance: float = Field(
-        1e-4, ge=1e-6, le=0.1,
-        description="Stop when a round changes the energy by less than this part of it.",
+        1e-3, ge=1e-6, le=0.1,
+        description="Stop when a round changes the energy by less than this part of it, and the "
+        "sizes by less than ten times this part.",
     )  # fmt: skip
-    rounds: int = Field(40, ge=1, le=MAX_ROUNDS, description="Most rounds on each of two grids.")
+    rounds: int = Field(40, ge=2, le=MAX_ROUNDS, description="Most rounds on each of two grids.")
     centre_lines: bool = Field(False, description="Return the centre lines of the yarn too.")
 
 
@@ -53,6 +54,16 @@ class WholeResult(IntervalResult):
     contact_share: float
     min_distance_mm: float
     converged: bool = Field(description="Whether the last round met the tolerance.")
+    rounds: int = Field(description="On the finer of the two grids.")
+    energy_change: float = Field(description="Part of the energy that the last round took away.")
+    size_change: float = Field(
+        description="Larger relative change of width and height in the last round."
+    )
+    may_fall: float = Field(
+        description="Part of the energy that further rounds may take away: the last change times "
+        "the rounds."
+    )
+    largest_force_n: float = Field(description="That is left on the yarn.")
     seconds: float = Field(description="CPU time since the job was last started.")
     yarn: YarnResult
     notes: list[str]
@@ -69,7 +80,7 @@ class KeptSheet(BaseModel):
     tension_n: list[list[float]]
     core_radius_mm: float
     fine: bool
-    energies_n_mm: list[float]
+    rounds: list[tuple[float, float, float]]
 
     @classmethod
     def of(cls, sheet: WholeShape) -> KeptSheet:
@@ -77,14 +88,14 @@ class KeptSheet(BaseModel):
         return cls(
             controls=sheet.controls.tolist(), sizes_mm=sheet.sizes_mm.tolist(),
             tension_n=sheet.tension_n.tolist(), core_radius_mm=sheet.core_radius_mm,
-            fine=sheet.fine, energies_n_mm=list(sheet.energies_n_mm),
+            fine=sheet.fine, rounds=list(sheet.rounds),
         )  # fmt: skip
 
     def sheet(self) -> WholeShape:
         """As the library takes it."""
         return WholeShape(
             np.array(self.controls), np.array(self.sizes_mm), np.array(self.tension_n),
-            self.core_radius_mm, self.fine, tuple(self.energies_n_mm),
+            self.core_radius_mm, self.fine, tuple(self.rounds),
         )  # fmt: skip
 
 

@@ -1214,7 +1214,8 @@ class WholeRequest(TypedDict):
     """Hold the stitches in one plane, as a fabric laid flat; not published."""
     convention: NotRequired[Convention]
     tolerance: NotRequired[float]
-    """Stop when a round changes the energy by less than this part of it."""
+    """Stop when a round changes the energy by less than this part of it, and the sizes by less
+    than ten times this part."""
     rounds: NotRequired[int]
     """Most rounds on each of two grids."""
     centre_lines: NotRequired[bool]
@@ -3157,6 +3158,16 @@ class WholeResult(BaseModel):
     min_distance_mm: float
     converged: bool
     """Whether the last round met the tolerance."""
+    rounds: int
+    """On the finer of the two grids."""
+    energy_change: float
+    """Part of the energy that the last round took away."""
+    size_change: float
+    """Larger relative change of width and height in the last round."""
+    may_fall: float
+    """Part of the energy that further rounds may take away: the last change times the rounds."""
+    largest_force_n: float
+    """That is left on the yarn."""
     seconds: float
     """CPU time since the job was last started."""
     yarn: YarnResult

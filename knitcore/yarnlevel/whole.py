@@ -63,7 +63,9 @@ _FIRSTS = ((0, 0), (_WINDOW // 2, _WINDOW // 2), (0, _WINDOW // 2), (_WINDOW // 
 _GROWING = Options(tolerance=1e-3, iterations=4, mended=False)
 _PASS = Options(tolerance=1e-6, iterations=3, mended=False)
 _LAST_PASS = Options(tolerance=1e-6, iterations=6, mended=False)
-_DESCENT_STEPS = 60
+_DESCENT_STEPS = 20
+_SIZES = 10.0
+"""Sizes may still change by so many times the tolerance: near its least the energy hardly does."""
 _REPEAT = 36
 """A chart with a repeat of up to this many stitches starts from that, relaxed."""
 _PATIENCE = 12
@@ -81,7 +83,7 @@ class WholeShape:
     tension_n : (rows, wales).
     core_radius_mm : core that the yarn has so far.
     fine : whether it is on the finer of the two grids.
-    energies_n_mm : of a stitch, after each round on this grid.
+    rounds : energy of a stitch, N·mm, its width and its height, mm, after each round on this grid.
     """
 
     controls: Array
@@ -89,7 +91,7 @@ class WholeShape:
     tension_n: Array
     core_radius_mm: float
     fine: bool = False
-    energies_n_mm: tuple[float, ...] = ()
+    rounds: tuple[tuple[float, float, float], ...] = ()
 
     @property
     def state(self) -> Array:
@@ -97,12 +99,54 @@ class WholeShape:
         return np.concatenate([self.controls.ravel(), self.sizes_mm])
 
     @property
+    def energy_change(self) -> float:
+        """Part of the energy that the last round took away; infinite before the second."""
+        return self._changes[0]
+
+    @property
+    def size_change(self) -> float:
+        """Larger relative change of the two sizes in the last round; infinite before the second."""
+        return max(map(abs, self._changes[1:]))
+
+    @property
+    def may_fall(self) -> float:
+        """Part of the energy that further rounds may take away: the last change times the rounds.
+
+        So far it falls at most if changes decrease at least with the square of the round's number.
+        """
+        return abs(self.energy_change) * len(self.rounds)
+
+    @property
+    def _changes(self) -> tuple[float, float, float]:
+        if len(self.rounds) < 2:
+            return (np.inf, np.inf, np.inf)
+        energy, wide, high = (b / a - 1.0 for a, b in zip(*self.rounds[-2:], strict=True))
+        return -energy, wide, high
+
+    @property
     def change(self) -> float:
-        """Relative change of the energy in the last round; infinite before the second."""
-        if len(self.energies_n_mm) < 2:
-            return float("inf")
-        before, now = self.energies_n_mm[-2:]
-        return abs(before - now) / now
+        """Least tolerance at which the last round is the end."""
+        return max(abs(self.energy_change), self.size_change / _SIZES)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RelaxedChart(RelaxedRepeat):
+    """A chart relaxed as a whole.
+
+    Attributes
+    ----------
+    rounds : on the finer grid.
+    energy_change : part of the energy that the last round took away.
+    size_change : larger relative change of width and height in it.
+    may_fall : part of the energy that further rounds may take away.
+    largest_force_n : that is left on the yarn.
+    """
+
+    rounds: int
+    energy_change: float
+    size_change: float
+    may_fall: float
+    largest_force_n: float
 
 
 def relax_whole(
@@ -112,18 +156,18 @@ def relax_whole(
     *,
     convention: Convention | str = Convention.PUBLISHED,
     flat: bool = False,
-    tolerance: float = 1e-4,
+    tolerance: float = 1e-3,
     rounds: int = 40,
     resume: WholeShape | None = None,
     kept: Callable[[WholeShape], None] | None = None,
     progress: Callable[[float, float], None] | None = None,
     cancelled: Cancelled | None = None,
-) -> RelaxedRepeat:
+) -> RelaxedChart:
     """Shape of least energy of a chart of up to some thousand stitches, free of force.
 
-    The chart repeats; no symmetry is imposed. ``converged`` says whether the energy changed by less
-    than the tolerance in the last round, and a note gives that change and the largest force that is
-    left.
+    The chart repeats; no symmetry is imposed. ``converged`` says whether the last round changed the
+    energy, and the sizes, by less than the tolerance allows; the result also says how much they
+    changed and how far the energy may still fall.
 
     Parameters
     ----------
@@ -132,8 +176,9 @@ def relax_whole(
     loop_length_mm : mm of yarn per stitch, one number or one for every course, bottom first.
     convention : factors of the energy.
     flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
-    tolerance : relative change of the energy in a round at which to stop.
-    rounds : most rounds on each of the two grids.
+    tolerance : relative change of the energy in a round at which to stop; the sizes may then change
+        by ten times as much.
+    rounds : most rounds on each of the two grids, at least two.
     resume : where an earlier call was, as it gave it to ``kept``.
     kept : called with the sheet after every round.
     progress : called with (done, total).
@@ -153,7 +198,7 @@ def relax_whole(
     """
     check_stitches(chart.stitches, MAX_STITCHES_WHOLE, "a whole chart")
     check_range("tolerance", tolerance, 1e-6, 0.1)
-    check_range("rounds", rounds, 1, MAX_ROUNDS)
+    check_range("rounds", rounds, 2, MAX_ROUNDS)
     lengths = np.asarray(loop_length_mm, dtype=float)
     if lengths.ndim > 1 or lengths.size not in (1, chart.rows):
         raise InputError(
@@ -184,7 +229,7 @@ class _Work:
     progress: Callable[[float, float], None] | None
     cancelled: Cancelled | None
 
-    def relaxed(self, resume: WholeShape | None) -> RelaxedRepeat:
+    def relaxed(self, resume: WholeShape | None) -> RelaxedChart:
         clock = time.process_time()
         sheet = self._first() if resume is None else self._checked(resume)
         if not sheet.fine:
@@ -198,12 +243,17 @@ class _Work:
         if became not in (RELAXED, UNSETTLED):
             raise UnravelledError(f"The relaxed chart is not a fabric: {became}.")
         note = (
-            f"In the last round its energy changed by {sheet.change:.1e} of itself; forces of up "
-            f"to {left_n:.1e} N are left on the yarn."
+            f"The last of {len(sheet.rounds)} rounds took {sheet.energy_change:.2%} of the energy "
+            f"away and changed a size by {sheet.size_change:.2%}; more rounds may take up to "
+            f"{sheet.may_fall:.1%} away. Forces of up to {left_n:.1e} N are left on the yarn."
         )
-        return relaxed_repeat(
+        repeat = relaxed_repeat(
             self.chart, replace(energy, flat=self.flat), Branch.FREE, found,
             seconds=time.process_time() - clock, evaluations=0, notes=(note,),
+        )  # fmt: skip
+        return RelaxedChart(
+            **vars(repeat), rounds=len(sheet.rounds), energy_change=sheet.energy_change,
+            size_change=sheet.size_change, may_fall=sheet.may_fall, largest_force_n=left_n,
         )  # fmt: skip
 
     def energy(self, sheet: WholeShape) -> CellEnergy:
@@ -273,8 +323,8 @@ class _Work:
 
     def _settled(self, sheet: WholeShape) -> WholeShape:
         """Rounds until the energy settles."""
-        while sheet.change > self.tolerance and len(sheet.energies_n_mm) < self.rounds:
-            number = len(sheet.energies_n_mm)
+        while sheet.change > self.tolerance and len(sheet.rounds) < self.rounds:
+            number = len(sheet.rounds)
             energy = self.energy(sheet)
             sheet = self._one_pass(sheet, energy, _PASS, number)
             found = polished(
@@ -283,10 +333,11 @@ class _Work:
                 cancelled=self.cancelled,
             )  # fmt: skip
             per_stitch = found.terms.energy / energy.cell.stitches
+            wide, high = found.state[-2:].tolist()
             sheet = replace(
                 sheet, controls=energy.cell.controls(found.state), sizes_mm=found.state[-2:],
                 tension_n=np.tile(found.tension[:, None], energy.cell.wales),
-                energies_n_mm=(*sheet.energies_n_mm, per_stitch),
+                rounds=(*sheet.rounds, (per_stitch, wide, high)),
             )  # fmt: skip
             self._tell(sheet)
         return sheet
@@ -295,7 +346,7 @@ class _Work:
         """The sheet on the finer grid."""
         fine = plain_cell(self.chart, COARSE)
         state = refined_state(plain_cell(self.chart, ROUGH), sheet.state, fine)
-        refined = replace(sheet, controls=fine.controls(state), fine=True, energies_n_mm=())
+        refined = replace(sheet, controls=fine.controls(state), fine=True, rounds=())
         # between the old samples the cores may overlap
         return self._fitted(refined, OPENING)
 
@@ -382,7 +433,7 @@ class _Work:
             # the logarithm of the change falls about evenly
             there = max(sheet.change, self.tolerance)
             near = np.log(min(there, 1.0)) / np.log(self.tolerance) if there < np.inf else 0.0
-            share = max(float(near), len(sheet.energies_n_mm) / self.rounds)
+            share = max(float(near), len(sheet.rounds) / self.rounds)
             grown = sheet.core_radius_mm / self.yarn.core_radius_mm
             self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)
 

@@ -36,4 +36,7 @@ def test_a_whole_chart_on_the_command_line(tmp_path: Path) -> None:
     told = run("whole", chart, "--material", "acrylic", "--tolerance", 0.01)
     assert told["converged"]
     assert told["cell_course_interval_mm"][0] < told["cell_course_mm"]
-    assert "forces of up to" in told["notes"][0]
+    assert "Forces of up to" in told["notes"][0]
+    assert told["rounds"] >= 2
+    assert abs(told["energy_change"]) <= 0.01
+    assert told["size_change"] <= 0.1

@@ -177,9 +177,24 @@ def test_wrong_input_is_refused() -> None:
         relax_whole(chart, SAMPLE.yarn, [11.0, 11.0, 11.0])
     with pytest.raises(InputError, match="tolerance"):
         relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=0.5)
+    with pytest.raises(InputError, match="rounds"):
+        relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, rounds=1)
     other = WholeShape(np.zeros((2, 24, 3)), np.ones(2), np.zeros((2, 2)), 0.1)
     with pytest.raises(InputError, match="another chart"):
         relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, resume=other)
+
+
+def test_a_chart_is_settled_when_neither_energy_nor_size_changes_much() -> None:
+    sheet = WholeShape(np.zeros((1, 12, 3)), np.ones(2), np.zeros((1, 1)), 0.3)
+    assert sheet.change == np.inf
+    after = replace(sheet, rounds=((0.4, 3.0, 2.0), (0.25, 3.0, 2.0), (0.2, 2.7, 2.1)))
+    assert after.energy_change == pytest.approx(0.2)
+    assert after.size_change == pytest.approx(0.1)
+    assert after.may_fall == pytest.approx(0.6)
+    assert after.change == pytest.approx(0.2)
+    narrower = replace(sheet, rounds=((0.2, 3.0, 2.0), (0.2, 2.7, 2.1)))
+    assert narrower.energy_change == 0.0
+    assert narrower.change == pytest.approx(0.01)  # a tenth of the size's
 
 
 def test_a_whole_chart_can_be_cancelled() -> None:
@@ -202,7 +217,10 @@ def test_a_whole_chart_of_stockinette_relaxes_like_one_stitch_and_can_be_resumed
     assert whole.energy_n_mm == pytest.approx(one.energy_n_mm, rel=2e-3)
     assert whole.cell_course_mm == pytest.approx(one.cell_course_mm, rel=5e-3)
     assert whole.cell_wale_mm == pytest.approx(one.cell_wale_mm, rel=5e-3)
-    assert "forces of up to" in whole.notes[0]
+    assert "Forces of up to" in whole.notes[0]
+    assert 0.0 <= whole.may_fall == whole.rounds * abs(whole.energy_change)
+    assert abs(whole.energy_change) <= 1e-3
+    assert whole.size_change <= 1e-2
     assert 0.0 <= min(shares) <= max(shares) <= 1.0
     again = relax_whole(
         chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=1e-3, resume=sheets[-1]
