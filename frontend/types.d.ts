@@ -2881,13 +2881,13 @@ export interface WholeResult {
   min_distance_mm: number;
   /** Whether the last round met the tolerance. */
   converged: boolean;
-  /** On the finer of the two grids. */
+  /** On both grids together. */
   rounds: number;
   /** Part of the energy that the last round took away. */
   energy_change: number;
   /** Larger relative change of width and height in the last round. */
   size_change: number;
-  /** Part of the energy that further rounds may take away: the last change times the rounds. */
+  /** Part of the energy that further rounds may take away: the last change times all rounds. */
   may_fall: number;
   /** That is left on the yarn. */
   largest_force_n: number;

@@ -54,14 +54,14 @@ class WholeResult(IntervalResult):
     contact_share: float
     min_distance_mm: float
     converged: bool = Field(description="Whether the last round met the tolerance.")
-    rounds: int = Field(description="On the finer of the two grids.")
+    rounds: int = Field(description="On both grids together.")
     energy_change: float = Field(description="Part of the energy that the last round took away.")
     size_change: float = Field(
         description="Larger relative change of width and height in the last round."
     )
     may_fall: float = Field(
         description="Part of the energy that further rounds may take away: the last change times "
-        "the rounds."
+        "all rounds."
     )
     largest_force_n: float = Field(description="That is left on the yarn.")
     seconds: float = Field(description="CPU time since the job was last started.")
@@ -81,6 +81,7 @@ class KeptSheet(BaseModel):
     core_radius_mm: float
     fine: bool
     rounds: list[tuple[float, float, float]]
+    earlier: int
 
     @classmethod
     def of(cls, sheet: WholeShape) -> KeptSheet:
@@ -88,14 +89,14 @@ class KeptSheet(BaseModel):
         return cls(
             controls=sheet.controls.tolist(), sizes_mm=sheet.sizes_mm.tolist(),
             tension_n=sheet.tension_n.tolist(), core_radius_mm=sheet.core_radius_mm,
-            fine=sheet.fine, rounds=list(sheet.rounds),
+            fine=sheet.fine, rounds=list(sheet.rounds), earlier=sheet.earlier,
         )  # fmt: skip
 
     def sheet(self) -> WholeShape:
         """As the library takes it."""
         return WholeShape(
             np.array(self.controls), np.array(self.sizes_mm), np.array(self.tension_n),
-            self.core_radius_mm, self.fine, tuple(self.rounds),
+            self.core_radius_mm, self.fine, tuple(self.rounds), self.earlier,
         )  # fmt: skip
 
 

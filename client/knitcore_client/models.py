@@ -3159,13 +3159,13 @@ class WholeResult(BaseModel):
     converged: bool
     """Whether the last round met the tolerance."""
     rounds: int
-    """On the finer of the two grids."""
+    """On both grids together."""
     energy_change: float
     """Part of the energy that the last round took away."""
     size_change: float
     """Larger relative change of width and height in the last round."""
     may_fall: float
-    """Part of the energy that further rounds may take away: the last change times the rounds."""
+    """Part of the energy that further rounds may take away: the last change times all rounds."""
     largest_force_n: float
     """That is left on the yarn."""
     seconds: float

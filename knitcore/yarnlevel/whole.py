@@ -43,7 +43,7 @@ from knitcore.yarnlevel.limits import check_loop
 from knitcore.yarnlevel.neighbours import reaches
 from knitcore.yarnlevel.polish import polished
 from knitcore.yarnlevel.results import Branch
-from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
+from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome, overlong
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.splines import COARSE, ROUGH, RelaxedRepeat, relax_splines, relaxed_repeat
 from knitcore.yarnlevel.start import start_state
@@ -62,7 +62,8 @@ _FIRSTS = ((0, 0), (_WINDOW // 2, _WINDOW // 2), (0, _WINDOW // 2), (_WINDOW // 
 """Where the first window of a round begins."""
 _GROWING = Options(tolerance=1e-3, iterations=4, mended=False)
 _PASS = Options(tolerance=1e-6, iterations=3, mended=False)
-_LAST_PASS = Options(tolerance=1e-6, iterations=6, mended=False)
+_LAST_PASS = Options(tolerance=1e-6, iterations=6)
+"""Its steps keep the lengths, which no later pass would mend."""
 _DESCENT_STEPS = 20
 _SIZES = 10.0
 """Sizes may still change by so many times the tolerance: near its least the energy hardly does."""
@@ -84,6 +85,7 @@ class WholeShape:
     core_radius_mm : core that the yarn has so far.
     fine : whether it is on the finer of the two grids.
     rounds : energy of a stitch, N·mm, its width and its height, mm, after each round on this grid.
+    earlier : rounds on the coarser grid, once on the finer one.
     """
 
     controls: Array
@@ -92,6 +94,7 @@ class WholeShape:
     core_radius_mm: float
     fine: bool = False
     rounds: tuple[tuple[float, float, float], ...] = ()
+    earlier: int = 0
 
     @property
     def state(self) -> Array:
@@ -110,11 +113,11 @@ class WholeShape:
 
     @property
     def may_fall(self) -> float:
-        """Part of the energy that further rounds may take away: the last change times the rounds.
+        """Part of the energy that further rounds may take away: the last change times all rounds.
 
         So far it falls at most if changes decrease at least with the square of the round's number.
         """
-        return abs(self.energy_change) * len(self.rounds)
+        return abs(self.energy_change) * (self.earlier + len(self.rounds))
 
     @property
     def _changes(self) -> tuple[float, float, float]:
@@ -135,7 +138,7 @@ class RelaxedChart(RelaxedRepeat):
 
     Attributes
     ----------
-    rounds : on the finer grid.
+    rounds : on both grids.
     energy_change : part of the energy that the last round took away.
     size_change : larger relative change of width and height in it.
     may_fall : part of the energy that further rounds may take away.
@@ -236,14 +239,18 @@ class _Work:
             sheet = self._settled(self._grown(sheet))
             sheet = self._refined(sheet)
         sheet = self._settled(self._grown(sheet))
-        sheet = self._one_pass(sheet, self.energy(sheet), _LAST_PASS)
         energy = self.energy(sheet)
-        found, left_n = self._minimum(energy, sheet)
+        for number in range(len(_FIRSTS)):  # again where windows failed and the lengths with them
+            sheet = self._one_pass(sheet, energy, _LAST_PASS, number)
+            found, left_n = self._minimum(energy, sheet)
+            if not overlong(energy, found):
+                break
         became = outcome(energy, found)
         if became not in (RELAXED, UNSETTLED):
             raise UnravelledError(f"The relaxed chart is not a fabric: {became}.")
+        rounds = sheet.earlier + len(sheet.rounds)
         note = (
-            f"The last of {len(sheet.rounds)} rounds took {sheet.energy_change:.2%} of the energy "
+            f"The last of {rounds} rounds took {sheet.energy_change:.2%} of the energy "
             f"away and changed a size by {sheet.size_change:.2%}; more rounds may take up to "
             f"{sheet.may_fall:.1%} away. Forces of up to {left_n:.1e} N are left on the yarn."
         )
@@ -252,7 +259,7 @@ class _Work:
             seconds=time.process_time() - clock, evaluations=0, notes=(note,),
         )  # fmt: skip
         return RelaxedChart(
-            **vars(repeat), rounds=len(sheet.rounds), energy_change=sheet.energy_change,
+            **vars(repeat), rounds=rounds, energy_change=sheet.energy_change,
             size_change=sheet.size_change, may_fall=sheet.may_fall, largest_force_n=left_n,
         )  # fmt: skip
 
@@ -346,7 +353,9 @@ class _Work:
         """The sheet on the finer grid."""
         fine = plain_cell(self.chart, COARSE)
         state = refined_state(plain_cell(self.chart, ROUGH), sheet.state, fine)
-        refined = replace(sheet, controls=fine.controls(state), fine=True, rounds=())
+        refined = replace(
+            sheet, controls=fine.controls(state), fine=True, rounds=(), earlier=len(sheet.rounds)
+        )
         # between the old samples the cores may overlap
         return self._fitted(refined, OPENING)
 

@@ -191,6 +191,7 @@ def test_a_chart_is_settled_when_neither_energy_nor_size_changes_much() -> None:
     assert after.energy_change == pytest.approx(0.2)
     assert after.size_change == pytest.approx(0.1)
     assert after.may_fall == pytest.approx(0.6)
+    assert replace(after, earlier=2).may_fall == pytest.approx(1.0)
     assert after.change == pytest.approx(0.2)
     narrower = replace(sheet, rounds=((0.2, 3.0, 2.0), (0.2, 2.7, 2.1)))
     assert narrower.energy_change == 0.0
