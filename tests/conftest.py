@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, settings
 settings.register_profile(
     "knitcore",
     deadline=None,  # how long an example takes is no property
+    derandomize=True,  # a suite that was green stays green
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
 )
 settings.load_profile("knitcore")
