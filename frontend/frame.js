@@ -22,8 +22,8 @@
   const NEWS_MS = 1500;
   /** After this time it is looked whether something was drawn. */
   const ANSWER_MS = 20;
-  /** Frames that shapes have to be built in, before what they replace is taken away all the same. */
-  const PATIENCE = 100;
+  /** Frames that shapes have to be built in, before the cloth is drawn without them. */
+  const PATIENCE = 300;
   /** Drawn without a GPU: smoothing edges would take three times as long as all the rest. */
   const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
@@ -53,7 +53,8 @@
 
   // --- cloth --------------------------------------------------------------------------------------
   // viser takes several frames to build new shapes of stitches. Until then those that are there neither move nor go,
-  // or there would be holes in the cloth, or none to see. Everything else is handed on at once.
+  // or there would be holes in the cloth, or none to see. Everything else is handed on at once. Nothing is drawn meanwhile:
+  // the canvas keeps what it has, and a frame without a GPU may take a second.
   /** @typedef {{type: string, name?: string}} Message */
   /** Nodes of stitches, by name. @type {Set<string>} */
   const cloth = new Set();
@@ -61,6 +62,8 @@
   let later = [];
   /** Frames that it has waited. */
   let waited = 0;
+  /** Whether it has just been handed on, so that some of it is drawn in the next frame and the rest in the one after. */
+  let mixed = false;
   /** @type {(messages: Message[]) => void} */
   let handOn = () => {};
 
@@ -71,10 +74,12 @@
     return stitches > 0;
   }
 
+  /** Whether a picture is requested. @param {Message} message */
+  const isPicture = ({ type }) => type === "GetRenderRequestMessage";
   /** Whether it must not come before new shapes are built; a picture is of the whole cloth. @param {Message} message */
-  const changes = ({ type, name = "" }) =>
-    type === "GetRenderRequestMessage" ||
-    (["SceneNodeUpdateMessage", "RemoveSceneNodeMessage"].includes(type) && cloth.has(name));
+  const changes = (message) =>
+    isPicture(message) ||
+    (["SceneNodeUpdateMessage", "RemoveSceneNodeMessage"].includes(message.type) && cloth.has(message.name ?? ""));
 
   /** What of some messages is handed on at once. @param {Message[]} messages */
   function prompt(messages) {
@@ -89,14 +94,17 @@
     return rest;
   }
 
+  /** Whether all shapes are built. */
+  const complete = () => [...cloth].every(built);
+
   /** After each frame. */
   function catchUp() {
+    if (!complete() && ++waited < PATIENCE) return;
+    if (waited === PATIENCE) for (const name of cloth) if (!built(name)) cloth.delete(name);
+    waited = 0;
     if (!later.length) return;
-    if (++waited < PATIENCE && ![...cloth].every(built)) viser()?.requestRender();
-    else {
-      waited = 0;
-      handOn(later.splice(0));
-    }
+    mixed = !later.some(isPicture);
+    handOn(later.splice(0));
   }
 
   const Threads = Worker;
@@ -154,6 +162,10 @@
   let fed = -1;
   /** How long a frame takes, in ms. */
   let cost = 0;
+  /** Whether what viser draws now is left out. */
+  let muted = false;
+  /** Whether it has begun to draw; it asks for more frames than it draws. */
+  let begun = false;
 
   window.requestAnimationFrame = (callback) => {
     if (!held && rest() === 0) return request((time) => frame(callback, time));
@@ -194,7 +206,12 @@
     const start = performance.now();
     const query = !seen && fed >= FIRST_FRAMES ? gl?.createQuery() : null;
     if (query) gl?.beginQuery(gl.ANY_SAMPLES_PASSED, query);
+    muted = mixed || !complete();
+    begun = false;
     callback(time);
+    if (begun) mixed = false;
+    const idle = muted;
+    muted = false;
     if (query) {
       gl?.endQuery(gl.ANY_SAMPLES_PASSED);
       answer(query);
@@ -203,14 +220,19 @@
     if (fed >= 0) fed++;
     // What the browser itself does for the frame counts, too.
     setTimeout(() => {
-      lastEnd = performance.now();
-      cost = (cost + lastEnd - start) / 2;
-      if (slow !== cost > SHORT_MS) {
-        slow = !slow;
-        tell({ slow });
-      }
+      if (idle) viser()?.requestRender();
+      else timed(start);
       catchUp();
     });
+  }
+
+  /** A frame ends that was begun at this time. @param {number} start */
+  function timed(start) {
+    lastEnd = performance.now();
+    cost = (cost + lastEnd - start) / 2;
+    if (slow === cost > SHORT_MS) return;
+    slow = !slow;
+    tell({ slow });
   }
 
   /** Zoom to the pointer, not to the middle, and turn half as fast as viser does. A frame that viser requests shows something
@@ -263,6 +285,17 @@
     gl?.getExtension("WEBGL_lose_context")?.loseContext();
     return Boolean(found);
   };
+  /** Let it draw only what is to be seen. @param {any} gl */
+  function mutable(gl) {
+    for (const name of ["clear", "drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"]) {
+      const draw = gl[name].bind(gl);
+      gl[name] = (/** @type {any[]} */ ...how) => {
+        begun = true;
+        if (!muted) draw(...how);
+      };
+    }
+  }
+
   /** @param {string} kind @param {any} [options] @returns {any} */
   HTMLCanvasElement.prototype.getContext = function (kind, options) {
     if (!options?.antialias || !kind.startsWith("webgl")) {
@@ -273,6 +306,7 @@
     const probe = document.createElement("canvas");
     software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
     gl = /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, { ...options, antialias: !software }));
+    if (gl) mutable(gl);
     // On a slow machine viser draws fewer pixels, and a canvas of another size is empty until it is drawn again:
     // that is not left to wait, even while somebody paints.
     new MutationObserver(draw).observe(this, { attributeFilter: ["width", "height"] });

@@ -69,6 +69,8 @@ async function slowClient() {
     /** @type {(message: any) => void} */
     told: () => {},
     frames: 0,
+    /** Of them those that reached the canvas. */
+    drawn: 0,
     wanted: false,
     /** As viser asks for a frame. */
     invalidate() {
@@ -77,6 +79,7 @@ async function slowClient() {
       page.requestAnimationFrame(() => {
         client.wanted = false;
         client.frames++;
+        gl.clear();
         client.now += FRAME_MS;
       });
     },
@@ -94,15 +97,17 @@ async function slowClient() {
       }
     },
   };
+  /** @type {any} */
   const gl = {
     createQuery: () => ({}),
-    beginQuery() {},
-    endQuery() {},
-    deleteQuery() {},
     getExtension: () => null,
     getParameter: () => "",
     getQueryParameter: () => true,
+    clear: () => client.drawn++,
   };
+  for (const name of ["beginQuery", "endQuery", "deleteQuery"]) gl[name] = () => {};
+  for (const name of ["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"])
+    gl[name] = () => {};
   const page = Object.assign(emptyFrame(), {
     HTMLCanvasElement: class {
       getContext() {
@@ -215,7 +220,7 @@ async function withCloth() {
   thread.answer("message_batch", [{ type: "BatchedMeshesMessage", name: "/fabric/1" }]);
   built("/fabric/1");
   told.length = 0;
-  return { thread, told, built, drawn };
+  return { client, thread, told, built, drawn };
 }
 
 const NEW = { type: "BatchedMeshesMessage", name: "/fabric/2" };
@@ -258,6 +263,18 @@ test("a cloth that only moves does not wait", async () => {
 test("shapes that are never built keep nothing waiting for ever", async () => {
   const { thread, told, drawn } = await withCloth();
   thread.answer("message_batch", [NEW, GONE]);
-  for (let frame = 0; frame < 120; frame++) drawn();
+  for (let frame = 0; frame < 320; frame++) drawn();
   assert.deepEqual(told, ["BatchedMeshesMessage /fabric/2", "RemoveSceneNodeMessage /fabric/1"]);
+});
+
+test("nothing is drawn while shapes are built, and the whole cloth afterwards", async () => {
+  const { client, thread, built, drawn } = await withCloth();
+  drawn();
+  const before = client.drawn;
+  thread.answer("message_batch", [MOVED, NEW, GONE]);
+  for (let frame = 0; frame < 3; frame++) drawn();
+  assert.equal(client.drawn, before, "half a cloth was drawn");
+  built("/fabric/2");
+  for (let frame = 0; frame < 3; frame++) drawn();
+  assert.ok(client.drawn > before, "the cloth was never drawn");
 });
