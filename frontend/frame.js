@@ -206,11 +206,11 @@
     const start = performance.now();
     const query = !seen && fed >= FIRST_FRAMES ? gl?.createQuery() : null;
     if (query) gl?.beginQuery(gl.ANY_SAMPLES_PASSED, query);
-    muted = mixed || !complete();
+    const idle = mixed || !complete();
+    muted = idle;
     begun = false;
     callback(time);
     if (begun) mixed = false;
-    const idle = muted;
     muted = false;
     if (query) {
       gl?.endQuery(gl.ANY_SAMPLES_PASSED);
@@ -285,13 +285,18 @@
     gl?.getExtension("WEBGL_lose_context")?.loseContext();
     return Boolean(found);
   };
-  /** Let it draw only what is to be seen. @param {any} gl */
+  /** Let it draw only what is to be seen, and whatever there is where a canvas of another size has lost its picture. @param {any} gl */
   function mutable(gl) {
+    let drawn = "";
     for (const name of ["clear", "drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"]) {
       const draw = gl[name].bind(gl);
       gl[name] = (/** @type {any[]} */ ...how) => {
         begun = true;
-        if (!muted) draw(...how);
+        const size = `${gl.drawingBufferWidth}×${gl.drawingBufferHeight}`;
+        if (drawn !== size) muted = false;
+        if (muted) return;
+        drawn = size;
+        draw(...how);
       };
     }
   }

@@ -68,6 +68,8 @@ async function slowClient() {
     resized: () => {},
     /** @type {(message: any) => void} */
     told: () => {},
+    /** What viser draws with. @type {any} */
+    gl: null,
     frames: 0,
     /** Of them those that reached the canvas. */
     drawn: 0,
@@ -97,17 +99,18 @@ async function slowClient() {
       }
     },
   };
-  /** @type {any} */
   const gl = {
+    drawingBufferWidth: 1000,
+    drawingBufferHeight: 500,
     createQuery: () => ({}),
     getExtension: () => null,
     getParameter: () => "",
     getQueryParameter: () => true,
     clear: () => client.drawn++,
   };
-  for (const name of ["beginQuery", "endQuery", "deleteQuery"]) gl[name] = () => {};
-  for (const name of ["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"])
-    gl[name] = () => {};
+  const draws = ["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"];
+  for (const name of ["beginQuery", "endQuery", "deleteQuery", ...draws]) Object.assign(gl, { [name]: () => {} });
+  client.gl = gl;
   const page = Object.assign(emptyFrame(), {
     HTMLCanvasElement: class {
       getContext() {
@@ -277,4 +280,15 @@ test("nothing is drawn while shapes are built, and the whole cloth afterwards", 
   built("/fabric/2");
   for (let frame = 0; frame < 3; frame++) drawn();
   assert.ok(client.drawn > before, "the cloth was never drawn");
+});
+
+test("a canvas that loses its picture while shapes are built is drawn again at once", async () => {
+  const { client, thread, drawn } = await withCloth();
+  drawn();
+  thread.answer("message_batch", [MOVED, NEW, GONE]);
+  drawn();
+  const before = client.drawn;
+  client.gl.drawingBufferWidth /= 2; // a canvas of another size is empty
+  for (let frame = 0; frame < 3; frame++) drawn();
+  assert.equal(client.drawn, before + 1);
 });
