@@ -17,6 +17,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -269,15 +270,19 @@ def open_chart(browser: Browser, url: str, side: int, script: str = "") -> Page:
     return page
 
 
-def stroke(page: Page, box: dict[str, float], rng: random.Random) -> None:
-    """A short one somewhere in the middle of the chart, and a moment to see it."""
+def stroke(page: Page, box: dict[str, float], rng: random.Random) -> float:
+    """A short one somewhere in the middle of the chart; returns how long the browser took its
+    six events in, in ms."""
     x = box["x"] + box["width"] * rng.uniform(0.3, 0.7)
     y = box["y"] + box["height"] * rng.uniform(0.3, 0.7)
     page.mouse.move(x, y)
+    start = time.perf_counter()
     page.mouse.down()
     page.mouse.move(x + 30, y + 5, steps=4)
     page.mouse.up()
-    page.wait_for_timeout(200)
+    taken = 1000 * (time.perf_counter() - start)
+    page.wait_for_timeout(200)  # a moment to see it
+    return taken
 
 
 def strokes(page: Page) -> tuple[list[float], list[float]]:
@@ -314,6 +319,26 @@ def painting(browser: Browser, url: str) -> None:
         report(f"stroke to the map at {size}, p95", p95(mapped), "ms", target)
 
 
+def pauses(browser: Browser, url: str) -> None:
+    """Strokes after pauses of all lengths, so that frames of the 3D view fall into them.
+
+    Timed from outside: the browser's own timing begins only when it gets to an event, and leaves
+    out moves. A stroke takes some time however fast the page is.
+    """
+    for side in (60, 400):
+        page = open_chart(browser, url, side)
+        page.wait_for_selector(".fabric[data-live]")
+        box, rng = page.evaluate(READY), random.Random(5)
+        taken = []
+        for _ in range(STROKES):
+            page.wait_for_timeout(rng.uniform(0, 2800))
+            taken.append(stroke(page, box, rng))
+        page.context.close()
+        report(
+            f"slowest over fastest stroke at {side} x {side}", max(taken) - min(taken), "ms", 100
+        )
+
+
 def main() -> None:
     weight()
     if not CHROMIUM.exists():
@@ -328,6 +353,7 @@ def main() -> None:
             first_paint(browser, service.url)
             first_strokes(browser, service.url)
             painting(browser, service.url)
+            pauses(browser, service.url)
             shapes(browser, service.url)
             yarn(browser, service.url)
             browser.close()

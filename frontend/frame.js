@@ -5,8 +5,10 @@
  *   page to frame    {pass} the right to watch, {hold} whether frames wait while somebody paints
  *   frame to page    {view: "loaded" | "seen" | "none" where the browser draws nothing in 3D}, {slow} whether drawing takes long
  *
- * A plain script without imports: the service puts it into viser's page.
+ * A plain script without imports, after aside.js: the service puts it into viser's page.
  */
+
+/* global Aside */
 
 (() => {
   /** Frames that take longer mean a slow machine. */
@@ -55,9 +57,19 @@
   // viser takes several frames to build new shapes of stitches. Until then those that are there neither move nor go,
   // or there would be holes in the cloth, or none to see. Everything else is handed on at once. Nothing is drawn meanwhile:
   // the canvas keeps what it has, and a frame without a GPU may take a second.
-  /** @typedef {{type: string, name?: string}} Message */
-  /** Nodes of stitches, by name. @type {Set<string>} */
-  const cloth = new Set();
+  /** @typedef {{type: string, name?: string, props?: Stitches, updates?: Stitches}} Message */
+  /** What there is of each stitch of a shape. @typedef {Record<string, ArrayBufferView>} Stitches */
+  /** Bytes of a stitch in each. @type {[string, number][]} */
+  const BYTES = [
+    ["batched_positions", 12],
+    ["batched_scales", 12],
+    ["batched_wxyzs", 16],
+    ["batched_colors", 3],
+  ];
+  /** Nodes of stitches, by name. @type {Map<string, Stitches>} */
+  const cloth = new Map();
+  /** What came of them for another number of stitches than the rest. @type {Map<string, Stitches>} */
+  const early = new Map();
   /** What waits for new ones to be built. @type {Message[]} */
   let later = [];
   /** Frames that it has waited. */
@@ -76,31 +88,58 @@
 
   /** Whether a picture is requested. @param {Message} message */
   const isPicture = ({ type }) => type === "GetRenderRequestMessage";
+  /**
+   * All that is new of a shape at once, when it is of the same number of stitches: where a browser is behind, the service leaves
+   * out what is outdated, and sends the colours of more stitches before their places.
+   *
+   * @param {Message[]} messages
+   */
+  function gathered(messages) {
+    const names = new Set();
+    const others = messages.filter(({ type, name = "", props, updates }) => {
+      if (type === "BatchedMeshesMessage" && props) cloth.set(name, props);
+      if (type !== "SceneNodeUpdateMessage" || !cloth.has(name)) return true;
+      early.set(name, { ...early.get(name), ...updates });
+      names.add(name);
+      return false;
+    });
+    const moved = [...names].flatMap((name) => {
+      const whole = { ...cloth.get(name), ...early.get(name) };
+      const [count, ...counts] = BYTES.map(([what, bytes]) => (whole[what]?.byteLength ?? NaN) / bytes);
+      if (counts.some((other) => other !== count)) return [];
+      const updates = early.get(name);
+      early.delete(name);
+      cloth.set(name, whole);
+      return [{ type: "SceneNodeUpdateMessage", name, updates, owner: "" }];
+    });
+    return [...moved, ...others];
+  }
+
   /** Whether it must not come before new shapes are built; a picture is of the whole cloth. @param {Message} message */
   const changes = (message) =>
     isPicture(message) ||
     (["SceneNodeUpdateMessage", "RemoveSceneNodeMessage"].includes(message.type) && cloth.has(message.name ?? ""));
 
-  /** What of some messages is handed on at once. @param {Message[]} messages */
-  function prompt(messages) {
+  /** What of some messages is handed on at once. @param {Message[]} sent */
+  function prompt(sent) {
+    const messages = gathered(sent);
     const added = messages.filter(({ type }) => type === "BatchedMeshesMessage");
     // A page that nobody looks at has no frames to wait for.
-    const wait = !document.hidden && (later.length > 0 || (added.length > 0 && [...cloth].some(built)));
+    const wait = !document.hidden && (later.length > 0 || (added.length > 0 && [...cloth.keys()].some(built)));
     const held = wait ? messages.filter(changes) : [];
     const rest = wait ? messages.filter((message) => !changes(message)) : [...later.splice(0), ...messages];
     later.push(...held);
-    for (const { name = "" } of added) cloth.add(name);
     for (const { type, name = "" } of messages) if (type === "RemoveSceneNodeMessage") cloth.delete(name);
     return rest;
   }
 
   /** Whether all shapes are built. */
-  const complete = () => [...cloth].every(built);
+  const complete = () => [...cloth.keys()].every(built);
 
   /** After each frame. */
   function catchUp() {
     if (!complete() && ++waited < PATIENCE) return;
-    if (waited === PATIENCE) for (const name of cloth) if (!built(name)) cloth.delete(name);
+    if (waited === PATIENCE) for (const name of cloth.keys()) if (!built(name)) cloth.delete(name);
     waited = 0;
     if (!later.length) return;
     mixed = !later.some(isPicture);
@@ -128,6 +167,7 @@
         if (data.type === "connected" || data.type === "closed") this.#connecting = false;
         if (data.type === "connected") {
           cloth.clear();
+          early.clear();
           later = [];
         }
       });
@@ -139,7 +179,12 @@
       if (message.type === "set_server" || message.type === "retry") this.#connecting = true;
       if (message.type !== "set_server") super.postMessage(message, rest);
       // The service lets in who has a pass; the page brings it when there is something to see.
-      else void pass.then((code) => super.postMessage({ ...message, server: `${message.server}?pass=${code}` }));
+      // It draws less finely for who has no GPU.
+      else
+        void pass.then((code) => {
+          const server = `${message.server}?pass=${code}${withoutGpu() ? "&coarse=1" : ""}`;
+          super.postMessage({ ...message, server });
+        });
     }
   };
 
@@ -158,6 +203,8 @@
   let slow = false;
   /** Where viser draws. @type {WebGL2RenderingContext | null} */
   let gl = null;
+  /** How it draws without a GPU, once something is seen. @type {Aside | null} */
+  let aside = null;
   /** Frames since the first scene came; below 0 there is none. */
   let fed = -1;
   /** How long a frame takes, in ms. */
@@ -168,7 +215,7 @@
   let begun = false;
 
   window.requestAnimationFrame = (callback) => {
-    if (!held && rest() === 0) return request((time) => frame(callback, time));
+    if (!held && !aside?.busy && rest() === 0) return request((time) => frame(callback, time));
     // Our own numbers are far from the browser's, so the two never meet.
     const id = -next++;
     waiting.set(id, callback);
@@ -188,7 +235,7 @@
 
   function release() {
     clearTimeout(pause);
-    if (held) return;
+    if (held || aside?.busy) return;
     const left = rest();
     if (left > 0) pause = setTimeout(release, left);
     else draw();
@@ -210,20 +257,22 @@
     muted = idle;
     begun = false;
     callback(time);
+    const drawn = begun && !idle;
     if (begun) mixed = false;
     muted = false;
-    if (query) {
-      gl?.endQuery(gl.ANY_SAMPLES_PASSED);
-      answer(query);
-    }
+    if (query) gl?.endQuery(gl.ANY_SAMPLES_PASSED);
     steer();
     if (fed >= 0) fed++;
-    // What the browser itself does for the frame counts, too.
-    setTimeout(() => {
+    const ended = () => {
       if (idle) viser()?.requestRender();
       else timed(start);
+      if (query) answer(query);
       catchUp();
-    });
+      release();
+    };
+    // What the browser itself does for the frame counts, too.
+    if (aside && drawn) aside.show(request, ended);
+    else setTimeout(ended);
   }
 
   /** A frame ends that was begun at this time. @param {number} start */
@@ -271,6 +320,8 @@
       if (!drawn || seen) return;
       seen = true;
       tell({ view: "seen" });
+      // Not before: what is drawn beside the canvas is seen a frame later.
+      if (software && gl) aside = new Aside(gl);
     }, ANSWER_MS);
   }
 
@@ -285,6 +336,10 @@
     gl?.getExtension("WEBGL_lose_context")?.loseContext();
     return Boolean(found);
   };
+  const withoutGpu = () =>
+    (software ??= drawnBySoftware(
+      /** @type {WebGL2RenderingContext | null} */ (context.call(document.createElement("canvas"), "webgl2")),
+    ));
   /** Let it draw only what is to be seen, and whatever there is where a canvas of another size has lost its picture. @param {any} gl */
   function mutable(gl) {
     let drawn = "";
@@ -293,7 +348,7 @@
       gl[name] = (/** @type {any[]} */ ...how) => {
         begun = true;
         const size = `${gl.drawingBufferWidth}×${gl.drawingBufferHeight}`;
-        if (drawn !== size) muted = false;
+        if (!aside && drawn !== size) muted = false;
         if (muted) return;
         drawn = size;
         draw(...how);
@@ -308,13 +363,13 @@
       if (!made && kind === "webgl2") tell({ view: "none" });
       return made;
     }
-    const probe = document.createElement("canvas");
-    software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
-    gl = /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, { ...options, antialias: !software }));
+    gl = /** @type {WebGL2RenderingContext | null} */ (
+      context.call(this, kind, { ...options, antialias: !withoutGpu() })
+    );
     if (gl) mutable(gl);
     // On a slow machine viser draws fewer pixels, and a canvas of another size is empty until it is drawn again:
     // that is not left to wait, even while somebody paints.
-    new MutationObserver(draw).observe(this, { attributeFilter: ["width", "height"] });
+    new MutationObserver(() => aside || draw()).observe(this, { attributeFilter: ["width", "height"] });
     return gl;
   };
 

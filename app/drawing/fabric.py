@@ -187,13 +187,13 @@ class FabricScene:
             picture = np.dstack([picture, 255 * self.drawn.astype(np.uint8)])
         return Drawing(part, self.ground, picture)
 
-    def window(self) -> FabricScene:
-        """The part drawn as yarn: all of it, or as much as a browser can draw."""
+    def window(self, most: int = MAX_STITCHES) -> FabricScene:
+        """The part drawn as yarn: all of it, or as many stitches as a browser can draw."""
         rows, columns = self.shapes.index.shape
-        if rows * columns <= MAX_STITCHES:
+        if rows * columns <= most:
             return self
-        height = min(rows, max(int(MAX_STITCHES**0.5), MAX_STITCHES // columns))
-        width = min(columns, MAX_STITCHES // height)
+        height = min(rows, max(int(most**0.5), most // columns))
+        width = min(columns, most // height)
         row, column = self.focus or (rows // 2, columns // 2)
         bottom = min(max(row - height // 2, 0), rows - height)
         left = min(max(column - width // 2, 0), columns - width)
@@ -209,6 +209,7 @@ class FabricScene:
             placement=places.part(part),
             colours=self.colours[part],
             drawn=None if self.drawn is None else self.drawn[part],
+            focus=(row - bottom, column - left),
         )
 
 

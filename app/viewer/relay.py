@@ -28,7 +28,7 @@ log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
-SCRIPTS = ("notices.js", "yarn.js", "frame.js")
+SCRIPTS = ("notices.js", "yarn.js", "aside.js", "frame.js")
 """Ours, before viser's own."""
 OPENING_S = 8.0
 """So long a browser waits for a view: its page is loaded while the first scene is being made."""
@@ -77,6 +77,17 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
 
 
 async def _watched(socket: WebSocket, name: str, view: View, views: Views) -> None:
+    coarse = "coarse" in socket.query_params
+    views.watch(name, +1, coarse=coarse)
+    try:
+        if coarse:
+            await asyncio.to_thread(view.writer.redraw)  # nothing finer is sent
+        await _joined(socket, view)
+    finally:
+        views.watch(name, -1, coarse=coarse)
+
+
+async def _joined(socket: WebSocket, view: View) -> None:
     offered = list(socket.scope["subprotocols"])
     async with websockets.connect(
         f"ws://127.0.0.1:{view.port}",
@@ -86,11 +97,7 @@ async def _watched(socket: WebSocket, name: str, view: View, views: Views) -> No
         compression=None,
     ) as inner:
         await socket.accept(subprotocol=inner.subprotocol)
-        views.watch(name, +1)
-        try:
-            await _carry(socket, inner, view)
-        finally:
-            views.watch(name, -1)
+        await _carry(socket, inner, view)
 
 
 async def _opened(views: Views, name: str) -> View | None:

@@ -25,10 +25,17 @@ SCALE = (128, 120, 112)
 SCALE_BELOW = (1.8, 0.045)
 """The scale lies this many stitches below the fabric, and this share of its height at least."""
 PAPER = (255, 252, 246)
+COARSE_WINDOW = 10_000
+"""Stitches drawn as yarn without a GPU, of a chart that is too large to be drawn whole."""
 
 
 class SceneWriter:
-    """Keeps one viser server's scene in step with a :class:`Drawing`."""
+    """Keeps one viser server's scene in step with a :class:`Drawing`.
+
+    Attributes
+    ----------
+    coarse : whether what is drawn from now on is for browsers without a GPU, too.
+    """
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
@@ -39,6 +46,7 @@ class SceneWriter:
         self._layers: dict[str, Any] = {}
         self._framed: tuple[float, ...] | None = None
         self._side = CameraSide.FACE
+        self.coarse = self._laid_coarse = False
 
     @property
     def drawing(self) -> Drawing | None:
@@ -88,6 +96,11 @@ class SceneWriter:
             self._side = side
             self._place_camera(everybody=True)
 
+    def redraw(self) -> None:
+        """Draw the same again if it should be finer or coarser now."""
+        if self._laid_coarse != self.coarse:
+            self._lay(exact=True)
+
     def close(self) -> None:
         """Draw nothing any more, and forget what was drawn."""
         with self._lock:
@@ -105,9 +118,12 @@ class SceneWriter:
             self._stop_timer()
             if self._drawing is None:
                 return 0
-            part = self._drawing.part
+            part, self._laid_coarse = self._drawing.part, self.coarse
+            if self.coarse and self._drawing.picture is not None:
+                part = part.window(COARSE_WINDOW)
             stitches = int(part.shapes.index.size if part.drawn is None else part.drawn.sum())
-            middle, level = self._drawing.ground.middle_mm, level_of(stitches)
+            middle = self._drawing.ground.middle_mm
+            level = level_of(stitches, coarse=self.coarse)
             if self._cloth.lay(part, middle, level, exact=exact):
                 self._timer = threading.Timer(STILL_S, self._lay, kwargs={"exact": True})
                 self._timer.daemon = True

@@ -29,6 +29,7 @@ class View:
 
     Attributes
     ----------
+    watchers, coarse : browsers that show it, and those of them that draw without a GPU.
     wanted : the picture that a browser was asked for, if one was.
     picturing : held by who takes a picture.
     stitches : of the chart it shows; memory grows with them.
@@ -37,6 +38,7 @@ class View:
     server: viser.ViserServer
     writer: SceneWriter
     watchers: int = 0
+    coarse: int = 0
     wanted: WantedPicture | None = None
     picturing: threading.Lock = field(default_factory=threading.Lock)
     last_used: float = field(default_factory=time.monotonic)
@@ -78,6 +80,7 @@ class Views:
         self._most = most
         self._idle_s = idle_s
         self._views: dict[str, View] = {}
+        self._coarse: dict[str, bool] = {}  # of each user's last view, for the next one
         self._lock = threading.Lock()
 
     def open(self, design: str, stitches: int = 0) -> View:
@@ -99,6 +102,7 @@ class Views:
             view = self._views.get(design)
             if view is None:
                 view = self._views[design] = new_view()
+                view.writer.coarse = self._coarse.get(_owner(design), False)
                 self._pass_clicks_on(design, view)
             view.last_used, view.stitches = time.monotonic(), stitches
             return view
@@ -108,12 +112,15 @@ class Views:
         with self._lock:
             return self._views.get(design)
 
-    def watch(self, design: str, change: int) -> None:
-        """Count a watcher in (+1) or out (-1)."""
+    def watch(self, design: str, change: int, *, coarse: bool = False) -> None:
+        """Count a watcher in (+1) or out (-1); for one without a GPU the view draws coarsely."""
         with self._lock:
             view = self._views.get(design)
             if view is not None:
                 view.watchers += change
+                view.coarse += coarse * change
+                view.writer.coarse = view.coarse > 0
+                self._coarse[_owner(design)] = view.writer.coarse
                 view.last_used = time.monotonic()
 
     def close_idle(self) -> int:
@@ -147,7 +154,7 @@ class Views:
         return sum(view.stitches for view in views if view is not None)
 
     def _of(self, owner: str) -> list[str]:
-        return [design for design in list(self._views) if design.rpartition("/")[0] == owner]
+        return [design for design in list(self._views) if _owner(design) == owner]
 
     def _pass_clicks_on(self, design: str, view: View) -> None:
         @view.server.scene.on_click()
@@ -161,7 +168,7 @@ class Views:
                 self.clicks.tell(design, cell)
 
     def _make_room(self, design: str, stitches: int) -> None:
-        others = [view for view in self._of(design.rpartition("/")[0]) if view != design]
+        others = [view for view in self._of(_owner(design)) if view != design]
         while (held := sum(self._views[d].stitches for d in others)) and (
             held + stitches > BUDGETS.view_stitches
         ):
@@ -182,6 +189,10 @@ class Views:
         oldest = min(unwatched)[1]
         self._views.pop(oldest).stop()
         return oldest
+
+
+def _owner(design: str) -> str:
+    return design.rpartition("/")[0]
 
 
 def new_view() -> View:

@@ -28,7 +28,11 @@ const emptyFrame = () => ({
   document: {},
   parent: { postMessage() {} },
   location: { hash: "#pass" },
-  HTMLCanvasElement: class {},
+  HTMLCanvasElement: class {
+    getContext() {
+      return null;
+    }
+  },
   Worker: Thread,
   XMLHttpRequest: class {
     responseText = "";
@@ -46,18 +50,25 @@ const emptyFrame = () => ({
   MessageEvent,
 });
 
-/** Run our script in it. @param {any} page */
+/** Run our scripts in it. @param {any} page */
 async function framed(page) {
   page.window = page;
-  vm.runInNewContext(await readFile(new URL("../frame.js", import.meta.url), "utf8"), page);
+  page.document.createElement ??= () => new page.HTMLCanvasElement();
+  vm.createContext(page);
+  for (const script of ["aside.js", "frame.js"])
+    vm.runInContext(await readFile(new URL(`../${script}`, import.meta.url), "utf8"), page);
   return page;
 }
 
 /** A worker as viser's client gets it in the frame. @returns {Promise<Thread>} */
 const framedThread = async () => new (await framed(emptyFrame())).Worker("blob:viser");
 
-/** A client on a machine whose frames take half a second, that shows a scene and has been left alone for a while. */
-async function slowClient() {
+/**
+ * A client on a machine whose frames take half a second, that shows a scene and has been left alone for a while.
+ *
+ * @param {string} renderer what draws
+ */
+async function slowClient(renderer = "") {
   const FRAME_MS = 500;
   const client = {
     now: 0,
@@ -71,6 +82,10 @@ async function slowClient() {
     /** What viser draws with. @type {any} */
     gl: null,
     frames: 0,
+    /** Frames that the canvas got, without a GPU. */
+    copied: 0,
+    /** Whether what is drawn without a GPU is finished. */
+    finished: true,
     /** Of them those that reached the canvas. */
     drawn: 0,
     wanted: false,
@@ -103,19 +118,32 @@ async function slowClient() {
     drawingBufferWidth: 1000,
     drawingBufferHeight: 500,
     createQuery: () => ({}),
-    getExtension: () => null,
-    getParameter: () => "",
+    getExtension: () => ({ loseContext() {} }),
+    getParameter: () => renderer,
+    isContextLost: () => false,
+    SIGNALED: 1,
+    getSyncParameter: () => Number(client.finished),
+    blitFramebuffer: () => client.copied++,
     getQueryParameter: () => true,
     clear: () => client.drawn++,
   };
   const draws = ["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"];
-  for (const name of ["beginQuery", "endQuery", "deleteQuery", ...draws]) Object.assign(gl, { [name]: () => {} });
+  const others = ["deleteSync", "flush", "drawBuffers", "bindFramebuffer", "bindRenderbuffer"];
+  const more = ["renderbufferStorage", "framebufferRenderbuffer", "beginQuery", "endQuery", "deleteQuery"];
+  for (const name of [...draws, ...others, ...more]) Object.assign(gl, { [name]: () => {} });
+  for (const name of ["fenceSync", "createFramebuffer", "createRenderbuffer"])
+    Object.assign(gl, { [name]: () => ({}) });
   client.gl = gl;
   const page = Object.assign(emptyFrame(), {
     HTMLCanvasElement: class {
+      width = 300;
+      height = 150;
       getContext() {
-        return gl;
+        return Object.assign(gl, { canvas: this });
       }
+    },
+    CanvasRenderingContext2D: class {
+      drawImage() {}
     },
     MutationObserver: class {
       /** @param {() => void} told */
@@ -133,7 +161,6 @@ async function slowClient() {
     /** @param {(time: number) => void} callback */
     requestAnimationFrame: (callback) => client.next.push(callback),
   });
-  page.document.createElement = () => new page.HTMLCanvasElement();
   await framed(page);
   new page.HTMLCanvasElement().getContext("webgl2", { antialias: true });
   const thread = new page.Worker("blob:viser");
@@ -220,13 +247,22 @@ async function withCloth() {
     client.pass(40_000); // longer than a frame waits
     client.frame();
   };
-  thread.answer("message_batch", [{ type: "BatchedMeshesMessage", name: "/fabric/1" }]);
+  thread.answer("message_batch", [{ ...NEW, name: "/fabric/1" }]);
   built("/fabric/1");
   told.length = 0;
   return { client, thread, told, built, drawn };
 }
 
-const NEW = { type: "BatchedMeshesMessage", name: "/fabric/2" };
+/** Where stitches are. @param {number} stitches */
+const places = (stitches) => ({
+  batched_positions: new Float32Array(3 * stitches),
+  batched_scales: new Float32Array(3 * stitches),
+  batched_wxyzs: new Float32Array(4 * stitches),
+});
+/** @param {number} stitches */
+const colours = (stitches) => ({ batched_colors: new Uint8Array(3 * stitches) });
+
+const NEW = { type: "BatchedMeshesMessage", name: "/fabric/2", props: { ...places(120), ...colours(120) } };
 const MOVED = { type: "SceneNodeUpdateMessage", name: "/fabric/1" };
 const GONE = { type: "RemoveSceneNodeMessage", name: "/fabric/1" };
 
@@ -255,6 +291,27 @@ test("the camera and all that is no cloth never wait", async () => {
   thread.answer("message_batch", rest);
   const want = ["BatchedMeshesMessage /fabric/2", ...others, "SetCameraFovMessage", "RemoveSceneNodeMessage /mark"];
   assert.deepEqual(told, want);
+});
+
+test("what is new of a shape comes at once, for one number of stitches", async () => {
+  const { thread } = await withCloth();
+  /** How many values come of what. @type {object[]} */
+  const come = [];
+  thread.onmessage = (/** @type {any} */ { data }) => {
+    for (const { updates } of data.messages)
+      come.push(Object.fromEntries(Object.keys(updates).map((what) => [what, updates[what].length])));
+  };
+  const send = (/** @type {object} */ updates) => {
+    thread.answer("message_batch", [{ ...MOVED, updates }]);
+    return come.splice(0);
+  };
+  const { batched_positions, ...others } = places(130);
+  assert.deepEqual(send(colours(120)), [{ batched_colors: 360 }]);
+  assert.deepEqual(send(colours(130)), [], "colours of more stitches than there are");
+  assert.deepEqual(send({ batched_positions }), []);
+  const all = { batched_positions: 390, batched_scales: 390, batched_wxyzs: 520, batched_colors: 390 };
+  assert.deepEqual(send(others), [all]);
+  assert.deepEqual(send({ ...places(130), ...colours(130) }), [all]);
 });
 
 test("a cloth that only moves does not wait", async () => {
@@ -291,4 +348,27 @@ test("a canvas that loses its picture while shapes are built is drawn again at o
   client.gl.drawingBufferWidth /= 2; // a canvas of another size is empty
   for (let frame = 0; frame < 3; frame++) drawn();
   assert.equal(client.drawn, before + 1);
+});
+
+test("without a GPU the canvas gets a frame once it is finished, and the next one waits", async () => {
+  const { client } = await slowClient("SwiftShader");
+  const wait = () => {
+    for (let turn = 0; turn < 8; turn++) {
+      client.pass(5000);
+      client.frame();
+    }
+  };
+  wait();
+  const { frames, copied } = client;
+  client.finished = false;
+  for (let more = 0; more < 2; more++) {
+    client.invalidate();
+    wait();
+    assert.equal(client.frames, frames + 1, "a frame was begun before the one before was finished");
+    assert.equal(client.copied, copied, "the canvas got what was not finished");
+  }
+  client.finished = true;
+  wait();
+  assert.equal(client.frames, frames + 2);
+  assert.equal(client.copied, copied + 2);
 });

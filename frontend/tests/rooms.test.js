@@ -7,7 +7,7 @@ import { test } from "node:test";
 
 const ROOT = join(import.meta.dirname, "..");
 const FLOORS = [
-  ["types", "frame", "notices", "theme"],
+  ["types", "aside", "frame", "notices", "theme"],
   ["core"],
   ["api", "dom", "icons"],
   ["tools", "yarn"],

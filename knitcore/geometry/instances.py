@@ -19,6 +19,8 @@ Floats = NDArray[np.float32]
 
 LEVELS = ((1_500, 48, 8), (10_000, 14, 6), (40_000, 10, 4))
 """(largest number of stitches, points, sides): how finely each stitch is drawn."""
+COARSE_LEVELS = ((250, 48, 8), (900, 18, 6), (1_500, 15, 4), (40_000, 7, 4))
+"""The same without a GPU, where a frame takes as long as it has triangles."""
 OVERLAP = 0.012
 """Tubes overlap the next by this share of a stitch, so that joins show no gap."""
 ENDS = ((0, 1), (-1, -2))
@@ -45,9 +47,10 @@ class StitchMeshes:
     faces: NDArray[np.uint32]
 
 
-def level_of(stitches: int) -> tuple[int, int]:
-    """Points and sides of a tube, for a number of stitches."""
-    return next((p, s) for most, p, s in LEVELS if stitches <= most)
+def level_of(stitches: int, *, coarse: bool = False) -> tuple[int, int]:
+    """Points and sides of a tube, for a number of stitches; ``coarse`` without a GPU."""
+    levels = COARSE_LEVELS if coarse else LEVELS
+    return next((p, s) for most, p, s in levels if stitches <= most)
 
 
 def tube_sizes(shapes: StitchShapes, placement: PlacedStitches) -> Array:

@@ -105,6 +105,37 @@ def test_tubes_are_scaled_at_once_and_drawn_anew_once_they_keep_still(
     assert not _nodes(view).keys() & before.keys()
 
 
+def test_without_a_gpu_the_same_stitches_are_drawn_coarsely(view: View) -> None:
+    _show(view, SMALL | {"chart": "\n".join(["KP" * 18, "PK" * 18] * 18)})
+    fine, copies = _corners(view), sum(_nodes(view).values())
+    view.writer.coarse = True
+    view.writer.redraw()
+    assert _corners(view) < fine / 2
+    assert sum(_nodes(view).values()) == copies
+    coarse = _nodes(view)
+    view.writer.redraw()
+    assert _nodes(view) == coarse
+    view.writer.coarse = False
+    view.writer.redraw()
+    assert _corners(view) == fine
+
+
+def _corners(view: View) -> int:
+    handles = view.server.scene._handle_from_node_name
+    return min(len(handles[name].vertices) for name in _nodes(view))
+
+
+def test_without_a_gpu_less_of_a_large_chart_is_yarn(
+    view: View, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scene_module, "COARSE_WINDOW", 6)
+    scene = build_scene(ViewRequest.model_validate(SMALL), None, Context(Path()))
+    for picture, stitches in ((None, 12), (scene.colours, 6)):
+        view.writer.coarse = True
+        view.show(replace(scene.drawing(), picture=picture))
+        assert sum(_nodes(view).values()) == stitches
+
+
 def test_a_moved_camera_keeps_its_place_until_reset(view: View) -> None:
     _show(view, SMALL)
     (client,) = view.server.get_clients().values()

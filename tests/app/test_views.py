@@ -120,6 +120,32 @@ def test_views_make_room_and_leave_nothing_behind() -> None:
     assert len(views) == 0
 
 
+def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
+    views = Views(most=4, idle_s=60)
+    try:
+        first = views.open("ada/a")
+        views.watch("ada/a", +1)
+        assert not first.writer.coarse
+        views.watch("ada/a", +1, coarse=True)
+        assert first.writer.coarse
+        assert views.open("ada/b").writer.coarse  # who has no GPU here has none there
+        assert not views.open("bob/a").writer.coarse
+        views.watch("ada/a", -1, coarse=True)
+        assert not first.writer.coarse
+    finally:
+        views.close()
+
+
+def test_a_browser_says_that_it_has_no_gpu(client: TestClient) -> None:
+    client.put("/api/v1/views/a-coarse-view", json={"chart": GARTER, "material": "acrylic"})
+    view = client.app.state.views.get("local/a-coarse-view")  # type: ignore[attr-defined]
+    address = "ws://127.0.0.1/view/a-coarse-view"
+    protocol = [f"viser-v{viser.__version__}"]
+    for query, coarse in (("", False), ("?coarse=1", True)):
+        with client.websocket_connect(address + query, subprotocols=protocol):
+            assert view.writer.coarse is coarse
+
+
 def test_colours_follow_their_maps() -> None:
     low, high = sequential([1.0, 100.0], 1.0, 100.0)
     middle = sequential([10.0], 1.0, 100.0, log=True)[0]

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from knitcore import Fabric, StitchChart
 from knitcore.geometry.fabrics import POINTS, cell_lines, fabric_lines
-from knitcore.geometry.instances import LEVELS, level_of, stitch_meshes
+from knitcore.geometry.instances import COARSE_LEVELS, LEVELS, level_of, stitch_meshes
 from knitcore.geometry.lattice import flat_lattice
 from knitcore.geometry.placing import DEPTH, carried, placed_lines, unstretched
 from knitcore.geometry.stitches import StitchShapes, stitch_shapes
@@ -142,10 +142,13 @@ def test_a_turned_sheet_turns_its_stitches() -> None:
     np.testing.assert_allclose(lines[:, :-1, -1], lines[:, 1:, 0], atol=0.03)
 
 
-def test_meshes_follow_the_chart_s_size() -> None:
+@pytest.mark.parametrize(("levels", "coarse"), [(LEVELS, False), (COARSE_LEVELS, True)])
+def test_meshes_follow_the_chart_s_size(
+    levels: tuple[tuple[int, int, int], ...], coarse: bool
+) -> None:
     shapes = stitch_shapes(MIXED, ACRYLIC)
-    for most, points, sides in LEVELS:
-        assert level_of(most) == (points, sides)
+    for most, points, sides in levels:
+        assert level_of(most, coarse=coarse) == (points, sides)
         meshes = stitch_meshes(shapes, unstretched(shapes), points, sides)
         assert meshes.vertices.shape == (len(shapes.lines), (points + 2) * sides, 3)
     assert resampled(shapes.lines, POINTS) == pytest.approx(shapes.lines)
