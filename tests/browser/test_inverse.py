@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from knitcore import Fabric, material
 from tests.browser.axe import violations
@@ -87,6 +87,25 @@ def test_a_part_is_made_softer_tried_on_the_chart_and_taken_back(flat_studio: Pa
     assert kept_chart(flat_studio) == CHART
     flat_studio.click("#fill-outline")
     assert not violations(flat_studio, "#panel-fill")
+
+
+def test_a_wish_waits_for_the_numbers_it_goes_by(flat_studio: Page) -> None:
+    asked: list[Route] = []
+
+    def hold(route: Route) -> None:
+        asked.append(route)
+
+    flat_studio.route("**/api/v1/predict", hold)
+    flat_studio.keyboard.press("Shift+W")
+    flat_studio.click("#part-add")
+    flat_studio.select_option("#part-0-like", "much softer")
+    expect(flat_studio.locator("#part-0-course-now")).to_have_text("–")
+    expect(flat_studio.locator("#part-0-like")).to_have_value("much softer")
+    for route in asked:
+        route.continue_()
+    modulus = material("acrylic").law(Fabric.STOCKINETTE).modulus_course
+    expect(flat_studio.locator("#part-0-course")).to_have_value(f"{0.4 * modulus:.3g}")
+    expect(flat_studio.locator("#part-0-like")).to_have_value("")
 
 
 def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:

@@ -6,7 +6,8 @@
  *
  * @typedef {{course: number, wale: number}} Stiffness moduli in N/mm
  * @typedef {{name: string, cells: number[], course: number | null, wale: number | null, now: Stiffness | null,
- *   tell?: () => void}} Part
+ *   wish: (() => Stiffness | null) | null, tell?: () => void}} Part
+ * `wish` is what was asked for in words, until the numbers that it goes by have come
  */
 
 import { ApiError, api } from "../../api.js";
@@ -47,12 +48,14 @@ export function fromStiffness(studio) {
 
   const sizeNow = () => `${chart.grid.rows} ${chart.grid.columns}`;
   const outlineNow = () => (chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null);
+  /** What is known of the yarn's pure fabrics. */
+  const fabricsNow = () => studio.materials.value.find(({ id }) => id === studio.materialId.value)?.fabrics ?? {};
   const add = (/** @type {string} */ name, /** @type {number[]} */ all) => {
     const cells = all.filter((i) => chart.outline[i]);
     if (!cells.length) return;
     if (size !== sizeNow()) parts = [];
     size = sizeNow();
-    parts.push({ name, cells, course: null, wale: null, now: null });
+    parts.push({ name, cells, course: null, wale: null, now: null, wish: null });
     show();
   };
   const addSelection = () => {
@@ -83,10 +86,10 @@ export function fromStiffness(studio) {
       if (!(error instanceof ApiError)) throw error;
       part.now = null; // the inspector says why
     }
-    part.tell?.();
+    for (const each of parts) each.tell?.(); // another part may wait for these numbers
   };
-  const measureAll = () => {
-    if (parts.length && element.checkVisibility()) for (const part of parts) void measure(part);
+  const measureAll = async () => {
+    if (parts.length && element.checkVisibility()) await Promise.all(parts.map(measure));
   };
 
   /** @param {Part} part @param {number} at */
@@ -101,13 +104,20 @@ export function fromStiffness(studio) {
       });
       input.oninput = () => {
         part[axis] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : null;
+        part.wish = null;
         part.tell?.();
       };
       return input;
     });
     const now = AXES.map(({ axis }) => h("span", { class: "figures", id: `part-${at}-${axis}-now` }, "…"));
     const verdicts = AXES.map(() => h("span", { class: "muted part-verdict" }));
-    part.tell = () =>
+    part.tell = () => {
+      const numbers = part.wish?.();
+      if (numbers) {
+        for (const { axis } of AXES) part[axis] = Number(numbers[axis].toPrecision(3));
+        part.wish = null;
+      }
+      if (!part.wish) like.value = "";
       AXES.forEach(({ axis }, i) => {
         now[i].textContent = figure(part.now?.[axis]);
         const wanted = part[axis];
@@ -115,7 +125,7 @@ export function fromStiffness(studio) {
         if (inputs[i] !== document.activeElement) inputs[i].value = wanted === null ? "" : String(wanted);
         verdicts[i].textContent = wanted && part.now ? against(part.now[axis], wanted) : "";
       });
-    part.tell();
+    };
     const others = parts.filter((other) => other !== part);
     const like = h(
       "select",
@@ -124,15 +134,16 @@ export function fromStiffness(studio) {
         id: `part-${at}-like`,
         "aria-label": `Make ${part.name} …`,
         onchange: () => {
-          const wanted = wantedAs(like.value);
-          like.value = "";
-          if (wanted) for (const { axis } of AXES) part[axis] = Number(wanted[axis].toPrecision(3));
+          const chosen = like.value;
+          part.wish = chosen ? () => wantedAs(chosen) : null;
           part.tell?.();
         },
       },
       h("option", { value: "" }, "make it …"),
       ...Object.entries(STEPS).map(([words]) => h("option", { value: words }, words)),
-      ...FABRICS.map((fabric) => h("option", { value: fabric }, `as stretchy as ${fabric}`)),
+      ...FABRICS.filter((fabric) => fabricsNow()[fabric]).map((fabric) =>
+        h("option", { value: fabric }, `as stretchy as ${fabric}`),
+      ),
       ...others.map(({ name }, i) => h("option", { value: `part ${i}` }, `as stretchy as ${name} now`)),
     );
     /** @param {string} chosen @returns {Stiffness | null} */
@@ -140,10 +151,10 @@ export function fromStiffness(studio) {
       const { now: mine } = part;
       if (chosen in STEPS) return mine && scaled(mine, STEPS[chosen]);
       if (chosen.startsWith("part ")) return others[Number(chosen.slice(5))].now;
-      const fabrics = studio.materials.value.find(({ id }) => id === studio.materialId.value)?.fabrics;
-      const one = fabrics?.[/** @type {typeof FABRICS[number]} */ (chosen)];
+      const one = fabricsNow()[/** @type {typeof FABRICS[number]} */ (chosen)];
       return one ? { course: one.modulus_course_n_per_mm, wale: one.modulus_wale_n_per_mm } : null;
     };
+    part.tell();
     return h(
       "li",
       { class: "target" },
@@ -191,7 +202,7 @@ export function fromStiffness(studio) {
             ),
           ]),
     );
-    measureAll();
+    void measureAll();
   };
 
   const smallest = field("Smallest patch, stitches", 4, { min: "1", max: "100", step: "1" });
@@ -201,6 +212,16 @@ export function fromStiffness(studio) {
 
   const fill = async () => {
     const { rows, columns } = chart.grid;
+    if (parts.some(({ wish }) => wish)) await measureAll();
+    const waiting = parts.find(({ wish }) => wish);
+    if (waiting) {
+      run.say({
+        title: `What ${waiting.name} does now is not known yet`,
+        detail: "How soft or stiff it should be goes by that.",
+        remedy: "Try again in a moment, or enter a number.",
+      });
+      return;
+    }
     const targeted = parts.filter(({ course, wale }) => course !== null || wale !== null);
     if (!targeted.length || size !== sizeNow()) {
       run.say({
@@ -335,7 +356,7 @@ export function fromStiffness(studio) {
     answer,
   );
   chart.onSettle(measureAll);
-  studio.materialId.listen(measureAll);
+  studio.materialId.listen(show);
   return { element, opened: measureAll };
 }
 
