@@ -171,12 +171,12 @@ export function fromStiffness(studio) {
             (part.name = /** @type {HTMLInputElement} */ (target).value.trim() || part.name),
         }),
         h("span", { class: "muted figures part-count" }, `${part.cells.length} sts`),
-        like,
         iconButton("close", `Remove ${part.name}`, () => {
           parts = parts.filter((other) => other !== part);
           show();
         }),
       ),
+      like,
       ...AXES.map(({ label }, i) =>
         h(
           "div",
@@ -312,7 +312,7 @@ export function fromStiffness(studio) {
         "details",
         {},
         h("summary", {}, "Which patterns, and how near they come"),
-        found.patches.length > 0 && patchTable(found, targeted),
+        found.patches.length > 0 && patchList(found, targeted),
         ...found.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
       ),
     );
@@ -381,50 +381,50 @@ function against(now, wanted) {
 
 /** A message of the service, which speaks engineering, in the page's words. @param {string} message */
 const inKnitting = (message) =>
-  message.replaceAll("course-wise", "along rows").replaceAll("wale-wise", "along columns");
+  message
+    .replaceAll("course-wise", "along rows")
+    .replaceAll("wale-wise", "along columns")
+    .replace(/[KP/]+(?= is the nearest)/, nameOf);
 
 /** @param {FillResult} found @param {Part[]} targeted */
-function patchTable({ patches, columns }, targeted) {
+function patchList({ patches, columns }, targeted) {
   /** @param {{row: number, column: number}} patch */
   const partOf = ({ row, column }) => targeted.find(({ cells }) => cells.includes(row * columns + column));
-  /** One row for all patches of a part with the same pattern. @type {Map<string, FillResult["patches"][number]>} */
+  /** One entry for all patches of a part with the same pattern. @type {Map<string, FillResult["patches"][number]>} */
   const alike = new Map();
   for (const patch of patches) {
     const key = `${partOf(patch)?.name} ${patch.repeat}`;
     alike.set(key, { ...patch, stitches: patch.stitches + (alike.get(key)?.stitches ?? 0) });
   }
-  const rows = [...alike.values()].toSorted((a, b) => b.stitches - a.stitches).slice(0, SHOWN_PATCHES);
-  /** @param {number} value @param {[number, number]} ends @param {number | null | undefined} wanted */
-  const stiffness = (value, [low, high], wanted) =>
-    h(
-      "td",
-      {},
-      h("div", { class: "figures" }, `${figure(value)} (${figure(low)} to ${figure(high)})`),
-      wanted && h("div", { class: "muted" }, against(value, wanted)),
-    );
+  const shown = [...alike.values()].toSorted((a, b) => b.stitches - a.stitches).slice(0, SHOWN_PATCHES);
   return h(
-    "table",
-    { class: "inverse-numbers patches" },
-    h(
-      "thead",
-      {},
-      h("tr", {}, ...["Part", "Pattern", "Along rows", "Along columns"].map((text) => h("th", { scope: "col" }, text))),
-    ),
-    h(
-      "tbody",
-      {},
-      ...rows.map((patch) => {
-        const part = partOf(patch);
-        return h(
-          "tr",
-          {},
-          h("td", {}, part?.name ?? "", h("div", { class: "muted" }, `${patch.stitches} sts`)),
-          h("td", { class: "patch-name" }, repeatPicture(patch.repeat, 36), nameOf(patch.repeat)),
-          stiffness(patch.modulus_course_n_per_mm, patch.modulus_course_interval_n_per_mm, part?.course),
-          stiffness(patch.modulus_wale_n_per_mm, patch.modulus_wale_interval_n_per_mm, part?.wale),
-        );
-      }),
-    ),
+    "ul",
+    { class: "candidates" },
+    ...shown.map((patch) => {
+      const part = partOf(patch);
+      return h(
+        "li",
+        { class: "candidate" },
+        repeatPicture(patch.repeat, 60),
+        h(
+          "div",
+          { class: "candidate-body" },
+          h("strong", { class: "candidate-title" }, nameOf(patch.repeat)),
+          h("div", { class: "muted" }, `${part?.name ?? ""}, ${patch.stitches} sts`),
+          ...AXES.map(({ axis, label }) => {
+            const value = patch[`modulus_${axis}_n_per_mm`];
+            const [low, high] = patch[`modulus_${axis}_interval_n_per_mm`];
+            const wanted = part?.[axis];
+            return h(
+              "div",
+              { class: "figures" },
+              `${label} ${figure(value)} (${figure(low, 2)} – ${figure(high, 2)})`,
+              wanted && h("div", { class: "muted" }, against(value, wanted)),
+            );
+          }),
+        ),
+      );
+    }),
   );
 }
 
