@@ -23,20 +23,21 @@ from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import material
 from knitcore.mechanics.pressure import limb_pressure
 from knitcore.repeats import repeats_up_to
+from tests.knitcore.design.atlases import REPEATS, acrylic_atlas
 
 ACRYLIC = material("acrylic")
-REPEATS = repeats_up_to(2, 3)
-ATLAS = build_atlas(ACRYLIC, REPEATS)
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_pure_fabrics_have_their_measured_laws(fabric: Fabric) -> None:
-    index = ATLAS.index_of(StitchChart.of_fabric(fabric, rows=2, columns=2))
+    index = acrylic_atlas().index_of(StitchChart.of_fabric(fabric, rows=2, columns=2))
     assert index is not None
     law = ACRYLIC.law(fabric)
-    assert ATLAS.column("modulus_course_n_per_mm")[index] == pytest.approx(law.modulus_course)
-    assert ATLAS.column("modulus_wale_n_per_mm")[index] == pytest.approx(law.modulus_wale)
-    assert ATLAS.provenance[index] == "measured"
+    assert acrylic_atlas().column("modulus_course_n_per_mm")[index] == pytest.approx(
+        law.modulus_course
+    )
+    assert acrylic_atlas().column("modulus_wale_n_per_mm")[index] == pytest.approx(law.modulus_wale)
+    assert acrylic_atlas().provenance[index] == "measured"
 
 
 def test_a_mixed_repeat_has_its_prediction() -> None:
@@ -49,9 +50,9 @@ def test_a_mixed_repeat_has_its_prediction() -> None:
 
 def test_intervals_hold_their_values() -> None:
     for direction in ("course", "wale"):
-        value = ATLAS.column(f"modulus_{direction}_n_per_mm")
-        assert (ATLAS.column(f"modulus_{direction}_low") < value).all()
-        assert (ATLAS.column(f"modulus_{direction}_high") > value).all()
+        value = acrylic_atlas().column(f"modulus_{direction}_n_per_mm")
+        assert (acrylic_atlas().column(f"modulus_{direction}_low") < value).all()
+        assert (acrylic_atlas().column(f"modulus_{direction}_high") > value).all()
 
 
 def test_a_stopped_build_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,7 +83,9 @@ def test_a_stopped_build_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("knitcore.design.atlas_build.run_batch", counting)
     resumed = build_atlas(ACRYLIC, repeats, file=file)
     assert sum(computed) == len(repeats) - AT_ONCE
-    assert resumed.only(ATLAS.keys).values == pytest.approx(ATLAS.values, nan_ok=True)
+    assert resumed.only(acrylic_atlas().keys).values == pytest.approx(
+        acrylic_atlas().values, nan_ok=True
+    )
     assert not parts_folder(file).exists()
 
     again = build_atlas(ACRYLIC, repeats, file=file)
@@ -94,18 +97,20 @@ def test_a_stopped_build_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_two_processes_make_the_same_atlas(tmp_path: Path) -> None:
     atlas = build_atlas(ACRYLIC, REPEATS, file=tmp_path / "a.npz", workers=2)
-    assert atlas.keys == ATLAS.keys
-    assert np.array_equal(atlas.curves, ATLAS.curves)
+    assert atlas.keys == acrylic_atlas().keys
+    assert np.array_equal(atlas.curves, acrylic_atlas().curves)
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_curves_of_pure_fabrics_are_those_of_their_laws(fabric: Fabric) -> None:
-    index = ATLAS.index_of(StitchChart.of_fabric(fabric, rows=2, columns=2))
+    index = acrylic_atlas().index_of(StitchChart.of_fabric(fabric, rows=2, columns=2))
     for direction in Direction:
         for load in (0.013, 0.1, 0.31):
             exact = strain_at_stress(ACRYLIC.law(fabric), direction, load)
-            assert ATLAS.strain_at(direction, load)[index] == pytest.approx(exact, rel=0.005)
-            back = ATLAS.stress_at(direction, exact)[index]
+            assert acrylic_atlas().strain_at(direction, load)[index] == pytest.approx(
+                exact, rel=0.005
+            )
+            back = acrylic_atlas().stress_at(direction, exact)[index]
             assert back == pytest.approx(load, rel=0.01)
 
 
@@ -119,8 +124,10 @@ def test_a_wanted_pressure_is_that_of_the_pressure_model(
     quantity = Quantity.PRESSURE_COURSE if direction is Direction.COURSE else Quantity.PRESSURE_WALE
     middle = float(np.sqrt(expected.low * expected.high))
     target = Target(quantity, middle, 0.05, limb=WornTube(200.0, worn_mm))
-    found = find_fabric([ATLAS], [target], count=len(ATLAS))
-    key = ATLAS.keys[ATLAS.index_of(StitchChart.of_fabric(fabric, rows=2, columns=2)) or 0]
+    found = find_fabric([acrylic_atlas()], [target], count=len(acrylic_atlas()))
+    key = acrylic_atlas().keys[
+        acrylic_atlas().index_of(StitchChart.of_fabric(fabric, rows=2, columns=2)) or 0
+    ]
     own = next(c for c in found.candidates if c.repeat == key)
     assert own.values[target.label] == pytest.approx(middle, rel=0.01)
     assert own.reached
@@ -139,7 +146,7 @@ def test_stretch_at_a_load_and_poisson_s_ratio_together() -> None:
         ),
         Target(Quantity.POISSON_WALE, law.poisson_xy, 0.02),
     ]
-    best = find_fabric([ATLAS], targets).candidates[0]
+    best = find_fabric([acrylic_atlas()], targets).candidates[0]
     assert best.repeat == "P/K"
     assert best.reached
     assert "stretch_wale@0.05" in best.intervals
@@ -150,27 +157,30 @@ def test_one_quantity_at_two_loads_is_two_targets() -> None:
         Target(Quantity.STRETCH_COURSE, value, load_n_per_mm=load)
         for value, load in ((0.1, 0.01), (0.5, 0.1))
     ]
-    assert len(find_fabric([ATLAS], targets).candidates[0].values) == 2
+    assert len(find_fabric([acrylic_atlas()], targets).candidates[0].values) == 2
 
 
 def test_a_limb_beyond_the_lock_up_gives_nan() -> None:
     target = Target(Quantity.PRESSURE_WALE, 20.0, limb=WornTube(100.0, 900.0))
-    found = find_fabric([ATLAS], [target])
+    found = find_fabric([acrylic_atlas()], [target])
     assert not found.reached
     assert "no repeat stretches that far" in found.message
 
 
 def test_limits_of_knitting_cost() -> None:
     target = Target(Quantity.MODULUS_COURSE, 0.2)
-    free = find_fabric([ATLAS], [target], count=len(ATLAS))
+    free = find_fabric([acrylic_atlas()], [target], count=len(acrylic_atlas()))
     easy = find_fabric(
-        [ATLAS], [target], count=len(ATLAS), limits=CostLimits(transfers_per_stitch=0.0, curl=0.5)
+        [acrylic_atlas()],
+        [target],
+        count=len(acrylic_atlas()),
+        limits=CostLimits(transfers_per_stitch=0.0, curl=0.5),
     )
     assert 0 < len(easy.candidates) < len(free.candidates)
     assert all(c.cost.transfers_per_stitch == 0 for c in easy.candidates)
     assert all(abs(c.cost.curl) <= 0.5 for c in easy.candidates)
     with pytest.raises(InputError, match="no repeat is within") as caught:
-        find_fabric([ATLAS], [target], limits=CostLimits(0.0, 0.0, 0.0))
+        find_fabric([acrylic_atlas()], [target], limits=CostLimits(0.0, 0.0, 0.0))
     assert "Relax one" in caught.value.remedy
 
 
@@ -179,17 +189,17 @@ def test_a_damaged_file_is_read_or_refused(
     tmp_path: Path, place: float, byte: int, data: st.DataObject
 ) -> None:
     file = tmp_path / "atlas.npz"
-    save_atlas(ATLAS, file)
+    save_atlas(acrylic_atlas(), file)
     content = bytearray(file.read_bytes())
     content[int(place * len(content))] = byte
     file.write_bytes(content[: data.draw(st.integers(0, len(content)))] if byte % 2 else content)
     with contextlib.suppress(InputError):
-        assert len(load_atlas(file).values) == len(ATLAS)
+        assert len(load_atlas(file).values) == len(acrylic_atlas())
 
 
 def test_an_atlas_of_other_laws_is_not_continued(tmp_path: Path) -> None:
     file = tmp_path / "atlas.npz"
-    save_atlas(ATLAS, file)
+    save_atlas(acrylic_atlas(), file)
     with pytest.raises(InputError, match="atlas of acrylic with other laws"):
         build_atlas(material("cotton"), REPEATS, file=file)
 
@@ -224,21 +234,24 @@ def test_costs_of_knitting(text: str, transfers: float, curl: float) -> None:
 @pytest.mark.parametrize("index", range(len(REPEATS)))
 def test_the_values_of_a_repeat_find_that_repeat(index: int) -> None:
     targets = [
-        Target(Quantity.MODULUS_COURSE, float(ATLAS.column("modulus_course_n_per_mm")[index])),
         Target(
-            Quantity.EXTENSIBILITY_WALE, 1 / float(ATLAS.column("modulus_wale_n_per_mm")[index])
+            Quantity.MODULUS_COURSE, float(acrylic_atlas().column("modulus_course_n_per_mm")[index])
+        ),
+        Target(
+            Quantity.EXTENSIBILITY_WALE,
+            1 / float(acrylic_atlas().column("modulus_wale_n_per_mm")[index]),
         ),
     ]
-    found = find_fabric([ATLAS], targets, count=len(ATLAS))
+    found = find_fabric([acrylic_atlas()], targets, count=len(acrylic_atlas()))
     assert found.reached
-    own = next(c for c in found.candidates if c.repeat == ATLAS.keys[index])
+    own = next(c for c in found.candidates if c.repeat == acrylic_atlas().keys[index])
     assert own.reached
     assert own.misfit == pytest.approx(0, abs=1e-3)
     assert own.deviations[Quantity.MODULUS_COURSE] == pytest.approx(0, abs=1e-3)
 
 
 def test_candidates_are_ranked() -> None:
-    found = find_fabric([ATLAS], [Target(Quantity.ANISOTROPY, 1.0)], count=5)
+    found = find_fabric([acrylic_atlas()], [Target(Quantity.ANISOTROPY, 1.0)], count=5)
     ranks = [(-round(candidate.chance, 2), candidate.misfit) for candidate in found.candidates]
     assert ranks == sorted(ranks)
     for candidate in found.candidates:
@@ -259,21 +272,21 @@ def test_the_surer_of_two_equal_predictions_comes_first() -> None:
 
 
 def test_unreachable_targets_are_reported_with_the_nearest_repeat() -> None:
-    found = find_fabric([ATLAS], [Target(Quantity.MODULUS_COURSE, 5.0)])
+    found = find_fabric([acrylic_atlas()], [Target(Quantity.MODULUS_COURSE, 5.0)])
     assert not found.reached
-    stiffest = int(ATLAS.column("modulus_course_n_per_mm").argmax())
-    assert found.candidates[0].repeat == ATLAS.keys[stiffest]
+    stiffest = int(acrylic_atlas().column("modulus_course_n_per_mm").argmax())
+    assert found.candidates[0].repeat == acrylic_atlas().keys[stiffest]
     assert "No repeat meets this" in found.message
     assert "all repeats span" in found.message
 
 
 def test_targets_that_can_be_met_singly_but_not_together() -> None:
-    course, wale = (ATLAS.column(f"modulus_{d}_n_per_mm") for d in ("course", "wale"))
+    course, wale = (acrylic_atlas().column(f"modulus_{d}_n_per_mm") for d in ("course", "wale"))
     targets = [
         Target(Quantity.MODULUS_COURSE, float(course.max()), 0.01),
         Target(Quantity.MODULUS_WALE, float(wale.min()), 0.01),
     ]
-    found = find_fabric([ATLAS], targets)
+    found = find_fabric([acrylic_atlas()], targets)
     assert not found.reached
     assert "but not the other targets" in found.message
 
@@ -294,15 +307,15 @@ def test_within_all_tolerances_comes_before_better_on_the_average() -> None:
 def test_other_yarns_are_searched_too() -> None:
     lace = build_atlas(material("lace-bamboo"), repeats_up_to(1, 2))
     target = Target(Quantity.MODULUS_WALE, float(lace.column("modulus_wale_n_per_mm")[0]), 0.001)
-    assert find_fabric([ATLAS, lace], [target]).candidates[0].material == "lace-bamboo"
+    assert find_fabric([acrylic_atlas(), lace], [target]).candidates[0].material == "lace-bamboo"
 
 
 @pytest.mark.parametrize(
     ("make", "field"),
     [
         (lambda: find_fabric([], [Target(Quantity.ANISOTROPY, 1.0)]), "atlas"),
-        (lambda: find_fabric([ATLAS], []), "targets"),
-        (lambda: find_fabric([ATLAS], [Target(Quantity.ANISOTROPY, 1.0)] * 2), "targets"),
+        (lambda: find_fabric([acrylic_atlas()], []), "targets"),
+        (lambda: find_fabric([acrylic_atlas()], [Target(Quantity.ANISOTROPY, 1.0)] * 2), "targets"),
         (lambda: Target(Quantity.ANISOTROPY, -1.0), "targets.anisotropy"),
         (lambda: Target(Quantity.ANISOTROPY, 1.0, weight=float("inf")), "targets.anisotropy"),
         (lambda: Target(Quantity.PRESSURE_WALE, 20.0), "targets.pressure_wale_mmhg"),

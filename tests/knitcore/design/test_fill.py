@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.design.atlas_build import build_atlas, predict_repeat
+from knitcore.design.atlas_build import predict_repeat
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.part_targets import PartTarget, target_maps, target_parts
 from knitcore.design.patch_check import finite_size
@@ -14,13 +14,10 @@ from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
 from knitcore.mechanics.local import local_moduli
-from knitcore.repeats import repeats_up_to
 from tests.knitcore.charts import stitch_charts
+from tests.knitcore.design.atlases import REPEATS, acrylic_atlas
 
 ACRYLIC = material("acrylic")
-ATLAS = build_atlas(ACRYLIC, repeats_up_to(2, 3))
-
-
 REPEATS_OF_GARTER = (StitchChart.parse("K\nP"), StitchChart.parse("P\nK"))
 
 
@@ -43,7 +40,9 @@ def fill_like(chart: StitchChart, noise: float = 0.0, **options: int) -> FilledF
     local = local_moduli(chart, ACRYLIC)
     factors = np.exp(np.random.default_rng(0).normal(0, noise, (2, *chart.purl.shape)))
     course = local.modulus_course_n_per_mm * factors[0]
-    return fill_field(course, local.modulus_wale_n_per_mm * factors[1], ACRYLIC, ATLAS, **options)
+    return fill_field(
+        course, local.modulus_wale_n_per_mm * factors[1], ACRYLIC, acrylic_atlas(), **options
+    )
 
 
 def off(field: FilledField, chart: StitchChart) -> float:
@@ -70,13 +69,20 @@ def test_patches_of_any_shape() -> None:
     """A disc of one mixed repeat in a field of another."""
     row, column = np.indices((32, 32))
     disc = (row - 16) ** 2 + (column - 14) ** 2 < 100
-    inside, outside = (ATLAS.index_of(StitchChart.parse(t)) for t in ("KKP", "PKK\nKPK"))
+    inside, outside = (acrylic_atlas().index_of(StitchChart.parse(t)) for t in ("KKP", "PKK\nKPK"))
     maps = [
-        np.where(disc, ATLAS.modulus(direction)[inside], ATLAS.modulus(direction)[outside])
+        np.where(
+            disc,
+            acrylic_atlas().modulus(direction)[inside],
+            acrylic_atlas().modulus(direction)[outside],
+        )
         for direction in Direction
     ]
-    field = fill_field(*maps, ACRYLIC, ATLAS, smallest_patch=3)
-    assert {ATLAS.keys.index(region.repeat) for region in field.regions} >= {inside, outside}
+    field = fill_field(*maps, ACRYLIC, acrylic_atlas(), smallest_patch=3)
+    assert {acrylic_atlas().keys.index(region.repeat) for region in field.regions} >= {
+        inside,
+        outside,
+    }
     found = field.patches == field.patches[16, 14]
     assert (found == disc).mean() > 0.98
     assert all(np.isfinite([r.swatch_course, r.swatch_wale]).all() for r in field.regions)
@@ -90,11 +96,13 @@ def test_any_chart_is_read_back_from_its_own_map(chart: StitchChart) -> None:
     assert "read back" in found.messages[0]
 
 
-@pytest.mark.parametrize("index", range(0, len(ATLAS), 3))
+@pytest.mark.parametrize("index", range(0, len(REPEATS), 3))
 def test_a_uniform_target_is_met(index: int) -> None:
     """Within 5 %, by the prediction of the whole chart."""
-    course, wale = (ATLAS.column(f"modulus_{d}_n_per_mm")[index] for d in ("course", "wale"))
-    field = fill_field(np.full((12, 12), course), np.full((12, 12), wale), ACRYLIC, ATLAS)
+    course, wale = (
+        acrylic_atlas().column(f"modulus_{d}_n_per_mm")[index] for d in ("course", "wale")
+    )
+    field = fill_field(np.full((12, 12), course), np.full((12, 12), wale), ACRYLIC, acrylic_atlas())
     assert len(field.regions) <= 1
     found = predict_repeat(field.chart.repeat(), ACRYLIC)
     assert found.modulus_course_n_per_mm == pytest.approx(course, rel=0.05)
@@ -106,7 +114,7 @@ def test_a_target_between_the_repeats_is_met_by_a_mixture() -> None:
     """Stripes hidden in the target: no repeat of this small atlas comes near."""
     hidden = predict_repeat(StitchChart.parse("KKKKKKPKP\nKKKKKKKPK"), ACRYLIC)
     target = [np.full((20, 20), hidden.modulus_n_per_mm(d)) for d in Direction]
-    field = fill_field(*target, ACRYLIC, ATLAS)
+    field = fill_field(*target, ACRYLIC, acrylic_atlas())
     found = predict_repeat(StitchChart.parse(field.regions[0].repeat), ACRYLIC)
     for direction in Direction:
         wanted = hidden.modulus_n_per_mm(direction)
@@ -119,7 +127,7 @@ def test_patches_to_be_knitted_by_hand_have_no_scattered_stitches() -> None:
     row, column = np.indices((8, 8))
     disc = (row - 4) ** 2 + (column - 4) ** 2 < 7
     moduli = [np.where(disc, 0.031, 0.017), np.where(disc, 0.13, 0.3)]
-    plain = fill_field(*moduli, ACRYLIC, ATLAS, scattered=False, check=False)
+    plain = fill_field(*moduli, ACRYLIC, acrylic_atlas(), scattered=False, check=False)
     assert len(plain.regions) > 1
     for number, region in enumerate(plain.regions):
         repeat = StitchChart.parse(region.repeat)
@@ -161,7 +169,7 @@ def test_the_same_seed_gives_the_same_chart() -> None:
 def test_patches_are_not_too_small(smallest: int) -> None:
     rng = np.random.default_rng(0)
     course, wale = np.exp(rng.uniform(-4, -1, (2, 20, 20)))
-    field = fill_field(course, wale, ACRYLIC, ATLAS, smallest_patch=smallest)
+    field = fill_field(course, wale, ACRYLIC, acrylic_atlas(), smallest_patch=smallest)
     for patch in range(len(field.regions)):
         rows, columns = np.nonzero(field.patches == patch)
         assert np.ptp(rows) + 1 >= smallest
@@ -182,7 +190,7 @@ def test_a_part_narrower_than_a_patch_is_filled(columns: int) -> None:
     course, wale = target_maps([cuff], 12, 10)
     parts = target_parts([cuff], 12, 10)
     knit = StitchChart.of_fabric(Fabric.STOCKINETTE, 12, 10)
-    field = fill_field(course, wale, ACRYLIC, ATLAS, parts=parts, kept=knit)
+    field = fill_field(course, wale, ACRYLIC, acrylic_atlas(), parts=parts, kept=knit)
     (region,) = field.regions
     assert region.stitches == 12 * columns
     assert region.repeat == "P/K"
@@ -198,7 +206,7 @@ def test_stitches_without_a_target_are_not_constrained() -> None:
     course = np.full((10, 10), np.nan)
     course[:, :5] = garter.modulus_course
     wale = np.where(np.isnan(course), np.nan, garter.modulus_wale)
-    field = fill_field(course, wale, ACRYLIC, ATLAS)
+    field = fill_field(course, wale, ACRYLIC, acrylic_atlas())
     assert field.off_share == 0
     assert StitchChart(field.chart.purl[:, :5]).repeat() in REPEATS_OF_GARTER
 
@@ -218,7 +226,9 @@ def target_in_part(fabric: Fabric, shape: tuple[int, int] = (14, 18)) -> list[np
 def test_a_filled_part_continues_its_surroundings(shift: int) -> None:
     """Garter wished for in garter: the rows go through, whichever of them is knit."""
     around = StitchChart.of_fabric("garter", 14, 18).purl ^ bool(shift)
-    field = fill_field(*target_in_part(Fabric.GARTER), ACRYLIC, ATLAS, kept=StitchChart(around))
+    field = fill_field(
+        *target_in_part(Fabric.GARTER), ACRYLIC, acrylic_atlas(), kept=StitchChart(around)
+    )
     assert np.array_equal(field.chart.purl, around)
     assert field.off_share == 0
 
@@ -230,11 +240,11 @@ def test_stitches_without_a_target_are_kept_and_the_part_fitted_to_them(
 ) -> None:
     kept = hidden_chart(seed, side=18, patches=4, least=4).purl[:14]
     maps = target_in_part(fabric)
-    field = fill_field(*maps, ACRYLIC, ATLAS, kept=StitchChart(kept), seed=seed)
+    field = fill_field(*maps, ACRYLIC, acrylic_atlas(), kept=StitchChart(kept), seed=seed)
     outside = np.ones(kept.shape, dtype=bool)
     outside[PART] = False
     assert np.array_equal(field.chart.purl[outside], kept[outside])
-    unaware = fill_field(*maps, ACRYLIC, ATLAS, seed=seed).chart.purl
+    unaware = fill_field(*maps, ACRYLIC, acrylic_atlas(), seed=seed).chart.purl
     pasted = StitchChart(np.where(outside, kept, unaware))
 
     def distance(chart: StitchChart) -> float:
@@ -254,7 +264,11 @@ def test_a_shaped_piece_is_filled_whatever_stands_where_it_has_no_stitch() -> No
     stitch[5:9, 10:] = False
     fields = [
         fill_field(
-            *target_in_part(Fabric.SEED), ACRYLIC, ATLAS, kept=StitchChart(chart), stitch=stitch
+            *target_in_part(Fabric.SEED),
+            ACRYLIC,
+            acrylic_atlas(),
+            kept=StitchChart(chart),
+            stitch=stitch,
         )
         for chart in (kept, np.where(stitch, kept, ~kept))
     ]
@@ -271,30 +285,33 @@ def test_a_target_off_the_fabric_and_a_fabric_in_parts_are_refused() -> None:
     stitch = np.ones((14, 18), dtype=bool)
     stitch[PART] = False
     with pytest.raises(InputError, match="inside the outline"):
-        fill_field(*target_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
+        fill_field(*target_in_part(Fabric.SEED), ACRYLIC, acrylic_atlas(), stitch=stitch)
     stitch = np.ones((14, 18), dtype=bool)
     stitch[:, 8] = False
     with pytest.raises(InputError, match="2 pieces"):
-        fill_field(*target_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
+        fill_field(*target_in_part(Fabric.SEED), ACRYLIC, acrylic_atlas(), stitch=stitch)
 
 
 def test_the_missed_share_counts_stitches_with_a_target() -> None:
     course = np.full((12, 12), np.nan)
     course[:4, :4] = 9.0
     for kept in (None, StitchChart.of_fabric("rib", 12, 12)):
-        field = fill_field(course, np.full((12, 12), np.nan), ACRYLIC, ATLAS, kept=kept)
+        field = fill_field(course, np.full((12, 12), np.nan), ACRYLIC, acrylic_atlas(), kept=kept)
         assert field.off_share == 1
 
 
 def test_a_chart_of_another_size_is_refused() -> None:
     with pytest.raises(InputError, match="18x14"):
         fill_field(
-            *target_in_part(Fabric.SEED), ACRYLIC, ATLAS, kept=StitchChart.of_fabric("rib", 3, 3)
+            *target_in_part(Fabric.SEED),
+            ACRYLIC,
+            acrylic_atlas(),
+            kept=StitchChart.of_fabric("rib", 3, 3),
         )
 
 
 def test_unreachable_targets_are_reported() -> None:
-    field = fill_field(np.full((6, 6), 9.0), np.full((6, 6), np.nan), ACRYLIC, ATLAS)
+    field = fill_field(np.full((6, 6), 9.0), np.full((6, 6), np.nan), ACRYLIC, acrylic_atlas())
     assert field.off_share == 1
     assert "than wanted course-wise" in field.messages[0]
     assert "This yarn reaches" in field.messages[0]
@@ -306,11 +323,11 @@ def test_it_reports_progress_and_can_be_cancelled() -> None:
     chart = hidden_chart(1, side=20, patches=3)
     local = local_moduli(chart, ACRYLIC)
     maps = 1.05 * local.modulus_course_n_per_mm, local.modulus_wale_n_per_mm
-    fill_field(*maps, ACRYLIC, ATLAS, progress=told.append)
+    fill_field(*maps, ACRYLIC, acrylic_atlas(), progress=told.append)
     assert told == sorted(told)
     assert 0 <= told[0] < told[-1] <= 1
     with pytest.raises(CancelledError):
-        fill_field(*maps, ACRYLIC, ATLAS, cancelled=lambda: True)
+        fill_field(*maps, ACRYLIC, acrylic_atlas(), cancelled=lambda: True)
 
 
 def test_patches_are_connected() -> None:
@@ -329,9 +346,9 @@ def test_patches_are_connected() -> None:
 )
 def test_maps_that_cannot_be_used(course: np.ndarray, wale: np.ndarray, says: str) -> None:
     with pytest.raises(InputError, match=says):
-        fill_field(course, wale, ACRYLIC, ATLAS)
+        fill_field(course, wale, ACRYLIC, acrylic_atlas())
 
 
 def test_the_atlas_must_be_of_the_yarn() -> None:
     with pytest.raises(InputError, match="it is of acrylic"):
-        fill_field(np.ones((2, 2)), np.ones((2, 2)), material("cotton"), ATLAS)
+        fill_field(np.ones((2, 2)), np.ones((2, 2)), material("cotton"), acrylic_atlas())

@@ -6,16 +6,14 @@ import numpy as np
 import pytest
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.design.atlas_build import build_atlas
 from knitcore.design.shape import ShapedSwatch, fill_shape
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
-from knitcore.repeats import repeats_up_to
 from knitcore.swatch import strip_test
+from tests.knitcore.design.atlases import acrylic_atlas
 
 ACRYLIC = material("acrylic")
-ATLAS = build_atlas(ACRYLIC, repeats_up_to(2, 3))
 
 
 def outline(chart: StitchChart, strain: float) -> np.ndarray:
@@ -32,7 +30,7 @@ def banded(*fabrics: str) -> StitchChart:
 
 
 def fill(width: np.ndarray, strain: float = 0.3, **options: Any) -> ShapedSwatch:
-    return fill_shape(width, 16, Direction.WALE, strain, ACRYLIC, ATLAS, **options)
+    return fill_shape(width, 16, Direction.WALE, strain, ACRYLIC, acrylic_atlas(), **options)
 
 
 @pytest.mark.slow
@@ -55,7 +53,7 @@ def test_the_same_seed_gives_the_same_chart() -> None:
 def test_a_column_profile_under_a_course_wise_pull() -> None:
     wanted = np.full(20, np.nan)
     wanted[10] = 0.9
-    found = fill_shape(wanted, 10, Direction.COURSE, 0.3, ACRYLIC, ATLAS)
+    found = fill_shape(wanted, 10, Direction.COURSE, 0.3, ACRYLIC, acrylic_atlas())
     assert (found.chart.rows, found.chart.columns) == (10, 20)
     assert found.width[10] == pytest.approx(0.9, abs=0.02)
 
@@ -94,4 +92,12 @@ def test_profiles_that_cannot_be_used(width: np.ndarray, strain: float, field: s
 def test_other_sizes_that_cannot_be_used() -> None:
     for across, band in ((2, 4), (16, 0), (10_000, 4)):
         with pytest.raises(InputError):
-            fill_shape(np.ones(8), across, Direction.WALE, 0.3, ACRYLIC, ATLAS, smallest_band=band)
+            fill_shape(
+                np.ones(8),
+                across,
+                Direction.WALE,
+                0.3,
+                ACRYLIC,
+                acrylic_atlas(),
+                smallest_band=band,
+            )
