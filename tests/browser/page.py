@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -48,24 +49,30 @@ def coloured(picture: np.ndarray) -> int:
     return int(((picture.max(axis=-1) - picture.min(axis=-1)) > 22).sum())
 
 
-def wait_for_colour(page: Page, selector: str, least: int) -> np.ndarray:
-    """The picture of a part of the page once it has so many coloured pixels."""
-    for _ in range(100):
+def wait_for_picture(
+    page: Page, selector: str, measure: Callable[[np.ndarray], float], least: float
+) -> np.ndarray:
+    """The picture of a part of the page once something measured in it is as large as wanted."""
+    for _ in range(150):
         picture = pixels(page, selector)
-        if coloured(picture) >= least:
+        if (found := measure(picture)) >= least:
             return picture
         page.wait_for_timeout(700)
-    raise AssertionError(f"{selector} has {coloured(picture)} coloured pixels, not {least}")
+    raise AssertionError(f"{selector}: {found} in its picture, not {least}")
+
+
+def wait_for_colour(page: Page, selector: str, least: int) -> np.ndarray:
+    """The picture of a part of the page once it has so many coloured pixels."""
+    return wait_for_picture(page, selector, coloured, least)
 
 
 def wait_for_change(page: Page, selector: str, before: np.ndarray, least: int) -> None:
     """Until a part of the page looks otherwise than before: some pixel differs by more."""
-    for _ in range(100):
-        picture = pixels(page, selector)
-        if picture.shape == before.shape and np.abs(picture - before).max() > least:
-            return
-        page.wait_for_timeout(700)
-    raise AssertionError(f"{selector} looks as before")
+
+    def change(picture: np.ndarray) -> float:
+        return float(np.abs(picture - before).max()) if picture.shape == before.shape else 0.0
+
+    wait_for_picture(page, selector, change, least + 1)
 
 
 def settle(page: Page) -> None:

@@ -97,7 +97,7 @@ def firefox(tmp_path: Path) -> Iterator[Firefox]:
         with connect(f"{found.group(1)}/session", max_size=None, open_timeout=60) as socket:
             yield Firefox(socket)
         process.terminate()
-        process.wait(timeout=30)
+        process.wait(TIMEOUT_MS / 1000)
 
 
 def test_the_main_job_in_firefox(firefox: Firefox, service: str) -> None:

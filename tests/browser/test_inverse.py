@@ -34,9 +34,8 @@ def test_a_repeat_of_the_atlas_is_shown_applied_and_dragged_onto_the_chart(
     flat_studio.keyboard.press("Control+z")
     assert kept_chart(flat_studio) == CHART
 
-    handle = flat_studio.locator(".inverse-chosen .inverse-handle").bounding_box()
-    assert handle
-    flat_studio.mouse.move(handle["x"] + 20, handle["y"] + 20)
+    handle = flat_studio.locator(".inverse-chosen .inverse-handle")
+    handle.hover(position={"x": 20, "y": 20})
     flat_studio.mouse.down()
     flat_studio.mouse.move(*middle(flat_studio), steps=5)
     expect(flat_studio.locator(".inverse-ghost")).to_contain_text("the whole chart")

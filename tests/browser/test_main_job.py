@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
@@ -17,6 +18,7 @@ from tests.browser.page import (
     settle,
     wait_for_change,
     wait_for_colour,
+    wait_for_picture,
 )
 
 
@@ -182,15 +184,12 @@ def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> N
 def test_3d_view_shows_the_fabrics_in_their_colours(studio: Page) -> None:
     studio.click("#ink-seed")
     studio.click("#fill-all")
-    studio.wait_for_timeout(1_000)
-    for _ in range(100):
-        picture = wait_for_colour(studio, "#fabric", 1_500)
-        red, green, blue = picture[..., 0], picture[..., 1], picture[..., 2]
-        purple = int(((red > green + 6) & (blue > green + 14)).sum())
-        if purple > 800:
-            return
-        studio.wait_for_timeout(700)
-    raise AssertionError(f"{purple} purple pixels")
+
+    def purple(picture: np.ndarray) -> int:
+        red, green, blue = np.moveaxis(picture, -1, 0)
+        return int(((red > green + 6) & (blue > green + 14)).sum())
+
+    wait_for_picture(studio, "#fabric", purple, 800)
 
 
 def test_the_whole_chart_is_undone_to_the_start_and_redone(flat_studio: Page) -> None:

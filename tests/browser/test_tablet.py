@@ -50,10 +50,13 @@ def test_all_buttons_of_a_selection_fit(flat_studio: Page, width: int, dock: boo
     flat_studio.keyboard.press("Control+a")
     expect(flat_studio.locator("#selection-bar")).to_be_visible()
     assert comes_inside(flat_studio, "#selection-bar", "#chart-host")
-    key = flat_studio.locator(".chart-key").bounding_box()
-    bar = flat_studio.locator("#selection-bar").bounding_box()
-    assert bar
-    assert not key or key["x"] + key["width"] <= bar["x"]
+    flat_studio.wait_for_function(
+        """() => {
+            const [key, bar] = [".chart-key", "#selection-bar"].map((part) =>
+                document.querySelector(part).getBoundingClientRect());
+            return key.width === 0 || key.right <= bar.left;
+        }"""
+    )
 
 
 def test_the_plots_are_one_click_away(flat_studio: Page) -> None:
@@ -99,7 +102,7 @@ def test_the_label_in_the_stiffness_map_stays_off_the_axis(flat_studio: Page) ->
     flat_studio.click("#tool-select")
     chart.drag((2, 10), (4, 8))
     expect(flat_studio.locator(".own-label")).to_have_text("this selection")
-    assert flat_studio.evaluate(
+    flat_studio.wait_for_function(
         """() => {
             const plot = document.querySelector("#plot-rigidity");
             const label = plot.querySelector(".own-label").getBoundingClientRect();

@@ -21,7 +21,14 @@ from tests.browser.conftest import (
     open_small_chart,
     wait_for_numbers,
 )
-from tests.browser.page import drag, pixels, wait_for_change, wait_for_colour
+from tests.browser.page import (
+    drag,
+    pixels,
+    settle,
+    wait_for_change,
+    wait_for_colour,
+    wait_for_picture,
+)
 
 YARN = 900
 """Coloured pixels of the small fabric at least."""
@@ -68,23 +75,38 @@ def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
     still = _reach(wait_for_colour(page, "#fabric", YARN))
     assert min(still[:2]) > 0.3
     view = "views/" + _design(page)
-    for pose, below in (("flat", 0), ("lying", 50)):
-        if pose != "flat":
-            page.click(f"#fabric-{pose}")
-            expect(page.locator(".fabric-caption")).to_contain_text("As it lies")
-        assert _reach(_wait_for_live_cloth(page)) == pytest.approx(still, abs=0.1)
+    for pose, caption, below in (
+        ("flat", "Relaxed, held flat", 0),
+        ("lying", "As it lies, without friction", 50),
+    ):
+        page.click(f"#fabric-{pose}")
+        expect(page.locator(".fabric-caption")).to_contain_text(caption)
+        before = _wait_for_live_cloth(page)
+        assert _reach(before) == pytest.approx(still, abs=0.1)
         with page.expect_response(lambda r: r.url.endswith(view) and r.request.method == "PUT"):
             drag(page, 60, 30, start=(0, below))
-        page.wait_for_timeout(4_000)
-        assert _reach(_wait_for_live_cloth(page)) == pytest.approx(still, abs=0.1)
+        wait_for_picture(page, "#fabric", partial(_recoloured, before), 200)
+        settle(page)
+        assert _reach(pixels(page, "#fabric")) == pytest.approx(still, abs=0.1)
+
+
+def _cloth(picture: np.ndarray) -> np.ndarray:
+    """Where there is yarn."""
+    return np.ptp(picture, axis=2) > 40
+
+
+def _recoloured(before: np.ndarray, picture: np.ndarray) -> int:
+    """Pixels of the cloth that have another colour than before."""
+    changed = np.abs(picture - before).max(axis=2) > 40
+    return int((changed & _cloth(before) & _cloth(picture)).sum())
 
 
 def _reach(picture: np.ndarray) -> list[float]:
-    """Height, width and middle of what is coloured, in shares of the pane."""
-    coloured = np.ptp(picture[..., :3].astype(int), axis=2) > 40
+    """Height, width and middle of the cloth, in shares of the pane."""
+    cloth = _cloth(picture)
     ends = [
         (where.min() / side, where.max() / side)
-        for where, side in zip(np.nonzero(coloured), coloured.shape, strict=True)
+        for where, side in zip(np.nonzero(cloth), cloth.shape, strict=True)
     ]
     return [*(high - low for low, high in ends), *((low + high) / 2 for low, high in ends)]
 
@@ -361,7 +383,7 @@ def test_a_lost_view_is_restored_automatically(studio: Page) -> None:
         lambda r: r.url.endswith("views/" + _design(studio)) and r.request.method == "PUT" and r.ok
     ):
         studio.context.set_offline(True)
-        studio.wait_for_timeout(500)
+        expect(studio.locator("#offline")).to_be_visible()
         studio.context.set_offline(False)
     _wait_for_live_cloth(studio)
 
