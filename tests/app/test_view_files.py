@@ -21,6 +21,7 @@ from app.listeners import Listeners
 from app.viewer.clicks import Cell, clicked_stitch
 from knitcore.errors import InputError
 from tests.app.test_stretch import ASKED, GARTER
+from tests.app.threads import threads_of_no_pool
 
 HERE = Context(Path())
 DESIGN = "a-design-to-share"
@@ -61,11 +62,11 @@ def test_sharing_leaves_the_watched_view_alone(
     client.put(f"/api/v1/views/{DESIGN}", json=SMALL)
     views = client.app.state.views  # type: ignore[attr-defined]
     view = views.get(f"local/{DESIGN}")
-    before, threads, count = view.writer.drawing, threading.active_count(), len(views)
+    before, threads, count = view.writer.drawing, len(threads_of_no_pool()), len(views)
     client.post("/api/v1/views/recording", json=stretched | {"animated": True})
     assert view.writer.drawing is before
     assert len(views) == count
-    assert threading.active_count() <= threads + 1
+    assert len(threads_of_no_pool()) <= threads
 
 
 def test_a_solid_is_the_yarn_in_metres_with_its_colours(client: TestClient) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
-import threading
 import time
 from pathlib import Path
 
@@ -18,21 +17,20 @@ from app import memory
 from app.main import create_app
 from app.settings import Settings
 from app.viewer.views import Views
+from tests.app.threads import threads_of_no_pool
 
 ROUNDS, VIEWS = 3, 3
-POOLS = ("asyncio_", "AnyIO worker", "drawing_", "pictures_", "QueueFeeder")
 CHART = {"fabric": "rib", "columns": 6, "rows": 6}
 
 
 def _held() -> tuple[int, int]:
-    """Threads that belong to no pool (pools grow as they are used), and handles of servers."""
-    threads = [t.name for t in threading.enumerate() if not t.name.startswith(POOLS)]
+    """Threads that belong to no pool, and handles of servers."""
     handles = 0
     for handle in os.listdir("/proc/self/fd"):
         with contextlib.suppress(FileNotFoundError):  # that of the list itself
             kind = os.readlink(f"/proc/self/fd/{handle}")
             handles += kind.startswith(("socket:", "anon_inode:[eventpoll]"))
-    return len(threads), handles
+    return len(threads_of_no_pool()), handles
 
 
 def _servers() -> int:
