@@ -72,14 +72,7 @@ def limb_tube(
     rests = [fit.rest_mm(g.circumference_mm, material, body, Direction.COURSE) for g in profile]
     # Even counts: shaping is symmetrical, and 1x1 rib closes around the limb.
     counts = [gauge.stitches_for(float(c), multiple=2) for c in np.interp(at, places, rests)]
-    said = list(notes)
     shaped = _limit_changes(counts)
-    if shaped != counts:
-        worst = max(range(rows), key=lambda row: abs(shaped[row] - counts[row]))
-        said.append(
-            f"The limb widens faster than one stitch at each edge of a row: row {worst + 1} has "
-            f"{shaped[worst]} stitches instead of {counts[worst]}."
-        )
     columns = max(shaped)
     column = np.arange(columns)
     left = (columns - np.array(shaped)) // 2
@@ -117,9 +110,20 @@ def limb_tube(
             place(along) for along in sorted({*places, *np.linspace(0, length, PLACES).tolist()})
         ),
         closing="work in the round, or work flat and seam the edges",
-        notes=tuple(said),
+        notes=(*notes, *_too_fast(counts, shaped)),
         linear_density_tex=linear_density_tex,
     )
+
+
+def _too_fast(counts: list[int], shaped: list[int]) -> list[str]:
+    """A note where rows have other stitches than the limb asks for."""
+    if shaped == counts:
+        return []
+    row = max(range(len(counts)), key=lambda row: abs(shaped[row] - counts[row]))
+    return [
+        f"The limb widens faster than one stitch at each edge of a row: row {row + 1} has "
+        f"{shaped[row]} stitches instead of {counts[row]}."
+    ]
 
 
 def sock_leg(

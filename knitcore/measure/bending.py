@@ -114,19 +114,7 @@ def measure_bending(
             )
         name = Path(path).name
         line = trace_centreline(load_grey(path), name=name)
-        if not line.tip_in_photo:
-            if length is None:
-                raise InputError(
-                    name,
-                    "the free end is outside the photo, so its length is unknown.",
-                    "Give length_mm, or a photo of the whole hanging yarn.",
-                )
-            notes.append(f"{name}: the yarn reaches the photo's border; is its end missing?")
-        if line.next_largest > 0.2:
-            notes.append(
-                f"{name}: something else stands out, {line.next_largest:.0%} of the yarn's area;"
-                " is the yarn in pieces?"
-            )
+        notes += _doubts(name, line, length)
         photos.append(
             _fit_photo(name, line, linear_density_g_per_m, length_mm=length, px_per_mm=px_per_mm)
         )
@@ -142,6 +130,25 @@ def measure_bending(
         photos=tuple(photos),
         notes=tuple(notes),
     )
+
+
+def _doubts(name: str, line: Centreline, length_mm: float | None) -> list[str]:
+    """Notes on a photo that may not show the whole yarn; InputError if it cannot be used."""
+    notes = []
+    if not line.tip_in_photo:
+        if length_mm is None:
+            raise InputError(
+                name,
+                "the free end is outside the photo, so its length is unknown.",
+                "Give length_mm, or a photo of the whole hanging yarn.",
+            )
+        notes.append(f"{name}: the yarn reaches the photo's border; is its end missing?")
+    if line.next_largest > 0.2:
+        notes.append(
+            f"{name}: something else stands out, {line.next_largest:.0%} of the yarn's area;"
+            " is the yarn in pieces?"
+        )
+    return notes
 
 
 def _lengths(length_mm: float | Sequence[float] | None, count: int) -> list[float | None]:

@@ -160,15 +160,17 @@ def curl(
         chart = continued(chart, stitches)
     sheet = sheet_of(chart, material, stitches)
     clock = time.process_time()
-    x, held = np.empty(0), None
+    before = None if begin is None else begin.reshape(-1, 3).astype(float)
+    held = None
     if pull is not None:
         x, held = _pulled(sheet, pull)
         sheet = sheet.clamped(held)
-    elif begin is None:
+        if before is not None:
+            x = np.where(held[:, None], x, before)
+    elif before is not None:
+        x = before
+    else:
         x = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancelled=cancelled)
-    if begin is not None:
-        before = begin.reshape(-1, 3).astype(float)
-        x = before if held is None else np.where(held[:, None], x, before)
     if stitches is not None:
         sheet = sheet.cut(stitches)
     left = time_limit_s - (time.process_time() - clock)
