@@ -1,11 +1,11 @@
-"""Borders that are to keep a curling piece flat on a table.
+"""Borders that keep a curling piece flat on a table.
 
-Held flat, a piece pulls at the line beside its border with its moment m₀ per width. To tip a border
+Held flat, a piece turns the line beside its border with its moment m₀ per width. To tip a border
 of width b and weight w per area about that line takes w b²/2, so one narrower than √(2 m₀/w) is
-tipped over. That is necessary, not enough: cloth that bends easily need not tip. Beside the line
-it rises in a ridge, to which a heavy beam of rigidity D offers only (w D²)^(1/3) θ^(5/3) against
-the gain m₀ θ, and where D is small the ridge becomes a scroll. A strip of piece and borders that
-lies on a smooth table shows which of both happens.
+tipped over. A wider one does not always hold: cloth that bends easily rises beside the line in a
+ridge instead. Turning it by θ costs a heavy beam of rigidity D only (w D²)^(1/3) θ^(5/3) and gains
+m₀ θ, so where D is small the ridge becomes a scroll. A strip of piece and borders on a smooth table
+shows which of the two happens.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
-"""How far the stitches of a sheet turn at rest, and how large they are, so that folds are as wide
-as the resolver says.
+"""How far the stitches of a sheet turn at rest, and how large they are, so that folded cloth is as
+wide as the answer for its chart.
 
-Free, stockinette turns by more than a radian from stitch to stitch. Between opposite folds it
-cannot: a row of n like stitches between others turns only until the cloth is as narrow as
-the relaxed sizes of its surroundings (:mod:`knitcore.answer.neighbourhood`). n stitches of which
-each turns by θ against the last span the share sin(nθ/2) / (n sin(θ/2)) of their length, about
-1 − (n² − 1) θ²/24. What the surroundings say beyond that is the size of the stitches themselves.
+Where nothing opposes it, stockinette turns by more than a radian from stitch to stitch. Between
+opposite folds it cannot: a row of n like stitches between others turns only until the cloth is as
+narrow as the relaxed sizes of its surroundings (:mod:`knitcore.answer.neighbourhood`). n stitches,
+each turned by θ against the one before, span the share sin(nθ/2) / (n sin(θ/2)) of their length,
+about 1 − (n² − 1) θ²/24. The rest of the narrowing is in the size of the stitches themselves.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from knitcore.materials import Material
 from knitcore.phases import quarter_phases
 
 MIN_FOLD = 0.2
-"""Share of its length by which a row of opposed runs would fold by itself, at least. For the
-resolver baskets have about the size of flat cloth; they pillow all the same, about as much as
-relaxed baskets at the yarn level."""
+"""Least share of its length by which a row of opposed runs folds if nothing else holds it. The
+answer gives baskets about the size of flat cloth, but they pillow, about as much as baskets that
+are relaxed at the yarn level."""
 NO_STITCH = 2
 """In place of the side to which a stitch turns."""
 
