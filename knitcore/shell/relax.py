@@ -54,7 +54,8 @@ class Shape:
     ----------
     x : (corners, 3), mm.
     energy_n_mm : of the whole sheet.
-    residual : largest force on a corner, in units of the sheet's bending.
+    residual : largest force on a corner, over the force that turns two stitches by a radian or the
+        largest load on a corner, whichever is less.
     converged : whether it is below the tolerance.
     steps : evaluations of the energy.
     seconds : CPU time.
@@ -156,7 +157,7 @@ class _Descent:
 
     @property
     def residual(self) -> float:
-        """Largest force on a corner, in units of the sheet's bending."""
+        """As in :class:`Shape`."""
         return float(np.sqrt((self._gradient**2).sum(axis=1).max())) / self._unit
 
     def load(self, forces_n: Array) -> None:
