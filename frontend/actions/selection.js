@@ -134,7 +134,7 @@ export const paste = {
 /** @type {Action} */
 const clear = {
   id: "clear",
-  label: "Make knits of it",
+  label: "Turn it into knits",
   group,
   icon: "trash",
   keys: ["Delete", "Backspace"],

@@ -45,7 +45,7 @@ const transform = (id, label, icon, key, how) => ({
 /** @type {Action} */
 const fillPart = {
   id: "fill-part",
-  label: "Fill with what is painted with",
+  label: "Fill with the chosen stitch or pattern",
   group: "Change (selection or chart)",
   icon: "fill",
   keys: ["F"],

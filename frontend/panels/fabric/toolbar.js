@@ -31,7 +31,7 @@ const COLOURS = [
   ["yarn", "The yarn's own colour"],
   ["region", "Colours of the regions"],
   ["fabric", "The four fabrics, mixed within a stitch"],
-  ["phase", "The strongest fabric of each stitch"],
+  ["phase", "The main fabric of each stitch"],
 ];
 
 /**
@@ -88,7 +88,7 @@ export function toolbar(studio, look, request) {
 function shareMenu(studio, request) {
   const { root, setItems, button } = menu({
     id: "fabric-share",
-    label: "Give the view away",
+    label: "Save the view",
     content: [icon("camera"), h("span", { class: "label" }, "Save"), icon("down")],
     class: "button",
   });

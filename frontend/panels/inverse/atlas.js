@@ -169,7 +169,7 @@ export function atlasTab(studio, context) {
         h(
           "tbody",
           {},
-          row("Poisson’s ratios", `${figure(table.poisson_yx[k], 2)} and ${figure(table.poisson_xy[k], 2)}`),
+          row("Poisson ratios", `${figure(table.poisson_yx[k], 2)} and ${figure(table.poisson_xy[k], 2)}`),
           row(
             "Stitch at rest",
             size === null ? "not certified" : `${figure(size)} × ${figure(table.relaxed_wale_mm[k])} mm`,

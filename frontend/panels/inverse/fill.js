@@ -217,7 +217,7 @@ export function fromStiffness(studio) {
     if (waiting) {
       run.say({
         title: `What ${waiting.name} does now is not known yet`,
-        detail: "How soft or stiff it should be goes by that.",
+        detail: "The target is counted from that.",
         remedy: "Try again in a moment, or enter a number.",
       });
       return;

@@ -58,10 +58,10 @@ const QUANTITIES = [
     start: 20,
     needs: "limb",
   },
-  { id: "anisotropy", label: "Anisotropy (rows over columns)", short: "anisotropy", unit: "", start: 1 },
+  { id: "anisotropy", label: "Ratio of the moduli (rows over columns)", short: "ratio", unit: "", start: 1 },
   {
     id: "poisson_yx",
-    label: "Poisson’s ratio, pulled along rows",
+    label: "Poisson ratio, pulled along rows",
     short: "Poisson, rows",
     unit: "",
     start: 0.2,
@@ -69,7 +69,7 @@ const QUANTITIES = [
   },
   {
     id: "poisson_xy",
-    label: "Poisson’s ratio, pulled along columns",
+    label: "Poisson ratio, pulled along columns",
     short: "Poisson, columns",
     unit: "",
     start: 0.4,
@@ -227,11 +227,7 @@ export function findTab(studio, context) {
     show(found, targets);
     if (found.reached || materials.length === all.length) return;
     /** @type {FindResult | null} */
-    const more = await run.run(
-      "find",
-      { ...request, repeats: "small", elsewhere: true },
-      "Looking into the other yarns",
-    );
+    const more = await run.run("find", { ...request, repeats: "small", elsewhere: true }, "Searching the other yarns");
     if (more) show({ ...found, elsewhere: more.elsewhere }, targets);
   };
 
@@ -332,7 +328,7 @@ export function findTab(studio, context) {
       h("label", { class: "check" }, across, "All yarns"),
       h(
         "label",
-        { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute a yarn" },
+        { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute per yarn" },
         large,
         "Larger patterns, too",
       ),
