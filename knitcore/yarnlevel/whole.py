@@ -115,7 +115,7 @@ class WholeShape:
     def may_fall(self) -> float:
         """Part of the energy that further rounds may take away: the last change times all rounds.
 
-        So far it falls at most if changes decrease at least with the square of the round's number.
+        An upper bound if the changes shrink at least as fast as 1/n², n being the round.
         """
         return abs(self.energy_change) * (self.earlier + len(self.rounds))
 
