@@ -136,6 +136,7 @@ def test_an_own_yarn_is_added_measured_and_changed(flat_studio: Page) -> None:
         route.fulfill(response=answer, json={"materials": theirs})
 
     page.route("**/api/v1/materials", as_if_others_added)
+    expect(page.locator("#kept")).to_contain_text("Saved")  # or its answer is lost on the way
     page.reload()
     wait_for_numbers(page)
     page.focus("#chart")
