@@ -80,7 +80,7 @@ class Views:
         self._most = most
         self._idle_s = idle_s
         self._views: dict[str, View] = {}
-        self._coarse: dict[str, bool] = {}  # of each user's last view, for the next one
+        self._coarse: dict[str, bool] = {}  # of each user's last browser, for the next view
         self._lock = threading.Lock()
 
     def open(self, design: str, stitches: int = 0) -> View:
@@ -120,7 +120,8 @@ class Views:
                 view.watchers += change
                 view.coarse += coarse * change
                 view.writer.coarse = view.coarse > 0
-                self._coarse[_owner(design)] = view.writer.coarse
+                if change > 0:
+                    self._coarse[_owner(design)] = coarse
                 view.last_used = time.monotonic()
 
     def close_idle(self) -> int:

@@ -133,6 +133,7 @@ def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
         assert not views.open("bob/a").writer.coarse
         views.watch("ada/a", -1, coarse=True)
         assert not first.writer.coarse
+        assert views.open("ada/c").writer.coarse  # the same browser comes back
     finally:
         views.close()
 
