@@ -6,7 +6,7 @@
  * A plain script without imports, before frame.js: the service puts it into viser's page.
  */
 
-/** How often it is looked whether a frame is finished. */
+/** Time between two looks whether a frame is finished. */
 const LOOK_MS = 4;
 
 // eslint-disable-next-line no-unused-vars -- frame.js has it
@@ -14,14 +14,14 @@ class Aside {
   #gl;
   #canvas;
   #bind;
-  /** What is drawn to. */
+  /** The framebuffer that is drawn to, and what it consists of. */
   #beside;
   #colour;
   #depth;
-  /** Size that viser gave the canvas last, and of what is drawn. */
+  /** The size that viser gave the canvas last, and that of the framebuffer. */
   #wanted;
   #size = { width: 0, height: 0 };
-  /** What viser draws to and reads from: what is beside the canvas, or something else of its own. */
+  /** Where viser draws to and reads from: our framebuffer, or one of its own. */
   #target;
   #source;
   /** Number of the frame that was drawn last. */

@@ -58,7 +58,7 @@
   // or there would be holes in the cloth, or none to see. Everything else is handed on at once. Nothing is drawn meanwhile:
   // the canvas keeps what it has, and a frame without a GPU may take a second.
   /** @typedef {{type: string, name?: string, props?: Stitches, updates?: Stitches}} Message */
-  /** What there is of each stitch of a shape. @typedef {Record<string, ArrayBufferView>} Stitches */
+  /** Places, sizes, turns and colours of a shape's stitches. @typedef {Record<string, ArrayBufferView>} Stitches */
   /** Bytes of a stitch in each. @type {[string, number][]} */
   const BYTES = [
     ["batched_positions", 12],
@@ -68,7 +68,7 @@
   ];
   /** Nodes of stitches, by name. @type {Map<string, Stitches>} */
   const cloth = new Map();
-  /** What came of them for another number of stitches than the rest. @type {Map<string, Stitches>} */
+  /** Updates of a shape that do not yet agree on the number of its stitches. @type {Map<string, Stitches>} */
   const early = new Map();
   /** What waits for new ones to be built. @type {Message[]} */
   let later = [];
@@ -179,7 +179,7 @@
       if (message.type === "set_server" || message.type === "retry") this.#connecting = true;
       if (message.type !== "set_server") super.postMessage(message, rest);
       // The service lets in who has a pass; the page brings it when there is something to see.
-      // It draws less finely for who has no GPU.
+      // The service sends fewer triangles to a browser without a GPU.
       else
         void pass.then((code) => {
           const server = `${message.server}?pass=${code}${withoutGpu() ? "&coarse=1" : ""}`;
@@ -203,7 +203,7 @@
   let slow = false;
   /** Where viser draws. @type {WebGL2RenderingContext | null} */
   let gl = null;
-  /** How it draws without a GPU, once something is seen. @type {Aside | null} */
+  /** Draws in its place without a GPU, once the first cloth has been seen. @type {Aside | null} */
   let aside = null;
   /** Frames since the first scene came; below 0 there is none. */
   let fed = -1;
