@@ -47,6 +47,7 @@ from app.store.database import Database, StoreError
 from app.store.schema import migrate
 from app.version import VERSION
 from app.viewer import relay
+from app.viewer.client import viewer_page
 from app.viewer.views import Views
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
     app.state.recent = RecentResults()
     app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
-    app.state.viewer_page = relay.viewer_page()
+    app.state.viewer_page = viewer_page()
     job_store = JobStore(app.state.database, chosen.process_name)
     app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
     await app.state.jobs.resume()

@@ -1,144 +1,134 @@
 /**
  * Without a GPU a browser that shows what WebGL drew waits until all of it is drawn, in a process that its
  * pages share: for as long as a frame of the 3D view takes, the page around shows nothing new. So frames are
- * drawn beside the canvas, which gets a frame, and its size, once it is finished.
+ * drawn out of sight, and the canvas gets each as a picture once it is finished.
  *
  * A plain script without imports, before frame.js: the service puts it into viser's page.
  */
 
-/** Time between two looks whether a frame is finished. */
+/** How often it is looked whether a frame is finished. */
 const LOOK_MS = 4;
 
 // eslint-disable-next-line no-unused-vars -- frame.js has it
 class Aside {
-  #gl;
-  #canvas;
-  #bind;
-  /** The framebuffer that is drawn to, and what it consists of. */
-  #beside;
-  #colour;
-  #depth;
-  /** The size that viser gave the canvas last, and that of the framebuffer. */
-  #wanted;
-  #size = { width: 0, height: 0 };
-  /** Where viser draws to and reads from: our framebuffer, or one of its own. */
-  #target;
-  #source;
-  /** Number of the frame that was drawn last. */
-  #frame = 0;
+  /** What viser draws with. @type {WebGL2RenderingContext} */
+  gl;
   /** Whether a frame is being drawn, or on its way to the canvas. */
   busy = false;
+  #canvas;
+  #shown;
+  /** Where the GPU's stand-in puts the pixels, and we get them from. */
+  #read;
+  #bytes = new Uint8Array();
+  /** Number of the frame that was drawn last. */
+  #frame = 0;
 
-  /** @param {WebGL2RenderingContext} gl */
-  constructor(gl) {
-    this.#gl = gl;
-    this.#canvas = /** @type {HTMLCanvasElement} */ (gl.canvas);
-    const { width, height } = this.#canvas;
-    const wanted = (this.#wanted = { width, height });
+  /**
+   * @param {HTMLCanvasElement} canvas as viser has it; its size is that of what is drawn
+   * @param {(kind: string, options?: object) => any} getContext of canvases
+   * @param {object} options of the context
+   */
+  constructor(canvas, getContext, options) {
+    this.#canvas = canvas;
+    this.#shown = /** @type {CanvasRenderingContext2D} */ (getContext.call(canvas, "2d"));
+    const drawn = new OffscreenCanvas(canvas.width, canvas.height);
+    this.gl = /** @type {WebGL2RenderingContext} */ (drawn.getContext("webgl2", options));
+    this.#read = this.gl.createBuffer();
+    const { readPixels } = this.gl;
+    // At its start viser tries whether it can read a pixel, and would wait for the answer. It can.
+    this.gl.readPixels = (/** @type {any[]} */ ...how) => {
+      if (typeof how[6] === "number") readPixels.apply(this.gl, /** @type {any} */ (how));
+      else how[6].fill(1);
+    };
     for (const side of /** @type {const} */ (["width", "height"])) {
-      const get = () => wanted[side];
+      const get = () => drawn[side];
       const set = (/** @type {number} */ value) => {
-        wanted[side] = value;
+        drawn[side] = value;
       };
-      Object.defineProperty(this.#canvas, side, { get, set });
-      Object.defineProperty(gl, side === "width" ? "drawingBufferWidth" : "drawingBufferHeight", { get });
+      Object.defineProperty(canvas, side, { get, set });
     }
-    const { bindFramebuffer, drawBuffers, clear } = gl;
-    this.#bind = bindFramebuffer.bind(gl);
-    this.#beside = this.#target = this.#source = gl.createFramebuffer();
-    this.#colour = gl.createRenderbuffer();
-    this.#depth = gl.createRenderbuffer();
-    gl.bindFramebuffer = (where, framebuffer) => {
-      framebuffer ??= this.#beside;
-      if (where !== gl.READ_FRAMEBUFFER) this.#target = framebuffer;
-      if (where !== gl.DRAW_FRAMEBUFFER) this.#source = framebuffer;
-      this.#bind(where, framebuffer);
-    };
-    gl.drawBuffers = (buffers) => {
-      const named = [...buffers].map((buffer) => (buffer === gl.BACK ? gl.COLOR_ATTACHMENT0 : buffer));
-      drawBuffers.call(gl, named);
-    };
-    gl.clear = (what) => {
-      this.#fit(); // each frame begins with this
-      clear.call(gl, what);
-    };
-    this.#fit();
     const { drawImage } = CanvasRenderingContext2D.prototype;
-    const copy = () => this.#copy();
+    const paint = () => this.#paint();
     CanvasRenderingContext2D.prototype.drawImage = function (/** @type {any[]} */ ...how) {
-      if (how[0] === gl.canvas) copy(); // viser takes a picture of it
+      if (how[0] === canvas) paint(); // viser takes a picture of it
       drawImage.apply(this, /** @type {any} */ (how));
     };
   }
 
-  /** As large as the canvas should be. */
-  #fit() {
-    const gl = this.#gl;
-    const { width, height } = this.#wanted;
-    if (width === this.#size.width && height === this.#size.height) return;
-    this.#size = { width, height };
-    this.#bind(gl.FRAMEBUFFER, this.#beside);
-    for (const [buffer, place, format] of /** @type {const} */ ([
-      [this.#colour, gl.COLOR_ATTACHMENT0, gl.RGBA8],
-      [this.#depth, gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT24],
-    ])) {
-      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
-      gl.renderbufferStorage(gl.RENDERBUFFER, format, width, height);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, place, gl.RENDERBUFFER, buffer);
+  /** Have the pixels brought when they are finished; nobody waits for it. */
+  #fetch() {
+    const { gl } = this;
+    const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
+    const bytes = 4 * width * height;
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, this.#read);
+    if (this.#bytes.length !== bytes) {
+      this.#bytes = new Uint8Array(bytes);
+      gl.bufferData(gl.PIXEL_PACK_BUFFER, bytes, gl.DYNAMIC_COPY);
     }
-    this.#back();
+    const target = gl.getParameter(gl.READ_FRAMEBUFFER_BINDING);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, null);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, 0);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    return { width, height };
   }
 
-  /** Bind what viser has bound. */
-  #back() {
-    this.#bind(this.#gl.DRAW_FRAMEBUFFER, this.#target);
-    this.#bind(this.#gl.READ_FRAMEBUFFER, this.#source);
-  }
-
-  /** Give the canvas what was drawn last. */
-  #copy() {
-    const gl = this.#gl;
-    const { width, height } = this.#size;
-    for (const side of /** @type {const} */ (["width", "height"])) {
+  /** Show the pixels: WebGL has the lowest row first, and colours times how much they cover. */
+  #paint(size = this.#fetch()) {
+    const { gl } = this;
+    const { width, height } = size;
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, this.#read);
+    gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, this.#bytes);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    const image = new ImageData(width, height);
+    const { data } = image;
+    for (let row = 0, from = 4 * width * (height - 1); from >= 0; row++, from -= 4 * width)
+      data.set(this.#bytes.subarray(from, from + 4 * width), 4 * width * row);
+    for (let alpha = 3; alpha < data.length; alpha += 4) {
+      const cover = data[alpha] / 255;
+      if (cover > 0 && cover < 1) for (let at = alpha - 3; at < alpha; at++) data[at] /= cover;
+    }
+    for (const [side, length] of Object.entries(size)) {
       const own = Object.getOwnPropertyDescriptor(HTMLCanvasElement.prototype, side);
-      if (own?.get?.call(this.#canvas) !== this.#size[side]) own?.set?.call(this.#canvas, this.#size[side]);
+      if (own?.get?.call(this.#canvas) !== length) own?.set?.call(this.#canvas, length);
     }
-    this.#bind(gl.READ_FRAMEBUFFER, this.#beside);
-    this.#bind(gl.DRAW_FRAMEBUFFER, null);
-    gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
-    this.#back();
+    this.#shown.putImageData(image, 0, 0);
   }
 
   /**
-   * Give the canvas a frame when it is finished.
+   * Show a frame when it is finished.
    *
    * @param {(paint: FrameRequestCallback) => unknown} request the browser's next frame
    * @param {() => void} then
    */
   show(request, then) {
-    const gl = this.#gl;
     const frame = ++this.#frame;
-    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-    gl.flush();
+    const current = () => frame === this.#frame; // several draw in one of the browser's frames
     this.busy = true;
     const end = () => {
-      if (frame !== this.#frame) return; // several draw in one of the browser's frames
+      if (!current()) return;
       this.busy = false;
       then();
     };
+    this.#finished(() => {
+      if (!current()) return;
+      const size = this.#fetch();
+      this.#finished(() => request(() => current() && (this.#paint(size), setTimeout(end))));
+    });
+  }
+
+  /** When all that was asked of WebGL is done. @param {() => void} then */
+  #finished(then) {
+    const { gl } = this;
+    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
     const look = () => {
-      const drawing = sync && !gl.isContextLost() && gl.getSyncParameter(sync, gl.SYNC_STATUS) !== gl.SIGNALED;
-      if (drawing && frame === this.#frame) {
+      if (sync && !gl.isContextLost() && gl.getSyncParameter(sync, gl.SYNC_STATUS) !== gl.SIGNALED) {
         setTimeout(look, LOOK_MS);
         return;
       }
       gl.deleteSync(sync);
-      if (frame !== this.#frame) end();
-      else
-        request(() => {
-          this.#copy();
-          setTimeout(end); // the browser shows it before more is drawn, for which it would wait
-        });
+      then();
     };
     setTimeout(look, LOOK_MS);
   }

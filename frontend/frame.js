@@ -193,7 +193,8 @@
   const waiting = new Map();
   const request = window.requestAnimationFrame.bind(window);
   const cancel = window.cancelAnimationFrame.bind(window);
-  let next = 1;
+  /** Far from the browser's own numbers, and from those below 0 by which viser's libraries mean none. */
+  let next = 1e9;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let pause;
   let newsUntil = 0;
@@ -203,8 +204,10 @@
   let slow = false;
   /** Where viser draws. @type {WebGL2RenderingContext | null} */
   let gl = null;
-  /** Draws in its place without a GPU, once the first cloth has been seen. @type {Aside | null} */
+  /** Shows what is drawn, without a GPU. @type {Aside | null} */
   let aside = null;
+  /** The canvas on which it is shown. @type {HTMLCanvasElement | null} */
+  let canvas = null;
   /** Frames since the first scene came; below 0 there is none. */
   let fed = -1;
   /** How long a frame takes, in ms. */
@@ -216,8 +219,7 @@
 
   window.requestAnimationFrame = (callback) => {
     if (!held && !aside?.busy && rest() === 0) return request((time) => frame(callback, time));
-    // Our own numbers are far from the browser's, so the two never meet.
-    const id = -next++;
+    const id = next++;
     waiting.set(id, callback);
     release();
     return id;
@@ -320,8 +322,6 @@
       if (!drawn || seen) return;
       seen = true;
       tell({ view: "seen" });
-      // Not before: what is drawn beside the canvas is seen a frame later.
-      if (software && gl) aside = new Aside(gl);
     }, ANSWER_MS);
   }
 
@@ -363,13 +363,14 @@
       if (!made && kind === "webgl2") tell({ view: "none" });
       return made;
     }
-    gl = /** @type {WebGL2RenderingContext | null} */ (
-      context.call(this, kind, { ...options, antialias: !withoutGpu() })
-    );
+    if (this === canvas) return gl;
+    canvas = this;
+    if (withoutGpu()) aside = new Aside(this, context, { ...options, antialias: false });
+    gl = aside ? aside.gl : /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, options));
     if (gl) mutable(gl);
     // On a slow machine viser draws fewer pixels, and a canvas of another size is empty until it is drawn again:
     // that is not left to wait, even while somebody paints.
-    new MutationObserver(() => aside || draw()).observe(this, { attributeFilter: ["width", "height"] });
+    if (!aside) new MutationObserver(draw).observe(this, { attributeFilter: ["width", "height"] });
     return gl;
   };
 

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import hashlib
 import logging
 import time
-from dataclasses import dataclass
-from pathlib import Path
 
-import viser
 import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
-from app.http.page import script_tag
 from app.identity import current_user
 from app.limits.budgets import InUse, OverBudgetError
 from app.limits.rate import RateLimit
+from app.viewer.client import ViewerPage
 from app.viewer.design_id import DesignId, private_name
 from app.viewer.incoming import BURST, PER_S, RefusedMessageError, passed_on
 from app.viewer.private_port import RELAY_HEADERS
@@ -27,20 +23,9 @@ from app.viewer.views import View, Views
 log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
-CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
-SCRIPTS = ("notices.js", "yarn.js", "aside.js", "frame.js")
-"""Ours, before viser's own."""
 OPENING_S = 8.0
 """So long a browser waits for a view: its page is loaded while the first scene is being made."""
 LOOK_AGAIN_S = 0.05
-VIEW_STYLE = """<style>
-  /* The page around the view has all controls and states; viser's own would repeat them. */
-  .mantine-Paper-root, .mantine-Notifications-root { display: none !important; }
-  /* The page's theme shows through. */
-  html, body, #root, #root div { background-color: transparent !important; }
-  /* Where viser draws rectangles to select with: one more layer that every frame would blend. */
-  canvas[width="0"] { display: none !important; }
-</style>"""
 
 
 @router.get("/view/{design}")
@@ -149,19 +134,3 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
             await task
     with contextlib.suppress(RuntimeError, WebSocketDisconnect):  # the browser closed first
         await socket.close(code)
-
-
-@dataclass(frozen=True)
-class ViewerPage:
-    """viser's client page, with our scripts for its frame and the style that hides its panel."""
-
-    content: bytes
-    tag: str
-
-
-def viewer_page() -> ViewerPage:
-    """Put it together."""
-    page = CLIENT_PAGE.read_text(encoding="utf-8")
-    scripts = "".join(map(script_tag, SCRIPTS))
-    content = page.replace("<head>", f"<head>{scripts}{VIEW_STYLE}", 1).encode()
-    return ViewerPage(content, f'"{hashlib.sha256(content).hexdigest()[:16]}"')

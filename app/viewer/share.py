@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from typing import Any
 
 from app.drawing.fabric import FabricScene
-from app.http.page import script_tag
 from app.problems.errors import ServiceError
+from app.viewer.client import with_scripts
 from app.viewer.incoming import WantedPicture
 from app.viewer.views import View, new_view
 
@@ -69,7 +69,7 @@ def page_html(scenes: Iterable[FabricScene], *, dark: bool) -> str:
     """A page that shows a fabric, and plays the steps if there are several."""
     with _recorded(scenes) as serializer:
         page: str = serializer.as_html(dark_mode=dark)
-    return page.replace("<head>", f"<head>{PAGE_POLICY}{script_tag('notices.js')}", 1)
+    return with_scripts(page, PAGE_POLICY)
 
 
 def recording(scenes: Iterable[FabricScene]) -> bytes:
@@ -87,10 +87,13 @@ def _recorded(scenes: Iterable[FabricScene]) -> Iterator[Any]:
         remaining = iter(scenes)
         view.show(next(remaining).drawing())
         serializer = view.server.get_scene_serializer()
+        played = False  # over and over, unless it has no length
         for scene in remaining:
             serializer.insert_sleep(FRAME_S)
             view.show(scene.drawing())
-        serializer.insert_sleep(FRAME_S)
+            played = True
+        if played:
+            serializer.insert_sleep(FRAME_S)
         yield serializer
     finally:
         view.stop()

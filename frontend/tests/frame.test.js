@@ -123,24 +123,31 @@ async function slowClient(renderer = "") {
     isContextLost: () => false,
     SIGNALED: 1,
     getSyncParameter: () => Number(client.finished),
-    blitFramebuffer: () => client.copied++,
     getQueryParameter: () => true,
     clear: () => client.drawn++,
   };
   const draws = ["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"];
-  const others = ["deleteSync", "flush", "drawBuffers", "bindFramebuffer", "bindRenderbuffer"];
-  const more = ["renderbufferStorage", "framebufferRenderbuffer", "beginQuery", "endQuery", "deleteQuery"];
+  const others = ["deleteSync", "flush", "bindFramebuffer", "bindBuffer", "bufferData", "readPixels"];
+  const more = ["getBufferSubData", "beginQuery", "endQuery", "deleteQuery"];
   for (const name of [...draws, ...others, ...more]) Object.assign(gl, { [name]: () => {} });
-  for (const name of ["fenceSync", "createFramebuffer", "createRenderbuffer"])
-    Object.assign(gl, { [name]: () => ({}) });
+  for (const name of ["fenceSync", "createBuffer"]) Object.assign(gl, { [name]: () => ({}) });
   client.gl = gl;
   const page = Object.assign(emptyFrame(), {
     HTMLCanvasElement: class {
       width = 300;
       height = 150;
-      getContext() {
-        return Object.assign(gl, { canvas: this });
+      /** @param {string} kind */
+      getContext(kind) {
+        return kind === "2d" ? { putImageData: () => client.copied++ } : gl;
       }
+    },
+    OffscreenCanvas: class {
+      getContext() {
+        return gl;
+      }
+    },
+    ImageData: class {
+      data = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
     },
     CanvasRenderingContext2D: class {
       drawImage() {}
@@ -206,6 +213,17 @@ test("a canvas that changes its size is drawn while somebody paints, too", async
   client.frame();
   assert.equal(client.frames, frames, "frames did not wait for the stroke");
   client.resized();
+  client.frame();
+  assert.equal(client.frames, frames + 1);
+});
+
+test("a number that stands for no frame takes none back", async () => {
+  const { client, page, tell } = await slowClient();
+  const { frames } = client;
+  tell({ hold: true });
+  for (const none of [-1, 0, 1]) page.cancelAnimationFrame(none);
+  tell({ hold: false });
+  client.pass(40_000);
   client.frame();
   assert.equal(client.frames, frames + 1);
 });
