@@ -315,7 +315,7 @@ def painting(browser: Browser, url: str) -> None:
             page.context.close()
         size = f"{side} x {side}"
         report(f"stroke to painted cell at {size}, median", statistics.median(painted), "ms", 16)
-        report(f"stroke to painted cell at {size}, p95", p95(painted), "ms", 16)
+        report(f"stroke to painted cell at {size}, p95", p95(painted), "ms", 24)
         report(f"stroke to the map at {size}, p95", p95(mapped), "ms", target)
 
 

@@ -358,12 +358,12 @@
 
   /** @param {string} kind @param {any} [options] @returns {any} */
   HTMLCanvasElement.prototype.getContext = function (kind, options) {
+    if (this === canvas && kind === "webgl2") return gl;
     if (!options?.antialias || !kind.startsWith("webgl")) {
       const made = context.call(this, kind, options);
       if (!made && kind === "webgl2") tell({ view: "none" });
       return made;
     }
-    if (this === canvas) return gl;
     canvas = this;
     if (withoutGpu()) aside = new Aside(this, context, { ...options, antialias: false });
     gl = aside ? aside.gl : /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, options));
