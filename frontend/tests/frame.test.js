@@ -371,7 +371,7 @@ test("a canvas that loses its picture while shapes are built is drawn again at o
 test("without a GPU the canvas gets a frame once it is finished, and the next one waits", async () => {
   const { client } = await slowClient("SwiftShader");
   const wait = () => {
-    for (let turn = 0; turn < 8; turn++) {
+    for (let turn = 0; turn < 20; turn++) {
       client.pass(5000);
       client.frame();
     }
