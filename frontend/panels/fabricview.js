@@ -177,6 +177,7 @@ export function fabricview(host, studio, view) {
       if (problem) status.replaceChildren();
       problem = false;
       source = answer.source;
+      confirmed = words();
       describe();
       studio.online.value = true;
       pass = answer.url.slice(answer.url.indexOf("#") + 1);
@@ -187,6 +188,7 @@ export function fabricview(host, studio, view) {
       if (error.offline) {
         studio.online.value = false;
         status.replaceChildren(); // the banner over the cloth says why nothing comes
+        describe();
         return;
       }
       const { field } = error.problem;
@@ -226,12 +228,17 @@ export function fabricview(host, studio, view) {
     void send();
   };
 
-  const describe = () => {
+  /** What the service said last that it shows; the cloth keeps it while the service cannot be reached. */
+  let confirmed = "";
+  const words = () => {
     const strain = studio.seeing.pose.value !== "flat" ? 0 : studio.currentStrain();
+    return strain && !studio.seeing.posed.value
+      ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
+      : poseText(studio);
+  };
+  const describe = () => {
     caption.replaceChildren(
-      strain && !studio.seeing.posed.value
-        ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
-        : poseText(studio),
+      (!studio.online.value && confirmed) || words(),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
     caption.title = studio.seeing.posed.value?.note ?? (source && `Yarn: ${source}`);

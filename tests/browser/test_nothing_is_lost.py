@@ -67,6 +67,18 @@ def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
     assert kept_chart(flat_studio) == CHART
 
 
+def test_the_cloth_keeps_its_caption_while_the_service_is_unreachable(flat_studio: Page) -> None:
+    flat_studio.fill("#stretch-amount", "20")
+    flat_studio.click("#stretch-run")
+    caption = flat_studio.locator(".fabric-caption")
+    expect(caption).to_contain_text("by 20 %")
+    for path in ("**/api/**", "**/healthz"):
+        flat_studio.route(path, lambda route: route.abort())
+    drag(flat_studio, 60, 30)
+    expect(flat_studio.locator("#offline")).to_be_visible()
+    expect(caption).to_contain_text("by 20 %")
+
+
 def test_painting_continues_while_the_service_is_unreachable(flat_studio: Page) -> None:
     for path in ("**/api/**", "**/healthz"):
         flat_studio.route(path, lambda route: route.abort())

@@ -100,7 +100,7 @@ export function atlasTab(studio, context) {
           "p",
           { class: "inverse-legend" },
           h("span", {}, h("i", { class: "mark pure" }), "four fabrics"),
-          h("span", {}, h("i", { class: "mark square" }), "yarn level"),
+          table?.provenance.includes("swept") && h("span", {}, h("i", { class: "mark square" }), "swept"),
           h("span", {}, h("i", { class: "mark" }), "learned"),
         ),
       );
