@@ -30,7 +30,7 @@ SWEPT = (
     "From a yarn-level simulation of this chart, which has no friction or set: the initial stretch "
     "and the draw-in are the least certain."
 )
-LEARNED_ERRORS = "charts left out of the learning"
+LEARNED_ERRORS = "errors on charts that the model had not seen"
 KNITTED = "29 knitted swatches (KnitDB)"
 SWEPT_ERRORS = "how far yarn-level charts of the same densities differ"
 _LOOP_SPREAD = 1.15

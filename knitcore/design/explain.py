@@ -65,17 +65,22 @@ def unreached(regions: Sequence[Patch], targets: Array, off: Array, have: Array)
             if abs(away[axis]) > OFF and alike not in told:
                 told.add(alike)
                 said.append(
-                    f"The patch of {region.stitches} stitches from row {region.row + 1}, column "
-                    f"{region.column + 1} is {_compared(away[axis])} than wanted {direction}-wise: "
-                    f"{region.repeat} is the nearest. {_reach(target, direction, have)}"
+                    f"The patch of {region.stitches} stitches that begins in row {region.row + 1}, "
+                    f"column {region.column + 1} is {_compared(away[axis])} {direction}-wise than "
+                    f"wanted. {region.repeat} comes nearest. {_reach(target, direction, have)}"
                 )
     if len(regions) == 1:
         only = regions[0]
         there = np.array([only.swatch_course, only.swatch_wale])
         if (np.abs(there) > OFF).any():
+            differs = [
+                f"{_compared(away)} {direction}-wise"
+                for away, direction in zip(there, Direction, strict=True)
+                if not np.isnan(away)
+            ]
             said.append(
-                "A swatch of just this size with free edges departs from a large cloth: "
-                f"{_percent(there[0])} course-wise and {_percent(there[1])} wale-wise."
+                f"A swatch of just this size, with free edges, is {' and '.join(differs)} than "
+                "wanted."
             )
     return said
 
@@ -90,19 +95,15 @@ def _reach(target: Array, direction: Direction, have: Array) -> str:
     """What this yarn can reach."""
     own, other = direction.axis, direction.other.axis
     whole = np.exp(have[:, own])
-    text = f"This yarn reaches {whole.min():.3g} to {whole.max():.3g} N/mm {direction}-wise"
+    text = (
+        f"In this yarn, repeats have {whole.min():.3g} to {whole.max():.3g} N/mm {direction}-wise"
+    )
     if not np.isnan(target[other]):
         near = np.abs(have[:, other] - target[other]) < OFF
+        wanted = f"the wanted {np.exp(target[other]):.3g} N/mm {direction.other}-wise"
         if near.any():
             part = np.exp(have[near, own])
-            text += (
-                f", with the wanted {np.exp(target[other]):.3g} {direction.other}-wise "
-                f"{part.min():.3g} to {part.max():.3g}"
-            )
+            text += f"; those with {wanted} have {part.min():.3g} to {part.max():.3g}"
         else:
-            text += f", but not the wanted {np.exp(target[other]):.3g} {direction.other}-wise"
-    return text + "; search other yarns and needles for more."
-
-
-def _percent(value: float) -> str:
-    return "no target" if np.isnan(value) else f"{value:+.0%}"
+            text += f", and none has {wanted}"
+    return text + ". Other yarns or needles may come closer."

@@ -384,7 +384,7 @@ const inKnitting = (message) =>
   message
     .replaceAll("course-wise", "along rows")
     .replaceAll("wale-wise", "along columns")
-    .replace(/[KP/]+(?= is the nearest)/, nameOf);
+    .replace(/[KP/]+(?= comes nearest)/, nameOf);
 
 /** @param {FillResult} found @param {Part[]} targeted */
 function patchList({ patches, columns }, targeted) {

@@ -276,7 +276,7 @@ def test_the_public_face():
 def test_an_answer_says_what_its_intervals_rest_on():
     yarn = material("acrylic")
     tests = yarn.record("garter").uncertainty.source
-    learned, gauge = "charts left out of the learning", RelaxedSize(3.0, 2.0)
+    learned, gauge = "errors on charts that the model had not seen", RelaxedSize(3.0, 2.0)
     garter, mixed = StitchChart.parse("K/P"), StitchChart.parse("KKPP")
     assert predict(garter, yarn).stretch_errors == (tests,)
     assert predict(mixed, yarn).stretch_errors == (learned, tests)

@@ -313,8 +313,8 @@ def test_a_chart_of_another_size_is_refused() -> None:
 def test_unreachable_targets_are_reported() -> None:
     field = fill_field(np.full((6, 6), 9.0), np.full((6, 6), np.nan), ACRYLIC, acrylic_atlas())
     assert field.off_share == 1
-    assert "than wanted course-wise" in field.messages[0]
-    assert "This yarn reaches" in field.messages[0]
+    assert "softer course-wise than wanted" in field.messages[0]
+    assert "In this yarn, repeats have" in field.messages[0]
     assert np.isnan(field.regions[0].deviation_wale)
 
 
