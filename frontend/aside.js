@@ -6,7 +6,7 @@
  * A plain script without imports, before frame.js: the service puts it into viser's page.
  */
 
-/** How often it is looked whether a frame is finished. */
+/** Time between two looks whether a frame is finished. */
 const LOOK_MS = 4;
 
 // eslint-disable-next-line no-unused-vars -- frame.js has it
@@ -17,7 +17,7 @@ class Aside {
   busy = false;
   #canvas;
   #shown;
-  /** Where the GPU's stand-in puts the pixels, and we get them from. */
+  /** WebGL's own memory for the pixels of a frame, and ours. */
   #read;
   #bytes = new Uint8Array();
   /** Number of the frame that was drawn last. */
@@ -73,7 +73,7 @@ class Aside {
     return { width, height };
   }
 
-  /** Show the pixels: WebGL has the lowest row first, and colours times how much they cover. */
+  /** Show the pixels. WebGL has the lowest row first, and colours that are multiplied by their cover. */
   #paint(size = this.#fetch()) {
     const { gl } = this;
     const { width, height } = size;
@@ -82,8 +82,11 @@ class Aside {
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
     const image = new ImageData(width, height);
     const { data } = image;
-    for (let row = 0, from = 4 * width * (height - 1); from >= 0; row++, from -= 4 * width)
-      data.set(this.#bytes.subarray(from, from + 4 * width), 4 * width * row);
+    const long = 4 * width;
+    for (let row = 0; row < height; row++) {
+      const from = long * (height - 1 - row);
+      data.set(this.#bytes.subarray(from, from + long), long * row);
+    }
     for (let alpha = 3; alpha < data.length; alpha += 4) {
       const cover = data[alpha] / 255;
       if (cover > 0 && cover < 1) for (let at = alpha - 3; at < alpha; at++) data[at] /= cover;
@@ -103,7 +106,7 @@ class Aside {
    */
   show(request, then) {
     const frame = ++this.#frame;
-    const current = () => frame === this.#frame; // several draw in one of the browser's frames
+    const current = () => frame === this.#frame; // viser may draw several before the browser shows one
     this.busy = true;
     const end = () => {
       if (!current()) return;
@@ -113,7 +116,12 @@ class Aside {
     this.#finished(() => {
       if (!current()) return;
       const size = this.#fetch();
-      this.#finished(() => request(() => current() && (this.#paint(size), setTimeout(end))));
+      const paint = () => {
+        if (!current()) return;
+        if (!this.gl.isContextLost()) this.#paint(size);
+        setTimeout(end);
+      };
+      this.#finished(() => request(paint));
     });
   }
 

@@ -164,6 +164,7 @@ export function fabricview(host, studio, view) {
     }
     open(`/view/${encodeURIComponent(studio.designId)}/`); // it loads while the scene is being made
     const asked = request();
+    const told = words();
     const text = JSON.stringify(asked);
     if (text === sent) return;
     sending = true;
@@ -177,7 +178,7 @@ export function fabricview(host, studio, view) {
       if (problem) status.replaceChildren();
       problem = false;
       source = answer.source;
-      confirmed = words();
+      confirmed = told;
       describe();
       studio.online.value = true;
       pass = answer.url.slice(answer.url.indexOf("#") + 1);

@@ -69,9 +69,13 @@ def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
 
 def test_the_cloth_keeps_its_caption_while_the_service_is_unreachable(flat_studio: Page) -> None:
     flat_studio.fill("#stretch-amount", "20")
-    flat_studio.click("#stretch-run")
+    with flat_studio.expect_response(
+        lambda r: "/views/" in r.url and '"stretch":{' in (r.request.post_data or "")
+    ):
+        flat_studio.click("#stretch-run")
     caption = flat_studio.locator(".fabric-caption")
     expect(caption).to_contain_text("by 20 %")
+    expect(flat_studio.locator(".fabric[data-sending]")).to_have_count(0)
     for path in ("**/api/**", "**/healthz"):
         flat_studio.route(path, lambda route: route.abort())
     drag(flat_studio, 60, 30)
