@@ -1,6 +1,7 @@
-"""The training library, ``training.json``: relaxed sizes, raw curves and failures.
+"""The training library: ``training.json`` has relaxed sizes, raw curves and failures, and
+``lowest.json`` what the same repeats relax to without mirrors.
 
-``scripts/training/build.py`` writes it.
+``scripts/training/build.py`` writes the first, ``scripts/training/lowest.py`` the second.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.yarn import YarnModel
 
 FILE = Path(__file__).parent / "training.json"
+LOWEST = Path(__file__).parent / "lowest.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,8 @@ class TrainingEntry:
     ----------
     chart, yarn_name, yarn, loop_length_mm, branch : of the relaxation.
     cell_mm : (course, wale) of the mean stitch; None where it failed for the reason in `failure`.
+    lowest_mm : the same of the lowest state that was found, with or without mirrors; None where
+        mirrors were kept.
     curves : by direction; empty where it was only relaxed, or the stretch failed.
     law : fitted to the curves, None where there is none.
     """
@@ -67,6 +71,7 @@ class TrainingEntry:
     loop_length_mm: float
     branch: str
     cell_mm: tuple[float, float] | None
+    lowest_mm: tuple[float, float] | None
     converged: bool
     curves: Mapping[Direction, RawCurve]
     law: ConstitutiveLaw | None
@@ -76,23 +81,32 @@ class TrainingEntry:
 @cache
 def training_entries() -> tuple[TrainingEntry, ...]:
     """All entries, in the order of the build."""
-    return tuple(_entry(document) for document in json.loads(FILE.read_text("utf-8"))["entries"])
+    lowest = json.loads(LOWEST.read_text("utf-8")) if LOWEST.exists() else {}
+    return tuple(
+        _entry(document, lowest.get(f"{document['yarn_name']}/{document['chart']}", {}))
+        for document in json.loads(FILE.read_text("utf-8"))["entries"]
+    )
 
 
-def _entry(document: Mapping[str, Any]) -> TrainingEntry:
-    failed = "failure" in document
+def _entry(document: Mapping[str, Any], lowest: Mapping[str, Any]) -> TrainingEntry:
     curves = {
         Direction(name): RawCurve(*(np.array(column) for column in columns))
         for name, columns in document.get("curves", {}).items()
     }
     law = document.get("law")
+    failed = "failure" in document
+    size = None if failed else (document["cell_course_mm"], document["cell_wale_mm"])
+    states = [(energy, (course, wale)) for energy, course, wale in lowest.get("states", ())]
+    if states and size is not None:
+        states.append((document["energy_n_mm"], size))
     return TrainingEntry(
         chart=StitchChart.parse(document["chart"]),
         yarn_name=document["yarn_name"],
         yarn=YarnModel(**document["yarn"]),
         loop_length_mm=document["loop_length_mm"],
         branch=document["branch"],
-        cell_mm=None if failed else (document["cell_course_mm"], document["cell_wale_mm"]),
+        cell_mm=size,
+        lowest_mm=min(states)[1] if states else None,
         converged=document.get("converged", False),
         curves=curves,
         law=None if law is None else ConstitutiveLaw(**law),

@@ -69,6 +69,8 @@ class Row:
     yarn_name : its yarn.
     features, numbers : as the model takes them, in their own units.
     fold : (2,) ln of size over the mixture's.
+    crumpled : (2,) ln of the size of the lowest state found without mirrors over that size; nan
+        where none was looked for.
     ratio : (14,) ln of strain over the mixture's, and Poisson's ratios less the mixture's; nan
         where it was not stretched.
     uncertainty : (4,) see :class:`knitcore.answer.densities.Densities`.
@@ -80,6 +82,7 @@ class Row:
     features: Array
     numbers: Array
     fold: Array
+    crumpled: Array
     ratio: Array
     uncertainty: Array
     follows: Array
@@ -148,7 +151,7 @@ def _exact() -> Iterator[Row]:
             if fabric in own.fabrics:
                 mixture, made_of = _mixture(chart, own)
                 if np.isfinite(mixture.numbers).all():
-                    nothing = np.zeros(2), np.zeros(2 * len(STRESS_GRID) + 2)
+                    nothing = np.zeros(2), np.zeros(2), np.zeros(2 * len(STRESS_GRID) + 2)
                     described = made_of.features, mixture.numbers, *nothing, made_of.uncertainty
                     yield Row(chart, own.identifier, *described, follows(mixture)[:, 0])
 
@@ -167,7 +170,10 @@ def _row_of_entry(entry: TrainingEntry, materials: dict[str, Material]) -> Row |
         strains.append(np.full(len(STRESS), np.nan) if curve is None else curve.strain_at(STRESS))
         poisson.append(np.nan if curve is None else curve.poisson())
     ratios = poisson[0], poisson[1]
-    return _row(entry.chart, entry.yarn_name, mixture, made_of, entry.cell_mm, strains, ratios)
+    return _row(
+        entry.chart, entry.yarn_name, mixture, made_of, entry.cell_mm, strains, ratios,
+        entry.lowest_mm,
+    )  # fmt: skip
 
 
 def _mixture(
@@ -184,6 +190,7 @@ def _mixture(
 def _row(
     chart: StitchChart, yarn_name: str, mixture: Mixture, made_of: Densities,
     size_mm: tuple[float, float], strains: list[Array], poisson: tuple[float, float],
+    lowest_mm: tuple[float, float] | None = None,
 ) -> Row:  # fmt: skip
     fold, outputs = over_mixture(mixture, size_mm, strains, poisson)
     if len(mixture.parts) == 1:  # a pure fabric is its own mixture; the rest is its law's misfit
@@ -194,6 +201,7 @@ def _row(
         made_of.features,
         mixture.numbers,
         fold,
+        np.full(2, np.nan) if lowest_mm is None else np.log(np.divide(lowest_mm, size_mm)),
         outputs,
         made_of.uncertainty,
         follows(mixture)[:, 0],
@@ -212,6 +220,7 @@ def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
         np.array([row.pure for row in found]),
     )
     fold = np.array([row.fold for row in found])
+    crumpled = np.array([row.crumpled for row in found])
     ratio = np.array([row.ratio for row in found])
     follow = np.array([row.follows for row in found])
     swept = np.isfinite(ratio).all(axis=1)
@@ -242,6 +251,7 @@ def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
             rest_missed, rest_variance, uncertainty[swept], np.full(4, COVERAGE)
         ),
         "folding_missed": fold_missed,
+        "lowest_missed": fold_missed + crumpled,
         "unfolding_missed": _scattered(rest_missed, swept),
         "follows": follow,
         "uncertainty": uncertainty,
@@ -346,6 +356,8 @@ def report(arrays: dict[str, NDArray[np.generic]]) -> Iterator[str]:
         of_kind = kinds == kind
         yield f"{kind}: {np.count_nonzero(of_kind)} relaxed"
         yield f"  width, height {_factors(fold[of_kind], fold_sd[of_kind])}"
+        lowest = values["lowest_missed"][of_kind]
+        yield f"  of the lowest state {_factors(lowest, fold_sd[of_kind])}"
         for name, missed, spread in (
             ("without size", strain, strain_sd),
             ("known size", rest, rest_sd),
@@ -391,6 +403,7 @@ def main() -> None:
 
 _REPORTED_ONLY = (
     "folding_missed",
+    "lowest_missed",
     "unfolding_missed",
     "follows",
     "folding_variance",

@@ -1,0 +1,128 @@
+"""Relax the training charts without mirrors: ``python -m scripts.training.lowest``.
+
+The packaged sizes are those of the mirrored branch. Here every chart of the training library starts
+several times without its symmetries, and the lowest state is kept beside the others that were
+found. Charts are taken in a mixed order, so that any first part of them is a fair sample. Finished
+ones are kept in a folder, so an interrupted run can be resumed; ``--pack`` writes those finished so
+far to ``lowest.json``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from knitcore.batch import run_batch
+from knitcore.chart import StitchChart
+from knitcore.errors import KnitcoreError
+from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.results import Branch
+from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarnlibrary.characterise import Document
+from knitcore.yarnlibrary.fingerprint import content_key
+from scripts.stored_stitches import tell
+from scripts.training.entries import LOWEST, training_entries
+
+SOLVERS = ("knitcore.yarnlevel.relax", "knitcore.yarnlevel.lowest")
+"""The modules that relax."""
+
+
+@dataclass(frozen=True)
+class LowestTask:
+    """A repeat of one yarn, to relax without mirrors."""
+
+    yarn_name: str
+    chart: str
+    yarn: YarnModel
+    loop_length_mm: float
+
+    @property
+    def name(self) -> str:
+        """Yarn and chart."""
+        return f"{self.yarn_name}/{self.chart}"
+
+    @property
+    def key(self) -> str:
+        """A key made from everything that determines the result."""
+        name = self.name.replace("/", "-").replace(" ", "_")
+        return f"{name}.{content_key(asdict(self), SOLVERS)}"
+
+
+def lowest(task: LowestTask) -> Document:
+    """The states that a chart without mirrors ends in.
+
+    They are the mirrored one, followed along its instability, the mirrored one disturbed, and those
+    of starts of their own. Returns a JSON document: yarn and chart, and for each state that relaxed
+    the energy (N·mm) of the mean stitch, its width and its height (mm), the lowest first; or
+    ``failure``.
+    """
+    chart = StitchChart.parse(task.chart)
+    states = []
+    try:
+        mirrored = relax(chart, task.yarn, task.loop_length_mm)
+        if can_be_followed(mirrored):
+            found = without_mirrors(mirrored).state
+            states.append((found.energy_n_mm, found.cell_course_mm, found.cell_wale_mm))
+    except KnitcoreError as error:
+        failure = str(error)
+    else:
+        failure = ""
+    try:
+        free = relax(chart, task.yarn, task.loop_length_mm, branch=Branch.FREE)
+        states.append((free.energy_n_mm, free.cell_course_mm, free.cell_wale_mm))
+        states += [
+            (start.energy_n_mm, start.cell_course_mm, start.cell_wale_mm)
+            for start in free.starts
+            if start.energy_n_mm > free.energy_n_mm
+        ]
+    except KnitcoreError as error:
+        failure = failure or str(error)
+    if not states:
+        return {"name": task.name, "failure": failure}
+    rounded = [[float(f"{part:.6g}") for part in state] for state in sorted(states)]
+    return {"name": task.name, "states": rounded}
+
+
+def tasks() -> Iterator[LowestTask]:
+    """All charts of the library that relaxed with mirrors, in its order."""
+    for entry in training_entries():
+        if entry.cell_mm is not None:
+            yield LowestTask(entry.yarn_name, entry.chart.key, entry.yarn, entry.loop_length_mm)
+
+
+def pack(keep: Path, file: Path) -> int:
+    """Write what finished to a file, by yarn and chart; returns the number of charts."""
+    found = {}
+    for path in keep.glob("*.json"):
+        document = json.loads(path.read_text(encoding="utf-8"))
+        found[document.pop("name")] = document
+    lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(found[name])}" for name in sorted(found))
+    file.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+    return len(found)
+
+
+def main() -> None:
+    """Read the options and relax."""
+    parser = argparse.ArgumentParser(prog="python -m scripts.training.lowest")
+    parser.add_argument("--keep", type=Path, default=Path("build/training-lowest"))
+    parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
+    parser.add_argument("--workers", type=int, help="processes, all cores if left out")
+    parser.add_argument("--pack", action="store_true", help="only pack finished charts")
+    arguments = parser.parse_args()
+    if arguments.pack:
+        sys.stderr.write(f"{pack(arguments.keep, LOWEST)} packed\n")
+        return
+    named = {task.key: task for task in sorted(tasks(), key=lambda task: task.key[::-1])}
+    run_batch(
+        lowest, named, scheduler=arguments.scheduler, workers=arguments.workers,
+        keep=arguments.keep, progress=tell,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
