@@ -22,6 +22,7 @@ from knitcore.errors import KnitcoreError
 from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.results import Branch
+from knitcore.yarnlevel.search import RELAXED
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.characterise import Document
 from knitcore.yarnlibrary.fingerprint import content_key
@@ -57,9 +58,13 @@ def lowest(task: LowestTask) -> Document:
     """The states that a chart without mirrors ends in.
 
     They are the mirrored one, followed along its instability, the mirrored one disturbed, and those
-    of starts of their own. Returns a JSON document: yarn and chart, and for each state that relaxed
-    the energy (N·mm) of the mean stitch, its width and its height (mm), the lowest first; or
-    ``failure``.
+    of starts of their own; of the last two only the lowest is polished on the fine grid, and the
+    others count as they are on the coarse one.
+
+    Returns
+    -------
+    A JSON document: yarn and chart, and for each state that relaxed the energy (N·mm) of the mean
+    stitch, its width and its height (mm), the lowest first; or ``failure``.
     """
     chart = StitchChart.parse(task.chart)
     states = []
@@ -78,7 +83,7 @@ def lowest(task: LowestTask) -> Document:
         states += [
             (start.energy_n_mm, start.cell_course_mm, start.cell_wale_mm)
             for start in free.starts
-            if start.energy_n_mm > free.energy_n_mm
+            if start.outcome == RELAXED and start.energy_n_mm > free.energy_n_mm
         ]
     except KnitcoreError as error:
         failure = failure or str(error)
