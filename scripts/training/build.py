@@ -6,15 +6,12 @@ the tasks finished so far to ``training.json``; the next build leaves those out.
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 
-from knitcore.batch import run_batch
 from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError
 from knitcore.materials import material
@@ -25,8 +22,8 @@ from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise
 from knitcore.yarnlibrary.fingerprint import content_key
 from knitcore.yarnlibrary.store import stored_charts
 from knitcore.yarnlibrary.yarns import yarn_for
-from scripts.stored_stitches import tell
 from scripts.training.charts import YARN_POINTS, anchor_charts, drawn_charts, training_charts
+from scripts.training.command import resumable
 from scripts.training.entries import FILE
 
 MAX_RELAXED = 36
@@ -189,19 +186,9 @@ def _short(value: float) -> float:
 
 def main() -> None:
     """Run ``python -m scripts.training.build``."""
-    parser = argparse.ArgumentParser(prog="python -m scripts.training.build")
-    parser.add_argument("--keep", type=Path, default=Path("build/training"))
-    parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
-    parser.add_argument("--workers", type=int, help="processes, all cores if left out")
-    parser.add_argument("--pack", action="store_true", help="only pack finished tasks")
-    arguments = parser.parse_args()
-    if arguments.pack:
-        count = pack(arguments.keep, FILE)
-        sys.stderr.write(f"{count} packed\n")
-        return
-    run_batch(
-        characterise, tasks(FILE), scheduler=arguments.scheduler, workers=arguments.workers,
-        keep=arguments.keep, progress=tell,
+    resumable(
+        "python -m scripts.training.build", "build/training", characterise,
+        lambda: tasks(FILE), lambda keep: pack(keep, FILE),
     )  # fmt: skip
 
 

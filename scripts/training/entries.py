@@ -59,8 +59,8 @@ class TrainingEntry:
     ----------
     chart, yarn_name, yarn, loop_length_mm, branch : of the relaxation.
     cell_mm : (course, wale) of the mean stitch; None where it failed for the reason in `failure`.
-    lowest_mm : the same of the lowest state that was found, with or without mirrors; None where
-        mirrors were kept.
+    lowest_mm : the same of the lowest state that was found, with or without mirrors; None where it
+        was not relaxed without them.
     curves : by direction; empty where it was only relaxed, or the stretch failed.
     law : fitted to the curves, None where there is none.
     """

@@ -69,8 +69,8 @@ class Row:
     yarn_name : its yarn.
     features, numbers : as the model takes them, in their own units.
     fold : (2,) ln of size over the mixture's.
-    crumpled : (2,) ln of the size of the lowest state found without mirrors over that size; nan
-        where none was looked for.
+    unmirrored : (2,) ln of the size of the lowest state that was found over that size; nan where
+        it was not relaxed without mirrors.
     ratio : (14,) ln of strain over the mixture's, and Poisson's ratios less the mixture's; nan
         where it was not stretched.
     uncertainty : (4,) see :class:`knitcore.answer.densities.Densities`.
@@ -82,7 +82,7 @@ class Row:
     features: Array
     numbers: Array
     fold: Array
-    crumpled: Array
+    unmirrored: Array
     ratio: Array
     uncertainty: Array
     follows: Array
@@ -220,7 +220,7 @@ def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
         np.array([row.pure for row in found]),
     )
     fold = np.array([row.fold for row in found])
-    crumpled = np.array([row.crumpled for row in found])
+    unmirrored = np.array([row.unmirrored for row in found])
     ratio = np.array([row.ratio for row in found])
     follow = np.array([row.follows for row in found])
     swept = np.isfinite(ratio).all(axis=1)
@@ -251,7 +251,7 @@ def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
             rest_missed, rest_variance, uncertainty[swept], np.full(4, COVERAGE)
         ),
         "folding_missed": fold_missed,
-        "lowest_missed": fold_missed + crumpled,
+        "lowest_missed": fold_missed + unmirrored,
         "unfolding_missed": _scattered(rest_missed, swept),
         "follows": follow,
         "uncertainty": uncertainty,

@@ -9,14 +9,10 @@ far to ``lowest.json``.
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from knitcore.batch import run_batch
 from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError
 from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
@@ -26,7 +22,7 @@ from knitcore.yarnlevel.search import RELAXED
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.characterise import Document
 from knitcore.yarnlibrary.fingerprint import content_key
-from scripts.stored_stitches import tell
+from scripts.training.command import resumable
 from scripts.training.entries import LOWEST, training_entries
 
 SOLVERS = ("knitcore.yarnlevel.relax", "knitcore.yarnlevel.lowest")
@@ -93,11 +89,11 @@ def lowest(task: LowestTask) -> Document:
     return {"name": task.name, "states": rounded}
 
 
-def tasks() -> Iterator[LowestTask]:
-    """All charts of the library that relaxed with mirrors, in its order."""
-    for entry in training_entries():
-        if entry.cell_mm is not None:
-            yield LowestTask(entry.yarn_name, entry.chart.key, entry.yarn, entry.loop_length_mm)
+def named_tasks() -> dict[str, LowestTask]:
+    """All charts of the library that relaxed with mirrors, by key, in a mixed order."""
+    entries = (entry for entry in training_entries() if entry.cell_mm is not None)
+    found = [LowestTask(e.yarn_name, e.chart.key, e.yarn, e.loop_length_mm) for e in entries]
+    return {task.key: task for task in sorted(found, key=lambda task: task.key[::-1])}
 
 
 def pack(keep: Path, file: Path) -> int:
@@ -112,20 +108,10 @@ def pack(keep: Path, file: Path) -> int:
 
 
 def main() -> None:
-    """Read the options and relax."""
-    parser = argparse.ArgumentParser(prog="python -m scripts.training.lowest")
-    parser.add_argument("--keep", type=Path, default=Path("build/training-lowest"))
-    parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
-    parser.add_argument("--workers", type=int, help="processes, all cores if left out")
-    parser.add_argument("--pack", action="store_true", help="only pack finished charts")
-    arguments = parser.parse_args()
-    if arguments.pack:
-        sys.stderr.write(f"{pack(arguments.keep, LOWEST)} packed\n")
-        return
-    named = {task.key: task for task in sorted(tasks(), key=lambda task: task.key[::-1])}
-    run_batch(
-        lowest, named, scheduler=arguments.scheduler, workers=arguments.workers,
-        keep=arguments.keep, progress=tell,
+    """Run ``python -m scripts.training.lowest``."""
+    resumable(
+        "python -m scripts.training.lowest", "build/training-lowest", lowest,
+        named_tasks, lambda keep: pack(keep, LOWEST),
     )  # fmt: skip
 
 
