@@ -32,6 +32,7 @@ import { offerTour, topbar } from "./panels/topbar.js";
 import { watchConnection } from "./services/connection.js";
 import { listenToImports } from "./panels/dialogs/importer.js";
 import { startPredictor } from "./services/predictor.js";
+import { startRelaxer } from "./services/relaxer.js";
 import { startPoser } from "./services/poser.js";
 import { Stretcher } from "./services/stretcher.js";
 import { Studio } from "./studio.js";
@@ -99,6 +100,7 @@ split(byId("split-rows"), "--inspector-height", {
   most: () => innerHeight - 320,
 });
 const predictAgain = startPredictor(studio);
+startRelaxer(studio);
 // Everything that follows the chart is there: now it may be painted on.
 new Painter(view, studio);
 listenToKeys(context, isTyping);

@@ -76,6 +76,8 @@ export class Studio {
     /** Of the yarn, g/m. */
     this.weight = new Signal(settings.weight);
 
+    /** Whether the repeat on show is being relaxed at the yarn level. */
+    this.relaxing = new Signal(false);
     this.prediction = new Signal(
       /** @type {PredictionState} */ ({ value: null, busy: false, problem: null, scope: "chart" }),
     );

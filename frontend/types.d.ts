@@ -1173,6 +1173,14 @@ export interface Focus {
   column: number;
 }
 
+/** The gauge that a relaxation found; other requests take it as it is. */
+export interface FoundGauge {
+  stitches_per_10_cm: number;
+  rows_per_10_cm: number;
+  log_sd: number;
+  known_by: KnownBy;
+}
+
 /** Simulated minus measured displacement at one frame, in per cent of the width. */
 export interface FrameErrorResult {
   frame: number;
@@ -1237,12 +1245,16 @@ export interface GaugeCount {
   fabric?: Fabric;
 }
 
-/** The gauge of a swatch, counted on your own relaxed cloth. */
+/** The gauge of a chart: counted on your own relaxed cloth, or from a relaxation. */
 export interface GaugeInput {
   /** Counted on your own relaxed swatch; give stitches and rows, or neither. */
   stitches_per_10_cm: number;
   /** Counted on your own relaxed swatch; give stitches and rows, or neither. */
   rows_per_10_cm: number;
+  /** How uncertain both numbers are: standard deviation of their logarithms. */
+  log_sd?: number;
+  /** `relaxation` for the `gauge` in the result of `relax`. */
+  known_by?: KnownBy;
 }
 
 /** The gauge of a fabric. */
@@ -1480,6 +1492,9 @@ export interface JobStatus {
   started_at: string | null;
   finished_at: string | null;
 }
+
+/** How a relaxed size became known. */
+export type KnownBy = "gauge" | "relaxation";
 
 /** A stress-strain curve, transverse direction free. */
 export interface LawCurve {
@@ -2011,6 +2026,8 @@ export interface PredictResult {
   /** measured; estimated; swept; learned; or learned with known size */
   provenance: string;
   method: string;
+  /** Chart of the repeat whose relaxation (`relax`, some seconds) has a `gauge` with which these numbers would be more certain; null if there is none. */
+  worth_relaxing: string | null;
   notes: string[];
   /** The measures that were asked for. */
   measures: MeasureResult[];
@@ -2236,6 +2253,8 @@ export interface RelaxResult {
   starts: StartResult[];
   /** Without the mirror symmetries; null for other branches, shapes that are held, and free cells of more than 16 stitches. */
   unmirrored: UnmirroredResult | null;
+  /** For the `gauge` of other requests about this chart and material, which become more certain by it if the material is simulated. Null for a pure fabric, and for shapes in other branches, that are held, or of other loop lengths than the material's. */
+  gauge: FoundGauge | null;
   notes: string[];
   /** Bottom course first; each runs once across the repeat. */
   centre_lines_mm: [number, number, number][][] | null;

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from pydantic import Field
 
-from app.models.base import RequestModel
+from app.models.base import RequestModel, ResultModel
 from app.models.laws import FabricRequest
-from knitcore.answer.relaxed import RelaxedSize
+from knitcore.answer.relaxed import KnownBy, RelaxedSize
 
 Count = Annotated[
     float,
@@ -21,14 +22,33 @@ Count = Annotated[
 
 
 class GaugeInput(RequestModel):
-    """The gauge of a swatch, counted on your own relaxed cloth."""
+    """The gauge of a chart: counted on your own relaxed cloth, or from a relaxation."""
 
     stitches_per_10_cm: Count
     rows_per_10_cm: Count
+    log_sd: float = Field(
+        RelaxedSize.log_sd,
+        ge=0.001,
+        le=1,
+        description="How uncertain both numbers are: standard deviation of their logarithms.",
+    )
+    known_by: KnownBy = Field(
+        KnownBy.GAUGE, description="`relaxation` for the `gauge` in the result of `relax`."
+    )
 
     def relaxed_size(self) -> RelaxedSize:
         """The relaxed size of one stitch."""
-        return RelaxedSize.from_gauge(self.stitches_per_10_cm, self.rows_per_10_cm)
+        size = RelaxedSize.from_gauge(self.stitches_per_10_cm, self.rows_per_10_cm)
+        return replace(size, log_sd=self.log_sd, known_by=self.known_by)
+
+
+class FoundGauge(ResultModel):
+    """The gauge that a relaxation found; other requests take it as it is."""
+
+    stitches_per_10_cm: float
+    rows_per_10_cm: float
+    log_sd: float
+    known_by: KnownBy
 
 
 class GaugedRequest(FabricRequest):

@@ -13,6 +13,7 @@ from app.models.laws import ElasticConstants, Extensibility
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
 from knitcore.answer.measures import measure
+from knitcore.answer.relaxation import worth_relaxing
 from knitcore.chart import size_in_words
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import ShapedChart, outline_marks
@@ -74,6 +75,10 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
         description="measured; estimated; swept; learned; or learned with known size"
     )
     method: str
+    worth_relaxing: str | None = Field(
+        description="Chart of the repeat whose relaxation (`relax`, some seconds) has a `gauge` "
+        "with which these numbers would be more certain; null if there is none."
+    )
     notes: list[str]
     measures: list[MeasureResult] = Field([], description="The measures that were asked for.")
 
@@ -92,11 +97,13 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         )
     found = choose(chart, material, request.relaxed_size)
     segments = segment_map(chart)
+    to_relax = worth_relaxing(chart, material, found)
     return PredictResult.of(
         found,
         chart,
         size_at_rest(shaped, material, found),
         segments={direction: segments.counts(direction) for direction in Direction},
+        worth_relaxing=None if to_relax is None else to_relax.text,
         notes=[*notes, *found.notes],
         measures=[
             MeasureResult.of(one, value=one.value(chart, material, found))

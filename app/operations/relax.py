@@ -9,8 +9,10 @@ from pydantic import Field
 from app.command_options import loop_lengths
 from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
+from app.models.gauge import FoundGauge
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
+from knitcore.answer.relaxation import size_from_relaxation
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, UnravelledError
 from knitcore.materials.uncertainty import (
@@ -18,11 +20,12 @@ from knitcore.materials.uncertainty import (
     YARN_LEVEL_SIZE_LOG_SD,
     log_interval,
 )
+from knitcore.phases import pure_fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlibrary.yarns import ChartYarn
+from knitcore.yarnlibrary.yarns import ChartYarn, phase_shares
 
 FOLLOWED_UP_TO = 16
 """Free cells of up to this many stitches are also followed without their symmetries."""
@@ -93,6 +96,12 @@ class RelaxResult(IntervalResult):
         description="Without the mirror symmetries; null for other branches, shapes that are held, "
         f"and free cells of more than {FOLLOWED_UP_TO} stitches.",
     )
+    gauge: FoundGauge | None = Field(
+        None,
+        description="For the `gauge` of other requests about this chart and material, which become "
+        "more certain by it. Null unless the material is simulated, and for pure fabrics, other "
+        "branches, shapes that are held, and other loop lengths than the material's.",
+    )
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = Field(
         None, description="Bottom course first; each runs once across the repeat."
@@ -104,7 +113,8 @@ def relax(request: RelaxRequest, context: Context) -> RelaxResult:
 
     A relaxation that was run before is returned from storage.
     """
-    return kept_or_made(RelaxResult, request, context, _relaxed)
+    result = kept_or_made(RelaxResult, request, context, _relaxed)
+    return result.model_copy(update={"gauge": _gauge(request, result, context)})
 
 
 def _relaxed(
@@ -155,8 +165,38 @@ def _unmirrored(
     )
 
 
+def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> FoundGauge | None:
+    """The gauge of a simulated material's cloth: its pure fabrics are relaxed in the same way."""
+    usual = RelaxRequest(
+        chart=request.chart, material=request.material, convention=request.convention
+    )
+    asked = request.model_copy(update={"fresh": False, "centre_lines": False})
+    material, repeat = context.material(request.material), request.repeat()
+    if asked != usual or not material.is_simulated or pure_fabric(repeat) is not None:
+        return None
+    pure_mm = {}
+    for fabric in phase_shares(repeat):
+        text = StitchChart.of_fabric(fabric).repeat().text
+        try:
+            pure = relax(usual.model_copy(update={"chart": text}), context)
+        except (ConvergenceError, UnravelledError):
+            return None
+        pure_mm[fabric] = (pure.cell_course_mm, pure.cell_wale_mm)
+    cell_mm = result.cell_course_mm, result.cell_wale_mm
+    return FoundGauge.of(size_from_relaxation(repeat, material, cell_mm, pure_mm))
+
+
 def _between(ends: tuple[float, float] | None) -> str:
     return "" if ends is None else f" ({ends[0]:.2f} to {ends[1]:.2f})"
+
+
+def _gauge_line(gauge: FoundGauge | None) -> list[str]:
+    if gauge is None:
+        return []
+    return [
+        f"for predict     --stitches-per-10-cm {gauge.stitches_per_10_cm:.2f} --rows-per-10-cm "
+        f"{gauge.rows_per_10_cm:.2f} --log-sd {gauge.log_sd:.3f} --known-by {gauge.known_by}"
+    ]
 
 
 def _lines(r: RelaxResult) -> list[str]:
@@ -167,6 +207,7 @@ def _lines(r: RelaxResult) -> list[str]:
         f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
         f"bending, {100 * r.contact_share:.1f} % contact",
         f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",
+        *_gauge_line(r.gauge),
         f"solved          {r.seconds:.2f} s CPU, {r.evaluations} evaluations, "
         f"{'converged' if r.converged else 'NOT converged'}"
         f"{'; stored result' if r.known else ''}",

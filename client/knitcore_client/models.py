@@ -64,6 +64,8 @@ Finish = Literal["waste", "bind-off"]
 
 HungBy = Literal["edge", "corners"]
 
+KnownBy = Literal["gauge", "relaxation"]
+
 Laws = Literal["refitted", "published"]
 
 Quantity = Literal[
@@ -565,12 +567,16 @@ class GaugeCount(TypedDict):
 
 
 class GaugeInput(TypedDict):
-    """The gauge of a swatch, counted on your own relaxed cloth."""
+    """The gauge of a chart: counted on your own relaxed cloth, or from a relaxation."""
 
     stitches_per_10_cm: float
     """Counted on your own relaxed swatch; give stitches and rows, or neither."""
     rows_per_10_cm: float
     """Counted on your own relaxed swatch; give stitches and rows, or neither."""
+    log_sd: NotRequired[float]
+    """How uncertain both numbers are: standard deviation of their logarithms."""
+    known_by: NotRequired[KnownBy]
+    """`relaxation` for the `gauge` in the result of `relax`."""
 
 
 class Glove(TypedDict):
@@ -2042,6 +2048,15 @@ class FitResult(BaseModel):
     """Median curve of the pulls in each direction; kept with the law in a file."""
 
 
+class FoundGauge(BaseModel):
+    """The gauge that a relaxation found; other requests take it as it is."""
+
+    stitches_per_10_cm: float
+    rows_per_10_cm: float
+    log_sd: float
+    known_by: KnownBy
+
+
 class FrameErrorResult(BaseModel):
     """Simulated minus measured displacement at one frame, in per cent of the width."""
 
@@ -2625,6 +2640,9 @@ class PredictResult(BaseModel):
     provenance: str
     """measured; estimated; swept; learned; or learned with known size"""
     method: str
+    worth_relaxing: str | None
+    """Chart of the repeat whose relaxation (`relax`, some seconds) has a `gauge` with which these
+    numbers would be more certain; null if there is none."""
     notes: list[str]
     measures: list[MeasureResult] = []
     """The measures that were asked for."""
@@ -2777,6 +2795,10 @@ class RelaxResult(BaseModel):
     unmirrored: UnmirroredResult | None = None
     """Without the mirror symmetries; null for other branches, shapes that are held, and free
     cells of more than 16 stitches."""
+    gauge: FoundGauge | None = None
+    """For the `gauge` of other requests about this chart and material, which become more certain
+    by it if the material is simulated. Null for a pure fabric, and for shapes in other branches,
+    that are held, or of other loop lengths than the material's."""
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = None
     """Bottom course first; each runs once across the repeat."""

@@ -153,10 +153,14 @@ export function inspector(host, studio) {
     source.hidden = !value;
     if (value) {
       const told = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
-      provenance.textContent = value.provenance;
+      name();
       notes.replaceChildren(...told.map((note) => h("li", {}, note)));
       gauge.show();
     }
+  };
+  const name = () => {
+    const { value } = studio.prediction.value;
+    provenance.textContent = `${value?.provenance}${studio.relaxing.value ? ", relaxing …" : ""}`;
   };
   const count = () => {
     const { document: chart } = studio;
@@ -185,6 +189,7 @@ export function inspector(host, studio) {
   };
   const countSoon = paced(count, COUNT_MS);
   studio.prediction.watch(show);
+  studio.relaxing.listen(name);
   studio.selection.listen(() => {
     shown = undefined;
     show();

@@ -38,8 +38,9 @@ export function ownGauge(studio) {
   const show = () => {
     if (element.contains(document.activeElement)) return;
     const known = studio.gauges.changes.value ? studio.gauges.of(cloth()) : null;
-    stitches.value = known ? String(known.stitches_per_10_cm) : "";
-    rows.value = known ? String(known.rows_per_10_cm) : "";
+    const counted = known?.known_by === "relaxation" ? null : known;
+    stitches.value = counted ? String(counted.stitches_per_10_cm) : "";
+    rows.value = counted ? String(counted.rows_per_10_cm) : "";
   };
   return { element, show };
 }

@@ -1,6 +1,6 @@
 /**
- * Gauges that somebody counted on knitted cloth. Each is known for the stitches and the yarn it was
- * counted on: painting leaves it behind, and undoing finds it again.
+ * Gauges that somebody counted on knitted cloth, or that a relaxation found. Each is known for its
+ * stitches and yarn: painting leaves it behind, and undoing finds it again.
  *
  * @import {GaugeInput} from "../types.js"
  *

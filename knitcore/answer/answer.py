@@ -10,17 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore import showing
-from knitcore.answer.relaxed import RelaxedSize
+from knitcore.answer.relaxed import KnownBy, RelaxedSize
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.response import Response
 from knitcore.materials.uncertainty import Interval, log_interval, normal_interval
-
-GAUGE = "gauge"
-"""Name of the source of a relaxed size given by the caller."""
-GAUGE_ERRORS = ("the gauge as given",)
-
 
 SHOWN_STRESS_N_PER_MM = 0.2
 """Stress up to which an answer's curves are drawn."""
@@ -150,6 +145,11 @@ class Answer:
     notes: tuple[str, ...] = ()
 
     @property
+    def size_is_known(self) -> bool:
+        """Whether the relaxed size was given, not estimated."""
+        return self.relaxed_source in tuple(KnownBy)
+
+    @property
     def interval_source(self) -> str:
         """What the intervals rest on, in words."""
         return f"Stretch: {'; '.join(self.stretch_errors)}. Size: {'; '.join(self.size_errors)}."
@@ -165,13 +165,18 @@ class Answer:
         return Direction.parse(direction).of(self.course, self.wale)
 
     def with_size(self, relaxed: RelaxedSize) -> Answer:
-        """The answer with a measured relaxed size, and the same stretch from it."""
+        """The answer with a known relaxed size, and the same stretch from it."""
         course, wale = (
             replace(self.along(d), relaxed_mm=relaxed.extent_mm(d), relaxed_log_sd=relaxed.log_sd)
             for d in Direction
         )
+        known_by = relaxed.known_by
         return replace(
-            self, course=course, wale=wale, relaxed_source=GAUGE, size_errors=GAUGE_ERRORS
+            self,
+            course=course,
+            wale=wale,
+            relaxed_source=known_by,
+            size_errors=(known_by.errors,),
         )
 
     def modulus_n_per_mm(self, direction: Direction | str) -> float:

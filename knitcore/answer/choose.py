@@ -38,7 +38,7 @@ def choose(
     ----------
     chart : a repeat, or a swatch that may cut its last repeat off.
     material : a yarn at one setting.
-    gauge : measured relaxed size of the chart's mean stitch, if known.
+    gauge : relaxed size of the chart's mean stitch, if known.
     swept : yarn-level sweep of the chart's repeat (:mod:`knitcore.answer.swept`), if there is one.
 
     Raises

@@ -9,12 +9,12 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.answer.answer import GAUGE, GAUGE_ERRORS, Along, Answer, Source
+from knitcore.answer.answer import Along, Answer, Source
 from knitcore.answer.densities import Densities
 from knitcore.answer.learned import LearnedAnswer, SweptChart, packaged_model
 from knitcore.answer.measured import CURL, GAUGE_LOG_SD, GAUGE_SD_SOURCE
 from knitcore.answer.mixture import Mixture
-from knitcore.answer.relaxed import RelaxedSize
+from knitcore.answer.relaxed import KnownBy, RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
@@ -24,15 +24,16 @@ from knitcore.materials.uncertainty import Z_SCORE
 
 LEARNED = (
     "Learned from yarn-level simulations, which have no friction or set: the initial stretch and "
-    "the draw-in are the least certain. Your own gauge makes both more certain."
+    "the draw-in are the least certain."
 )
+COUNT = "Your own gauge makes both more certain."
+RELAXED = "The size at rest comes from a relaxation of this chart at the yarn level."
 SWEPT = (
     "From a yarn-level simulation of this chart, which has no friction or set: the initial stretch "
     "and the draw-in are the least certain."
 )
 LEARNED_ERRORS = "errors on charts that the model had not seen"
 KNITTED = "29 knitted swatches (KnitDB)"
-SWEPT_ERRORS = "how far yarn-level charts of the same densities differ"
 _LOOP_SPREAD = 1.15
 
 
@@ -49,7 +50,7 @@ def mixed(
     ----------
     repeat : the repeat.
     found : its densities.
-    gauge : its measured relaxed size, if known.
+    gauge : its relaxed size, if known.
     swept : its sweep at the yarn level, if there is one.
 
     Raises
@@ -88,7 +89,8 @@ def _answer(
     swept: SweptChart | None = None,
 ) -> Answer:
     pure = 1 - float(found.mixed)  # near a pure fabric that fabric's own uncertainty counts
-    own = 0.0 if gauge is not None else GAUGE_LOG_SD * pure
+    known_by = None if gauge is None else gauge.known_by
+    own = 0.0 if known_by is KnownBy.GAUGE else GAUGE_LOG_SD * pure
     course, wale = (_along(learned, direction, own, pure) for direction in Direction)
     parts = learned.mixture.parts
     shares = ", ".join(f"{share:.0%} {record.fabric}" for share, record in parts)
@@ -97,22 +99,35 @@ def _answer(
     errors = LEARNED_ERRORS
     if swept is not None:
         source, taught, note = Source.SWEPT, "from a yarn-level stretch of this chart", SWEPT
-        errors = SWEPT_ERRORS
+        errors = KnownBy.RELAXATION.errors
     return Answer(
         course,
         wale,
         sum(share * record.law.shear_modulus for share, record in parts),
         source,
         f"{shares} mixed in {repeat.columns} x {repeat.rows} stitches, with a correction {taught}",
-        ("learned" if swept is None else "yarn level") if gauge is None else GAUGE,
+        known_by or ("learned" if swept is None else "yarn level"),
         tuple(dict.fromkeys([errors, *(record.uncertainty.source for _, record in parts)])),
-        _size_errors(errors, learned.mixture) if gauge is None else GAUGE_ERRORS,
-        (note, *_notes(learned.mixture, material)),
+        _size_errors(errors, known_by, learned.mixture),
+        (*_of_size(note, known_by), *_notes(learned.mixture, material)),
     )
 
 
-def _size_errors(learned: str, mixture: Mixture) -> tuple[str, ...]:
-    return (learned, *(() if mixture.simulated else (KNITTED,)), GAUGE_SD_SOURCE)
+def _size_errors(errors: str, known_by: KnownBy | None, mixture: Mixture) -> tuple[str, ...]:
+    if known_by is KnownBy.GAUGE:
+        return (known_by.errors,)
+    knitted = () if mixture.simulated else (KNITTED,)
+    return (known_by.errors if known_by else errors, *knitted, GAUGE_SD_SOURCE)
+
+
+def _of_size(note: str, known_by: KnownBy | None) -> tuple[str, ...]:
+    match known_by:
+        case None:
+            return (f"{note} {COUNT}",)
+        case KnownBy.RELAXATION:
+            return (f"{note} {COUNT}", RELAXED)
+        case KnownBy.GAUGE:
+            return (note,)
 
 
 def _along(

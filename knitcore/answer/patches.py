@@ -34,7 +34,7 @@ from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.law.response import Response, response_through
-from knitcore.materials import Interval, Material, Origin
+from knitcore.materials import Interval, Material
 from knitcore.phases import pure_fabric
 
 SIDE = 16
@@ -202,7 +202,7 @@ def patches_of(
     Parameters
     ----------
     chart : a repeat or a whole piece, as for :func:`knitcore.answer.choose.choose`.
-    gauge : measured relaxed size of the whole chart's mean stitch, if known.
+    gauge : relaxed size of the whole chart's mean stitch, if known.
     swept : sweep of its repeat at the yarn level, if there is one; a simulated material has those
         of the packaged samples.
 
@@ -216,7 +216,7 @@ def patches_of(
         answer = measured(fabric, material)
         return _one(chart, answer if gauge is None else answer.with_size(gauge))
     repeat = chart.repeat_cut()
-    if swept is None and all(r.origin is Origin.SIMULATED for r in material.fabrics.values()):
+    if swept is None and material.is_simulated:
         swept = packaged_model().sweep_of(repeat, material)
     whole = densities(repeat)
     if swept is not None or max(repeat.rows, repeat.columns) <= SIDE:
@@ -241,7 +241,11 @@ def patches_of(
     wider, higher = (gauge.extent_mm(d) / free.relaxed_mm(d) for d in Direction)
     return answered(
         [
-            RelaxedSize(a.relaxed_course_mm * wider, a.relaxed_wale_mm * higher, gauge.log_sd)
+            replace(
+                gauge,
+                course_mm=a.relaxed_course_mm * wider,
+                wale_mm=a.relaxed_wale_mm * higher,
+            )
             for line in free.answers
             for a in line
         ]

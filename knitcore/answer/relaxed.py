@@ -1,21 +1,42 @@
-"""A measured relaxed size."""
+"""A known relaxed size."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from knitcore.bounds import check_positive
 from knitcore.fabric import Direction
 
 
+class KnownBy(StrEnum):
+    """How a relaxed size became known."""
+
+    GAUGE = "gauge"
+    RELAXATION = "relaxation"
+
+    @property
+    def errors(self) -> str:
+        """What the interval of such a size rests on, in words."""
+        return _ERRORS[self]
+
+
+_ERRORS = {
+    KnownBy.GAUGE: "the gauge as given",
+    KnownBy.RELAXATION: "how far yarn-level charts of the same densities differ",
+}
+
+
 @dataclass(frozen=True)
 class RelaxedSize:
-    """Relaxed size of one mean stitch of a chart, measured.
+    """Relaxed size of one mean stitch of a chart.
 
     Attributes
     ----------
     course_mm, wale_mm : width and height.
     log_sd : standard deviation of their logarithms.
+    known_by : a gauge counted on cloth, or a relaxation at the yarn level
+        (:mod:`knitcore.answer.relaxation`).
 
     Raises
     ------
@@ -26,6 +47,7 @@ class RelaxedSize:
     course_mm: float
     wale_mm: float
     log_sd: float = 0.03
+    known_by: KnownBy = KnownBy.GAUGE
 
     def __post_init__(self) -> None:
         for name in ("course_mm", "wale_mm"):
@@ -46,6 +68,16 @@ class RelaxedSize:
         ):
             check_positive(name, value, what="a gauge")
         return cls(100 / stitches_per_10_cm, 100 / rows_per_10_cm)
+
+    @property
+    def stitches_per_10_cm(self) -> float:
+        """Gauge along the rows."""
+        return 100 / self.course_mm
+
+    @property
+    def rows_per_10_cm(self) -> float:
+        """Gauge along the columns."""
+        return 100 / self.wale_mm
 
     def extent_mm(self, direction: Direction) -> float:
         """Relaxed size along a direction, mm."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.answer import GAUGE, Answer
+from knitcore.answer.answer import Answer
 from knitcore.answer.choose import choose
 from knitcore.arrays import Array
 from knitcore.fabric import Direction
@@ -61,7 +61,7 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Answer) -> Siz
     else:
         corners = laid_corners_mm(shaped, material)
         sides = np.ptp(corners[_reached(shaped)], axis=0)
-        if answer.relaxed_source == GAUGE:
+        if answer.size_is_known:
             sides *= stitch / mean_stitch_mm(shaped, material)
     width, height = sides.tolist()
     return SizeAtRest(

@@ -177,6 +177,11 @@ class Material:
         return self.identifier.removesuffix(f":{Laws.PUBLISHED}")
 
     @property
+    def is_simulated(self) -> bool:
+        """Whether all its fabrics come from yarn-level simulations."""
+        return all(record.origin is Origin.SIMULATED for record in self.fabrics.values())
+
+    @property
     def is_complete(self) -> bool:
         """Whether all four pure fabrics are known, so that any chart can be predicted."""
         return len(self.fabrics) == len(Fabric)

@@ -56,6 +56,8 @@ YARN_POINTS = (
     _point("soft", 0.058, 0.023, 0.08, 2.4, 6.6),
     _point("hard", 0.052, 0.0265, 1.0, 2.9, 6.6),
     _point("thick soft", 0.072, 0.024, 0.12, 2.4, 6.6),
+    _point("thin soft", 0.049, 0.0231, 0.03, 2.4, 6.6),
+    _point("thick hard", 0.067, 0.0285, 0.6, 2.9, 6.6),
 )
 """Single yarns; acrylic and cotton with the paper's own parameters (a yarn for each fabric) are
 added by the build."""

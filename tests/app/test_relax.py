@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -122,3 +123,38 @@ def test_sweep_on_the_command_line_and_over_rest_agree(client: TestClient) -> No
     held = client.post("/api/v1/sweep", json=body | {"slide_quenching": True}).json()
     assert held["stress_n_per_mm"][-1] >= answer["stress_n_per_mm"][-1]
     assert any("Slide quenching" in note for note in held["notes"])
+
+
+def test_the_gauge_of_a_relaxation_makes_predictions_of_a_simulated_material_more_certain(
+    client: TestClient,
+) -> None:
+    """The prediction names the repeat; measured materials and held shapes have no such gauge."""
+    body = {"chart": "KKP\nPKP\nKPP\nKKP\nPKP\nKPP", "material": "acrylic:simulation"}
+    learned = client.post("/api/v1/predict", json=body).json()
+    asked = {"chart": learned["worth_relaxing"], "material": body["material"]}
+    assert asked["chart"] == "KKP\nPKP\nKPP"
+    gauge = client.post("/api/v1/relax", json=asked).json()["gauge"]
+    known = client.post("/api/v1/predict", json=body | {"gauge": gauge}).json()
+    assert known["relaxed_source"] == gauge["known_by"] == "relaxation"
+    assert known["relaxed_course_mm"] == pytest.approx(100 / gauge["stitches_per_10_cm"])
+    assert known["worth_relaxing"] is None
+    widths = [
+        high / low
+        for low, high in (a["modulus_course_interval_n_per_mm"] for a in (learned, known))
+    ]
+    assert widths[1] < widths[0]
+    # kept results of the same yarn are found again, but the gauge is the material's
+    assert (
+        client.post("/api/v1/relax", json=asked | {"material": "acrylic"}).json()["gauge"] is None
+    )
+    for held in ({"flat": True}, {"loop_length_mm": 13.0}, {"cell_course_mm": 3.4}):
+        assert client.post("/api/v1/relax", json=asked | held).json()["gauge"] is None
+
+
+def test_relax_prints_the_options_that_predict_takes(tmp_path: Path) -> None:
+    chart = tmp_path / "chart.txt"
+    chart.write_text("KKP\nPKP\nKPP\n")
+    asked = [str(chart), "--material", "acrylic:simulation"]
+    told = CliRunner().invoke(main, ["relax", *asked]).output
+    options = next(line for line in told.splitlines() if line.startswith("for predict")).split()[2:]
+    assert run("predict", *asked, *options)["relaxed_source"] == "relaxation"

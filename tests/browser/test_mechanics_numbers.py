@@ -110,6 +110,28 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     expect(size).to_have_text(guessed)
 
 
+@pytest.mark.slow
+def test_a_repeat_of_a_simulated_material_is_relaxed_while_painting_pauses(
+    visitor: Page, service: str
+) -> None:
+    """Its size is known from then on; a gauge that somebody counted comes before it."""
+    page = open_design(
+        visitor, service, chart="\n".join(["KKPK", "KKPP", "PKPK"]), material="acrylic:simulation"
+    )
+    source = page.locator("#provenance")
+    expect(source).to_have_text("learned, relaxing …")
+    guessed = page.locator("#modulus-course .interval").inner_text()
+    expect(source).to_have_text("learned with known size", timeout=60_000)
+    expect(page.locator("#modulus-course .interval")).not_to_have_text(guessed)
+    source.click()
+    expect(page.locator(".source .notes")).to_contain_text("relaxation of this chart")
+    expect(page.locator("#own-gauge-stitches")).to_have_value("")
+    page.fill("#own-gauge-stitches", "25")
+    page.fill("#own-gauge-rows", "36")
+    page.press("#own-gauge-rows", "Enter")
+    expect(page.locator(".source .notes")).not_to_contain_text("relaxation of this chart")
+
+
 @pytest.fixture
 def own_material() -> Iterator[str]:
     """Name of a material file that the service offers, with one measured curve."""
