@@ -30,9 +30,10 @@ def worth_relaxing(chart: StitchChart, material: Material, answer: Answer) -> St
     Measured cloth shows the folds of the yarn level only in part, so for measured materials a
     relaxation narrows no interval.
     """
+    if answer.provenance is not Source.LEARNED or not material.is_simulated:
+        return None
     repeat = chart.repeat_cut()
-    learned = answer.provenance is Source.LEARNED and material.is_simulated
-    return repeat if learned and repeat.stitches <= MAX_STITCHES else None
+    return repeat if repeat.stitches <= MAX_STITCHES else None
 
 
 def size_from_relaxation(
