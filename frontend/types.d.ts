@@ -2253,7 +2253,7 @@ export interface RelaxResult {
   starts: StartResult[];
   /** Without the mirror symmetries; null for other branches, shapes that are held, and free cells of more than 16 stitches. */
   unmirrored: UnmirroredResult | null;
-  /** For the `gauge` of other requests about this chart and material, which become more certain by it if the material is simulated. Null for a pure fabric, and for shapes in other branches, that are held, or of other loop lengths than the material's. */
+  /** For the `gauge` of other requests about this chart and material, which become more certain by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes that are held, and other loop lengths than the material's. */
   gauge: FoundGauge | null;
   notes: string[];
   /** Bottom course first; each runs once across the repeat. */

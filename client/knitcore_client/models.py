@@ -2797,8 +2797,8 @@ class RelaxResult(BaseModel):
     cells of more than 16 stitches."""
     gauge: FoundGauge | None = None
     """For the `gauge` of other requests about this chart and material, which become more certain
-    by it if the material is simulated. Null for a pure fabric, and for shapes in other branches,
-    that are held, or of other loop lengths than the material's."""
+    by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes
+    that are held, and other loop lengths than the material's."""
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = None
     """Bottom course first; each runs once across the repeat."""

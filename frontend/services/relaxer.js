@@ -15,14 +15,16 @@ const PAUSE_MS = 1500;
 
 /** @param {Studio} studio */
 export function startRelaxer(studio) {
-  const { gauges, prediction, relaxing } = studio;
+  const { gauges, prediction, relaxing, stretch } = studio;
   const latest = new Latest(PAUSE_MS);
   /** Repeats that could not be relaxed: they are not tried again. @type {Set<string>} */
   const refused = new Set();
-  prediction.listen(({ value, busy }) => {
+  const consider = () => {
     latest.cancel();
     relaxing.value = false;
-    const chart = busy ? null : value?.worth_relaxing;
+    const { value, busy } = prediction.value;
+    // A stretch test that somebody waits for comes first.
+    const chart = busy || stretch.value.busy ? null : value?.worth_relaxing;
     const material = studio.materialId.value;
     if (!chart || refused.has(`${material}\n${chart}`)) return;
     const cloth = { chart: scopeOf(studio).grid.text, material };
@@ -43,5 +45,7 @@ export function startRelaxer(studio) {
       }
       relaxing.value = false;
     });
-  });
+  };
+  prediction.listen(consider);
+  stretch.listen(consider);
 }
