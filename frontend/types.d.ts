@@ -862,6 +862,8 @@ export interface ExportRequest {
   first_side?: Side;
   /** The end of a knitout program. */
   finish?: Finish;
+  /** Known gauge of the chart; its relaxed size is estimated if left out. */
+  gauge?: GaugeInput | null;
   name?: string;
   /** Printed. */
   note?: string;

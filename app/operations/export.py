@@ -12,6 +12,7 @@ from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.extensions import ExtensionName
+from app.models.gauge import GaugeInput
 from app.models.laws import LawsRequest
 from app.models.uploads import Content
 from app.operations.registry import Command, Operation
@@ -42,6 +43,9 @@ class ExportRequest(DesignLayout, LawsRequest):
     construction: Construction = Construction.FLAT
     first_side: Side = Field(Side.RS, description="The side of row 1, in flat knitting.")
     finish: Finish = Field(Finish.WASTE, description="The end of a knitout program.")
+    gauge: GaugeInput | None = Field(
+        None, description="Known gauge of the chart; its relaxed size is estimated if left out."
+    )
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$", description="Printed.")
     linear_density_tex: float | None = Field(
@@ -94,7 +98,8 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
 
 
 def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
-    options = request.pass_to(ExportOptions, layout=request)
+    gauge = None if request.gauge is None else request.gauge.relaxed_size()
+    options = request.pass_to(ExportOptions, layout=request, gauge=gauge)
     return export_chart(chart, request.to, context.material(request.material), options)
 
 

@@ -437,6 +437,8 @@ class ExportRequest(TypedDict):
     """The side of row 1, in flat knitting."""
     finish: NotRequired[Finish]
     """The end of a knitout program."""
+    gauge: NotRequired[GaugeInput | None]
+    """Known gauge of the chart; its relaxed size is estimated if left out."""
     name: NotRequired[str]
     note: NotRequired[str]
     """Printed."""

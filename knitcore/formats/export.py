@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.extensions import Group, offered, running
@@ -67,6 +68,7 @@ class ExportOptions:
     layout : outline, regions and their yarns, and what else the project file keeps.
     linear_density_tex : of the yarns, for their mass.
     photo : a PNG picture of the cloth, for the first page of a pattern.
+    gauge : relaxed size of the mean stitch, if known.
     """
 
     construction: Construction = Construction.FLAT
@@ -77,6 +79,7 @@ class ExportOptions:
     layout: DesignLayout = field(default_factory=DesignLayout)
     linear_density_tex: float | None = None
     photo: bytes | None = None
+    gauge: RelaxedSize | None = None
 
 
 @dataclass(frozen=True)
@@ -163,7 +166,7 @@ def export_chart(
         If a knitout program does not knit its chart on the virtual machine.
     """
     options = options or ExportOptions()
-    piece = piece_of(chart, options.layout)
+    piece = replace(piece_of(chart, options.layout), gauge=options.gauge)
     exporter = FORMATS.get(kind) or _of_extension(kind)
     if not exporter.holds_outlines and not piece.is_rectangle:
         known = ", ".join(name for name, built_in in FORMATS.items() if built_in.holds_outlines)
@@ -238,7 +241,7 @@ def _design(piece: Piece, material: Material, options: ExportOptions) -> bytes:
 
 
 def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartStyle:
-    width, height = mean_stitch_mm(piece.shaped, material)
+    width, height = mean_stitch_mm(piece.shaped, material, piece.gauge)
     aspect = min(max(float(height / width), 0.2), 5.0)
     facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
     marks = tuple(

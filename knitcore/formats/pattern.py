@@ -169,10 +169,10 @@ class _Facts:
     @classmethod
     def of(cls, piece: Piece, material: Material) -> _Facts:
         shaped = piece.shaped
-        answer = choose(shaped.rectangle_inside(), material)
+        answer = choose(shaped.rectangle_inside(), material, piece.gauge)
         size = size_at_rest(shaped, material, answer)
         own = answer if piece.is_rectangle else None
-        return cls(piece, own, size, laid_sizes_mm(shaped, material))
+        return cls(piece, own, size, laid_sizes_mm(shaped, material, piece.gauge))
 
     @property
     def finished(self) -> str:

@@ -60,7 +60,7 @@ def design_report(
     """
     piece = Piece.of(chart)
     pages = []
-    found = choose(piece.shaped.rectangle_inside(), material)
+    found = choose(piece.shaped.rectangle_inside(), material, piece.gauge)
     size = size_at_rest(piece.shaped, material, found)
     if piece.is_rectangle:
         shapes = [

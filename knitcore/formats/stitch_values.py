@@ -53,7 +53,8 @@ def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:
     import meshio
 
     piece = Piece.of(chart)
-    points = np.pad(laid_corners_mm(piece.shaped, material).reshape(-1, 2), ((0, 0), (0, 1)))
+    corners = laid_corners_mm(piece.shaped, material, piece.gauge)
+    points = np.pad(corners.reshape(-1, 2), ((0, 0), (0, 1)))
     row, column = np.nonzero(piece.shaped.stitch)
     corner = row * (piece.chart.columns + 1) + column
     above = corner + piece.chart.columns + 1

@@ -74,7 +74,8 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
     piece = Piece.of(chart)
     check_stitches(piece.chart.stitches, MAX_STITCHES)
     shown, grid = piece.shaped.stitch, piece.shaped.continued()
-    corners = np.pad(laid_corners_mm(piece.shaped, material), ((0, 0), (0, 0), (0, 1)))
+    laid = laid_corners_mm(piece.shaped, material, piece.gauge)
+    corners = np.pad(laid, ((0, 0), (0, 0), (0, 1)))
     lines = course_centre_lines(grid, corners, material, shown)
     return solid(lines, yarn_radius_mm(grid, material))
 

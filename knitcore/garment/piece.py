@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import runs
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
@@ -44,6 +45,7 @@ class Piece:
     shaped : chart and outline.
     yarns : those that are used, each once.
     yarn_of : int (rows, columns), index into ``yarns``; 0 outside the outline.
+    gauge : relaxed size of its mean stitch, if known.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class Piece:
     shaped: ShapedChart
     yarns: tuple[PieceYarn, ...]
     yarn_of: NDArray[np.intp]
+    gauge: RelaxedSize | None = None
 
     def __post_init__(self) -> None:
         if self.yarn_of.shape != self.shaped.stitch.shape:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from knitcore.answer.answer import Answer
 from knitcore.answer.choose import choose
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import ShapedChart
@@ -59,10 +60,9 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Answer) -> Siz
     if shaped.is_rectangle:
         sides = stitch * (shaped.chart.columns, shaped.chart.rows)
     else:
-        corners = laid_corners_mm(shaped, material)
+        known = RelaxedSize(*stitch.tolist()) if answer.size_is_known else None
+        corners = laid_corners_mm(shaped, material, known)
         sides = np.ptp(corners[_reached(shaped)], axis=0)
-        if answer.size_is_known:
-            sides *= stitch / mean_stitch_mm(shaped, material)
     width, height = sides.tolist()
     return SizeAtRest(
         width,
@@ -72,24 +72,32 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Answer) -> Siz
     )
 
 
-def mean_stitch_mm(shaped: ShapedChart, material: Material) -> Array:
-    """Width and height at rest, (2,): the answer's, or of a piece with an outline its lattice's.
+def mean_stitch_mm(
+    shaped: ShapedChart, material: Material, gauge: RelaxedSize | None = None
+) -> Array:
+    """Width and height at rest, (2,): the gauge's if it is known, of a rectangle the answer's, of a
+    piece with an outline its lattice's.
 
     Raises
     ------
     InputError
         If the material lacks a pure fabric that the chart needs.
     """
+    if gauge is not None:
+        return np.array([gauge.course_mm, gauge.wale_mm])
     if shaped.is_rectangle:
         return _stitch_mm(choose(shaped.chart, material))
     lattice = resting_lattice(shaped.continued(), material)
     return np.asarray(lattice.sizes_mm[shaped.stitch].mean(axis=0))
 
 
-def laid_corners_mm(shaped: ShapedChart, material: Material) -> Array:
+def laid_corners_mm(
+    shaped: ShapedChart, material: Material, gauge: RelaxedSize | None = None
+) -> Array:
     """Corners of all cells in the plane, (rows + 1, columns + 1, 2), the lowest x and y at 0.
 
-    They are those of the resting lattice, of a rectangle to the scale of the answer's stitch.
+    They are those of the resting lattice, to the scale of the gauge if it is known, of a rectangle
+    to that of the answer's stitch.
 
     Raises
     ------
@@ -98,13 +106,15 @@ def laid_corners_mm(shaped: ShapedChart, material: Material) -> Array:
     """
     lattice = resting_lattice(shaped.continued(), material)
     corners = lattice.corners_mm
-    if shaped.is_rectangle:
-        drawn = lattice.sizes_mm.mean(axis=(0, 1))
-        corners = corners * (mean_stitch_mm(shaped, material) / drawn)
+    if shaped.is_rectangle or gauge is not None:
+        drawn = lattice.sizes_mm[shaped.stitch].mean(axis=0)
+        corners = corners * (mean_stitch_mm(shaped, material, gauge) / drawn)
     return np.asarray(corners - corners.min(axis=(0, 1)))
 
 
-def laid_sizes_mm(shaped: ShapedChart, material: Material) -> Array:
+def laid_sizes_mm(
+    shaped: ShapedChart, material: Material, gauge: RelaxedSize | None = None
+) -> Array:
     """Mean width and height of each cell between those corners, (rows, columns, 2).
 
     Raises
@@ -112,7 +122,7 @@ def laid_sizes_mm(shaped: ShapedChart, material: Material) -> Array:
     InputError
         If the material lacks a pure fabric that the chart needs.
     """
-    corners = laid_corners_mm(shaped, material)
+    corners = laid_corners_mm(shaped, material, gauge)
     across, up = np.diff(corners[..., 0], axis=1), np.diff(corners[..., 1], axis=0)
     return np.stack([across[1:] + across[:-1], up[:, 1:] + up[:, :-1]], axis=-1) / 2
 

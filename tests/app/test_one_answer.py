@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.context import Context
+from app.models.gauge import GaugeInput
 from app.operations.predict import PredictRequest
 from app.operations.predict import predict as predict_operation
 from knitcore import Direction, Fabric, RelaxedSize, StitchChart, curve, predict, strip_test
@@ -28,7 +31,7 @@ from knitcore.formats.stitch_values import write_vtu
 from knitcore.formats.yarn_mesh import course_centre_lines
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
-from knitcore.garment.shaped import ShapedChart
+from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.geometry.laid_out import laid_corners_mm, mean_stitch_mm
 from knitcore.materials import Interval, Material, material
 from knitcore.yarnlibrary.store import stored_charts
@@ -199,6 +202,36 @@ def test_a_glove_has_one_size_wherever_it_is_told(
     assert counted["width_mm"] == pytest.approx(told["width_mm"] * 5 / mean[0])
 
 
+@pytest.mark.parametrize("outline", [None, "\n".join(["..xxxxxxxx.."] * 4 + ["x" * 12] * 8)])
+def test_files_and_pages_have_the_size_of_a_known_gauge(
+    client: TestClient, outline: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chart, acrylic = StitchChart.parse("KKPP/PPKK").resized(12, 12), material("acrylic")
+    body = {
+        "chart": chart.text,
+        "outline": outline,
+        "material": "acrylic",
+        "gauge": {"stitches_per_10_cm": 20, "rows_per_10_cm": 30, "known_by": "relaxation"},
+    }
+    told = client.post("/api/v1/predict", json=body).json()
+    made = client.post("/api/v1/export", json=body | {"to": "vtu"}).json()
+    file = tmp_path / "cloth.vtu"
+    file.write_bytes(base64.b64decode(made["content"]))
+    mesh = meshio.read(file)
+    points = mesh.points[np.unique(mesh.cells_dict["quad"])]
+    size = [told["width_mm"], told["height_mm"]]
+    np.testing.assert_allclose(np.ptp(points[:, :2], axis=0), size, rtol=0.02)
+
+    shaped = ShapedChart.rectangle(chart)
+    if outline is not None:
+        shaped = ShapedChart(chart, outline_marks(outline))
+    gauge = GaugeInput(**body["gauge"]).relaxed_size()
+    piece = replace(Piece.plain(shaped), gauge=gauge)
+    in_cm = f"{told['width_mm'] / 10:.1f} × {told['height_mm'] / 10:.1f} cm at rest"
+    assert any(in_cm in text for text in _texts(pattern_pages(piece, acrylic, ChartStyle())))
+    assert any(in_cm in text for text in _report(piece, "acrylic", monkeypatch))
+
+
 @pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
 @pytest.mark.parametrize("text", ["KKPP", "K/K/P/P", "KP/KK", "KKPP/KKPP/PPKK/PPKK", "KP/PK"])
 @pytest.mark.parametrize("direction", Direction)
@@ -280,7 +313,7 @@ def _with_interval(value: float, interval: Interval) -> str:
 
 
 def _report(
-    chart: StitchChart | ShapedChart,
+    chart: StitchChart | ShapedChart | Piece,
     yarn: str,
     monkeypatch: pytest.MonkeyPatch,
     *regions: DesignRegion,
@@ -288,7 +321,8 @@ def _report(
     """All that is written on the pages of the report."""
     pages: list[Page] = []
     monkeypatch.setattr(report, "to_pdf", lambda drawn, _title: pages.extend(drawn) or b"")
-    report.design_report(Piece.plain(chart), material(yarn), "One", ChartStyle(), regions)
+    piece = chart if isinstance(chart, Piece) else Piece.plain(chart)
+    report.design_report(piece, material(yarn), "One", ChartStyle(), regions)
     return _texts(pages)
 
 

@@ -81,7 +81,7 @@ def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
 def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     visitor: Page, service: str
 ) -> None:
-    """Painting leaves it behind, undoing brings it back, and the stretch test has its size."""
+    """Painting leaves it behind, undoing brings it back; stretch tests and files have its size."""
     page = open_design(visitor, service)
     source, size = page.locator("#provenance"), page.locator("#size-course .value")
     expect(source).to_have_text("learned")
@@ -94,10 +94,13 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     expect(size).to_have_text("4.80")  # 12 stitches
     with page.expect_request("**/api/v1/jobs") as sent:
         page.click("#stretch-run")
-    assert sent.value.post_data_json["request"]["gauge"] == {
-        "stitches_per_10_cm": 25,
-        "rows_per_10_cm": 36,
-    }
+    counted = {"stitches_per_10_cm": 25, "rows_per_10_cm": 36}
+    assert sent.value.post_data_json["request"]["gauge"] == counted
+    page.keyboard.press("Control+E")
+    with page.expect_request("**/api/v1/export") as exported:
+        page.click("#export-make")
+    assert exported.value.post_data_json["gauge"] == counted
+    page.keyboard.press("Escape")
     page.mouse.click(*Chart(page).at(4, 4))
     expect(source).to_have_text("learned")
     expect(page.locator("#own-gauge-stitches")).to_have_value("")

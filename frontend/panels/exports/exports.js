@@ -14,6 +14,7 @@ import { ApiError, call, fetched } from "../../api.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { download } from "../../services/exporter.js";
+import { scopeIn } from "../../services/scope.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
@@ -165,6 +166,7 @@ export function create(studio, { view }) {
       version: undefined,
       ...chosen,
       to: kind.to,
+      gauge: studio.gauges.of({ chart: scopeIn(studio.document, null).grid.text, material: studio.materialId.value }),
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
       photo: isPattern(kind.to) ? await photo() : null,
     };
