@@ -23,7 +23,6 @@ from knitcore.yarnlevel.hysteresis import (
     History,
 )
 from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.splines import COARSE
 from knitcore.yarnlibrary.yarn_friction import yarn_friction
 
 
@@ -111,9 +110,7 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     known = yarn_friction(context.material(request.material))
     given = request.friction
     coefficient = known.coefficient if given is None else given
-    relaxed = relax(
-        repeat, used.yarn, used.loop_length_mm, grid=COARSE, cancelled=context.cancelled
-    )
+    relaxed = relax(repeat, used.yarn, used.loop_length_mm, cancelled=context.cancelled)
 
     def rubbed(friction: float) -> tuple[loops.Hysteresis, tuple[loops.RestSize, ...]]:
         found = request.pass_to(
