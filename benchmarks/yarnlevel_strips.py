@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,16 +26,13 @@ from benchmarks.true_to_tests import strips
 from benchmarks.yarnlevel_experiments import _FAR, _POINTS, as_measured
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-from knitcore.errors import ConvergenceError, KnitcoreError, UnravelledError
+from knitcore.errors import KnitcoreError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.swatch.measured_strip import MeasuredStrip
-from knitcore.yarnlevel.friction import agitated, rubbed
+from knitcore.yarnlevel.hysteresis import pull
 from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.results import Sweep
 from knitcore.yarnlevel.samples import Sample, sample
-from knitcore.yarnlevel.solver import COURSE, WALE
-from knitcore.yarnlevel.splines import RelaxedRepeat
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlibrary.lawfit import fit_sweeps
 
@@ -56,34 +54,15 @@ DIAMETER_LOG_SD = {
 def yarn_law(entry: Sample, friction: float) -> ConstitutiveLaw:
     """The law of a simulated fabric."""
     zero = relax(StitchChart.of_fabric(entry.fabric, 2, 2), entry.yarn, entry.loop_length_mm)
+    pulled = partial(pull, coefficient=friction) if friction else sweep
     course, wale = (
-        rubbed_sweep(zero, direction, friction)
-        if friction
-        else sweep(
+        pulled(
             zero, direction, _FAR[direction], points=_POINTS[direction],
             max_stress_n_per_mm=FITTED_TO_N_PER_MM,
         )
         for direction in Direction
     )  # fmt: skip
     return fit_sweeps(course, wale, FITTED_TO_N_PER_MM).law
-
-
-def rubbed_sweep(zero: RelaxedRepeat, along: Direction, friction: float) -> Sweep:
-    """The first pull with friction, in the steps of the pull without."""
-    state, cells = agitated(zero), [zero]
-    rest, width = zero.cell_mm(along), zero.cell_mm(along.other)
-    place = (COURSE if along is Direction.COURSE else WALE,)
-    for strain in np.linspace(0.0, _FAR[along], _POINTS[along])[1:]:
-        size = rest * (1.0 + strain)
-        try:
-            state = rubbed(state, friction, fixed=place, target=np.array([size, size]))
-        except (ConvergenceError, UnravelledError):  # the yarn is taut
-            break
-        cells.append(state.cell)
-        if cells[-1].force_n[along.axis] > FITTED_TO_N_PER_MM * width:
-            break
-    stress = np.array([cell.force_n[along.axis] for cell in cells]) / width
-    return Sweep(along, zero, tuple(cells), stress)
 
 
 def strain_ratio(law: ConstitutiveLaw, strip: MeasuredStrip) -> Array:

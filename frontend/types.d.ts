@@ -2199,7 +2199,7 @@ export interface RegionResult {
   cells: string;
 }
 
-/** A repeat, its yarn, and what may be held while it relaxes. */
+/** A repeat, its yarn, what may be held while it relaxes, and what happened to the fabric. */
 export interface RelaxRequest {
   chart: string | PureFabricChart;
   /** Identifier of a material of the library. */
@@ -2214,6 +2214,10 @@ export interface RelaxRequest {
   convention?: Convention;
   /** Compute again, even if the result is stored. */
   fresh?: boolean;
+  /** Coefficient of friction between yarns. Without it, and without the other options that need one, there is no friction. */
+  friction?: number | null;
+  /** What happened to the fabric before it came to rest, with friction: that of the yarn unless a coefficient is given. As-knitted by default if one is. */
+  history?: History | null;
   /** Hold a stitch at this width. */
   cell_course_mm?: number | null;
   /** Hold a stitch at this height. */
@@ -2249,13 +2253,20 @@ export interface RelaxResult {
   seconds: number;
   /** Whether the result was already stored. */
   known: boolean;
+  /** Of the energy; the steps of a history are not counted. */
   evaluations: number;
   converged: boolean;
   yarn: YarnResult;
   starts: StartResult[];
-  /** Without the mirror symmetries; null for other branches, shapes that are held, and free cells of more than 16 stitches. */
+  /** Coefficient of friction that was used; null without friction. */
+  friction: number | null;
+  /** What the fabric comes to rest after; null without friction. */
+  history: History | null;
+  /** With friction, the size after each history: the range in which the fabric may rest. */
+  rest_sizes: RestSizeResult[] | null;
+  /** Without the mirror symmetries; null for other branches, shapes that are held, with friction, and for free cells of more than 16 stitches. */
   unmirrored: UnmirroredResult | null;
-  /** For the `gauge` of other requests about this chart and material, which become more certain by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes that are held, and other loop lengths than the material's. */
+  /** For the `gauge` of other requests about this chart and material, which become more certain by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes that are held, other loop lengths than the material's, and friction. */
   gauge: FoundGauge | null;
   notes: string[];
   /** Bottom course first; each runs once across the repeat. */
@@ -2587,6 +2598,8 @@ export interface SweepRequest {
   convention?: Convention;
   /** Compute again, even if the result is stored. */
   fresh?: boolean;
+  /** Coefficient of friction between yarns. Without it, and without the other options that need one, there is no friction. */
+  friction?: number | null;
   /** Along rows, or along columns. */
   direction: Direction;
   /** Largest strain: 0.5 is 50 %. */
@@ -2594,6 +2607,8 @@ export interface SweepRequest {
   points?: number;
   /** Keep the yarn from sliding where it touches at rest. The published branch does so for seed along the course, as the paper did, and has no other setting. */
   slide_quenching?: boolean;
+  /** Release the fabric again until it is free of force, with friction: that of the yarn unless a coefficient is given. */
+  there_and_back?: boolean;
 }
 
 /** A stretch, free across; sizes and energies of one stitch. */
@@ -2608,6 +2623,7 @@ export interface SweepResult {
   strain_interval: [number[], number[]];
   transverse_strain: number[];
   stress_n_per_mm: number[];
+  /** Of bending and contact; what friction took is not in. */
   energy_n_mm: number[];
   bending_share: number[];
   contact_share: number[];
@@ -2616,6 +2632,16 @@ export interface SweepResult {
   /** Relaxed size of one stitch. */
   cell_course_mm: number;
   cell_wale_mm: number;
+  /** Coefficient of friction that was used; null without friction. */
+  friction: number | null;
+  /** Index of the largest strain, where the fabric turns; null without the way back, as are the next three. */
+  turn: number | null;
+  /** Energy lost there and back per area of fabric, N·mm/mm². */
+  lost_per_cycle_n_per_mm: number | null;
+  /** The same as a share of the work of the pull. */
+  lost_share: number | null;
+  /** Strain that remains after the release. */
+  left_strain: number | null;
   law: SweptLaw | null;
   converged: boolean;
   /** CPU time of the solves, when they were first run. */

@@ -34,7 +34,8 @@ class CheckedBy:
 def all_faults(error: InputError, request: BaseModel, context: Context) -> InputError:
     """The error that stopped an operation, with those of the request's other parts."""
     fields = ((name, getattr(request, name)) for name in type(request).model_fields)
-    return with_others(error, faults_of(type(request), dict(fields), context))
+    others = faults_of(type(request), dict(fields), context)
+    return with_others(error, [*error.others, *others])
 
 
 def with_others(error: InputError, others: Iterable[InputError]) -> InputError:

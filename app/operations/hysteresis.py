@@ -9,21 +9,15 @@ from pydantic import Field
 
 from app.context import Context
 from app.models.base import Ends, Floats, IntervalResult, ResultModel
+from app.models.friction import HISTORIES, RestSizeResult, rest_line
 from app.models.laws import LawsRequest
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
 from knitcore.yarnlevel import hysteresis as loops
 from knitcore.yarnlevel.friction import MAX_COEFFICIENT, MAX_STITCHES
-from knitcore.yarnlevel.hysteresis import (
-    DEFAULT_POINTS,
-    MAX_CYCLES,
-    TAKE_DOWN_N_PER_MM,
-    WORN_N_PER_MM,
-    History,
-)
+from knitcore.yarnlevel.hysteresis import DEFAULT_POINTS, MAX_CYCLES
 from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.splines import COARSE
 from knitcore.yarnlibrary.yarn_friction import yarn_friction
 
 
@@ -54,16 +48,6 @@ class LoopLeg(ResultModel):
     strain: Floats = Field(description="From the rest size without friction.")
     transverse_strain: Floats
     stress_n_per_mm: Floats
-
-
-class RestSizeResult(ResultModel):
-    """Size of a stitch free of force after a history."""
-
-    history: History
-    course_mm: float
-    wale_mm: float
-    course_interval_mm: Ends | None = Field(None, description="Over the interval of friction.")
-    wale_interval_mm: Ends | None = None
 
 
 class HysteresisResult(IntervalResult):
@@ -104,16 +88,14 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     InputError
         If the repeat is too large.
     ConvergenceError, UnravelledError
-        If the yarn locks or unravels on the way.
+        If the yarn locks in the first step, or unravels on the way to a rest size.
     """
     repeat = request.repeat(MAX_STITCHES)
     used = request.yarn(repeat, context)
     known = yarn_friction(context.material(request.material))
     given = request.friction
     coefficient = known.coefficient if given is None else given
-    relaxed = relax(
-        repeat, used.yarn, used.loop_length_mm, grid=COARSE, cancelled=context.cancelled
-    )
+    relaxed = relax(repeat, used.yarn, used.loop_length_mm, cancelled=context.cancelled)
 
     def rubbed(friction: float) -> tuple[loops.Hysteresis, tuple[loops.RestSize, ...]]:
         found = request.pass_to(
@@ -147,11 +129,7 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
             for k, rest in enumerate(rests)
         ],
         yarn=YarnResult.of(used, used.yarn),
-        notes=[
-            "As-knitted: pulled along the columns by "
-            f"{TAKE_DOWN_N_PER_MM:g} N/mm, then released; stretched: by {WORN_N_PER_MM:g} N/mm. "
-            "Agitated: shaken until friction holds nothing."
-        ],
+        notes=[*found.notes, HISTORIES],
     )
 
 
@@ -186,8 +164,8 @@ def _text(r: HysteresisResult) -> list[str]:
     ]
     for rest in r.rest_sizes:
         lines.append(
-            f"rest, {rest.history:18}{rest.course_mm:6.3f} × {rest.wale_mm:.3f} mm a stitch"
-            f"{_between(rest.course_interval_mm, '.2f')}{_between(rest.wale_interval_mm, '.2f')}"
+            f"{rest_line(rest)}{_between(rest.course_interval_mm, '.2f')}"
+            f"{_between(rest.wale_interval_mm, '.2f')}"
         )
     return lines
 

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Literal, Self
 
 from pydantic import Field
 
 from app.command_options import loop_lengths
 from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
+from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
 from app.models.gauge import FoundGauge
-from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relax_requested
+from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
 from knitcore.answer.relaxation import size_from_relaxation
 from knitcore.chart import StitchChart, size_in_words
-from knitcore.errors import ConvergenceError, UnravelledError
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.materials.uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_SIZE_LOG_SD,
@@ -22,6 +26,7 @@ from knitcore.materials.uncertainty import (
 )
 from knitcore.phases import pure_fabric
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.hysteresis import History, rest_sizes
 from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
@@ -31,8 +36,14 @@ FOLLOWED_UP_TO = 16
 """Free cells of up to this many stitches are also followed without their symmetries."""
 
 
-class RelaxRequest(YarnLevelRequest):
-    """A repeat, its yarn, and what may be held while it relaxes."""
+class RelaxRequest(RubbedRequest):
+    """A repeat, its yarn, what may be held while it relaxes, and what happened to the fabric."""
+
+    history: History | None = Field(
+        None,
+        description="What happened to the fabric before it came to rest, with friction: that of "
+        "the yarn unless a coefficient is given. As-knitted by default if one is.",
+    )
 
     cell_course_mm: float | None = Field(
         None, gt=0, le=1000, description="Hold a stitch at this width."
@@ -41,6 +52,26 @@ class RelaxRequest(YarnLevelRequest):
         None, gt=0, le=1000, description="Hold a stitch at this height."
     )
     centre_lines: bool = Field(False, description="Return the centre lines of the yarn too.")
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether a coefficient or a history is given."""
+        return self.friction is not None or self.history is not None
+
+    def with_friction(self, context: Context) -> Self:
+        """The request with its coefficient of friction and its history."""
+        asked = super().with_friction(context)
+        if not asked.has_friction or asked.history is not None:
+            return asked
+        return asked.model_copy(update={"history": History.KNITTED})
+
+    def _against_friction(self) -> Iterator[InputError]:
+        yield from super()._against_friction()
+        for field in ("cell_course_mm", "cell_wale_mm"):
+            if getattr(self, field) is not None:
+                yield InputError(
+                    field, "a fabric at rest after a history is free of force.", "Leave it out."
+                )
 
 
 class StartResult(ResultModel):
@@ -87,20 +118,31 @@ class RelaxResult(IntervalResult):
     min_distance_mm: float | None
     seconds: float = Field(description="CPU time of the solve, when it was first run.")
     known: bool = Field(False, description="Whether the result was already stored.")
-    evaluations: int
+    evaluations: int = Field(description="Of the energy; the steps of a history are not counted.")
     converged: bool
     yarn: YarnResult
     starts: list[StartResult]
+    friction: float | None = Field(
+        None, description="Coefficient of friction that was used; null without friction."
+    )
+    history: History | None = Field(
+        None, description="What the fabric comes to rest after; null without friction."
+    )
+    rest_sizes: list[RestSizeResult] | None = Field(
+        None,
+        description="With friction, the size after each history: the range in which the fabric "
+        "may rest.",
+    )
     unmirrored: UnmirroredResult | None = Field(
         None,
         description="Without the mirror symmetries; null for other branches, shapes that are held, "
-        f"and free cells of more than {FOLLOWED_UP_TO} stitches.",
+        f"with friction, and for free cells of more than {FOLLOWED_UP_TO} stitches.",
     )
     gauge: FoundGauge | None = Field(
         None,
         description="For the `gauge` of other requests about this chart and material, which become "
         "more certain by it. Null unless the material is simulated, and for pure fabrics, other "
-        "branches, shapes that are held, and other loop lengths than the material's.",
+        "branches, shapes that are held, other loop lengths than the material's, and friction.",
     )
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = Field(
@@ -111,8 +153,10 @@ class RelaxResult(IntervalResult):
 def relax(request: RelaxRequest, context: Context) -> RelaxResult:
     """Shape of least energy of the repeat; stops when the caller disconnects.
 
-    A relaxation that was run before is returned from storage.
+    With friction, the shape in which the fabric comes to rest after a history of loading. A
+    relaxation that was run before is returned from storage.
     """
+    request = request.with_friction(context)
     result = kept_or_made(RelaxResult, request, context, _relaxed)
     return result.model_copy(update={"gauge": _gauge(request, result, context)})
 
@@ -122,14 +166,20 @@ def _relaxed(
 ) -> RelaxResult:
     sizes = request.cell_course_mm, request.cell_wale_mm
     cell = relax_requested(repeat, used, request, context, sizes)
+    unmirrored, rests = None, None
+    if request.friction is not None:
+        cell, rests = _after_history(on_splines(cell), request.friction, request, context)
+    elif sizes == (None, None):
+        unmirrored, note = _unmirrored(cell, context)
+        cell = replace(cell, notes=(*cell.notes, *note))
     free = [
         log_interval(size, YARN_LEVEL_SIZE_LOG_SD) if held is None else None
         for size, held in zip((cell.cell_course_mm, cell.cell_wale_mm), sizes, strict=True)
     ]
-    unmirrored, note = _unmirrored(cell, context) if sizes == (None, None) else (None, ())
     return RelaxResult.of(
         cell,
-        notes=[*cell.notes, *note],
+        request,
+        rest_sizes=rests,
         unmirrored=unmirrored,
         cell_course_interval_mm=free[0],
         cell_wale_interval_mm=free[1],
@@ -143,6 +193,23 @@ def _relaxed(
         if request.centre_lines
         else None,
     )
+
+
+def _after_history(
+    zero: RelaxedRepeat, friction: float, request: RelaxRequest, context: Context
+) -> tuple[RelaxedCell, list[RestSizeResult]]:
+    """The state free of force after the request's history, and the size after each history."""
+    began = time.process_time()
+    rests = rest_sizes(zero, friction, cancelled=context.cancelled)
+    (cell,) = (rest.state.cell for rest in rests if rest.history is request.history)
+    told = replace(
+        cell,
+        starts=zero.starts,
+        evaluations=zero.evaluations,
+        seconds=zero.seconds + time.process_time() - began,
+        notes=(*zero.notes, request.friction_note(context), HISTORIES),
+    )
+    return told, [RestSizeResult.of(rest) for rest in rests]
 
 
 def _unmirrored(
@@ -207,6 +274,10 @@ def _lines(r: RelaxResult) -> list[str]:
         f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
         f"bending, {100 * r.contact_share:.1f} % contact",
         f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",
+        *(
+            f"{rest_line(rest)}{', here' * (rest.history is r.history)}"
+            for rest in r.rest_sizes or ()
+        ),
         *_gauge_line(r.gauge),
         f"solved          {r.seconds:.2f} s CPU, {r.evaluations} evaluations, "
         f"{'converged' if r.converged else 'NOT converged'}"
@@ -222,7 +293,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Relax the repeat CHART at the yarn level: free of force, without friction.",
+        help="Relax the repeat CHART at the yarn level: free of force, without friction unless "
+        "--friction or --history asks for it.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,
     ),

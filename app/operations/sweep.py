@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Literal
 
+import numpy as np
 from pydantic import Field
 
 from app.command_options import loop_lengths
 from app.context import Context
 from app.models.base import EndsOfList, Floats, IntervalResult
+from app.models.friction import RubbedRequest, on_splines
 from app.models.laws import ElasticConstants
-from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relax_requested
+from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
-from knitcore.errors import KnitcoreError
+from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials.uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_STRAIN_LOG_SD,
     log_interval,
 )
+from knitcore.yarnlevel.hysteresis import Hysteresis, hysteresis, pull
 from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlevel.results import Sweep
+from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.sweep import sweep as swept
 from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_sweeps
 from knitcore.yarnlibrary.yarns import ChartYarn
@@ -31,9 +36,15 @@ FACTOR = log_interval(1.0, YARN_LEVEL_STRAIN_LOG_SD).high
 _FAR_STRAIN = {Direction.COURSE: 3.5, Direction.WALE: 2.5}
 """Largest strain of the stretch across, which the law also needs; a stress may end it before."""
 _FAR_POINTS = 60
+_HOW = {
+    False: "Pulled once from the state that shaking leaves, as for the law.",
+    True: "Pulled once from the state that shaking leaves, and released until free of force. The "
+    "law is that of pulling.",
+}
+"""What was done with friction, by whether the way back was asked for."""
 
 
-class SweepRequest(YarnLevelRequest):
+class SweepRequest(RubbedRequest):
     """A repeat, its yarn and the stretch."""
 
     direction: Direction = Field(description="Along rows, or along columns.")
@@ -44,6 +55,25 @@ class SweepRequest(YarnLevelRequest):
         description="Keep the yarn from sliding where it touches at rest. The published branch "
         "does so for seed along the course, as the paper did, and has no other setting.",
     )
+    there_and_back: bool = Field(
+        False,
+        description="Release the fabric again until it is free of force, with friction: that of "
+        "the yarn unless a coefficient is given.",
+    )
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether a coefficient is given, or the way back is asked for."""
+        return self.friction is not None or self.there_and_back
+
+    def _against_friction(self) -> Iterator[InputError]:
+        yield from super()._against_friction()
+        if self.slide_quenching:
+            yield InputError(
+                "slide_quenching",
+                "yarn that is kept from sliding cannot have friction.",
+                "Leave it out.",
+            )
 
 
 class SweptLaw(ElasticConstants):
@@ -65,7 +95,10 @@ class SweptLaw(ElasticConstants):
 
 
 class SweepResult(IntervalResult):
-    """A stretch, free across; sizes and energies of one stitch."""
+    """A stretch, free across; sizes and energies of one stitch.
+
+    With the way back, all lists run there and back again.
+    """
 
     kind: Literal["sweep"] = "sweep"
     direction: Direction
@@ -74,12 +107,27 @@ class SweepResult(IntervalResult):
     strain_interval: EndsOfList = Field(description="Of knitted cloth, at each stress.")
     transverse_strain: Floats
     stress_n_per_mm: Floats
-    energy_n_mm: Floats
+    energy_n_mm: Floats = Field(description="Of bending and contact; what friction took is not in.")
     bending_share: Floats
     contact_share: Floats
     jumps: list[int] = Field(description="Points at which the shape changes abruptly.")
     cell_course_mm: float = Field(description="Relaxed size of one stitch.")
     cell_wale_mm: float
+    friction: float | None = Field(
+        None, description="Coefficient of friction that was used; null without friction."
+    )
+    turn: int | None = Field(
+        None,
+        description="Index of the largest strain, where the fabric turns; null without the way "
+        "back, as are the next three.",
+    )
+    lost_per_cycle_n_per_mm: float | None = Field(
+        None, description="Energy lost there and back per area of fabric, N·mm/mm²."
+    )
+    lost_share: float | None = Field(
+        None, description="The same as a share of the work of the pull."
+    )
+    left_strain: float | None = Field(None, description="Strain that remains after the release.")
     law: SweptLaw | None
     converged: bool
     seconds: float = Field(description="CPU time of the solves, when they were first run.")
@@ -91,36 +139,38 @@ class SweepResult(IntervalResult):
 def sweep(request: SweepRequest, context: Context) -> SweepResult:
     """Stress-strain curve and fitted law of the repeat; stops when the caller disconnects.
 
-    The law also needs the stretch across. A stretch that was run before is returned from storage.
+    With friction, the first pull from the state that shaking leaves, and the release if it is asked
+    for. The law is that of pulling; it also needs the stretch across. A stretch that was run before
+    is returned from storage.
     """
-    return kept_or_made(SweepResult, request, context, _result)
+    return kept_or_made(SweepResult, request.with_friction(context), context, _result)
 
 
 def _result(
     request: SweepRequest, repeat: StitchChart, used: ChartYarn, context: Context
 ) -> SweepResult:
     zero = relax_requested(repeat, used, request, context)
-
-    def stretch(
-        direction: Direction, max_strain: float, points: int, max_stress: float | None = None
-    ) -> Sweep:
-        return swept(
-            zero,
-            direction,
-            max_strain,
-            points=points,
-            max_stress_n_per_mm=max_stress,
-            slide_quenching=request.slide_quenching or None,
-            cancelled=context.cancelled,
-        )
-
-    main = stretch(request.direction, request.max_strain, request.points)
+    pulled = _pulling(zero, request, context)
+    loop = _loop(zero, request, context)
+    main = (
+        loop.last_cycle
+        if loop
+        else pulled(request.direction, request.max_strain, points=request.points)
+    )
+    there = loop.turn + 1 if loop else len(main.cells)
     notes, seconds = list(main.notes), zero.seconds + main.seconds
+    if request.friction is not None:
+        notes += [request.friction_note(context), _HOW[request.there_and_back]]
     law: SimulatedLaw | None = None
     try:
         both = {}
         for d in Direction:
-            both[d] = stretch(d, _FAR_STRAIN[d], _FAR_POINTS, 1.2 * MAX_STRESS_N_PER_MM)
+            both[d] = pulled(
+                d,
+                _FAR_STRAIN[d],
+                points=_FAR_POINTS,
+                max_stress_n_per_mm=1.2 * MAX_STRESS_N_PER_MM,
+            )
             seconds += both[d].seconds
         law = fit_sweeps(both[Direction.COURSE], both[Direction.WALE])
         notes += [note for found in both.values() for note in _jumps_fitted(found, law)]
@@ -130,15 +180,43 @@ def _result(
         notes.append(f"No law could be fitted: {error}")
     return SweepResult.of(
         main,
+        loop,
         zero,
         request,
-        strain_interval=(main.strain / FACTOR, main.strain * FACTOR),
+        strain_interval=tuple(np.sort([main.strain / FACTOR, main.strain * FACTOR], axis=0)),
         interval_source=YARN_LEVEL_ERRORS,
         law=None if law is None else SweptLaw.of(law, law.law),
-        converged=main.converged and len(main.strain) == request.points,
+        converged=main.converged and there == request.points,
         seconds=seconds,
         yarn=YarnResult.of(used, used.yarn),
         notes=notes,
+    )
+
+
+def _pulling(zero: RelaxedCell, request: SweepRequest, context: Context) -> Callable[..., Sweep]:
+    """How the relaxed repeat is pulled: with friction if the request has any."""
+    if request.friction is not None:
+        return partial(
+            pull, on_splines(zero), coefficient=request.friction, cancelled=context.cancelled
+        )
+    return partial(
+        swept,
+        zero,
+        slide_quenching=request.slide_quenching or None,
+        cancelled=context.cancelled,
+    )
+
+
+def _loop(zero: RelaxedCell, request: SweepRequest, context: Context) -> Hysteresis | None:
+    """The way there and back, if it is asked for."""
+    if not request.there_and_back or request.friction is None:
+        return None
+    return request.pass_to(
+        hysteresis,
+        on_splines(zero),
+        coefficient=request.friction,
+        cycles=1,
+        cancelled=context.cancelled,
     )
 
 
@@ -162,6 +240,11 @@ def _lines(r: SweepResult) -> list[str]:
             f"{r.law.modulus_course_n_per_mm:.4f}, wale {r.law.modulus_wale_n_per_mm:.4f} N/mm, "
             f"Poisson yx {r.law.poisson_yx:.3f}, xy {r.law.poisson_xy:.3f}"
         )
+    if r.lost_per_cycle_n_per_mm is not None:
+        lines += [
+            f"lost there and back {r.lost_per_cycle_n_per_mm:.4g} N·mm/mm², "
+            f"{r.lost_share:.0%} of the work; remaining strain {r.left_strain:.3f}"
+        ]
     return [
         *lines,
         f"90 % interval of the strains of knitted cloth: a factor of {FACTOR:.1f} either way.",
@@ -182,7 +265,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Stretch the repeat CHART at the yarn level, free across, and fit its law.",
+        help="Stretch the repeat CHART at the yarn level, free across, and fit its law: without "
+        "friction unless --friction or --there-and-back asks for it.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,
     ),

@@ -62,6 +62,8 @@ Fabric = Literal["stockinette", "garter", "rib", "seed"]
 
 Finish = Literal["waste", "bind-off"]
 
+History = Literal["agitated", "as-knitted", "stretched-course", "stretched-wale"]
+
 HungBy = Literal["edge", "corners"]
 
 KnownBy = Literal["gauge", "relaxation"]
@@ -95,8 +97,6 @@ Curl = Literal["flat", "front", "back"]
 Group = Literal[
     "knitcore.patterns", "knitcore.materials", "knitcore.exporters", "knitcore.measures"
 ]
-
-History = Literal["agitated", "as-knitted", "stretched-course", "stretched-wale"]
 
 JobState = Literal["waiting", "running", "done", "failed", "cancelled", "interrupted"]
 
@@ -894,7 +894,7 @@ class RSRequest(TypedDict):
 
 
 class RelaxRequest(TypedDict):
-    """A repeat, its yarn, and what may be held while it relaxes."""
+    """A repeat, its yarn, what may be held while it relaxes, and what happened to the fabric."""
 
     chart: str | PureFabricChart
     material: str
@@ -910,6 +910,12 @@ class RelaxRequest(TypedDict):
     convention: NotRequired[Convention]
     fresh: NotRequired[bool]
     """Compute again, even if the result is stored."""
+    friction: NotRequired[float | None]
+    """Coefficient of friction between yarns. Without it, and without the other options that need
+    one, there is no friction."""
+    history: NotRequired[History | None]
+    """What happened to the fabric before it came to rest, with friction: that of the yarn unless
+    a coefficient is given. As-knitted by default if one is."""
     cell_course_mm: NotRequired[float | None]
     """Hold a stitch at this width."""
     cell_wale_mm: NotRequired[float | None]
@@ -1090,6 +1096,9 @@ class SweepRequest(TypedDict):
     convention: NotRequired[Convention]
     fresh: NotRequired[bool]
     """Compute again, even if the result is stored."""
+    friction: NotRequired[float | None]
+    """Coefficient of friction between yarns. Without it, and without the other options that need
+    one, there is no friction."""
     direction: Direction
     """Along rows, or along columns."""
     max_strain: float
@@ -1098,6 +1107,9 @@ class SweepRequest(TypedDict):
     slide_quenching: NotRequired[bool]
     """Keep the yarn from sliding where it touches at rest. The published branch does so for seed
     along the course, as the paper did, and has no other setting."""
+    there_and_back: NotRequired[bool]
+    """Release the fabric again until it is free of force, with friction: that of the yarn unless
+    a coefficient is given."""
 
 
 class TargetInput(TypedDict):
@@ -2791,16 +2803,23 @@ class RelaxResult(BaseModel):
     known: bool = False
     """Whether the result was already stored."""
     evaluations: int
+    """Of the energy; the steps of a history are not counted."""
     converged: bool
     yarn: YarnResult
     starts: list[StartResult]
+    friction: float | None = None
+    """Coefficient of friction that was used; null without friction."""
+    history: History | None = None
+    """What the fabric comes to rest after; null without friction."""
+    rest_sizes: list[RestSizeResult] | None = None
+    """With friction, the size after each history: the range in which the fabric may rest."""
     unmirrored: UnmirroredResult | None = None
-    """Without the mirror symmetries; null for other branches, shapes that are held, and free
-    cells of more than 16 stitches."""
+    """Without the mirror symmetries; null for other branches, shapes that are held, with
+    friction, and for free cells of more than 16 stitches."""
     gauge: FoundGauge | None = None
     """For the `gauge` of other requests about this chart and material, which become more certain
     by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes
-    that are held, and other loop lengths than the material's."""
+    that are held, other loop lengths than the material's, and friction."""
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = None
     """Bottom course first; each runs once across the repeat."""
@@ -2998,6 +3017,7 @@ class SweepResult(BaseModel):
     transverse_strain: list[float]
     stress_n_per_mm: list[float]
     energy_n_mm: list[float]
+    """Of bending and contact; what friction took is not in."""
     bending_share: list[float]
     contact_share: list[float]
     jumps: list[int]
@@ -3005,6 +3025,17 @@ class SweepResult(BaseModel):
     cell_course_mm: float
     """Relaxed size of one stitch."""
     cell_wale_mm: float
+    friction: float | None = None
+    """Coefficient of friction that was used; null without friction."""
+    turn: int | None = None
+    """Index of the largest strain, where the fabric turns; null without the way back, as are the
+    next three."""
+    lost_per_cycle_n_per_mm: float | None = None
+    """Energy lost there and back per area of fabric, N·mm/mm²."""
+    lost_share: float | None = None
+    """The same as a share of the work of the pull."""
+    left_strain: float | None = None
+    """Strain that remains after the release."""
     law: SweptLaw | None
     converged: bool
     seconds: float

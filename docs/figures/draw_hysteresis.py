@@ -13,7 +13,6 @@ from knitcore.fabric import Fabric
 from knitcore.yarnlevel.hysteresis import hysteresis
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.samples import sample
-from knitcore.yarnlevel.splines import COARSE
 
 FABRICS = (Fabric.STOCKINETTE, Fabric.GARTER, Fabric.RIB, Fabric.SEED)
 COEFFICIENT, STRAIN, TOP_N_PER_MM = 0.26, 0.5, 0.2
@@ -24,7 +23,7 @@ def main() -> None:
     for fabric in FABRICS:
         entry = sample("acrylic", fabric)
         chart = StitchChart.of_fabric(fabric, 2, 2)
-        rest = relax(chart, entry.yarn, entry.loop_length_mm, grid=COARSE)
+        rest = relax(chart, entry.yarn, entry.loop_length_mm)
         for friction, dash in ((COEFFICIENT, ""), (0.0, "2 4")):
             loop = hysteresis(rest, "course", STRAIN, friction, cycles=2 if friction else 1)
             for leg in loop.legs if friction else loop.legs[:1]:

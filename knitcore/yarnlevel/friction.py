@@ -11,6 +11,7 @@ other is free.
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +24,7 @@ from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledE
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.kernels.structures import Pairs
+from knitcore.yarnlevel.limits import check_at_rest
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import Options, minimise
 from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
@@ -72,9 +74,10 @@ def agitated(relaxed: RelaxedRepeat) -> RubbedCell:
     Raises
     ------
     InputError
-        If the cell is too large, is held flat, or its slides are held.
+        If the cell is too large, its size is held, it is held flat, or its slides are held.
     """
     check_stitches(relaxed.cell.stitches, MAX_STITCHES, "its cell")
+    check_at_rest(relaxed)
     if relaxed.flat or relaxed.slides:
         raise InputError(
             "flat", "a repeat that is held flat cannot have friction.", "Relax it without `flat`."
@@ -108,6 +111,7 @@ def rubbed(
         If the yarn locks or unravels on the way.
     """
     check_range("friction", coefficient, 0, MAX_COEFFICIENT, what="a coefficient of friction")
+    began = time.process_time()
     cell = last.cell
     energy = cell.energy
     sliding, rest = _sliding(energy, cell.state, last.rubbing, coefficient)
@@ -124,8 +128,9 @@ def rubbed(
         raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
     held, lost = _held(rubbing, sliding, found.state)
     shown = relaxed_repeat(
-        cell.chart, energy, cell.branch, found, seconds=0.0, evaluations=found.evaluations
-    )
+        cell.chart, energy, cell.branch, found,
+        seconds=time.process_time() - began, evaluations=found.evaluations,
+    )  # fmt: skip
     return RubbedCell(
         shown, Rubbing(rest, held), last.lost_n_mm + lost / cell.cell.stitches
     )  # fmt: skip

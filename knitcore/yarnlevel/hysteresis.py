@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.bounds import check_range
 from knitcore.choice import Choice
-from knitcore.errors import Cancelled, check_cancelled
+from knitcore.errors import Cancelled, ConvergenceError, check_cancelled
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.friction import RubbedCell, agitated, rubbed
 from knitcore.yarnlevel.limits import check_stretch
-from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.solver import COURSE, WALE
 from knitcore.yarnlevel.splines import RelaxedRepeat
+from knitcore.yarnlevel.sweep import follow
 
 DEFAULT_POINTS = 24
 MAX_CYCLES = 5
@@ -27,6 +29,10 @@ WORN_N_PER_MM = 0.1
 _STRIDE = 0.02
 """Steps to a pull, in strain."""
 MAX_STRIDES = 150
+_FREE = 1e-6
+"""Pull that counts as none, as a part of that at which the release began."""
+_THERE = 1e-9
+"""Part of a size by which it may differ and still count as the same."""
 
 
 class History(Choice):
@@ -46,20 +52,17 @@ _PULLS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Leg:
-    """One way of a loop.
+class Leg(Sweep):
+    """One way of a loop, as a stretch; strain and stress refer to the agitated state.
+
+    The stress (N/mm) contains friction, the energy of a cell does not.
 
     Attributes
     ----------
-    strain, transverse_strain : (n,) along and across the pull, from the agitated rest size.
-    stress_n_per_mm : (n,) nominal stress, over the agitated rest width.
     loading : whether the fabric is pulled, not released.
     """
 
-    strain: Array
-    transverse_strain: Array
-    stress_n_per_mm: Array
-    loading: bool
+    loading: bool = True
 
     @property
     def work_n_per_mm(self) -> float:
@@ -85,6 +88,24 @@ class Hysteresis:
     zero: RelaxedRepeat
     legs: tuple[Leg, ...]
     lost_n_mm: Array
+
+    @property
+    def last_cycle(self) -> Sweep:
+        """The last cycle as one stretch, there and back; ``jumps`` are those of the way there."""
+        there, back = self.legs[-2:]
+        stress = np.concatenate([there.stress_n_per_mm, back.stress_n_per_mm[1:]])
+        cells = (*there.cells, *back.cells[1:])
+        return Sweep(self.direction, self.zero, cells, stress, there.jumps, self.notes)
+
+    @property
+    def turn(self) -> int:
+        """Index in the last cycle at which the release begins, that of its largest strain."""
+        return len(self.legs[-2].cells) - 1
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Remarks for the user, in sentences."""
+        return tuple(dict.fromkeys(note for leg in self.legs for note in leg.notes))
 
     @property
     def lost_per_cycle_n_per_mm(self) -> float:
@@ -119,13 +140,98 @@ class Hysteresis:
         return float(abs(last - first) / abs(first))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RestSize:
-    """Size of a stitch that is left free of force after a history, mm."""
+    """Size of a stitch that is left free of force after a history, and the yarn's state there."""
 
     history: History
-    course_mm: float
-    wale_mm: float
+    state: RubbedCell
+
+    @property
+    def course_mm(self) -> float:
+        """Width of the stitch, mm."""
+        return self.state.cell.cell_course_mm
+
+    @property
+    def wale_mm(self) -> float:
+        """Height of the stitch, mm."""
+        return self.state.cell.cell_wale_mm
+
+
+@dataclass(eq=False)
+class RubbedStretch:
+    """Pulling with friction along a direction: a stretch (:mod:`knitcore.yarnlevel.sweep`) whose
+    every step goes on from the state that the steps before it have left.
+
+    Attributes
+    ----------
+    state : reached so far.
+    along : direction of the pull; the other one is free of force.
+    coefficient : of friction between yarns.
+    """
+
+    state: RubbedCell
+    along: Direction
+    coefficient: float
+    cancelled: Cancelled | None = None
+    note: str = ""
+
+    def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedRepeat:
+        """The state at a size of a stitch along the pull, one step from the last.
+
+        Raises
+        ------
+        ConvergenceError, UnravelledError
+            If the yarn locks or unravels before it gets there; the last state remains.
+        """
+        del known  # the forces of friction are in the state
+        check_cancelled(self.cancelled)
+        if abs(size_mm - self.state.cell.cell_mm(self.along)) > _THERE * size_mm:
+            place = (COURSE if self.along is Direction.COURSE else WALE,)
+            self._step(fixed=place, target=np.array([size_mm, size_mm]))
+        return self.state.cell
+
+    def release(self, stride_mm: float) -> Iterator[RelaxedRepeat]:
+        """Back in steps until the pull would turn into a push, then free."""
+        begin = self.state.cell
+        least = _FREE * begin.force_n[self.along.axis]
+        sizes = begin.cell_mm(self.along) - stride_mm * np.arange(1, 10 * MAX_STRIDES)
+        for size in sizes[sizes > 0.0]:
+            before = self.state
+            if self.reach((), float(size)).force_n[self.along.axis] <= least:
+                self.state = before
+                break
+            yield self.state.cell
+        self._step()
+        yield self.state.cell
+
+    def _step(self, **held: Any) -> None:
+        self.state = rubbed(self.state, self.coefficient, cancelled=self.cancelled, **held)
+
+
+def pull(
+    relaxed: RelaxedRepeat,
+    direction: Direction | str,
+    max_strain: float,
+    coefficient: float,
+    *,
+    points: int = DEFAULT_POINTS,
+    max_stress_n_per_mm: float | None = None,
+    cancelled: Cancelled | None = None,
+) -> Leg:
+    """Pull in one direction with friction, from the agitated state, the other direction free.
+
+    Where the yarn locks or unravels, the pull ends, with a note. Parameters and errors are those of
+    :func:`hysteresis`, and:
+
+    Parameters
+    ----------
+    max_stress_n_per_mm : stop beyond this nominal stress.
+    """
+    along = Direction.parse(direction)
+    check_stretch(max_strain, points, max_stress_n_per_mm)
+    stretch = RubbedStretch(agitated(relaxed), along, coefficient, cancelled)
+    return _pulled(stretch, relaxed, np.linspace(0.0, max_strain, points), max_stress_n_per_mm)
 
 
 def hysteresis(
@@ -149,30 +255,32 @@ def hysteresis(
     points : strains on the way there.
     cycles : of pulling and letting go; the first begins in the agitated state.
 
+    Where the yarn locks or unravels on the way there, the fabric turns, with a note.
+
     Raises
     ------
     InputError
-        If an input is out of range, or the repeat is too large.
+        If an input is out of range, or the repeat is too large or held.
     ConvergenceError, UnravelledError
-        If the yarn locks or unravels on the way.
+        If the yarn locks in the first step, or unravels on the way back.
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, None)
     check_range("cycles", cycles, 1, MAX_CYCLES)
-    rest = relaxed.cell_mm(along)
-    steps = rest * (1.0 + np.linspace(0.0, max_strain, points))[1:]
-    state = agitated(relaxed)
-    legs, lost = [], []
+    stretch = RubbedStretch(agitated(relaxed), along, coefficient, cancelled)
+    strain = np.linspace(0.0, max_strain, points)
+    legs, lost = [], [0.0]
     for _ in range(cycles):
-        ahead = steps[steps > state.cell.cell_mm(along) * (1.0 + 1e-9)]
-        there = [state, *_pulled(state, along, ahead, coefficient, cancelled)]
-        stride = float(steps[0]) - rest
-        back = [there[-1], *_released(there[-1], along, stride, coefficient, cancelled)]
-        state = back[-1]
-        for leg, loading in ((there, True), (back, False)):
-            legs.append(_leg(relaxed, along, [s.cell for s in leg], loading))
-            lost.append(leg[-1].lost_n_mm - leg[0].lost_n_mm)
-    return Hysteresis(along, coefficient, relaxed, tuple(legs), np.array(lost))
+        legs.append(_pulled(stretch, relaxed, strain))
+        lost.append(stretch.state.lost_n_mm)
+        if len(legs[-1].cells) < 2:
+            raise ConvergenceError(
+                "The yarn locks in the first step. Ask for less strain, or for more points."
+            )
+        strain = strain[: len(legs[0].cells)]
+        legs.append(_released(stretch, relaxed, float(strain[1])))
+        lost.append(stretch.state.lost_n_mm)
+    return Hysteresis(along, coefficient, relaxed, tuple(legs), np.diff(lost))
 
 
 def at_rest(
@@ -186,72 +294,53 @@ def at_rest(
 
     Raises
     ------
-    InputError, ConvergenceError, UnravelledError
-        See :func:`hysteresis`.
+    InputError
+        If the coefficient is out of range, or the repeat is too large or held.
+    ConvergenceError, UnravelledError
+        If the yarn locks or unravels on the way.
     """
     state = agitated(relaxed)
     what = History.parse(history)
     if what is History.AGITATED:
         return state
-    along, pull = _PULLS[what]
-    rest, width = relaxed.cell_mm(along), relaxed.cell_mm(along.other)
-    sizes = np.asarray(rest * (1.0 + _STRIDE * np.arange(1, MAX_STRIDES + 1)))
-    for reached in _pulled(state, along, sizes, coefficient, cancelled):
-        state = reached
-        if state.cell.force_n[along.axis] >= pull * width:
+    along, force = _PULLS[what]
+    stretch = RubbedStretch(state, along, coefficient, cancelled)
+    stride, width = _STRIDE * relaxed.cell_mm(along), relaxed.cell_mm(along.other)
+    for step in range(1, MAX_STRIDES + 1):
+        reached = stretch.reach((), relaxed.cell_mm(along) + step * stride)
+        if reached.force_n[along.axis] >= force * width:
             break
-    *_, state = _released(state, along, _STRIDE * rest, coefficient, cancelled)
-    return state
+    for _ in stretch.release(stride):
+        pass
+    return stretch.state
 
 
 def rest_sizes(
     relaxed: RelaxedRepeat, coefficient: float, *, cancelled: Cancelled | None = None
 ) -> tuple[RestSize, ...]:
     """Rest size after every history (see :func:`at_rest`)."""
-    states = {h: at_rest(relaxed, h, coefficient, cancelled=cancelled).cell for h in History}
-    return tuple(RestSize(h, c.cell_course_mm, c.cell_wale_mm) for h, c in states.items())
+    return tuple(
+        RestSize(h, at_rest(relaxed, h, coefficient, cancelled=cancelled)) for h in History
+    )
 
 
 def _pulled(
-    state: RubbedCell,
-    along: Direction,
-    sizes: Array,
-    coefficient: float,
-    cancelled: Cancelled | None,
-) -> Iterator[RubbedCell]:
-    place = (COURSE if along is Direction.COURSE else WALE,)
-    for size in sizes:
-        check_cancelled(cancelled)
-        target = np.array([size, size])
-        state = rubbed(state, coefficient, fixed=place, target=target, cancelled=cancelled)
-        yield state
+    stretch: RubbedStretch, zero: RelaxedRepeat, strain: Array, max_stress: float | None = None
+) -> Leg:
+    """Onward from where the fabric is, to the strains beyond."""
+    along = stretch.along
+    here = stretch.state.cell.cell_mm(along) / zero.cell_mm(along) - 1.0
+    ahead = np.concatenate([[here], strain[strain > here + _THERE]])
+    found = follow(
+        stretch, zero, along, ahead, max_stress_n_per_mm=max_stress, back=False,
+        cancelled=stretch.cancelled,
+    )  # fmt: skip
+    return Leg(along, zero, found.cells, found.stress_n_per_mm, found.jumps, found.notes)
 
 
-def _released(
-    state: RubbedCell, along: Direction, stride_mm: float, coefficient: float,
-    cancelled: Cancelled | None,
-) -> Iterator[RubbedCell]:  # fmt: skip
-    """Back in steps until the pull would turn into a push, then free."""
-    sizes = np.asarray(state.cell.cell_mm(along) - stride_mm * np.arange(1, 10 * MAX_STRIDES))
-    ahead = _pulled(state, along, sizes[sizes > 0.0], coefficient, cancelled)
-    for reached in ahead:
-        if reached.cell.force_n[along.axis] <= 0.0:
-            break
-        state = reached
-        yield state
-    yield rubbed(state, coefficient, cancelled=cancelled)
-
-
-def _leg(
-    zero: RelaxedRepeat, along: Direction, cells: list[RelaxedRepeat], loading: bool
-) -> Leg:  # fmt: skip
-    def strain(direction: Direction, of: RelaxedCell) -> float:
-        return of.cell_mm(direction) / zero.cell_mm(direction) - 1.0
-
-    width = zero.cell_mm(along.other)
-    return Leg(
-        np.array([strain(along, c) for c in cells]),
-        np.array([strain(along.other, c) for c in cells]),
-        np.array([c.force_n[along.axis] / width for c in cells]),
-        loading,
-    )
+def _released(stretch: RubbedStretch, zero: RelaxedRepeat, stride: float) -> Leg:
+    """Back until free of force, in steps of a strain."""
+    along = stretch.along
+    cells = (stretch.state.cell, *stretch.release(stride * zero.cell_mm(along)))
+    force = np.array([cell.force_n[along.axis] for cell in cells])
+    return Leg(along, zero, cells, force / zero.cell_mm(along.other), loading=False)

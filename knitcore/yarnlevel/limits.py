@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from knitcore.bounds import check_positive, check_range
 from knitcore.errors import InputError
+from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.yarn import YarnModel
 
 MAX_POINTS = 1000
@@ -12,6 +13,9 @@ MIN_LENGTH_PER_RADIUS = 10.0
 MIN_LENGTH_PER_CORE = 27.0
 """Shortest loop: a shorter stitch has no room for its own yarn (paper: 13 radii, 34 core radii)."""
 MAX_LENGTH_PER_RADIUS = 120.0
+_AT_REST = 5e-2
+"""Force times size, as a part of the energy, up to which a state counts as free of force (published
+garter rests on a constraint of its curves)."""
 
 
 def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:
@@ -71,4 +75,21 @@ def check_stretch(max_strain: float, points: int, max_stress_n_per_mm: float | N
             "max_stress_n_per_mm",
             f"{max_stress_n_per_mm} N/mm is not a limit.",
             "Give a stress above 0.",
+        )
+
+
+def check_at_rest(zero: RelaxedCell) -> None:
+    """Refuse a state that is held: strain and stress would not start from rest.
+
+    Raises
+    ------
+    InputError
+    """
+    sizes = zero.cell_course_mm, zero.cell_wale_mm
+    work = max(abs(f) * size for f, size in zip(zero.force_n, sizes, strict=True))
+    if work > _AT_REST * zero.energy_n_mm:
+        raise InputError(
+            "zero",
+            f"its size is held by {zero.force_n[0]:.3g} and {zero.force_n[1]:.3g} N.",
+            "Relax it without a prescribed size.",
         )

@@ -20,13 +20,12 @@ from knitcore.arrays import Array
 from knitcore.errors import (
     Cancelled,
     ConvergenceError,
-    InputError,
     UnravelledError,
     check_cancelled,
 )
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.jumps import find_jumps
-from knitcore.yarnlevel.limits import check_stretch
+from knitcore.yarnlevel.limits import check_at_rest, check_stretch
 from knitcore.yarnlevel.published.stretch import PublishedStretch
 from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.search import SAME_ENERGY
@@ -36,9 +35,6 @@ from knitcore.yarnlevel.splines import RelaxedRepeat
 DEFAULT_POINTS = 25
 _OFF_WORK = 0.1
 """A change of energy that misses the work done by this part of it may be a jump."""
-_AT_REST = 5e-2
-"""Force times size, as a part of the energy, up to which a state counts as free of force (published
-garter rests on a constraint of its curves)."""
 _LOWER = 1e-6
 """How much lower, relatively, the way back must be to replace the way out."""
 
@@ -96,7 +92,7 @@ def sweep(
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, max_stress_n_per_mm)
-    _check_rest(zero)
+    check_at_rest(zero)
     if isinstance(zero, RelaxedRepeat):
         stretch: Stretch = SplineStretch.of(zero, along, bool(slide_quenching), cancelled)
     else:
@@ -156,18 +152,6 @@ def _timed(stretch: Stretch, known: Sequence[RelaxedCell], size_mm: float) -> Re
     began = time.process_time()
     found = stretch.reach(known, size_mm)
     return replace(found, seconds=time.process_time() - began)
-
-
-def _check_rest(zero: RelaxedCell) -> None:
-    """Refuse a state that is held: strain and stress would not start from rest."""
-    sizes = zero.cell_course_mm, zero.cell_wale_mm
-    work = max(abs(f) * size for f, size in zip(zero.force_n, sizes, strict=True))
-    if work > _AT_REST * zero.energy_n_mm:
-        raise InputError(
-            "zero",
-            f"its size is held by {zero.force_n[0]:.3g} and {zero.force_n[1]:.3g} N.",
-            "Relax it without a prescribed size.",
-        )
 
 
 def _abrupt(cells: list[RelaxedCell], along: Direction) -> set[int]:

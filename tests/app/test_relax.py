@@ -158,3 +158,134 @@ def test_relax_prints_the_options_that_predict_takes(tmp_path: Path) -> None:
     told = CliRunner().invoke(main, ["relax", *asked]).output
     options = next(line for line in told.splitlines() if line.startswith("for predict")).split()[2:]
     assert run("predict", *asked, *options)["relaxed_source"] == "relaxation"
+
+
+ACRYLIC = ("--material", "acrylic")
+
+
+def test_a_fabric_rests_at_the_sizes_that_hysteresis_gives(client: TestClient) -> None:
+    """Without a coefficient of its own the request has that of the yarn."""
+    told = run("relax", "stockinette", *ACRYLIC, "--history", "stretched-course")
+    assert set(told) >= FIELDS
+    assert (told["friction"], told["history"]) == (0.26, "stretched-course")
+    assert told["converged"]
+    assert told["force_course_n"] == pytest.approx(0.0, abs=1e-5)
+    assert told["unmirrored"] is told["gauge"] is None
+    sizes = {rest["history"]: rest["course_mm"] for rest in told["rest_sizes"]}
+    assert told["cell_course_mm"] == sizes["stretched-course"]
+    low, high = told["cell_course_interval_mm"]
+    assert low * high == pytest.approx(told["cell_course_mm"] ** 2)
+    assert sizes["as-knitted"] < sizes["agitated"] < sizes["stretched-course"]
+    asked = {"chart": "K", "material": "acrylic", "points": 2, "cycles": 1, "intervals": False}
+    loop = client.post("/api/v1/hysteresis", json=asked).json()
+    by_loop = {rest["history"]: rest["course_mm"] for rest in loop["rest_sizes"]}
+    assert by_loop == pytest.approx(sizes, rel=1e-9)
+    plain = run("relax", "stockinette", *ACRYLIC)
+    assert plain["cell_course_mm"] == pytest.approx(sizes["agitated"], rel=1e-9)
+    assert plain["friction"] is plain["history"] is plain["rest_sizes"] is None
+
+
+def test_a_coefficient_alone_means_as_knitted(client: TestClient) -> None:
+    asked = {"chart": "K", "material": "acrylic", "friction": 0.4, "centre_lines": True}
+    told = client.post("/api/v1/relax", json=asked).json()
+    assert (told["friction"], told["history"]) == (0.4, "as-knitted")
+    assert told["cell_wale_mm"] > 1.004 * told["rest_sizes"][0]["wale_mm"]
+    assert len(told["centre_lines_mm"]) == 1
+    assert "Coefficient of friction 0.4: as given." in told["notes"]
+    output = (
+        CliRunner().invoke(main, ["relax", "stockinette", *ACRYLIC, "--friction", "0.4"]).output
+    )
+    (here,) = (line for line in output.splitlines() if line.endswith(", here"))
+    assert here.startswith("rest, as-knitted")
+
+
+@pytest.mark.parametrize(
+    ("asked", "fields"),
+    [
+        ({"branch": "published"}, ["branch"]),
+        ({"flat": True, "cell_course_mm": 3.0}, ["flat", "cell_course_mm"]),
+        ({"loop_lengths_mm": [[11.0, 12.0]], "chart": "KP"}, ["loop_lengths_mm"]),
+        ({"chart": "KKKKKKP\nKKKKPKK\nKKPKKKK\nPKKKKKK\nKPKKKKK\nKKKPKKK"}, ["chart"]),
+        ({"friction": 3.0}, ["friction"]),
+    ],
+)
+def test_what_cannot_be_had_with_friction_is_refused(
+    client: TestClient, asked: dict[str, Any], fields: list[str]
+) -> None:
+    body = {"chart": "K", "material": "acrylic", "history": "agitated"} | asked
+    answer = client.post("/api/v1/relax", json=body)
+    assert answer.status_code == 422
+    assert [error["field"] for error in answer.json()["errors"]] == fields
+
+
+def test_a_sweep_there_and_back_loses_energy_to_friction(client: TestClient) -> None:
+    told = run(
+        "sweep", "stockinette", *ACRYLIC, "--direction", "course", "--max-strain", "0.2",
+        "--points", "5", "--friction", "0.26", "--there-and-back",
+    )  # fmt: skip
+    turn, stress = told["turn"], told["stress_n_per_mm"]
+    assert turn == 4
+    assert told["strain"][: turn + 1] == pytest.approx([0.0, 0.05, 0.1, 0.15, 0.2])
+    assert told["strain"][turn + 1 : -1] == pytest.approx([0.15, 0.1, 0.05])
+    assert told["strain"][-1] == told["left_strain"] > 0.01
+    assert stress[-1] == pytest.approx(0.0, abs=1e-6)
+    for there, back in zip(stress[1:turn], stress[-2:turn:-1], strict=True):
+        assert 0.0 < back < 0.8 * there
+    assert told["lost_per_cycle_n_per_mm"] > 0.0
+    assert 0.1 < told["lost_share"] < 0.5
+    for name in ("transverse_strain", "energy_n_mm", "bending_share", "contact_share"):
+        assert len(told[name]) == len(told["strain"])
+    assert told["converged"]
+    low, high = told["strain_interval"]
+    assert all(a <= b for a, b in zip(low, high, strict=True))
+    body = {
+        "chart": "K", "material": "acrylic", "direction": "course", "max_strain": 0.2, "points": 5,
+    }  # fmt: skip
+    answer = client.post("/api/v1/sweep", json=body | {"there_and_back": True}).json()
+    assert answer["friction"] == told["friction"]
+    assert answer["stress_n_per_mm"] == pytest.approx(stress, rel=1e-6, abs=1e-9)
+
+
+def test_friction_stiffens_the_pull_and_its_law() -> None:
+    asked = ["sweep", "stockinette", *ACRYLIC, "--direction", "course", "--max-strain", "0.2"]
+    free = run(*asked, "--points", "5")
+    rubbed = run(*asked, "--points", "5", "--friction", "0.26")
+    assert len(rubbed["strain"]) == 5
+    assert rubbed["stress_n_per_mm"][-1] > 1.1 * free["stress_n_per_mm"][-1]
+    assert rubbed["law"]["modulus_course_n_per_mm"] > 1.1 * free["law"]["modulus_course_n_per_mm"]
+    for told, friction in ((free, None), (rubbed, 0.26)):
+        assert told["friction"] == friction
+        assert told["turn"] is told["lost_share"] is told["left_strain"] is None
+
+
+def test_without_friction_the_way_back_retraces_the_way_there(client: TestClient) -> None:
+    body = {
+        "chart": "K", "material": "cotton", "direction": "wale", "max_strain": 0.2, "points": 4,
+    }  # fmt: skip
+    loop = client.post("/api/v1/sweep", json=body | {"there_and_back": True, "friction": 0}).json()
+    free = client.post("/api/v1/sweep", json=body).json()
+    for name in ("strain", "transverse_strain", "stress_n_per_mm", "energy_n_mm"):
+        there, back = loop[name][:4], loop[name][3:]
+        assert there == pytest.approx(free[name], rel=1e-5, abs=1e-6)
+        assert back[::-1] == pytest.approx(there, rel=1e-5, abs=1e-6)
+    assert loop["lost_share"] == pytest.approx(0.0, abs=1e-4)
+    assert loop["law"]["alpha_xx"] == pytest.approx(free["law"]["alpha_xx"], rel=1e-2)
+
+
+def test_a_loop_is_printed_with_what_it_loses() -> None:
+    asked = ["sweep", "stockinette", *ACRYLIC, "--direction", "wale", "--max-strain", "0.1"]
+    told = CliRunner().invoke(main, [*asked, "--points", "3", "--there-and-back"])
+    assert told.exit_code == 0, told.output
+    assert "lost there and back" in told.stdout
+    assert "released until free of force" in told.stderr
+
+
+def test_yarn_that_may_not_slide_cannot_have_friction(client: TestClient) -> None:
+    body = {
+        "chart": "K", "material": "acrylic", "direction": "course", "max_strain": 0.2,
+        "there_and_back": True, "slide_quenching": True, "flat": True,
+    }  # fmt: skip
+    answer = client.post("/api/v1/sweep", json=body)
+    assert answer.status_code == 422
+    fields = [error["field"] for error in answer.json()["errors"]]
+    assert fields == ["flat", "slide_quenching"]

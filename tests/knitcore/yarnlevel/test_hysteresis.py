@@ -1,11 +1,13 @@
 """Loops of loading and unloading, and rest sizes that remember."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.yarnlevel.hysteresis import History, at_rest, hysteresis, rest_sizes
+from knitcore.yarnlevel.hysteresis import History, at_rest, hysteresis, pull, rest_sizes
 
 from .test_friction import forces, stockinette, walk
 
@@ -40,6 +42,40 @@ def test_the_area_of_the_loop_is_the_energy_that_slipping_takes(loop):
     area = loop.zero.cell_course_mm * loop.zero.cell_wale_mm
     assert loop.lost_per_cycle_n_per_mm * area == pytest.approx(loop.lost_n_mm[2:].sum(), rel=0.2)
     assert 0.05 < loop.lost_share < 0.5
+
+
+def test_the_last_cycle_is_one_stretch_there_and_back(loop):
+    cycle, (there, back) = loop.last_cycle, loop.legs[-2:]
+    assert np.argmax(cycle.strain) == loop.turn == len(there.strain) - 1
+    np.testing.assert_array_equal(cycle.strain, [*there.strain, *back.strain[1:]])
+    np.testing.assert_array_equal(
+        cycle.stress_n_per_mm, [*there.stress_n_per_mm, *back.stress_n_per_mm[1:]]
+    )
+    assert cycle.energy_n_mm[loop.turn] > cycle.energy_n_mm[-1]
+
+
+def test_a_pull_is_the_first_leg_of_a_loop(stockinette, loop):
+    alone = pull(stockinette, "course", 0.2, 0.25, points=11)
+    np.testing.assert_allclose(alone.stress_n_per_mm, loop.legs[0].stress_n_per_mm, rtol=1e-9)
+    assert alone.cells[0].state is stockinette.state
+    stopped = pull(stockinette, "course", 0.2, 0.25, points=11, max_stress_n_per_mm=0.03)
+    beyond = np.flatnonzero(alone.stress_n_per_mm > 0.03)
+    assert len(stopped.cells) == beyond[0] + 1
+
+
+def test_yarn_that_locks_ends_the_pull_and_turns_the_loop(stockinette):
+    short = pull(stockinette, "course", 4.0, 0.25, points=9)
+    assert len(short.cells) < 9
+    assert any("Stopped between strain" in note for note in short.notes)
+    loop = hysteresis(stockinette, "course", 4.0, 0.25, points=9, cycles=2)
+    assert loop.legs[0].strain[-1] == pytest.approx(short.strain[-1])
+    assert loop.legs[1].strain[-1] < short.strain[-1]
+    assert sum("Stopped between strain" in note for note in loop.notes) == 1
+
+
+def test_a_held_state_is_no_start_of_a_history(stockinette):
+    with pytest.raises(InputError, match="its size is held"):
+        at_rest(replace(stockinette, force_n=(0.1, 0.0)), "as-knitted", 0.25)
 
 
 def test_without_friction_nothing_is_lost(stockinette):
