@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from knitcore.bounds import check_positive, check_range
 from knitcore.errors import InputError
 from knitcore.yarnlevel.results import RelaxedCell
@@ -92,4 +94,28 @@ def check_at_rest(zero: RelaxedCell) -> None:
             "zero",
             f"its size is held by {zero.force_n[0]:.3g} and {zero.force_n[1]:.3g} N.",
             "Relax it without a prescribed size.",
+        )
+
+
+def check_time(
+    stitches: int, seconds_of: Callable[[int], float], time_limit_s: float | None
+) -> None:
+    """Refuse a cell that would probably take more CPU time than allowed.
+
+    Raises
+    ------
+    InputError
+        Naming a size that would not.
+    """
+    if time_limit_s is None:
+        return
+    if not time_limit_s > 0.0:
+        raise InputError("time_limit_s", f"{time_limit_s} is not a time.", "Give seconds above 0.")
+    if seconds_of(stitches) > time_limit_s:
+        fitting = next((n for n in range(stitches, 1, -1) if seconds_of(n) <= time_limit_s), 1)
+        raise InputError(
+            "chart",
+            f"its cell of {stitches} stitches would take about {seconds_of(stitches):.0f} s, more "
+            f"than the limit of {time_limit_s:g} s.",
+            f"Use a repeat of at most {fitting} stitches, or allow more time.",
         )

@@ -4,6 +4,10 @@ The Hessian of a sheet of thousands of stitches is never made. Its windows' are,
 their factors together are the first guess of its inverse, to which the stiffness of the two sizes
 of a stitch is added. Steps of windows keep the lengths of yarn, so the descent does too, except for
 yarn that passes from window to window; the next descent has its windows elsewhere.
+
+A descent begins with the two sizes alone, while the windows follow them to first order: the sheet
+shrinks evenly, so that no jammed pair of strands anywhere cuts these steps short, as it does the
+others in a large sheet.
 """
 
 from __future__ import annotations
@@ -42,6 +46,9 @@ _ENOUGH = 1e-4
 """Part of the predicted decrease that a step has to bring."""
 _SHORTER = 0.3
 _TRIALS = 8
+_SIZE_STEPS = 8
+_LARGEST_STRAIN, _LEAST_STRAIN = 0.03, 2e-3
+"""Of a step of the sizes, and from which on there is another one."""
 _PROBE_MM = 1e-6
 """Change of a size for the stiffness of the sheet."""
 _LEAST_STIFFNESS = 1e-3
@@ -84,9 +91,11 @@ class _Inverse:
     def times(self, gradient: Array, excess: Array) -> Array:
         """The inverse times a gradient (unknowns,), less a step that mends the lengths."""
         found, _ = self.relaxed(gradient, excess)
-        return np.asarray(
-            np.linalg.solve(self._stiffness, self._sizes @ gradient) @ self._sizes - found
-        )
+        return self.resized(gradient) - found
+
+    def resized(self, gradient: Array) -> Array:
+        """The inverse times a gradient, among changes of the two sizes that the windows follow."""
+        return np.asarray(np.linalg.solve(self._stiffness, self._sizes @ gradient) @ self._sizes)
 
     def relaxed(self, gradient: Array, excess: Array) -> tuple[Array, Array]:
         """Newton steps of all windows at once, and the mean change of the tensions (rows,), N."""
@@ -135,8 +144,8 @@ def polished(
     inverse = _Inverse(sheet, state, tension, windows, flat)
     slope = path.slope(tension, hessian=False)
     tension = tension + inverse.relaxed(slope.gradient, path.here.terms.excess_mm)[1]
+    slope = _resized(sheet, path, inverse, tension)
     past: deque[tuple[Array, Array]] = deque(maxlen=_MEMORY)
-    slope = path.slope(tension, hessian=False)
     taken = 0
     while taken < steps:
         check_cancelled(cancelled)
@@ -169,6 +178,21 @@ def polished(
         min_distance_mm=path.min_distance_mm, converged=False, stable=False, steps=taken,
         evaluations=taken,
     )  # fmt: skip
+
+
+def _resized(sheet: CellEnergy, path: Trajectory, inverse: _Inverse, tension: Array) -> Slope:
+    """Let the sizes go where they want to, as far as that pays; the slope there."""
+    for _ in range(_SIZE_STEPS):
+        slope, here = path.slope(tension, hessian=False), path.here
+        step = -inverse.resized(slope.gradient)
+        strain = float(np.abs(step[-2:] / here.state[-2:]).max())
+        found = path.certified(_LARGEST_STRAIN / max(strain, _LARGEST_STRAIN) * step)
+        if sheet.merit(found.to.terms, tension) >= sheet.merit(here.terms, tension):
+            return slope
+        path.advance(found)
+        if found.fraction * strain < _LEAST_STRAIN:
+            break
+    return path.slope(tension, hessian=False)
 
 
 def _part(sheet: CellEnergy, state: Array, tension: Array, window: Window, flat: bool) -> _Part:

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import Cancelled, InputError
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.growth import Start
+from knitcore.yarnlevel.limits import check_time
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.stitch import published_fabric
 from knitcore.yarnlevel.results import Branch, RelaxedCell
 from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.splines import RelaxedRepeat, relax_splines
+from knitcore.yarnlevel.splines import MAX_STITCHES, RelaxedRepeat, drafted, relax_splines
+from knitcore.yarnlevel.whole import SECONDS_PER_STITCH, best_in_windows, relax_whole
 from knitcore.yarnlevel.yarn import YarnModel
 
 __all__ = ["Branch", "OnSplines", "RelaxedRepeat", "relax"]
@@ -91,7 +94,9 @@ def relax(
     cell_course_mm, cell_wale_mm : size of a stitch to hold, mm; None leaves it free of force.
     flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
     grid : resolution; by default finer for small cells.
-    starts : by default two, and four in the free branch (fewer for large cells).
+    starts : by default two, and four in the free branch (fewer for large cells). Cells of 100 and
+        more stitches without symmetry, nothing else prescribed, are relaxed by
+        :func:`~knitcore.yarnlevel.whole.relax_whole`.
     time_limit_s : refuse a cell that would probably take more CPU time.
     cancelled : called before every step; True stops with CancelledError.
 
@@ -107,6 +112,15 @@ def relax(
     """
     kind, factors = Branch.parse(branch), Convention.parse(convention)
     if kind is not Branch.PUBLISHED:
+        cell, repeat, lengths = drafted(chart, loop_length_mm, kind)
+        free_of_choice = (cell_course_mm, cell_wale_mm, grid, starts) == (None,) * 4
+        if free_of_choice and lengths.ndim == 1 and best_in_windows(cell):
+            check_stitches(cell.stitches, MAX_STITCHES, "its cell")
+            check_time(cell.stitches, lambda stitches: SECONDS_PER_STITCH * stitches, time_limit_s)
+            found = relax_whole(
+                repeat, yarn, lengths, convention=factors, flat=flat, cancelled=cancelled
+            )
+            return replace(found, branch=kind)
         return relax_splines(
             chart, yarn, loop_length_mm, branch=kind, convention=factors,
             sizes_mm=(cell_course_mm, cell_wale_mm), flat=flat, grid=grid, starts=starts,

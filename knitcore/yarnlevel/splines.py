@@ -18,7 +18,7 @@ from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_ce
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import Start, grow
-from knitcore.yarnlevel.limits import check_loop, check_stitch_size
+from knitcore.yarnlevel.limits import check_loop, check_stitch_size, check_time
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
 from knitcore.yarnlevel.search import (
     RELAXED,
@@ -117,15 +117,12 @@ def relax_splines(
     Parameters and errors are those of :func:`knitcore.yarnlevel.relax.relax`; ``sizes_mm`` are the
     sizes of a stitch to hold, course-wise and wale-wise.
     """
-    repeat, lengths = _loop_lengths(loop_length_mm, chart)
+    draft, repeat, lengths = drafted(chart, loop_length_mm, branch)
     for length in lengths.ravel():
         check_loop(yarn, float(length))
     uniform = bool(np.ptp(lengths) == 0.0)
     for name, size in zip(("cell_course_mm", "cell_wale_mm"), sizes_mm, strict=True):
         check_stitch_size(name, size, float(lengths.mean()))
-    draft = (mirrored_cell if branch is Branch.MIRRORED else free_cell)(repeat, COARSE)
-    if not uniform:
-        draft = plain_cell(repeat, COARSE)
     if grid is None:
         grid = FINE if draft.stitches <= FINE_UP_TO else COARSE
     first = ROUGH if draft.stitches >= ROUGH_FROM else COARSE
@@ -138,7 +135,9 @@ def relax_splines(
     if not chosen and not shakes:
         raise InputError("starts", "is empty.", "Give at least one start, or leave it out.")
     most = MAX_STITCHES if lengths.ndim == 1 and not flat else MAX_STITCHES_RULED
-    _check_cell(draft, most, len(chosen) + len(shakes), time_limit_s)
+    check_stitches(draft.stitches, most, "its cell")
+    per_start = (len(chosen) + len(shakes)) * SECONDS_PER_START
+    check_time(draft.stitches, lambda stitches: per_start * stitches**1.5, time_limit_s)
     if lengths.ndim == 1:
         lengths = np.resize(lengths, draft.rows)
     energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, convention, flat)
@@ -169,6 +168,23 @@ def relax_splines(
         repeat, energy, branch, best, seconds=time.process_time() - clock,
         evaluations=search.evaluations, starts=tuple(search.reports), notes=search.notes(best),
     )  # fmt: skip
+
+
+def drafted(
+    chart: StitchChart, loop_length_mm: ArrayLike, branch: Branch
+) -> tuple[YarnCell, StitchChart, Array]:
+    """The cell of a chart, the repeat that it is of, and the loop lengths (rows,) or (rows, wales).
+
+    Raises
+    ------
+    InputError
+        If the lengths do not fit the chart.
+    """
+    repeat, lengths = _loop_lengths(loop_length_mm, chart)
+    if np.ptp(lengths) > 0.0:
+        return plain_cell(repeat, COARSE), repeat, lengths
+    cell_of = mirrored_cell if branch is Branch.MIRRORED else free_cell
+    return cell_of(repeat, COARSE), repeat, lengths
 
 
 def relaxed_repeat(
@@ -213,23 +229,6 @@ def _starts(branch: Branch, cell: YarnCell, starts: Sequence[Start] | None) -> S
     if branch is Branch.FREE:
         return FREE_STARTS[: 2 if cell.stitches <= SEVERAL_UP_TO else 1]
     return MIRRORED_STARTS[: 2 if cell.stitches <= SEVERAL_UP_TO else 1]
-
-
-def _check_cell(cell: YarnCell, most: int, starts: int, time_limit_s: float | None) -> None:
-    check_stitches(cell.stitches, most, "its cell")
-    if time_limit_s is None:
-        return
-    if not time_limit_s > 0.0:
-        raise InputError("time_limit_s", f"{time_limit_s} is not a time.", "Give seconds above 0.")
-    seconds = starts * SECONDS_PER_START * cell.stitches**1.5
-    if seconds > time_limit_s:
-        fitting = math.floor((time_limit_s / (starts * SECONDS_PER_START)) ** (2.0 / 3.0))
-        raise InputError(
-            "chart",
-            f"its cell of {cell.stitches} stitches would take about {seconds:.0f} s, more than the "
-            f"limit of {time_limit_s:g} s.",
-            f"Use a repeat of at most {max(fitting, 1)} stitches, or allow more time.",
-        )
 
 
 def _held_at(
