@@ -27,7 +27,7 @@ Shear is the same with a skewed cell: the next course is moved sideways.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -95,6 +95,11 @@ class BendingResponse:
         """Curvature at which the linear moment vanishes, 1/mm; positive has the face outside."""
         return -self.moment_n / self.rigidity_n_mm
 
+    def swapped(self) -> BendingResponse:
+        """The same with front and back exchanged."""
+        turned = {"moment_n": 0.0 - self.moment_n, "strain_across_mm": 0.0 - self.strain_across_mm}
+        return replace(self, **turned)  # without -0.0
+
 
 def settled(relaxed: RelaxedRepeat) -> BentCell:
     """The whole repeat without symmetries, at its minimum and at mean height zero."""
@@ -125,9 +130,7 @@ def settled(relaxed: RelaxedRepeat) -> BentCell:
         if longest > _STRIDE:
             break
         state, tension = state + step, tension + change
-    raise ConvergenceError(
-        "Without its symmetries the relaxed repeat changes shape. Relax it in the free branch."
-    )
+    raise ConvergenceError("Its shape changes when symmetries are dropped and samples refined.")
 
 
 class BentCell:
@@ -191,7 +194,7 @@ class BentCell:
         by_state[_COURSE] -= first * cos**2 * course / stitch**2
         by_state[_WALE] -= first * sin**2 * wale / stitch**2
         free, moved = self._stiffness(second, by_state, by_length, None)
-        held, _ = self._stiffness(second, by_state, by_length, _WALE if cos > sin else _COURSE)
+        held, _ = self._stiffness(second, by_state, by_length, _WALE if cos > abs(sin) else _COURSE)
         strains = np.array([moved[_COURSE] / course, moved[_WALE] / wale])
         area = self.area_mm2
         across = float(strains @ (sin**2, cos**2))
