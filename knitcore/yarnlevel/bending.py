@@ -203,7 +203,7 @@ def bending_response(relaxed: RelaxedRepeat) -> FabricBending:
     ------
     InputError
         If the repeat was held, or is too large.
-    ConvergenceError
+    ConvergenceError, UnravelledError
         If the repeat is not in equilibrium without its symmetries, or folds spontaneously: a
         rigidity along rows or columns is not positive. :func:`repeat_bending` has the state that it
         goes to.
@@ -248,7 +248,7 @@ def repeat_bending(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None
     failure = unmirrored_failure = ""
     try:
         mirrored = bending_response(relaxed)
-    except ConvergenceError as error:
+    except (ConvergenceError, UnravelledError) as error:
         failure = str(error)
     if can_be_followed(relaxed, MAX_STITCHES if mirrored is None else FOLLOWED_UP_TO):
         try:

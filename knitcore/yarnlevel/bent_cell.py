@@ -41,7 +41,7 @@ from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.splines import RelaxedRepeat
+from knitcore.yarnlevel.splines import RelaxedRepeat, refined
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 
 _STEP = 1e-3
@@ -102,7 +102,23 @@ class BendingResponse:
 
 
 def settled(relaxed: RelaxedRepeat) -> BentCell:
-    """The whole repeat without symmetries, at its minimum and at mean height zero."""
+    """The whole repeat without symmetries, in equilibrium and at mean height zero.
+
+    Raises
+    ------
+    ConvergenceError, UnravelledError
+        If it has no equilibrium nearby, also after it relaxed again on a finer grid.
+    """
+    found = _by_newton(relaxed)
+    if found is None and relaxed.cell.grid.samples < GRID.samples:
+        found = _by_newton(refined(relaxed, GRID))
+    if found is None:
+        raise ConvergenceError("Its shape changes when its symmetries are dropped.")
+    return found
+
+
+def _by_newton(relaxed: RelaxedRepeat) -> BentCell | None:
+    """Steps from the relaxed state; None if one of them leads away from it."""
     cell = plain_cell(relaxed.chart, relaxed.cell.grid)
     state = tiled_state(relaxed.cell, relaxed.state, cell)
     heights = cell.dof[..., 2]
@@ -130,7 +146,7 @@ def settled(relaxed: RelaxedRepeat) -> BentCell:
         if longest > _STRIDE:
             break
         state, tension = state + step, tension + change
-    raise ConvergenceError("Its shape changes when symmetries are dropped and samples refined.")
+    return None
 
 
 class BentCell:

@@ -9,8 +9,9 @@ from scripts.bending_stitches import bend
 from scripts.from_store import StoredTask
 
 
-@pytest.mark.parametrize("text", ["K", "P/K"])
+@pytest.mark.parametrize("text", ["K", "P/K", "KKKKP"])
 def test_a_stored_repeat_is_bent_as_stored(text):
+    """Without its mirrors KKKKP goes to a shape that only a finer grid holds."""
     stored = stored_stitch(StitchChart.parse(text), "cotton")
     found = bend(StoredTask.of(stored))
     expected = document_of(stored.bending)

@@ -11,9 +11,10 @@ from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.bending import FabricBending, bending_response, repeat_bending
-from knitcore.yarnlevel.bent_cell import BentCell, Deformation, settled
+from knitcore.yarnlevel.bent_cell import GRID, BentCell, Deformation, settled
 from knitcore.yarnlevel.relax import RelaxedRepeat, relax
 from knitcore.yarnlevel.samples import load_samples
+from knitcore.yarnlevel.splines import refined
 
 REPEATS = {"stockinette": "K", "garter": "P\nK", "rib": "KP", "seed": "PK\nKP"}
 
@@ -137,6 +138,15 @@ def test_the_state_that_an_instability_leads_to_is_bent_too() -> None:
     assert found.stable is found.unmirrored
     assert found.unmirrored.minimum
     assert found.ratios == pytest.approx((0.82, 0.45), abs=0.01)
+
+
+def test_a_finer_grid_finds_the_same_shape() -> None:
+    coarse = _relaxed("KKP")
+    fine = refined(coarse, GRID)
+    assert fine.cell.grid == GRID
+    assert fine.branch is coarse.branch
+    assert fine.energy_n_mm == pytest.approx(coarse.energy_n_mm, rel=1e-3)
+    assert fine.cell_course_mm == pytest.approx(coarse.cell_course_mm, rel=5e-3)
 
 
 def test_a_minimum_has_no_other_state() -> None:
