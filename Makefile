@@ -154,6 +154,7 @@ types: $(VENV)/.installed-dev ## Make the page's types and the client from the s
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
 	$(BIN)/python -m scripts.stored_stitches $(OPTIONS)
 	$(BIN)/python -m scripts.lowest_stitches
+	$(BIN)/python -m scripts.bending_stitches
 
 # --- upkeep -----------------------------------------------------------------------------------
 lock: $(VENV)/.installed-dev ## Pin the dependencies again

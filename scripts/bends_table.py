@@ -1,4 +1,7 @@
-"""Make the library's table of bending again: ``python -m scripts.bends_table``."""
+"""Make the table of bending again: ``python -m scripts.bends_table``.
+
+It has the library's materials whose repeats are not in the store.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from pathlib import Path
 from knitcore.fabric import Fabric
 from knitcore.materials.library import load_library
 from knitcore.shell.bends import Bend, computed
+from knitcore.yarnlibrary.store import MATERIALS
 
 FILE = Path(__file__).parent.parent / "knitcore" / "shell" / "data" / "bends.csv"
 
@@ -18,6 +22,8 @@ if __name__ == "__main__":
         writer = csv.DictWriter(stream, ["material", "fabric", *names], lineterminator="\n")
         writer.writeheader()
         for identifier, material in load_library().items():
+            if identifier in MATERIALS:
+                continue
             for fabric in Fabric:
                 bend = computed(fabric, material)
                 values = {name: f"{getattr(bend, name):.5g}" for name in names}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Literal
 
 from pydantic import Field
@@ -12,19 +13,17 @@ from app.models.base import ResultModel
 from app.models.laws import LawsRequest
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.registry import Command, Operation
-from knitcore.errors import ConvergenceError, UnravelledError
 from knitcore.yarnlevel.bending import (
     MAX_STITCHES,
     Curl,
-    FabricBending,
+    RepeatBending,
     bending_length_mm,
-    bending_response,
+    repeat_bending,
 )
 from knitcore.yarnlevel.bent_cell import BendingResponse
-from knitcore.yarnlevel.relax import Branch, OnSplines, RelaxedRepeat, relax
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlibrary.store import stored_for
 
-COMPARED_UP_TO = 9
-"""Repeats of up to this many stitches are also relaxed without symmetry, for comparison."""
 FAR_APART = 1.5
 """A note is added where the two states differ by this factor or more."""
 _FRICTIONLESS = (
@@ -84,7 +83,8 @@ class BendResult(ResultModel):
 
 def bend(request: BendRequest, context: Context) -> BendResult:
     """Bending rigidity, curl and shear of the repeat, relaxed with the chart's symmetries and
-    compared with a relaxation without them.
+    compared with the minimum that it goes to without them. Those of the packaged repeats are
+    stored.
 
     Raises
     ------
@@ -96,34 +96,24 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     repeat = request.repeat(MAX_STITCHES)
     used = request.yarn(repeat, context)
     loop = used.loop_length_mm
-
-    def relaxed(branch: OnSplines) -> RelaxedRepeat:
-        return relax(repeat, used.yarn, loop, branch=branch, cancelled=context.cancelled)
-
-    mirrored = relaxed(Branch.MIRRORED)
-    notes = [_FRICTIONLESS]
-    found = free = None
-    try:
-        found = bending_response(mirrored)
-    except ConvergenceError as error:
-        notes.append(f"With the symmetries of the chart: {error}")
-    if found is None or (not found.minimum and repeat.stitches <= COMPARED_UP_TO):
-        try:
-            free = bending_response(relaxed(Branch.FREE))
-        except (ConvergenceError, UnravelledError) as error:
-            notes.append(f"Without them: {error}")
-    shown = found or free
-    if shown is None:
-        raise ConvergenceError(" ".join(notes[1:]))
-    branch = "mirrored" if shown is found else "free"
-    notes += _compared(found, free)
-    stable = free if free is not None and not shown.minimum else shown
+    stored = stored_for(repeat, used)
+    if stored is not None and stored.bending is not None:
+        found, whence = stored.bending, ", stored"
+        area = stored.cell_course_mm * stored.cell_wale_mm
+    else:
+        relaxed = relax(repeat, used.yarn, loop, branch="mirrored", cancelled=context.cancelled)
+        found, whence = repeat_bending(relaxed, cancelled=context.cancelled), ""
+        area = relaxed.cell_course_mm * relaxed.cell_wale_mm
+    shown, stable = found.shown, found.stable
+    notes = [_FRICTIONLESS, *_failures(found), *_compared(found)]
     density = request.linear_density_g_per_m
-    area = mirrored.cell_course_mm * mirrored.cell_wale_mm
     weight = None if density is None else 1e-6 * STANDARD_GRAVITY * density * loop / area  # N/mm²
     shear = stable.shear_modulus_n_per_mm
     if shear is not None and shear <= 0.0:
         notes.append("The courses slide over each other freely: the shear modulus is not positive.")
+    if stable.oblique is not None and min(d.rigidity_n_mm for d in stable.oblique) <= 0.0:
+        notes.append("It folds by itself along a diagonal: the rigidity there is not positive.")
+    symmetry = "with" if found.mirrored is not None else "without"
     return BendResult.of(
         shown,
         moment_course_n=shown.course.moment_n,
@@ -139,8 +129,8 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         bending_length_course_mm=_hanging(shown.course, weight),
         bending_length_wale_mm=_hanging(shown.wale, weight),
         stable=shown.minimum,
-        provenance=f"yarn level, linear response of the relaxed repeat ({branch} branch); yarn: "
-        f"{used.provenance}",
+        provenance="yarn level, linear response of the repeat, relaxed "
+        f"{symmetry} the symmetries of its chart{whence}; yarn: {used.provenance}",
         yarn=YarnResult.of(used, used.yarn),
         notes=notes,
     )
@@ -152,20 +142,27 @@ def _hanging(response: BendingResponse, weight_n_per_mm2: float | None) -> float
     return bending_length_mm(response.rigidity_n_mm, weight_n_per_mm2)
 
 
-def _compared(mirrored: FabricBending | None, free: FabricBending | None) -> list[str]:
-    """A note where the state without symmetries differs."""
-    if mirrored is None or free is None:
-        return []
-    both = {
-        "along the rows": (mirrored.course.rigidity_n_mm, free.course.rigidity_n_mm),
-        "along the columns": (mirrored.wale.rigidity_n_mm, free.wale.rigidity_n_mm),
-    }
-    return [
-        f"Bent {way}, the rigidity is {second:.3g} N·mm without the symmetries of the chart, "
-        f"{max(first / second, second / first):.1f} times apart: treat it as a range."
-        for way, (first, second) in both.items()
-        if max(first / second, second / first) > FAR_APART
-    ]
+def _failures(found: RepeatBending) -> Iterator[str]:
+    """Notes on what could not be bent."""
+    if found.failure:
+        yield f"With the symmetries of the chart: {found.failure}"
+    if found.unmirrored_failure:
+        yield f"Without them: {found.unmirrored_failure}"
+
+
+def _compared(found: RepeatBending) -> Iterator[str]:
+    """Notes where the state without symmetries differs."""
+    if found.ratios is None or found.unmirrored is None:
+        return
+    free = found.unmirrored.course.rigidity_n_mm, found.unmirrored.wale.rigidity_n_mm
+    ways = "along the rows", "along the columns"
+    for way, rigidity, ratio in zip(ways, free, found.ratios, strict=True):
+        apart = max(ratio, 1.0 / ratio)
+        if apart > FAR_APART:
+            yield (
+                f"Bent {way}, the rigidity is {rigidity:.3g} N·mm without the symmetries of the "
+                f"chart, {apart:.1f} times apart: treat it as a range."
+            )
 
 
 def _lines(r: BendResult) -> list[str]:

@@ -27,13 +27,10 @@ from knitcore.materials.uncertainty import (
 from knitcore.phases import pure_fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.hysteresis import History, rest_sizes
-from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
+from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlibrary.yarns import ChartYarn, phase_shares
-
-FOLLOWED_UP_TO = 16
-"""Free cells of up to this many stitches are also followed without their symmetries."""
 
 
 class RelaxRequest(RubbedRequest):
@@ -216,7 +213,7 @@ def _unmirrored(
     cell: RelaxedCell, context: Context
 ) -> tuple[UnmirroredResult | None, tuple[str, ...]]:
     """What becomes of the shape without its symmetries, and a note where it does not stay."""
-    if not isinstance(cell, RelaxedRepeat) or not can_be_followed(cell, FOLLOWED_UP_TO):
+    if not isinstance(cell, RelaxedRepeat) or not can_be_followed(cell):
         return None, ()
     try:
         found = without_mirrors(cell, cancelled=context.cancelled)

@@ -10,12 +10,13 @@ from importlib.resources import files
 from types import MappingProxyType
 
 from knitcore.chart import StitchChart
+from knitcore.errors import ConvergenceError
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
-from knitcore.yarnlevel.bending import bending_response
+from knitcore.yarnlevel.bending import FabricBending, bending_response
 from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.yarns import yarn_for
+from knitcore.yarnlibrary.store import stored_for
+from knitcore.yarnlibrary.yarns import ChartYarn, yarn_for
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,8 @@ class Bend:
 def bends_of(material: Material) -> Mapping[Fabric, Bend]:
     """Bending of the four fabrics of a material, relaxed with their symmetries.
 
-    Those of the library come with the package (``data/bends.csv``, made by
-    ``scripts/bends_table.py``); others take a second or two.
+    Acrylic and cotton are in the store of repeats. The library's other materials are in
+    ``data/bends.csv``, which ``scripts/bends_table.py`` makes; others take a second or two.
 
     Raises
     ------
@@ -57,9 +58,25 @@ def bends_of(material: Material) -> Mapping[Fabric, Bend]:
 
 
 def computed(fabric: Fabric, material: Material) -> Bend:
-    """Bending of a fabric, from the yarn level."""
-    used = yarn_for(material, StitchChart.of_fabric(fabric, rows=2, columns=2).repeat())
-    return _bend(fabric, used.yarn, used.loop_length_mm)
+    """Bending of a fabric at the yarn level, from the store of repeats if it is there."""
+    repeat = StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
+    return _bend(fabric, yarn_for(material, repeat))
+
+
+def mirrored_bending(repeat: StitchChart, used: ChartYarn) -> FabricBending:
+    """Bending of a repeat with the symmetries of its chart, stored or else computed.
+
+    Raises
+    ------
+    ConvergenceError
+        If it does not relax, or folds by itself.
+    """
+    stored = stored_for(repeat, used)
+    if stored is None or stored.bending is None:
+        return bending_response(relax(repeat, used.yarn, used.loop_length_mm))
+    if stored.bending.mirrored is None:
+        raise ConvergenceError(stored.bending.failure)
+    return stored.bending.mirrored
 
 
 @cache
@@ -74,9 +91,9 @@ def _stored() -> Mapping[str, Mapping[Fabric, Bend]]:
 
 
 @lru_cache(maxsize=256)
-def _bend(fabric: Fabric, yarn: YarnModel, loop_length_mm: float) -> Bend:
+def _bend(fabric: Fabric, used: ChartYarn) -> Bend:
     repeat = StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
-    found = bending_response(relax(repeat, yarn, loop_length_mm))
+    found = mirrored_bending(repeat, used)
     curls = fabric is Fabric.STOCKINETTE  # the others look the same from the back
     return Bend(
         curvature_course_per_mm=found.course.curvature_per_mm if curls else 0.0,

@@ -23,10 +23,9 @@ from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
 from knitcore.materials.loops import loop_lengths_mm
 from knitcore.phases import pure_fabric, quarter_phases
-from knitcore.shell.bends import bends_of
+from knitcore.shell.bends import bends_of, mirrored_bending
 from knitcore.shell.sheet import TWIST, Net, StitchSheet
-from knitcore.yarnlevel.bending import MAX_STITCHES, ROLLS_FROM, bending_length_mm, bending_response
-from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.bending import MAX_STITCHES, ROLLS_FROM, bending_length_mm
 from knitcore.yarnlibrary.yarns import yarn_for
 
 _MAX_POISSON = 0.95
@@ -240,8 +239,7 @@ def _bent(
         )
     if repeat.stitches > MAX_STITCHES:
         return _mean_bend(repeat, material)
-    used = yarn_for(material, repeat)
-    found = bending_response(relax(repeat, used.yarn, used.loop_length_mm))
+    found = mirrored_bending(repeat, yarn_for(material, repeat))
     return (
         (found.course.rigidity_n_mm, found.wale.rigidity_n_mm),
         (found.course.curvature_per_mm, found.wale.curvature_per_mm),

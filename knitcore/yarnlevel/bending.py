@@ -7,14 +7,15 @@ not been shaken out is stiffer.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from knitcore.chart import check_stitches
 from knitcore.choice import Choice
-from knitcore.errors import ConvergenceError, InputError
+from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.bent_cell import BendingResponse, settled
+from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
 from knitcore.yarnlevel.splines import RelaxedRepeat
 
 MAX_STITCHES = 36
@@ -22,7 +23,7 @@ MAX_STITCHES = 36
 ROLLS_FROM = 0.5
 """Half thickness times natural curvature from which free edges roll up."""
 OBLIQUE = np.pi / 4.0
-"""Angle of the third bending, from the course, rad."""
+"""Angle of the diagonals along which it is bent too, from the course, rad."""
 
 
 class Curl(Choice):
@@ -40,7 +41,8 @@ class FabricBending:
     Parameters
     ----------
     course, wale : bent along the rows, and along the columns.
-    oblique : bent at 45° to both; None where the state is not a minimum.
+    oblique : bent along the diagonals that rise and fall to the right, at 45°; None where the state
+        is not a minimum.
     shear_modulus_n_per_mm : resistance to moving the courses sideways, both sizes free, N/mm; None
         where the state is not a minimum.
     thickness_mm : extent of the yarn across the fabric.
@@ -50,7 +52,7 @@ class FabricBending:
 
     course: BendingResponse
     wale: BendingResponse
-    oblique: BendingResponse | None
+    oblique: tuple[BendingResponse, BendingResponse] | None
     shear_modulus_n_per_mm: float | None
     thickness_mm: float
     minimum: bool
@@ -84,12 +86,97 @@ class FabricBending:
         """Combined coupling and twist rigidity D₁ + 2 D₆₆, N·mm.
 
         From D(45°) = (D_x + D_y) / 4 + (D₁ + 2 D₆₆) / 2 with D₁ between the two curvatures and
-        D₆₆ of the twist; bending into a cylinder does not separate the two.
+        D₆₆ of the twist; bending into a cylinder does not separate the two. D(45°) is the mean over
+        both diagonals, which differ where the chart is not its own mirror image.
         """
         if self.oblique is None:
             return None
         straight = 0.25 * (self.course.rigidity_n_mm + self.wale.rigidity_n_mm)
-        return 2.0 * (self.oblique.rigidity_n_mm - straight)
+        rising, falling = self.oblique
+        return rising.rigidity_n_mm + falling.rigidity_n_mm - 2.0 * straight
+
+    def unstable(self) -> FabricBending:
+        """The same of a state that is a minimum in its repeat, but not in a larger cell."""
+        return replace(self, oblique=None, shear_modulus_n_per_mm=None, minimum=False)
+
+    def mirror_image(self) -> FabricBending:
+        """The same with left and right exchanged."""
+        return self if self.oblique is None else replace(self, oblique=self.oblique[::-1])
+
+    def swapped(self) -> FabricBending:
+        """The same with knits for purls: front and back exchanged."""
+        oblique = self.oblique
+        return replace(
+            self,
+            course=self.course.swapped(),
+            wale=self.wale.swapped(),
+            oblique=None if oblique is None else (oblique[0].swapped(), oblique[1].swapped()),
+        )
+
+
+@dataclass(frozen=True)
+class RepeatBending:
+    """Bending of a repeat with its symmetries, and without them where it has a lower shape.
+
+    Parameters
+    ----------
+    mirrored : with the symmetries of the chart; None where it was refused, for the reason in
+        ``failure``.
+    unmirrored : of the minimum that the instability leads to; None where there is no instability,
+        where it was not followed, or where it was refused (``unmirrored_failure``).
+    """
+
+    mirrored: FabricBending | None
+    unmirrored: FabricBending | None = None
+    failure: str = ""
+    unmirrored_failure: str = ""
+
+    def mirror_image(self) -> RepeatBending:
+        """The same with left and right exchanged."""
+        return replace(
+            self,
+            mirrored=self.mirrored and self.mirrored.mirror_image(),
+            unmirrored=self.unmirrored and self.unmirrored.mirror_image(),
+        )
+
+    def swapped(self) -> RepeatBending:
+        """The same with knits for purls: front and back exchanged."""
+        return replace(
+            self,
+            mirrored=self.mirrored and self.mirrored.swapped(),
+            unmirrored=self.unmirrored and self.unmirrored.swapped(),
+        )
+
+    @property
+    def shown(self) -> FabricBending:
+        """With symmetries if possible.
+
+        Raises
+        ------
+        ConvergenceError
+            If no state has positive rigidities.
+        """
+        found = self.mirrored or self.unmirrored
+        if found is None:
+            raise ConvergenceError(" ".join(filter(None, (self.failure, self.unmirrored_failure))))
+        return found
+
+    @property
+    def stable(self) -> FabricBending:
+        """What is shown, or the minimum that it goes to if it is not one itself."""
+        shown = self.shown
+        return shown if shown.minimum else self.unmirrored or shown
+
+    @property
+    def ratios(self) -> tuple[float, float] | None:
+        """Rigidities without symmetries over those with them, along the rows and the columns; None
+        unless both are known."""
+        if self.mirrored is None or self.unmirrored is None:
+            return None
+        return (
+            self.unmirrored.course.rigidity_n_mm / self.mirrored.course.rigidity_n_mm,
+            self.unmirrored.wale.rigidity_n_mm / self.mirrored.wale.rigidity_n_mm,
+        )
 
 
 def bending_length_mm(rigidity_n_mm: float, weight_n_per_mm2: float) -> float:
@@ -116,9 +203,10 @@ def bending_response(relaxed: RelaxedRepeat) -> FabricBending:
     ------
     InputError
         If the repeat was held, or is too large.
-    ConvergenceError
+    ConvergenceError, UnravelledError
         If the repeat is not in equilibrium without its symmetries, or folds spontaneously: a
-        rigidity along rows or columns is not positive.
+        rigidity along rows or columns is not positive. :func:`repeat_bending` has the state that it
+        goes to.
     """
     check_stitches(relaxed.chart.stitches, MAX_STITCHES, "its repeat")
     if relaxed.flat or relaxed.slides:
@@ -129,16 +217,46 @@ def bending_response(relaxed: RelaxedRepeat) -> FabricBending:
     course, wale = cell.bent(0.0), cell.bent(0.5 * np.pi)
     if min(course.rigidity_n_mm, course.held_n_mm, wale.rigidity_n_mm, wale.held_n_mm) <= 0.0:
         raise ConvergenceError(
-            "The relaxed repeat folds spontaneously: a bending rigidity is not positive. Relax it "
-            "in the free branch."
+            "The relaxed repeat folds spontaneously: a bending rigidity is not positive."
         )
     minimum = cell.is_minimum()
     extent = np.ptp(cell.curve[:, 0, 2]) + 2.0 * relaxed.yarn.radius_mm
     return FabricBending(
         course=course,
         wale=wale,
-        oblique=cell.bent(OBLIQUE) if minimum else None,
+        oblique=(cell.bent(OBLIQUE), cell.bent(-OBLIQUE)) if minimum else None,
         shear_modulus_n_per_mm=cell.sheared() if minimum else None,
         thickness_mm=float(extent),
         minimum=minimum,
     )
+
+
+def repeat_bending(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> RepeatBending:
+    """Bending of a mirrored repeat, and of the minimum that its instability leads to.
+
+    Parameters
+    ----------
+    relaxed : free of force. Where it can be bent, its instability is followed in free cells of up
+        to ``FOLLOWED_UP_TO`` stitches only.
+
+    Raises
+    ------
+    InputError
+        If the repeat was held, or is too large.
+    """
+    mirrored = unmirrored = None
+    failure = unmirrored_failure = ""
+    try:
+        mirrored = bending_response(relaxed)
+    except (ConvergenceError, UnravelledError) as error:
+        failure = str(error)
+    if can_be_followed(relaxed, MAX_STITCHES if mirrored is None else FOLLOWED_UP_TO):
+        try:
+            followed = without_mirrors(relaxed, cancelled=cancelled)
+            if not followed.minimum:
+                if mirrored is not None:
+                    mirrored = mirrored.unstable()
+                unmirrored = bending_response(followed.state)
+        except (ConvergenceError, UnravelledError) as error:
+            unmirrored_failure = str(error)
+    return RepeatBending(mirrored, unmirrored, failure, unmirrored_failure)

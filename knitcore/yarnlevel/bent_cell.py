@@ -27,7 +27,7 @@ Shear is the same with a skewed cell: the next course is moved sideways.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -41,7 +41,7 @@ from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.splines import RelaxedRepeat
+from knitcore.yarnlevel.splines import RelaxedRepeat, refined
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 
 _STEP = 1e-3
@@ -95,9 +95,30 @@ class BendingResponse:
         """Curvature at which the linear moment vanishes, 1/mm; positive has the face outside."""
         return -self.moment_n / self.rigidity_n_mm
 
+    def swapped(self) -> BendingResponse:
+        """The same with front and back exchanged."""
+        turned = {"moment_n": 0.0 - self.moment_n, "strain_across_mm": 0.0 - self.strain_across_mm}
+        return replace(self, **turned)  # without -0.0
+
 
 def settled(relaxed: RelaxedRepeat) -> BentCell:
-    """The whole repeat without symmetries, at its minimum and at mean height zero."""
+    """The whole repeat without symmetries, in equilibrium and at mean height zero.
+
+    Raises
+    ------
+    ConvergenceError, UnravelledError
+        If it has no equilibrium nearby, also after it relaxed again on a finer grid.
+    """
+    found = _by_newton(relaxed)
+    if found is None and relaxed.cell.grid.samples < GRID.samples:
+        found = _by_newton(refined(relaxed, GRID))
+    if found is None:
+        raise ConvergenceError("Its shape changes when its symmetries are dropped.")
+    return found
+
+
+def _by_newton(relaxed: RelaxedRepeat) -> BentCell | None:
+    """Steps from the relaxed state; None if one of them leads away from it."""
     cell = plain_cell(relaxed.chart, relaxed.cell.grid)
     state = tiled_state(relaxed.cell, relaxed.state, cell)
     heights = cell.dof[..., 2]
@@ -125,9 +146,7 @@ def settled(relaxed: RelaxedRepeat) -> BentCell:
         if longest > _STRIDE:
             break
         state, tension = state + step, tension + change
-    raise ConvergenceError(
-        "Without its symmetries the relaxed repeat changes shape. Relax it in the free branch."
-    )
+    return None
 
 
 class BentCell:
@@ -191,7 +210,7 @@ class BentCell:
         by_state[_COURSE] -= first * cos**2 * course / stitch**2
         by_state[_WALE] -= first * sin**2 * wale / stitch**2
         free, moved = self._stiffness(second, by_state, by_length, None)
-        held, _ = self._stiffness(second, by_state, by_length, _WALE if cos > sin else _COURSE)
+        held, _ = self._stiffness(second, by_state, by_length, _WALE if cos > abs(sin) else _COURSE)
         strains = np.array([moved[_COURSE] / course, moved[_WALE] / wale])
         area = self.area_mm2
         across = float(strains @ (sin**2, cos**2))

@@ -23,6 +23,8 @@ from knitcore.yarnlevel.tiling import tiled_state
 
 MAX_STITCHES = 100
 """Largest free cell."""
+FOLLOWED_UP_TO = 16
+"""Free cells of up to this many stitches are followed along with every relaxation or bending."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +69,7 @@ def followed(
     return found
 
 
-def can_be_followed(relaxed: RelaxedRepeat, most_stitches: int = MAX_STITCHES) -> bool:
+def can_be_followed(relaxed: RelaxedRepeat, most_stitches: int = FOLLOWED_UP_TO) -> bool:
     """Whether a repeat has mirrors to drop, and no more stitches without them than given."""
     stitches = free_cell(relaxed.chart, relaxed.cell.grid).stitches
     return relaxed.branch is Branch.MIRRORED and not _held(relaxed) and stitches <= most_stitches

@@ -29,7 +29,7 @@ from knitcore.yarnlevel.search import (
 from knitcore.yarnlevel.slides import SlideConstraint
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.tiling import centre_lines
+from knitcore.yarnlevel.tiling import centre_lines, refined_state
 from knitcore.yarnlevel.yarn import YarnModel
 
 MAX_STITCHES = 400
@@ -185,6 +185,27 @@ def drafted(
         return plain_cell(repeat, COARSE), repeat, lengths
     cell_of = mirrored_cell if branch is Branch.MIRRORED else free_cell
     return cell_of(repeat, COARSE), repeat, lengths
+
+
+def refined(relaxed: RelaxedRepeat, grid: SplineGrid) -> RelaxedRepeat:
+    """A repeat relaxed again on a finer grid, from the shape that it has.
+
+    Raises
+    ------
+    ConvergenceError, UnravelledError
+        If this leads to no state of the fabric.
+    """
+    energy = replace(relaxed.energy, cell=replace(relaxed.cell, grid=grid))
+    state = refined_state(relaxed.cell, relaxed.state, energy.cell)
+    clock = time.process_time()
+    found = minimise(energy, state, tension=relaxed.tension_n, options=Options(tolerance=1e-6))
+    became = outcome(energy, found)
+    if became != RELAXED:
+        raise ConvergenceError(f"On a finer grid it does not settle: {became}.")
+    return relaxed_repeat(
+        relaxed.chart, energy, relaxed.branch, found, seconds=time.process_time() - clock,
+        evaluations=found.evaluations, notes=relaxed.notes,
+    )  # fmt: skip
 
 
 def relaxed_repeat(

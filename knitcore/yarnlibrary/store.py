@@ -2,13 +2,14 @@
 
 ``data/stitches.json`` holds sizes, energies and laws, ``data/stitches.npz`` control points;
 ``scripts/stored_stitches.py`` makes both. ``data/lowest.json`` records which of them are minima
-without their mirrors (``scripts/lowest_stitches.py``).
+without their mirrors (``scripts/lowest_stitches.py``), ``data/bending.json`` how they bend
+(:mod:`knitcore.yarnlibrary.bending_table`).
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cache
 from importlib.resources import files
 from io import BytesIO
@@ -21,12 +22,15 @@ from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.yarnlevel.bending import RepeatBending
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.kernels import sample_curve
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarnlibrary.bending_table import stored_bending
 from knitcore.yarnlibrary.catalogue import placement
+from knitcore.yarnlibrary.yarns import ChartYarn
 
 MATERIALS = ("acrylic", "cotton")
 
@@ -80,6 +84,8 @@ class StoredStitch:
     controls : (rows, columns * N, 3) control points over the repeat without the drift, mm.
     free : the repeat without imposed symmetry, for repeats of a known name.
     unmirrored : what becomes of it without its symmetries; None where that was not found out.
+    bending : its curling moments, bending rigidities and shear modulus; None where they were not
+        computed.
     """
 
     chart: StitchChart
@@ -102,6 +108,7 @@ class StoredStitch:
     controls: Array
     free: FreeStitch | None = None
     unmirrored: Unmirrored | None = None
+    bending: RepeatBending | None = None
 
     @property
     def lowest_energy_n_mm(self) -> float:
@@ -146,12 +153,15 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
     if placed is None:
         return None
     points = np.asarray(_controls()[f"{material_id}/{representative.key}"], dtype=float)
+    bending = stored_bending(f"{material_id}/{representative.key}")
     per_stitch = points.shape[1] // repeat.columns
     if placed.mirror:
         # t -> columns - t turns control c into control -c, and stitch i into columns - 1 - i
         points = np.roll(points[:, ::-1], 1, axis=1) * (-1.0, 1.0, 1.0)
+        bending = bending and bending.mirror_image()
     if placed.swap:
         points = points * (1.0, 1.0, -1.0)
+        bending = bending and bending.swapped()
     points = np.roll(points, (placed.up, placed.right * per_stitch), axis=(0, 1))
     free = entry.get("free", {"failure": "not relaxed freely"})
     unmirrored = _unmirrored().get(f"{material_id}/{representative.key}", {"failure": "not tried"})
@@ -167,7 +177,21 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
         controls=points,
         free=None if "failure" in free else FreeStitch(**{**free, "law": _law(free)}),
         unmirrored=None if "failure" in unmirrored else Unmirrored(**unmirrored),
+        bending=bending,
     )
+
+
+def stored_for(chart: StitchChart, used: ChartYarn) -> StoredStitch | None:
+    """The packaged relaxation of a chart's repeat in this yarn, at this loop length; None if there
+    is none."""
+    wanted = (*astuple(used.yarn), used.loop_length_mm)
+    for material_id in MATERIALS:
+        found = stored_stitch(chart, material_id)
+        if found is not None and np.allclose(
+            (*astuple(found.yarn), found.loop_length_mm), wanted, rtol=1e-9, atol=0.0
+        ):
+            return found
+    return None
 
 
 def stored_fabric(fabric: Fabric, material_id: str) -> StoredStitch:

@@ -8,7 +8,11 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.context import Context
-from app.operations.bend import BendRequest, bend
+from app.operations.bend import BendRequest, BendResult, bend
+from knitcore.chart import StitchChart
+from knitcore.errors import ConvergenceError
+from knitcore.materials import material
+from knitcore.yarnlibrary.yarns import yarn_for
 from tests.app.command_line import run
 
 
@@ -34,11 +38,39 @@ def test_states_that_differ_much_are_noted() -> None:
     assert any("treat it as a range" in note for note in bent.notes)
 
 
+def test_packaged_repeats_are_bent_from_the_store(monkeypatch: pytest.MonkeyPatch) -> None:
+    def bent(loop_length_mm: float | None = None) -> BendResult:
+        request = BendRequest(chart="PPK", material="acrylic", loop_length_mm=loop_length_mm)
+        return bend(request, Context(Path()))
+
+    near = bent(1.0001 * yarn_for(material("acrylic"), StitchChart.parse("PPK")).loop_length_mm)
+    assert "stored" not in near.provenance
+    monkeypatch.setattr("app.operations.bend.relax", None)
+    stored = bent()
+    assert "stored" in stored.provenance
+    assert stored.curl_course == near.curl_course == "front"
+    assert stored.bending_course_n_mm == pytest.approx(near.bending_course_n_mm, rel=0.01)
+    assert stored.moment_wale_n == pytest.approx(near.moment_wale_n, rel=0.01)
+    assert stored.thickness_mm == pytest.approx(near.thickness_mm, rel=0.01)
+    assert stored.notes[0] == near.notes[0]
+
+
+def test_a_repeat_that_folds_by_itself_is_refused() -> None:
+    with pytest.raises(ConvergenceError, match="folds spontaneously"):
+        bend(BendRequest(chart="KP\nKK", material="acrylic"), Context(Path()))
+
+
 def test_a_repeat_too_large_to_bend_is_refused(client: TestClient) -> None:
     chart = "\n".join("K" * row + "P" * (40 - row) for row in range(1, 9))
     answer = client.post("/api/v1/bend", json={"chart": chart, "material": "acrylic"})
     assert answer.status_code == 422
     assert answer.json()["field"] == "chart"
+
+
+def test_a_fold_along_a_diagonal_is_noted() -> None:
+    bent = bend(BendRequest(chart="P\nK", material="acrylic"), Context(Path()))
+    assert bent.stable
+    assert any("along a diagonal" in note for note in bent.notes)
 
 
 def test_bend_on_the_command_line() -> None:

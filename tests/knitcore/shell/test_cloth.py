@@ -13,6 +13,7 @@ from knitcore.materials import material
 from knitcore.shell.bends import bends_of
 from knitcore.shell.cloth import EvenCloth, cloth_of, stitch_corners, stitch_weights_n
 from knitcore.shell.sheet import sheet_of
+from knitcore.yarnlibrary.store import stored_stitch
 
 ACRYLIC = material("acrylic")
 GARTER = StitchChart.parse("K/P")
@@ -29,6 +30,16 @@ def test_a_pure_fabric_has_the_size_and_bending_of_its_stitches() -> None:
     assert cloth.stitch_mm == pytest.approx((record.stitch_course_mm, record.stitch_wale_mm))
     assert cloth.rigidity_n_mm == (bend.rigidity_course_n_mm, bend.rigidity_wale_n_mm)
     assert not cloth.curls
+
+
+def test_packaged_repeats_are_bent_from_the_store(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("knitcore.shell.bends.relax", None)
+    stored = stored_stitch(StitchChart.parse("PPK"), "acrylic")
+    assert stored is not None
+    assert stored.bending is not None
+    bent, cloth = stored.bending.shown, _cloth("PPK")
+    assert cloth.rigidity_n_mm == (bent.course.rigidity_n_mm, bent.wale.rigidity_n_mm)
+    assert cloth.curvature_per_mm == (bent.course.curvature_per_mm, bent.wale.curvature_per_mm)
 
 
 def test_stretched_it_has_the_modulus_of_the_answer() -> None:

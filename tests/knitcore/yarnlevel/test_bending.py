@@ -10,10 +10,11 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.yarnlevel.bending import FabricBending, bending_response
-from knitcore.yarnlevel.bent_cell import BentCell, Deformation, settled
+from knitcore.yarnlevel.bending import FabricBending, bending_response, repeat_bending
+from knitcore.yarnlevel.bent_cell import GRID, BentCell, Deformation, settled
 from knitcore.yarnlevel.relax import RelaxedRepeat, relax
 from knitcore.yarnlevel.samples import load_samples
+from knitcore.yarnlevel.splines import refined
 
 REPEATS = {"stockinette": "K", "garter": "P\nK", "rib": "KP", "seed": "PK\nKP"}
 
@@ -126,6 +127,34 @@ def test_a_state_that_is_not_a_minimum_without_mirrors_is_marked() -> None:
     assert seed.shear_modulus_n_per_mm is None
     assert seed.twist_n_mm is None
     assert _bending("K").minimum
+
+
+def test_the_state_that_an_instability_leads_to_is_bent_too() -> None:
+    found = repeat_bending(_relaxed("KP", "rib"))
+    assert found.mirrored is not None
+    assert found.unmirrored is not None
+    assert not found.mirrored.minimum  # it is one in its repeat, but not in two of them
+    assert found.mirrored.shear_modulus_n_per_mm is None
+    assert found.stable is found.unmirrored
+    assert found.unmirrored.minimum
+    assert found.ratios == pytest.approx((0.82, 0.45), abs=0.01)
+
+
+def test_a_finer_grid_finds_the_same_shape() -> None:
+    coarse = _relaxed("KKP")
+    fine = refined(coarse, GRID)
+    assert fine.cell.grid == GRID
+    assert fine.branch is coarse.branch
+    assert fine.energy_n_mm == pytest.approx(coarse.energy_n_mm, rel=1e-3)
+    assert fine.cell_course_mm == pytest.approx(coarse.cell_course_mm, rel=5e-3)
+
+
+def test_a_minimum_has_no_other_state() -> None:
+    found = repeat_bending(_relaxed("K"))
+    assert found.unmirrored is None
+    assert found.ratios is None
+    assert found.stable is found.shown is found.mirrored
+    assert found.mirrored == _bending("K")
 
 
 def test_a_repeat_that_is_held_flat_is_refused() -> None:
