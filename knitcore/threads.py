@@ -10,12 +10,13 @@ import os
 import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from functools import cache
-from typing import Any, TypeVar
+from functools import cache, wraps
+from typing import Any, ParamSpec, TypeVar
 
 from threadpoolctl import ThreadpoolController
 
 Result = TypeVar("Result")
+Given = ParamSpec("Given")
 
 
 def side_by_side(first: Callable[[], Result], second: Callable[[], Result]) -> list[Result]:
@@ -57,6 +58,17 @@ def on_halves(work: Callable[[Any], Result], of: Any, least: int) -> list[Result
 def one_blas_thread() -> AbstractContextManager[Any]:
     """A context in which BLAS uses one thread; the caller's setting is restored afterwards."""
     limited: AbstractContextManager[Any] = _controller().limit(limits=1, user_api="blas")
+    return limited
+
+
+def in_one_blas_thread(work: Callable[Given, Result]) -> Callable[Given, Result]:
+    """A function during whose calls BLAS uses one thread."""
+
+    @wraps(work)
+    def limited(*args: Given.args, **named: Given.kwargs) -> Result:
+        with one_blas_thread():
+            return work(*args, **named)
+
     return limited
 
 

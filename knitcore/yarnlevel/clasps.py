@@ -27,6 +27,7 @@ from scipy.sparse.linalg import splu
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
+from knitcore.threads import in_one_blas_thread
 from knitcore.yarnlevel.cell import YarnCell, plain_cell
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.start import start_state
@@ -205,6 +206,7 @@ def _determinants(found: Array, courses: int, points: int) -> Array:
     return np.array(codes)
 
 
+@in_one_blas_thread
 def _log_modulus(matrix: sparse.coo_array) -> float:
     """Logarithm of the modulus of a determinant."""
     if matrix.shape[0] <= _DENSE_UP_TO:

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
+from knitcore.threads import in_one_blas_thread
 from knitcore.yarnlevel.elimination_order import Dissection
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
 from knitcore.yarnlevel.fronts import Room
@@ -117,6 +118,7 @@ class Minimum:
     evaluations: int
 
 
+@in_one_blas_thread
 def minimise(
     energy: CellEnergy,
     state: Array,

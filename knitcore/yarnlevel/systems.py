@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from knitcore.arrays import Array
-from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel.energy import Slope
 from knitcore.yarnlevel.fronts import Front, FrontalFactor, Room
 
@@ -129,40 +128,36 @@ class DenseSystem(System):
         super().__init__(slope, penalty, free)
         self._single = single
         assert slope.hessian is not None  # noqa: S101 - a system is made of both derivatives
-        with one_blas_thread():
-            # the Hessian of the penalty, added in place (the matrix is symmetric)
-            self._hessian = blas.dgemm(
-                penalty, slope.lengths, slope.lengths, beta=1.0, c=slope.hessian.T,
-                trans_a=True, overwrite_c=True,
-            )  # fmt: skip
+        # the Hessian of the penalty, added in place (the matrix is symmetric)
+        self._hessian = blas.dgemm(
+            penalty, slope.lengths, slope.lengths, beta=1.0, c=slope.hessian.T,
+            trans_a=True, overwrite_c=True,
+        )  # fmt: skip
 
     def _factorised(self, damping: float) -> bool:
         matrix = self._hessian.T
         if len(self._held):
             matrix = matrix[np.ix_(self._free, self._free)]
-        with one_blas_thread():
-            if self._single:
-                self._scale = 1.0 / np.sqrt(np.abs(np.diagonal(matrix)) + damping)
-                lower = _scaled(matrix, self._scale, damping)
-                self._factor, info = lapack.spotrf(lower.T, lower=0, overwrite_a=1, clean=0)
-            else:
-                damped = matrix.copy()
-                damped[np.diag_indices_from(damped)] += damping
-                self._factor, info = lapack.dpotrf(damped.T, lower=0, overwrite_a=1, clean=0)
+        if self._single:
+            self._scale = 1.0 / np.sqrt(np.abs(np.diagonal(matrix)) + damping)
+            lower = _scaled(matrix, self._scale, damping)
+            self._factor, info = lapack.spotrf(lower.T, lower=0, overwrite_a=1, clean=0)
+        else:
+            damped = matrix.copy()
+            damped[np.diag_indices_from(damped)] += damping
+            self._factor, info = lapack.dpotrf(damped.T, lower=0, overwrite_a=1, clean=0)
         return int(info) == 0
 
     def _through_factor(self, right: Array) -> Array:
         """The damped matrix's inverse times the columns given."""
-        with one_blas_thread():
-            if self._single:
-                scaled, _ = lapack.spotrs(self._factor, right * self._scale[:, None], lower=0)
-                return np.asarray(scaled * self._scale[:, None])
-            found, _ = lapack.dpotrs(self._factor, right, lower=0)
+        if self._single:
+            scaled, _ = lapack.spotrs(self._factor, right * self._scale[:, None], lower=0)
+            return np.asarray(scaled * self._scale[:, None])
+        found, _ = lapack.dpotrs(self._factor, right, lower=0)
         return np.asarray(found)
 
     def _times(self, step: Array) -> Array:
-        with one_blas_thread():
-            return np.asarray(self._hessian @ step)
+        return np.asarray(self._hessian @ step)
 
     def _downhill_gradient(self, slope: Slope, excess: Array, remaining: Array) -> Array:
         gradient = slope.gradient[self._free]
@@ -188,12 +183,11 @@ class SparseSystem(System):
         self._beside = slope.sparse.sizes[self._sizes, :-2].T
 
     def _factorised(self, damping: float) -> bool:
-        with one_blas_thread():
-            if not self._factor.factorise(damping):
-                return False
-            if not len(self._sizes):
-                return True
-            self._through = self._factor.solve(self._beside)
+        if not self._factor.factorise(damping):
+            return False
+        if not len(self._sizes):
+            return True
+        self._through = self._factor.solve(self._beside)
         corner = self._hessian.sizes[np.ix_(self._sizes, self._sizes - 2)]
         corner = corner + damping * np.eye(len(corner))
         self._rest = corner - self._beside.T @ self._through
@@ -201,8 +195,7 @@ class SparseSystem(System):
 
     def _through_factor(self, right: Array) -> Array:
         local = self._hessian.sizes.shape[1] - 2
-        with one_blas_thread():
-            found = self._factor.solve(right[:local])
+        found = self._factor.solve(right[:local])
         if not len(self._sizes):
             return found
         sizes = np.linalg.solve(self._rest, right[local:] - self._through.T @ right[:local])
