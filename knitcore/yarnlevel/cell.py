@@ -66,6 +66,11 @@ class YarnCell:
         return (-1 if self.mirror_course else 1), (-1 if self.mirror_wale else 1)
 
     @property
+    def symmetric(self) -> bool:
+        """Whether a symmetry is imposed."""
+        return self.mirror_course or self.mirror_wale or self.axis is not None
+
+    @property
     def controls_per_course(self) -> int:
         """Control points of one course."""
         return self.wales * self.grid.controls

@@ -19,7 +19,7 @@ from knitcore.yarnlevel.published.stitch import published_fabric
 from knitcore.yarnlevel.results import Branch, RelaxedCell
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.splines import MAX_STITCHES, RelaxedRepeat, drafted, relax_splines
-from knitcore.yarnlevel.whole import SECONDS_PER_STITCH, best_in_windows, relax_whole
+from knitcore.yarnlevel.whole import SECONDS_PER_STITCH, WINDOWS_FROM, explored, relax_whole
 from knitcore.yarnlevel.yarn import YarnModel
 
 __all__ = ["Branch", "OnSplines", "RelaxedRepeat", "relax"]
@@ -96,7 +96,7 @@ def relax(
     grid : resolution; by default finer for small cells.
     starts : by default two, and four in the free branch (fewer for large cells). Cells of 100 and
         more stitches without symmetry, nothing else prescribed, are relaxed by
-        :func:`~knitcore.yarnlevel.whole.relax_whole`.
+        :func:`~knitcore.yarnlevel.whole.relax_whole`, smaller ones of 12 and more begin like this.
     time_limit_s : refuse a cell that would probably take more CPU time.
     cancelled : called before every step; True stops with CancelledError.
 
@@ -112,18 +112,21 @@ def relax(
     """
     kind, factors = Branch.parse(branch), Convention.parse(convention)
     if kind is not Branch.PUBLISHED:
-        cell, repeat, lengths = drafted(chart, loop_length_mm, kind)
-        free_of_choice = (cell_course_mm, cell_wale_mm, grid, starts) == (None,) * 4
-        if free_of_choice and lengths.ndim == 1 and best_in_windows(cell):
+        cell, _, lengths = drafted(chart, loop_length_mm, kind)
+        prescribed = flat or (cell_course_mm, cell_wale_mm, grid, starts) != (None,) * 4
+        in_rounds = not (prescribed or cell.symmetric) and lengths.ndim == 1
+        if in_rounds and cell.stitches >= WINDOWS_FROM:
             check_stitches(cell.stitches, MAX_STITCHES, "its cell")
             check_time(cell.stitches, lambda stitches: SECONDS_PER_STITCH * stitches, time_limit_s)
             found = relax_whole(
-                repeat, yarn, lengths, convention=factors, flat=flat, cancelled=cancelled
-            )
+                StitchChart(cell.purl), yarn, np.resize(lengths, cell.rows),
+                convention=factors, cancelled=cancelled,
+            )  # fmt: skip
             return replace(found, branch=kind)
         return relax_splines(
             chart, yarn, loop_length_mm, branch=kind, convention=factors,
             sizes_mm=(cell_course_mm, cell_wale_mm), flat=flat, grid=grid, starts=starts,
+            explore=explored if in_rounds else None,
             time_limit_s=time_limit_s, cancelled=cancelled,
         )  # fmt: skip
     if flat or grid is not None or starts is not None or np.size(loop_length_mm) != 1:

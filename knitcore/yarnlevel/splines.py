@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -111,11 +111,13 @@ def relax_splines(
     starts: Sequence[Start] | None,
     time_limit_s: float | None,
     cancelled: Cancelled | None,
+    explore: Callable[[CellEnergy, Cancelled | None], Minimum] | None = None,
 ) -> RelaxedRepeat:
     """Shape of least energy of a repeat, free of force unless a size is prescribed.
 
     Parameters and errors are those of :func:`knitcore.yarnlevel.relax.relax`; ``sizes_mm`` are the
-    sizes of a stitch to hold, course-wise and wale-wise.
+    sizes of a stitch to hold, course-wise and wale-wise. Large cells take the shape that
+    ``explore`` finds on the coarse grid in place of the usual start.
     """
     draft, repeat, lengths = drafted(chart, loop_length_mm, branch)
     for length in lengths.ravel():
@@ -155,7 +157,10 @@ def relax_splines(
             smaller, _starts(Branch.MIRRORED, small, None), shakes,
             follow=draft.stitches <= SEVERAL_UP_TO,
         )  # fmt: skip
-    search.try_starts(chosen)
+    if explore is not None and explored == ROUGH:
+        search.run("rounds", lambda: explore(energy, cancelled))
+    else:
+        search.try_starts(chosen)
     best = search.best()
     if explored != grid:
         energy = replace(

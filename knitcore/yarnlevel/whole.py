@@ -28,7 +28,7 @@ from knitcore.errors import (
     check_cancelled,
 )  # fmt: skip
 from knitcore.threads import on_halves, one_blas_thread
-from knitcore.yarnlevel.cell import YarnCell, plain_cell
+from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import (
@@ -72,6 +72,8 @@ _LAST_PASS = Options(tolerance=1e-6, iterations=6)
 _DESCENT_STEPS = 20
 _SIZES = 10.0
 """Sizes may still change by so many times the tolerance: near its least the energy hardly does."""
+_EXPLORED = 4e-3
+"""Tolerance of rounds that Newton steps follow."""
 _REPEAT = 36
 """A chart with a repeat of up to this many stitches starts from that, relaxed."""
 _PATIENCE = 12
@@ -91,6 +93,7 @@ class WholeShape:
     fine : whether it is on the finer of the two grids.
     rounds : energy of a stitch, N·mm, its width and its height, mm, after each round on this grid.
     earlier : rounds on the coarser grid, once on the finer one.
+    evaluations : of the energy, in windows and of the sheet.
     """
 
     controls: Array
@@ -100,6 +103,7 @@ class WholeShape:
     fine: bool = False
     rounds: tuple[tuple[float, float, float], ...] = ()
     earlier: int = 0
+    evaluations: int = 0
 
     @property
     def state(self) -> Array:
@@ -224,10 +228,19 @@ def relax_whole(
         return work.relaxed(resume)
 
 
-def best_in_windows(cell: YarnCell) -> bool:
-    """Whether a cell is large, and has no symmetry that windows would lose."""
-    symmetric = cell.axis is not None or -1 in cell.mirror
-    return cell.stitches >= WINDOWS_FROM and not symmetric
+def explored(energy: CellEnergy, cancelled: Cancelled | None = None) -> Minimum:
+    """Where rounds lead from the first shape of a cell without symmetry, on the coarser grid.
+
+    ``energy`` is that of the cell on this grid. Mostly this shape is lower than the one to which
+    Newton's method leads from there.
+    """
+    work = _Work(
+        StitchChart(energy.cell.purl), energy.yarn, energy.loop_length_mm, energy.convention,
+        False, _EXPLORED, MAX_ROUNDS, None, None, cancelled,
+    )  # fmt: skip
+    with one_blas_thread():
+        sheet = work.settled(work.grown(work.first_shape()))
+        return work.minimum(work.energy(sheet), sheet)[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,13 +260,13 @@ class _Work:
         clock = time.process_time()
         sheet = self._first() if resume is None else self._checked(resume)
         if not sheet.fine:
-            sheet = self._settled(self._grown(sheet))
+            sheet = self.settled(self.grown(sheet))
             sheet = self._refined(sheet)
-        sheet = self._settled(self._grown(sheet))
+        sheet = self.settled(self.grown(sheet))
         energy = self.energy(sheet)
         for number in range(len(_FIRSTS)):  # again where windows failed and the lengths with them
             sheet = self._one_pass(sheet, energy, _LAST_PASS, number)
-            found, left_n = self._minimum(energy, sheet)
+            found, left_n = self.minimum(energy, sheet)
             if not overlong(energy, found):
                 break
         became = outcome(energy, found)
@@ -267,7 +280,7 @@ class _Work:
         )
         repeat = relaxed_repeat(
             self.chart, replace(energy, flat=self.flat), Branch.FREE, found,
-            seconds=time.process_time() - clock, evaluations=0, notes=(note,),
+            seconds=time.process_time() - clock, evaluations=sheet.evaluations, notes=(note,),
         )  # fmt: skip
         return RelaxedChart(
             **vars(repeat), rounds=rounds, energy_change=sheet.energy_change,
@@ -289,6 +302,10 @@ class _Work:
         uniform = bool(np.ptp(self.loop_lengths_mm) == 0.0)
         if uniform and repeat <= _REPEAT and repeat < self.chart.stitches:
             return self._tiled()
+        return self.first_shape()
+
+    def first_shape(self) -> WholeShape:
+        """The first shape of the whole chart, with as thick a core as fits."""
         cell = plain_cell(self.chart, ROUGH)
         height = START_HEIGHT * self.yarn.radius_mm
         state = start_state(cell, float(self.loop_lengths_mm.mean()), height)
@@ -322,7 +339,7 @@ class _Work:
         core = core_that_fits(self.yarn, distance, opening)
         return replace(sheet, core_radius_mm=core)
 
-    def _grown(self, sheet: WholeShape) -> WholeShape:
+    def grown(self, sheet: WholeShape) -> WholeShape:
         """The sheet with its yarn's whole core."""
         stuck = 0
         for round_ in range(MAX_ROUNDS):
@@ -339,7 +356,7 @@ class _Work:
             self._tell(sheet)
         raise ConvergenceError(does_not_fit(self.yarn, sheet.core_radius_mm))
 
-    def _settled(self, sheet: WholeShape) -> WholeShape:
+    def settled(self, sheet: WholeShape) -> WholeShape:
         """Rounds until the energy settles."""
         while sheet.change > self.tolerance and len(sheet.rounds) < self.rounds:
             number = len(sheet.rounds)
@@ -356,6 +373,7 @@ class _Work:
                 sheet, controls=energy.cell.controls(found.state), sizes_mm=found.state[-2:],
                 tension_n=np.tile(found.tension[:, None], energy.cell.wales),
                 rounds=(*sheet.rounds, (per_stitch, wide, high)),
+                evaluations=sheet.evaluations + found.evaluations,
             )  # fmt: skip
             self._tell(sheet)
         return sheet
@@ -378,8 +396,9 @@ class _Work:
         curve = energy.curve(sheet.state)
         missing = energy.loop_length_mm - row_lengths(energy.cell, curve) / energy.cell.wales
 
-        def settled(window: Window) -> Callable[[], None] | None:
-            """What lays the relaxed window into the sheet; None where it cannot be relaxed."""
+        def settled(window: Window) -> Callable[[], int] | None:
+            """What lays the relaxed window into the sheet and tells how many evaluations it took;
+            None where it cannot be relaxed."""
             rows, wales = window
             part, state = window_energy(
                 energy, controls, sheet.sizes_mm, window, missing, flat=self.flat
@@ -393,25 +412,26 @@ class _Work:
             except (ConvergenceError, UnravelledError):  # the next windows divide it elsewhere
                 return None
 
-            def lay() -> None:
+            def lay() -> int:
                 place = np.ix_(rows.stitches, each(wales.stitches, energy.cell.grid.controls))
                 block = controls[place]
                 block[part.cell.free] = found.state[:-2].reshape(-1, 3)
                 controls[place] = block
                 tension[np.ix_(rows.own, wales.own)] = found.tension[: len(rows.own), None]
+                return found.evaluations
 
             return lay
 
-        laid = 0
+        laid, evaluations = 0, sheet.evaluations
         for some in _side_by_side(self._windows(energy, sheet, number)):
             check_cancelled(self.cancelled)
             for lay in chain.from_iterable(on_halves(lambda of: [*map(settled, of)], some, 2)):
                 if lay is not None:
-                    lay()
+                    evaluations += lay()
                     laid += 1
         if not laid:
             raise UnravelledError("No window of the chart could be relaxed.")
-        return replace(sheet, controls=controls, tension_n=tension)
+        return replace(sheet, controls=controls, tension_n=tension, evaluations=evaluations)
 
     def _windows(self, energy: CellEnergy, sheet: WholeShape, number: int) -> list[Window]:
         """Windows with as many resting stitches around them as strands reach."""
@@ -426,7 +446,7 @@ class _Work:
         pairs, _ = energy.pairs(curve, sheet.state, reach)
         return Clearance(energy.cell, sheet.state, curve, pairs, reach, 2.0 * self.yarn.radius_mm)
 
-    def _minimum(self, energy: CellEnergy, sheet: WholeShape) -> tuple[Minimum, float]:
+    def minimum(self, energy: CellEnergy, sheet: WholeShape) -> tuple[Minimum, float]:
         """The sheet as a minimum, and the largest force that is left, N."""
         clearance = self._clearance(energy, sheet)
         terms = energy.value(sheet.state, clearance.curve, clearance.pairs)
@@ -442,7 +462,7 @@ class _Work:
         found = Minimum(
             state=sheet.state, tension=tension, terms=terms, force=slope.gradient[-2:].copy(),
             min_distance_mm=clearance.min_distance_mm, converged=sheet.change <= self.tolerance,
-            stable=False, steps=0, evaluations=0,
+            stable=False, steps=0, evaluations=sheet.evaluations,
         )  # fmt: skip
         return found, float(np.abs(left).max())
 

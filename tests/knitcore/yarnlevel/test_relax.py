@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import knitcore.yarnlevel.relax as relax_module
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
@@ -13,9 +14,11 @@ from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.growth import Start, grow
 from knitcore.yarnlevel.relax import Branch, relax
 from knitcore.yarnlevel.samples import load_samples, sample
+from knitcore.yarnlevel.search import SAME_ENERGY
 from knitcore.yarnlevel.solver import COURSE, Options, minimise
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.tiling import tiled_state
+from knitcore.yarnlevel.whole import RelaxedChart
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.yarns import yarn_for
 
@@ -181,6 +184,33 @@ def test_a_cell_that_is_too_large_is_refused():
         relax(chart, STUDY_YARN, 11.28)
     with pytest.raises(InputError, match="at most 100"):
         relax(chart, STUDY_YARN, 11.28, flat=True)
+
+
+LARGE = StitchChart(np.random.default_rng(1).random((4, 4)) < 0.5)
+
+
+def test_large_cells_begin_with_rounds_that_lead_at_least_as_low_as_newton_steps():
+    entry = sample("acrylic", "stockinette")
+    direct = relax(LARGE, entry.yarn, entry.loop_length_mm, starts=[Start("usual")])
+    rounds = relax(LARGE, entry.yarn, entry.loop_length_mm)
+    assert [start.name for start in rounds.starts] == ["rounds"]
+    assert rounds.converged
+    assert rounds.evaluations > 0
+    assert rounds.energy_n_mm < (1.0 + SAME_ENERGY) * direct.energy_n_mm
+
+
+def test_the_largest_cells_are_relaxed_in_windows(monkeypatch):
+    monkeypatch.setattr(relax_module, "WINDOWS_FROM", 12)
+    entry = sample("cotton", "stockinette")
+    small = StitchChart(LARGE.purl[:3])
+    found = relax(small, entry.yarn, entry.loop_length_mm)
+    assert isinstance(found, RelaxedChart)
+    assert found.branch is Branch.MIRRORED
+    assert found.converged
+    direct = relax(small, entry.yarn, entry.loop_length_mm, starts=[Start("usual")])
+    assert found.energy_n_mm == pytest.approx(direct.energy_n_mm, rel=0.01)
+    with pytest.raises(InputError, match="at most 4 stitches"):
+        relax(small, entry.yarn, entry.loop_length_mm, time_limit_s=1.0)
 
 
 def test_the_published_branch_relaxes_pure_fabrics_with_one_loop_length_only():
