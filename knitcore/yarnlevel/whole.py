@@ -73,7 +73,7 @@ _DESCENT_STEPS = 20
 _SIZES = 10.0
 """Sizes may still change by so many times the tolerance: near its least the energy hardly does."""
 _EXPLORED = 4e-3
-"""Tolerance of rounds that Newton steps follow."""
+"""Least tolerance on the coarser grid."""
 _REPEAT = 36
 """A chart with a repeat of up to this many stitches starts from that, relaxed."""
 _PATIENCE = 12
@@ -358,7 +358,8 @@ class _Work:
 
     def settled(self, sheet: WholeShape) -> WholeShape:
         """Rounds until the energy settles."""
-        while sheet.change > self.tolerance and len(sheet.rounds) < self.rounds:
+        enough = self.tolerance if sheet.fine else max(self.tolerance, _EXPLORED)
+        while sheet.change > enough and len(sheet.rounds) < self.rounds:
             number = len(sheet.rounds)
             energy = self.energy(sheet)
             sheet = self._one_pass(sheet, energy, _PASS, number)
