@@ -5,7 +5,10 @@ tenth also takes a few steps of a stretch. The result must be finite, with the r
 no overlapping cores and clasps as knitted. Errors of Knitcore's own classes are allowed; others
 are crashes.
 
-    python benchmarks/yarnlevel_stress.py --trials 1000 --minutes 30
+    python benchmarks/yarnlevel_stress.py --trials 1000 --minutes 30 [--largest 3]
+
+Charts have up to ``--largest`` rows and columns. Cells of twelve stitches and more begin with
+rounds of windows, not from a rough start.
 """
 
 from __future__ import annotations
@@ -26,13 +29,14 @@ from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.stitch import Stitch
 from knitcore.yarnlevel.relax import OnSplines, RelaxedRepeat, relax
 from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlevel.splines import ROUGH_FROM
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.yarn import YarnModel
 
-_LARGEST = 3
+LARGEST = 3
 
 
-def trial(seed: int) -> str:
+def trial(seed: int, largest: int = LARGEST) -> str:
     """Outcome of one random relaxation: its kind, or the fault in it."""
     rng = np.random.default_rng(seed)
     radius = float(10.0 ** rng.uniform(-1.0, 0.7))
@@ -48,7 +52,7 @@ def trial(seed: int) -> str:
             fabric = list(Fabric)[rng.integers(4)]
             published = relax_published(fabric, yarn, length, starts=2)
             return _judged_published(published, Stitch(fabric, yarn), length)
-        rows, columns = rng.integers(1, _LARGEST + 1, 2)
+        rows, columns = rng.integers(1, largest + 1, 2)
         chart = StitchChart(rng.random((rows, columns)) < 0.5)
         start = Start(
             "random", course=float(rng.uniform(0.7, 1.5)), wale=float(rng.uniform(0.7, 1.5)),
@@ -56,7 +60,8 @@ def trial(seed: int) -> str:
         )  # fmt: skip
         small = rows * columns <= 4
         branch: OnSplines = "free" if rng.random() < 0.2 and small else "mirrored"
-        found = relax(chart, yarn, length, branch=branch, starts=[start])
+        starts = [start] if chart.stitches < ROUGH_FROM else None
+        found = relax(chart, yarn, length, branch=branch, starts=starts)
         outcome = _judged(found)
         if outcome == "relaxed" and seed % 10 == 0:
             along = Direction.COURSE if rng.random() < 0.5 else Direction.WALE
@@ -93,14 +98,14 @@ def _judged_published(found: RelaxedCell, stitch: Stitch, length: float) -> str:
     return "published, relaxed"
 
 
-def run(trials: int, seconds: float, first: int = 0) -> Counter[str]:
+def run(trials: int, seconds: float, first: int = 0, largest: int = LARGEST) -> Counter[str]:
     """Count the outcomes of so many trials, or of as many as the time allows."""
     outcomes: Counter[str] = Counter()
     began = time.monotonic()
     for seed in range(first, first + trials):
         if time.monotonic() - began > seconds:
             break
-        outcome = trial(seed)
+        outcome = trial(seed, largest)
         outcomes[outcome] += 1
         if outcome.startswith("WRONG"):
             print(f"seed {seed}: {outcome}", flush=True)
@@ -113,9 +118,10 @@ def main() -> None:
     parser.add_argument("--trials", type=int, default=60)
     parser.add_argument("--first", type=int, default=0, help="seed of the first trial")
     parser.add_argument("--minutes", type=float, default=5.0, help="stop after this time")
+    parser.add_argument("--largest", type=int, default=LARGEST, help="rows and columns of a chart")
     asked = parser.parse_args()
     began = time.process_time()
-    outcomes = run(asked.trials, 60.0 * asked.minutes, asked.first)
+    outcomes = run(asked.trials, 60.0 * asked.minutes, asked.first, asked.largest)
     for outcome, count in outcomes.most_common():
         print(f"{count:6d}  {outcome}")
     wrong = sum(n for outcome, n in outcomes.items() if outcome.startswith("WRONG"))

@@ -213,6 +213,7 @@ def _part(sheet: CellEnergy, state: Array, tension: Array, window: Window, flat:
     damping, longest = _DAMPING, _LONGEST * sheet.yarn.radius_mm
     while not (system.factorise(damping * unit) and _is_short(system, slope, longest)):
         damping = max(_GROWTH * damping, _INDEFINITE_DAMPING)
+    system.free_matrix()  # the factors of all windows are kept at a time
     places = np.arange(controls.size).reshape(controls.shape)
     places = places[np.ix_(rows.stitches, each(wales.stitches, sheet.cell.grid.controls))]
     unknowns = places[energy.cell.free].ravel()

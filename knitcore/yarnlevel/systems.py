@@ -8,6 +8,7 @@ the prescribed lengths.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import replace
 
 import numba
 import numpy as np
@@ -17,6 +18,7 @@ from scipy.linalg import blas, lapack
 from knitcore.arrays import Array
 from knitcore.yarnlevel.energy import Slope
 from knitcore.yarnlevel.fronts import Front, FrontalFactor, Room
+from knitcore.yarnlevel.kernels import one_tile
 
 
 class System(ABC):
@@ -200,6 +202,11 @@ class SparseSystem(System):
             return found
         sizes = np.linalg.solve(self._rest, right[local:] - self._through.T @ right[:local])
         return np.concatenate([found - self._through @ sizes, sizes])
+
+    def free_matrix(self) -> None:
+        """Free what only another factor, or a predicted decrease, would need."""
+        self._factor.free_matrix()
+        self._hessian = replace(self._hessian, matrix=one_tile(0))
 
     def _times(self, step: Array) -> Array:
         by_length = self._penalty * (self._lengths @ step)
