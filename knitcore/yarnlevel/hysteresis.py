@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -166,14 +166,17 @@ class RubbedStretch:
     Attributes
     ----------
     state : reached so far.
-    along : direction of the pull; the other one is free of force.
+    along : direction of the pull.
     coefficient : of friction between yarns.
+    across_mm : size of a stitch across the pull, by its size along it; None where it is free of
+        force.
     """
 
     state: RubbedCell
     along: Direction
     coefficient: float
     cancelled: Cancelled | None = None
+    across_mm: Callable[[float], float] | None = None
     note: str = ""
 
     def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedRepeat:
@@ -187,8 +190,13 @@ class RubbedStretch:
         del known  # the forces of friction are in the state
         check_cancelled(self.cancelled)
         if abs(size_mm - self.state.cell.cell_mm(self.along)) > _THERE * size_mm:
-            place = (COURSE if self.along is Direction.COURSE else WALE,)
-            self._step(fixed=place, target=np.array([size_mm, size_mm]))
+            if self.across_mm is None:
+                place = (COURSE if self.along is Direction.COURSE else WALE,)
+                self._step(fixed=place, target=np.array([size_mm, size_mm]))
+            else:
+                across = self.across_mm(size_mm)
+                sizes = self.along.of((size_mm, across), (across, size_mm))
+                self._step(fixed=(COURSE, WALE), target=np.array(sizes))
         return self.state.cell
 
     def release(self, stride_mm: float) -> Iterator[RelaxedRepeat]:
@@ -217,9 +225,10 @@ def pull(
     *,
     points: int = DEFAULT_POINTS,
     max_stress_n_per_mm: float | None = None,
+    across: Callable[[float], float] | None = None,
     cancelled: Cancelled | None = None,
 ) -> Leg:
-    """Pull in one direction with friction, from the agitated state, the other direction free.
+    """Pull in one direction with friction, from the agitated state.
 
     Where the yarn locks or unravels, the pull ends, with a note. Parameters and errors are those of
     :func:`hysteresis`, and:
@@ -227,10 +236,16 @@ def pull(
     Parameters
     ----------
     max_stress_n_per_mm : stop beyond this nominal stress.
+    across : strain of the other direction, by that of the pull: 0 throughout holds the width, for
+        example. By default the other direction is free of force.
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, max_stress_n_per_mm)
-    stretch = RubbedStretch(agitated(relaxed), along, coefficient, cancelled)
+    long, wide = relaxed.cell_mm(along), relaxed.cell_mm(along.other)
+    stretch = RubbedStretch(
+        agitated(relaxed), along, coefficient, cancelled,
+        across and (lambda size_mm: wide * (1.0 + across(size_mm / long - 1.0))),
+    )  # fmt: skip
     return _pulled(stretch, relaxed, np.linspace(0.0, max_strain, points), max_stress_n_per_mm)
 
 

@@ -119,7 +119,7 @@ class RelaxedCell:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A stretch in one direction while the other is free of force.
+    """A stretch in one direction while the other is free of force, or its size prescribed.
 
     Parameters
     ----------
@@ -147,6 +147,12 @@ class Sweep:
     def transverse_strain(self) -> Array:
         """Strain across the stretch (negative where the fabric narrows)."""
         return self._strain(self.direction.other)
+
+    @property
+    def transverse_stress_n_per_mm(self) -> Array:
+        """Nominal stress across the stretch; 0 where that direction is free of force."""
+        across, size = self.direction.other, self.zero.cell_mm(self.direction)
+        return np.array([cell.force_n[across.axis] / size for cell in self.cells])
 
     @property
     def energy_n_mm(self) -> Array:

@@ -174,10 +174,11 @@ def _off_work(cells: list[RelaxedCell], along: Direction) -> set[int]:
     scale = max((c.energy_n_mm for c in cells), default=0.0)
     for i in range(1, len(cells)):
         before, after = cells[i - 1], cells[i]
-        work = (
+        work = sum(
             0.5
-            * (before.force_n[along.axis] + after.force_n[along.axis])
-            * (after.cell_mm(along) - before.cell_mm(along))
+            * (before.force_n[way.axis] + after.force_n[way.axis])
+            * (after.cell_mm(way) - before.cell_mm(way))
+            for way in (along, along.other)
         )
         missed = abs(after.energy_n_mm - before.energy_n_mm - work)
         if missed > _OFF_WORK * abs(work) and missed > SAME_ENERGY * scale:
