@@ -29,6 +29,8 @@ CROSSING = 0.75
 of the yarn between its samples."""
 SAFETY = 0.95
 """Part of the free distance that a step may use."""
+_LEAST_SHIFT = 1e-300
+"""So that nothing is divided by zero, mm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +74,9 @@ class Clearance:
             shift = self.changes_mm(state, curve)
             allowed = min(allowed, pair_cap_mm / max(float(shift.max()), 1e-300))
             spacing = self._spacing(curve, allowed)
-            room = np.maximum(self.distances_mm - CROSSING * spacing, 0.0) * SAFETY
-            allowed = min(allowed, float((room / np.maximum(shift, 1e-300)).min()))
+            room = np.maximum(self.distances_mm - CROSSING * spacing, 0.0)
+            room /= np.maximum(shift, _LEAST_SHIFT, out=shift)  # in place: there may be millions
+            allowed = min(allowed, SAFETY * float(room.min()))
         return allowed
 
     def approach_mm(self, state: Array, curve: Array) -> float:

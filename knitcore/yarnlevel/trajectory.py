@@ -111,6 +111,7 @@ class Trajectory:
         """Take a certified step from here."""
         self._reach -= step.approach_mm
         if self._reach < (2.0 + RENEW) * self._radius:
+            del self.clearance, self._pairs  # in a large sheet the list is most of the memory
             self._list(step.to.curve, step.to.state)
         self._stand(step.to)
 
