@@ -239,8 +239,8 @@ def explored(energy: CellEnergy, cancelled: Cancelled | None = None) -> Minimum:
         False, _EXPLORED, MAX_ROUNDS, None, None, cancelled,
     )  # fmt: skip
     with one_blas_thread():
-        sheet = work.settled(work.grown(work.first_shape()))
-        return work.minimum(work.energy(sheet), sheet)[0]
+        _, found, _ = work.mended(work.settled(work.grown(work.first_shape())))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,13 +262,8 @@ class _Work:
         if not sheet.fine:
             sheet = self.settled(self.grown(sheet))
             sheet = self._refined(sheet)
-        sheet = self.settled(self.grown(sheet))
+        sheet, found, left_n = self.mended(self.settled(self.grown(sheet)))
         energy = self.energy(sheet)
-        for number in range(len(_FIRSTS)):  # again where windows failed and the lengths with them
-            sheet = self._one_pass(sheet, energy, _LAST_PASS, number)
-            found, left_n = self.minimum(energy, sheet)
-            if not overlong(energy, found):
-                break
         became = outcome(energy, found)
         if became not in (RELAXED, UNSETTLED):
             raise UnravelledError(f"The relaxed chart is not a fabric: {became}.")
@@ -286,6 +281,17 @@ class _Work:
             **vars(repeat), rounds=rounds, energy_change=sheet.energy_change,
             size_change=sheet.size_change, may_fall=sheet.may_fall, largest_force_n=left_n,
         )  # fmt: skip
+
+    def mended(self, sheet: WholeShape) -> tuple[WholeShape, Minimum, float]:
+        """The sheet after a last pass that gives every course its length, as a minimum, and the
+        largest force that is left, N."""
+        energy = self.energy(sheet)
+        for number in range(len(_FIRSTS)):  # again where windows failed and the lengths with them
+            sheet = self._one_pass(sheet, energy, _LAST_PASS, number)
+            found, left_n = self._minimum(energy, sheet)
+            if not overlong(energy, found):
+                break
+        return sheet, found, left_n
 
     def energy(self, sheet: WholeShape) -> CellEnergy:
         """Energy of the whole sheet."""
@@ -447,7 +453,7 @@ class _Work:
         pairs, _ = energy.pairs(curve, sheet.state, reach)
         return Clearance(energy.cell, sheet.state, curve, pairs, reach, 2.0 * self.yarn.radius_mm)
 
-    def minimum(self, energy: CellEnergy, sheet: WholeShape) -> tuple[Minimum, float]:
+    def _minimum(self, energy: CellEnergy, sheet: WholeShape) -> tuple[Minimum, float]:
         """The sheet as a minimum, and the largest force that is left, N."""
         clearance = self._clearance(energy, sheet)
         terms = energy.value(sheet.state, clearance.curve, clearance.pairs)

@@ -189,8 +189,9 @@ def test_a_cell_that_is_too_large_is_refused():
 LARGE = StitchChart(np.random.default_rng(1).random((4, 4)) < 0.5)
 
 
-def test_large_cells_begin_with_rounds_that_lead_at_least_as_low_as_newton_steps():
-    entry = sample("acrylic", "stockinette")
+@pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
+def test_large_cells_begin_with_rounds_that_lead_at_least_as_low_as_newton_steps(yarn):
+    entry = sample(yarn, "stockinette")
     direct = relax(LARGE, entry.yarn, entry.loop_length_mm, starts=[Start("usual")])
     rounds = relax(LARGE, entry.yarn, entry.loop_length_mm)
     assert [start.name for start in rounds.starts] == ["rounds"]
