@@ -232,8 +232,15 @@ class CellEnergy:
         parts = on_halves(listed, np.arange(len(curve)), _SAMPLES_TO_SHARE)
         if len(parts) == 1:
             return parts[0]
-        (pairs, start), (more, later) = parts
-        return np.concatenate([pairs, more]), np.concatenate([start[:-1], later + len(pairs)])
+        (pairs, start), (_, later) = parts
+        start = np.concatenate([start[:-1], later + len(pairs)])
+        joined = np.empty((start[-1], pairs.shape[1]), np.int32)
+        end = len(joined)
+        while parts:  # each half is freed before the next is copied
+            pairs, _ = parts.pop()
+            joined[end - len(pairs) : end] = pairs
+            end -= len(pairs)
+        return joined, start
 
     @cached_property
     def speeds(self) -> Array:
