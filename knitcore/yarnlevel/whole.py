@@ -269,9 +269,9 @@ class _Work:
             raise UnravelledError(f"The relaxed chart is not a fabric: {became}.")
         rounds = sheet.earlier + len(sheet.rounds)
         note = (
-            f"The last of {rounds} rounds took {sheet.energy_change:.2%} of the energy "
-            f"away and changed a size by {sheet.size_change:.2%}; more rounds may take up to "
-            f"{sheet.may_fall:.1%} away. Forces of up to {left_n:.1e} N are left on the yarn."
+            f"The last of {rounds} rounds changed the energy by {-sheet.energy_change:+.2%} and a "
+            f"size by {sheet.size_change:.2%}; more rounds may take up to {sheet.may_fall:.1%} of "
+            f"the energy away. Forces of up to {left_n:.1e} N are left on the yarn."
         )
         repeat = relaxed_repeat(
             self.chart, replace(energy, flat=self.flat), Branch.FREE, found,
