@@ -64,7 +64,10 @@ class BendResult(ResultModel):
     shear_modulus_n_per_mm: float | None = Field(
         description="Null where no stable state was found."
     )
-    twist_n_mm: float | None = Field(description="D1 + 2 D66, from bending at 45°.")
+    twist_n_mm: float | None = Field(
+        description="Rigidity of twist D66; null where no stable state was found, as is the next."
+    )
+    coupling_n_mm: float | None = Field(description="Coupling D1 of the two curvatures.")
     thickness_mm: float
     curl: str = Field(description="How free edges curl.")
     curl_course: Curl = Field(description="The way the sides curl.")
@@ -113,6 +116,8 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         notes.append("The courses slide over each other freely: the shear modulus is not positive.")
     if stable.oblique is not None and min(d.rigidity_n_mm for d in stable.oblique) <= 0.0:
         notes.append("It folds by itself along a diagonal: the rigidity there is not positive.")
+    if stable.twist_n_mm is not None and stable.twist_n_mm <= 0.0:
+        notes.append("A strip of it twists by itself: the rigidity of twist is not positive.")
     symmetry = "with" if found.mirrored is not None else "without"
     return BendResult.of(
         shown,
@@ -126,6 +131,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         strain_across_wale_mm=shown.wale.strain_across_mm,
         shear_modulus_n_per_mm=shear,
         twist_n_mm=stable.twist_n_mm,
+        coupling_n_mm=stable.coupling_n_mm,
         bending_length_course_mm=_hanging(shown.course, weight),
         bending_length_wale_mm=_hanging(shown.wale, weight),
         stable=shown.minimum,
@@ -165,6 +171,10 @@ def _compared(found: RepeatBending) -> Iterator[str]:
             )
 
 
+def _rigidity(value_n_mm: float | None) -> str:
+    return "unknown" if value_n_mm is None else f"{value_n_mm:.4f} N·mm"
+
+
 def _lines(r: BendResult) -> list[str]:
     shear = (
         "unknown" if r.shear_modulus_n_per_mm is None else f"{r.shear_modulus_n_per_mm:.4f} N/mm"
@@ -183,6 +193,8 @@ def _lines(r: BendResult) -> list[str]:
         )
     return [
         *lines,
+        f"twist           {_rigidity(r.twist_n_mm)} (D66)",
+        f"coupling        {_rigidity(r.coupling_n_mm)} (D1, between the two curvatures)",
         f"shear modulus   {shear}",
         f"thickness       {r.thickness_mm:.2f} mm",
         f"free edges      {r.curl}",

@@ -43,6 +43,10 @@ class FabricBending:
     course, wale : bent along the rows, and along the columns.
     oblique : bent along the diagonals that rise and fall to the right, at 45°; None where the state
         is not a minimum.
+    twist_n_mm : rigidity of twist D₆₆, N·mm: twisting by κ_xy costs 2 D₆₆ κ_xy² per area; both
+        sizes are free. None where the state is not a minimum.
+    coupling_n_mm : D₁, N·mm: curvatures along both directions at once cost D₁ κ_x κ_y more per area
+        than each alone. None where the state is not a minimum.
     shear_modulus_n_per_mm : resistance to moving the courses sideways, both sizes free, N/mm; None
         where the state is not a minimum.
     thickness_mm : extent of the yarn across the fabric.
@@ -53,6 +57,8 @@ class FabricBending:
     course: BendingResponse
     wale: BendingResponse
     oblique: tuple[BendingResponse, BendingResponse] | None
+    twist_n_mm: float | None
+    coupling_n_mm: float | None
     shear_modulus_n_per_mm: float | None
     thickness_mm: float
     minimum: bool
@@ -81,23 +87,12 @@ class FabricBending:
             return Curl.FLAT
         return Curl.BACK if tightness > 0.0 else Curl.FRONT
 
-    @property
-    def twist_n_mm(self) -> float | None:
-        """Combined coupling and twist rigidity D₁ + 2 D₆₆, N·mm.
-
-        From D(45°) = (D_x + D_y) / 4 + (D₁ + 2 D₆₆) / 2 with D₁ between the two curvatures and
-        D₆₆ of the twist; bending into a cylinder does not separate the two. D(45°) is the mean over
-        both diagonals, which differ where the chart is not its own mirror image.
-        """
-        if self.oblique is None:
-            return None
-        straight = 0.25 * (self.course.rigidity_n_mm + self.wale.rigidity_n_mm)
-        rising, falling = self.oblique
-        return rising.rigidity_n_mm + falling.rigidity_n_mm - 2.0 * straight
-
     def unstable(self) -> FabricBending:
         """The same of a state that is a minimum in its repeat, but not in a larger cell."""
-        return replace(self, oblique=None, shear_modulus_n_per_mm=None, minimum=False)
+        return replace(
+            self, oblique=None, twist_n_mm=None, coupling_n_mm=None, shear_modulus_n_per_mm=None,
+            minimum=False,
+        )  # fmt: skip
 
     def mirror_image(self) -> FabricBending:
         """The same with left and right exchanged."""
@@ -225,6 +220,8 @@ def bending_response(relaxed: RelaxedRepeat) -> FabricBending:
         course=course,
         wale=wale,
         oblique=(cell.bent(OBLIQUE), cell.bent(-OBLIQUE)) if minimum else None,
+        twist_n_mm=cell.twisted() if minimum else None,
+        coupling_n_mm=cell.coupled() if minimum else None,
         shear_modulus_n_per_mm=cell.sheared() if minimum else None,
         thickness_mm=float(extent),
         minimum=minimum,

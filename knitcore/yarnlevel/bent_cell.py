@@ -1,15 +1,24 @@
-"""The response of a relaxed cell that is bent into a cylinder or skewed.
+"""The response of a relaxed cell that is curved or skewed.
 
-The periodic cell is bent into a cylinder: its neighbours become rotated images instead of shifted
-ones. In unrolled coordinates (s the bent direction, o across it, z the height) the yarn stays
-exactly periodic, and with g = 1 + κz its derivatives in the local frame of the cylinder are
+The fabric turns by κ δ on the way along δ: its neighbours become rotated images instead of shifted
+ones. κ is the symmetric matrix of the curvatures along courses and wales and of the twist between
+them; bent into a cylinder, κ has one direction. Seen from a point of the yarn, points at δ from it
+in the plane and at the height z are at
 
-    D1 = (g s′, o′, z′)
-    D2 = (g s″ + 2κ z′s′, o″, z″ − κ g s′²)
-    D3 = (g s‴ + 3κ(z′s″ + z″s′) − κ² g s′³, o‴, z‴ − 3κ² z′s′² − 3κ g s′s″)
+    δ + z m − (δ·m + z |m|²) m / 6 + …   in the plane, and   z − (δ·m + z |m|²) / 2 + …   above it
 
-from which the rod's energy follows as in the flat cell. κ > 0 puts the face (+z) outside, and κ is
-measured on the surface of mean height zero.
+with m = κ δ, where the fabric is carried along at a constant rate of rotation. With p, q, c the
+first three derivatives of the yarn in the plane, z₁, z₂, z₃ those of its height, P = κ p, Q = κ q,
+C = κ c and b = P·(p + z P), its derivatives in that local frame are
+
+    D1 = (p + z P,                              z₁)
+    D2 = (q + z Q + 2 z₁ P,                     z₂ − b)
+    D3 = (c + z C + 3 z₁ Q + 3 z₂ P − b P,      z₃ − 3 p·Q − 3 z₁ |P|² − 3 z P·Q)
+
+from which the rod's energy follows as in the flat cell. Curvatures > 0 put the face (+z) outside,
+and are measured on the surface of mean height zero. A cylinder is exact. A fabric with curvatures
+in both directions, or twisted, has no flat plan: its repeats are alike to second order in κ, which
+is what linear response needs.
 
 At the relaxed flat state the response is linear. With L the Lagrangian of the cell (energy and
 held lengths c), r = (∂²L/∂x∂κ, ∂c/∂κ) and K the matrix of the relaxed state,
@@ -64,11 +73,24 @@ _COURSE, _WALE = -2, -1
 
 @dataclass(frozen=True)
 class Deformation:
-    """A bending along a direction (angle from the course), or a skew."""
+    """Curvatures along courses and wales, the twist between them, 1/mm, and a skew."""
 
-    angle: float = 0.0
-    curvature_per_mm: float = 0.0
+    course_per_mm: float = 0.0
+    wale_per_mm: float = 0.0
+    twist_per_mm: float = 0.0
     skew: float = 0.0
+
+    @classmethod
+    def cylinder(cls, angle: float, curvature_per_mm: float) -> Deformation:
+        """Bent along one direction, at an angle from the course, rad."""
+        cos, sin = np.cos(angle), np.sin(angle)
+        along, up = cos * cos * curvature_per_mm, sin * sin * curvature_per_mm
+        return cls(along, up, cos * sin * curvature_per_mm)
+
+    @property
+    def curvature_per_mm(self) -> tuple[float, float, float]:
+        """Along courses, along wales, and the twist."""
+        return self.course_per_mm, self.wale_per_mm, self.twist_per_mm
 
 
 @dataclass(frozen=True)
@@ -205,7 +227,7 @@ class BentCell:
         cos, sin = np.cos(angle), np.sin(angle)
         stitch = np.hypot(cos * course, sin * wale)  # the angle κ · stitch is prescribed
         first, second, by_state, by_length = self._differences(
-            lambda q: Deformation(angle, curvature_per_mm=q), _STEP / self.energy.mean_loop_mm
+            lambda q: Deformation.cylinder(angle, q), _STEP / self.energy.mean_loop_mm
         )
         by_state[_COURSE] -= first * cos**2 * course / stitch**2
         by_state[_WALE] -= first * sin**2 * wale / stitch**2
@@ -221,13 +243,28 @@ class BentCell:
             strain_across_mm=across,
         )
 
+    def twisted(self) -> float:
+        """Rigidity of twist D₆₆, N·mm: twisting by κ_xy costs 2 D₆₆ κ_xy² per area, both sizes
+        free."""
+        return 0.25 * self.curved(lambda q: Deformation(twist_per_mm=q))
+
+    def coupled(self) -> float:
+        """Coupling D₁ of the two curvatures, N·mm: D₁ κ_x κ_y of the energy per area."""
+        bowl = self.curved(lambda q: Deformation(q, q))
+        saddle = self.curved(lambda q: Deformation(q, -q))
+        return 0.25 * (bowl - saddle)
+
+    def curved(self, deformation: Callable[[float], Deformation]) -> float:
+        """Second derivative of the relaxed energy per area by a curvature of any kind, N·mm."""
+        return self._relaxed_stiffness(deformation, _STEP / self.energy.mean_loop_mm)
+
     def sheared(self) -> float:
         """Shear modulus, N/mm."""
-        _, second, by_state, by_length = self._differences(
-            lambda q: Deformation(skew=q), _SKEW_STEP
-        )
-        stiffness, _ = self._stiffness(second, by_state, by_length, None)
-        return stiffness / self.area_mm2
+        return self._relaxed_stiffness(lambda q: Deformation(skew=q), _SKEW_STEP)
+
+    def _relaxed_stiffness(self, deformation: Callable[[float], Deformation], h: float) -> float:
+        _, second, by_state, by_length = self._differences(deformation, h)
+        return self._stiffness(second, by_state, by_length, None)[0] / self.area_mm2
 
     def _rules(self) -> Array:
         cell = self.energy.cell
@@ -275,12 +312,12 @@ class BentCell:
 
     def lagrangian(self, d: Deformation) -> Lagrangian:
         """Energy with the tensions' work in the deformed cell."""
-        energy, cell, kappa = self.energy, self.energy.cell, d.curvature_per_mm
-        frame = _Frame(self.curve, d.angle, kappa)
+        energy, cell = self.energy, self.energy.cell
+        frame = Curved(self.curve, d.curvature_per_mm)
         speeds = np.linalg.norm(frame.bent[:, 1], axis=1)
         value, force, by_speed = kernels.bent_contact(
             self.curve, self.state[_COURSE], self.state[_WALE], self._pairs, cell.layout,
-            energy.contact_law, speeds, kappa, (np.cos(d.angle), np.sin(d.angle)), d.skew,
+            energy.contact_law, speeds, d.curvature_per_mm, d.skew,
         )  # fmt: skip
         rod, spacing, slopes = energy.along_yarn(frame.bent, self.tension, by_speed)
         lengths = np.bincount(energy.stretch_of, speeds) / cell.grid.samples
@@ -301,37 +338,56 @@ class Lagrangian:
     excess_mm: Array
 
 
-class _Frame:
-    """Derivatives of the yarn on the cylinder, and back (see the module's docstring)."""
+class Curved:
+    """Derivatives of the yarn in the curved cell, and back (see the module's docstring).
 
-    def __init__(self, curve: Array, angle: float, curvature_per_mm: float) -> None:
-        cos, sin = np.cos(angle), np.sin(angle)
-        self._turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        self._curvature = k = curvature_per_mm
-        flat = curve @ self._turn.T
-        self._s, self._z = flat[:, 1:, 0].T, flat[:, 1:, 2].T
-        self._g = g = 1.0 + k * curve[:, 0, 2]
-        (s1, s2, s3), (z1, z2, _) = self._s, self._z
-        self.bent = flat.copy()
-        self.bent[:, 1, 0] = g * s1
-        self.bent[:, 2, 0] = g * s2 + 2.0 * k * z1 * s1
-        self.bent[:, 2, 2] -= k * g * s1**2
-        self.bent[:, 3, 0] = g * s3 + 3.0 * k * (z1 * s2 + z2 * s1) - k**2 * g * s1**3
-        self.bent[:, 3, 2] -= 3.0 * k * (k * z1 * s1**2 + g * s1 * s2)
+    Parameters
+    ----------
+    curve : (n, 4, 3) points of the yarn in the flat cell and its three derivatives.
+    curvature_per_mm : along courses, along wales, and the twist.
+
+    Attributes
+    ----------
+    bent : (n, 4, 3) the same with D1, D2, D3.
+    """
+
+    def __init__(self, curve: Array, curvature_per_mm: tuple[float, float, float]) -> None:
+        kx, ky, kxy = curvature_per_mm
+        self._turn = turn = np.array([[kx, kxy], [kxy, ky]])
+        self._height, self._z = curve[:, 0, 2, None], curve[:, 1:, 2].T[..., None]
+        self._flat = p, q, _ = curve[:, 1:, :2].swapaxes(0, 1)
+        self._turned = P, Q, C = self._flat @ turn
+        z, (z1, z2, _) = self._height, self._z
+        self._long = p + z * P
+        self._bend = b = _dot(P, self._long)
+        self.bent = curve.copy()
+        self.bent[:, 1, :2] = self._long
+        self.bent[:, 2, :2] = q + z * Q + 2.0 * z1 * P
+        self.bent[:, 3, :2] += z * C + 3.0 * (z1 * Q + z2 * P) - b * P
+        self.bent[:, 2, 2:] -= b
+        self.bent[:, 3, 2:] -= 3.0 * (_dot(self._long, Q) + z1 * _dot(P, P))
 
     def pulled_back(self, slopes: Array) -> tuple[Array, Array]:
         """Slopes by D1, D2, D3 (n, 3, 3) as slopes by the height (n,) and by d1, d2, d3."""
-        k, g = self._curvature, self._g
-        (s1, s2, s3), (z1, z2, _) = self._s, self._z
-        (a1, a2, a3), (c1, c2, c3) = slopes[:, :, 0].T, slopes[:, :, 2].T
-        by_height = k * (
-            a1 * s1 + a2 * s2 + a3 * (s3 - k**2 * s1**3) - c2 * k * s1**2 - 3.0 * k * c3 * s1 * s2
-        )
+        A1, A2, A3 = slopes[..., :2].swapaxes(0, 1)
+        _, c2, c3 = slopes[..., 2:].swapaxes(0, 1)
+        (p, _, _), (P, Q, C) = self._flat, self._turned
+        z, (z1, z2, _) = self._height, self._z
+        by_bend = _dot(A3, P) + c2
+        square = _dot(P, P)
+        by_height = _dot(A1, P) + _dot(A2, Q) + _dot(A3, C) - by_bend * square
+        by_height -= 3.0 * c3 * _dot(P, Q)
+        by_P = z * A1 + 2.0 * z1 * A2 + 3.0 * z2 * A3 - self._bend * A3
+        by_P -= by_bend * (p + 2.0 * z * P) + 3.0 * c3 * (z * Q + 2.0 * z1 * P)
+        by_Q = z * A2 + 3.0 * z1 * A3 - 3.0 * c3 * self._long
         out = slopes.copy()
-        out[:, 0, 0] = g * a1 + 2.0 * k * (z1 * a2 - g * s1 * c2)
-        out[:, 0, 0] += 3.0 * k * (a3 * (z2 - k * g * s1**2) - c3 * (2.0 * k * z1 * s1 + g * s2))
-        out[:, 1, 0] = g * a2 + 3.0 * k * (z1 * a3 - g * s1 * c3)
-        out[:, 2, 0] = g * a3
-        out[:, 0, 2] = c1 + 2.0 * k * s1 * a2 + 3.0 * k * (s2 * a3 - k * s1**2 * c3)
-        out[:, 1, 2] = c2 + 3.0 * k * s1 * a3
-        return by_height, np.asarray(out @ self._turn)
+        out[:, 0, :2] += by_P @ self._turn - by_bend * P - 3.0 * c3 * Q
+        out[:, 1, :2] += by_Q @ self._turn
+        out[:, 2, :2] += z * A3 @ self._turn
+        out[:, 0, 2:] += 2.0 * _dot(A2, P) + 3.0 * _dot(A3, Q) - 3.0 * c3 * square
+        out[:, 1, 2:] += 3.0 * _dot(A3, P)
+        return by_height[:, 0], out
+
+
+def _dot(one: Array, other: Array) -> Array:
+    return np.asarray((one * other).sum(axis=-1, keepdims=True))

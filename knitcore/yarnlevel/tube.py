@@ -133,10 +133,10 @@ def _turned(begin: BentCell, turn: float, cancelled: Cancelled | None) -> tuple[
         here = moved(x)
         course = float(here.state[COURSE])
         curvature = turn / course
-        bent = here.lagrangian(Deformation(curvature_per_mm=curvature))
+        bent = here.lagrangian(Deformation(course_per_mm=curvature))
         probe = _PROBE / here.energy.mean_loop_mm
         plus, minus = (
-            here.lagrangian(Deformation(curvature_per_mm=curvature + side)).value
+            here.lagrangian(Deformation(course_per_mm=curvature + side)).value
             for side in (probe, -probe)
         )
         change, extra = x[: len(begin.state)], x[len(begin.state) + lengths :]
@@ -155,4 +155,4 @@ def _turned(begin: BentCell, turn: float, cancelled: Cancelled | None) -> tuple[
         raise ConvergenceError("No relaxed shape was found in a tube this narrow. Use more wales.")
     here = moved(np.asarray(found.x))
     curvature = turn / float(here.state[COURSE])
-    return here, here.lagrangian(Deformation(curvature_per_mm=curvature)).value
+    return here, here.lagrangian(Deformation(course_per_mm=curvature)).value

@@ -51,12 +51,14 @@ def of_document(entry: dict[str, Any]) -> RepeatBending:
 def _state(found: FabricBending | None) -> dict[str, Any] | None:
     if found is None:
         return None
-    shear, oblique = found.shear_modulus_n_per_mm, found.oblique
+    oblique = found.oblique
     return {
         "course": _numbers(found.course),
         "wale": _numbers(found.wale),
         "oblique": None if oblique is None else [_numbers(response) for response in oblique],
-        "shear_modulus_n_per_mm": None if shear is None else _short(shear),
+        "twist_n_mm": _known(found.twist_n_mm),
+        "coupling_n_mm": _known(found.coupling_n_mm),
+        "shear_modulus_n_per_mm": _known(found.shear_modulus_n_per_mm),
         "thickness_mm": _short(found.thickness_mm),
         "minimum": found.minimum,
     }
@@ -70,6 +72,8 @@ def _read(state: dict[str, Any] | None) -> FabricBending | None:
         course=BendingResponse(*state["course"]),
         wale=BendingResponse(*state["wale"]),
         oblique=(diagonals[0], diagonals[1]) if diagonals else None,
+        twist_n_mm=state["twist_n_mm"],
+        coupling_n_mm=state["coupling_n_mm"],
         shear_modulus_n_per_mm=state["shear_modulus_n_per_mm"],
         thickness_mm=state["thickness_mm"],
         minimum=state["minimum"],
@@ -78,6 +82,10 @@ def _read(state: dict[str, Any] | None) -> FabricBending | None:
 
 def _numbers(response: BendingResponse) -> list[float]:
     return [_short(value) for value in astuple(response)]
+
+
+def _known(value: float | None) -> float | None:
+    return None if value is None else _short(value)
 
 
 def _short(value: float) -> float:

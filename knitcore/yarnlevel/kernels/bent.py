@@ -1,4 +1,4 @@
-"""Contact of yarn with yarn in a cell that is bent into a cylinder, or skewed."""
+"""Contact of yarn with yarn in a cell that is curved or skewed."""
 
 from __future__ import annotations
 
@@ -20,34 +20,33 @@ def bent_contact(
     layout: Layout,
     law: ContactLaw,
     speeds: Array,
-    curvature_per_mm: float,
-    along: tuple[float, float],
+    curvature_per_mm: tuple[float, float, float],
     skew: float,
 ) -> tuple[float, Array, Array]:
-    """Contact energy of the bent or skewed cell, N·mm, and its derivatives.
+    """Contact energy of the curved or skewed cell, N·mm, and its derivatives.
 
-    Neighbours of the cell are rotated images: with the unrolled distances Δs along the bent
-    direction and Δo across it, and g = 1 + κz, two samples are
+    Neighbours of the cell are rotated images. With δ the unrolled distance in the plane of two
+    samples and m = κ δ the turn of the fabric between them, they are
 
-        R² = Δz² + Δo² + g_i g_j (2 sin(κ Δs / 2) / κ)²
+        R² = |δ|² + Δz² − (1 − S²) (δ·m)² / |m|² + S² (2 z̄ δ·m + z_i z_j |m|²)
 
-    apart. A skewed cell moves the next course by ``skew`` times the height of a stitch.
+    apart, S = 2 sin(|m| / 2) / |m| and z̄ their mean height: seen from the middle between them, each
+    is carried along by a rotation at a constant rate. A skewed cell moves the next course by
+    ``skew`` times the height of a stitch.
 
     Parameters
     ----------
     curve, course_mm, wale_mm, pairs, layout, law : as for
         :func:`~knitcore.yarnlevel.kernels.contact.contact_slopes`, which also says what the
         derivatives are; no pair is mirrored.
-    speeds : (n,) length of d1 on the cylinder.
-    along : cosine and sine of the angle from the course to the bent direction.
+    speeds : (n,) length of d1 in the curved cell.
+    curvature_per_mm : along the courses, along the wales, and the twist between them.
     """
     reach = 4.0 * law.radius * law.radius
     n = curve.shape[0]
     wales, rows, w = layout.wales, layout.rows, law.weight
     force, weight_slope = np.zeros((n + 1, 3)), np.zeros(n)
     at = laid_out(curve, layout.place, course_mm, wale_mm)
-    cos, sin = along
-    half = 0.5 * curvature_per_mm
     total = 0.0
     for q in range(pairs.shape[0]):
         i, j = pairs[q, 0], pairs[q, 1]
@@ -55,12 +54,9 @@ def bent_contact(
         up = at[j, 4] - at[i, 4] + rows * pairs[q, 3]
         dx = at[j, 0] - at[i, 0] + wales * pairs[q, 2] * course_mm + skew * up * wale_mm
         dy = at[j, 1] - at[i, 1] + rows * pairs[q, 3] * wale_mm
-        dz = at[j, 2] - at[i, 2]
-        ds = cos * dx + sin * dy
-        do = cos * dy - sin * dx
-        gi, gj = 1.0 + curvature_per_mm * at[i, 2], 1.0 + curvature_per_mm * at[j, 2]
-        chord = ds if half == 0.0 else np.sin(half * ds) / half
-        square = dz * dz + do * do + gi * gj * chord * chord
+        square, by_x, by_y, by_i, by_j = squared_distance(
+            dx, dy, at[i, 2], at[j, 2], curvature_per_mm
+        )
         if square >= reach:
             continue
         distance = np.sqrt(square)
@@ -71,18 +67,52 @@ def bent_contact(
         total += w * v0 * si * sj
         weight_slope[i] += w * v0 * sj
         weight_slope[j] += w * v0 * si
-        slope = w * v1 * si * sj / distance
-        by_s = slope * gi * gj * chord * np.cos(half * ds)
-        by_o = slope * do
-        fx = cos * by_s - sin * by_o
-        fy = sin * by_s + cos * by_o
-        lift = 0.5 * slope * curvature_per_mm * chord * chord
+        slope = 0.5 * w * v1 * si * sj / distance
+        fx, fy = slope * by_x, slope * by_y
         force[i, 0] -= fx
         force[i, 1] -= fy
-        force[i, 2] += lift * gj - slope * dz
+        force[i, 2] += slope * by_i
         force[j, 0] += fx
         force[j, 1] += fy
-        force[j, 2] += lift * gi + slope * dz
+        force[j, 2] += slope * by_j
         force[n, 0] += fx * across
         force[n, 1] += (fy + skew * fx) * up
     return total, force, weight_slope
+
+
+@numba.njit(cache=True)
+def squared_distance(
+    dx: float, dy: float, zi: float, zj: float, curvature_per_mm: tuple[float, float, float]
+) -> tuple[float, float, float, float, float]:
+    """R² of :func:`bent_contact`, mm², and its derivatives by dx, dy, zi, zj."""
+    kx, ky, kxy = curvature_per_mm
+    mx, my = kx * dx + kxy * dy, kxy * dx + ky * dy
+    turn, bend = mx * mx + my * my, dx * mx + dy * my
+    chord, short, chord_slope, short_slope = _chord(turn)
+    lift, dz = (zi + zj) * bend + zi * zj * turn, zj - zi
+    by_bend = chord * (zi + zj) - 2.0 * short * bend
+    by_turn = chord * zi * zj + chord_slope * lift - short_slope * bend * bend
+    return (
+        dx * dx + dy * dy + dz * dz - short * bend * bend + chord * lift,
+        2.0 * (dx + by_bend * mx + by_turn * (kx * mx + kxy * my)),
+        2.0 * (dy + by_bend * my + by_turn * (kxy * mx + ky * my)),
+        chord * (bend + zj * turn) - 2.0 * dz,
+        chord * (bend + zi * turn) + 2.0 * dz,
+    )
+
+
+@numba.njit(cache=True)
+def _chord(turn: float) -> tuple[float, float, float, float]:
+    """S² and (1 − S²) / |m|² of ``turn`` = |m|², and their derivatives by it."""
+    if turn < 0.01:  # the closed forms cancel
+        return (
+            1.0 - turn / 12.0 + turn**2 / 360.0 - turn**3 / 20160.0,
+            1.0 / 12.0 - turn / 360.0 + turn**2 / 20160.0,
+            -1.0 / 12.0 + turn / 180.0 - turn**2 / 6720.0,
+            -1.0 / 360.0 + turn / 10080.0,
+        )
+    angle = np.sqrt(turn)
+    chord = 2.0 * (1.0 - np.cos(angle)) / turn
+    short = (1.0 - chord) / turn
+    chord_slope = (np.sin(angle) / angle - chord) / turn
+    return chord, short, chord_slope, -(chord_slope + short) / turn

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.bending import FabricBending, bending_response, repeat_bending
 from knitcore.yarnlevel.bent_cell import GRID, BentCell, Deformation, settled
+from knitcore.yarnlevel.lowest import without_mirrors
 from knitcore.yarnlevel.relax import RelaxedRepeat, relax
 from knitcore.yarnlevel.samples import load_samples
 from knitcore.yarnlevel.splines import refined
@@ -25,7 +27,7 @@ def _relaxed(repeat: str, fabric: str = "stockinette") -> RelaxedRepeat:
     sample = next(
         s for s in load_samples() if s.yarn_id == "acrylic" and s.fabric is Fabric(fabric)
     )
-    return relax(StitchChart.parse(repeat), sample.yarn, sample.loop_length_mm)
+    return relax(StitchChart.parse(repeat), sample.yarn, sample.loop_length_mm, branch="mirrored")
 
 
 @cache
@@ -76,11 +78,13 @@ def test_a_purl_curls_as_a_knit_seen_from_the_back() -> None:
     "deformation",
     [
         Deformation(),
-        Deformation(0.0, 0.07),
-        Deformation(np.pi / 2, -0.05),
-        Deformation(0.6, 0.1, 0.2),
+        Deformation(course_per_mm=0.07),
+        Deformation(wale_per_mm=-0.05),
+        Deformation(twist_per_mm=0.06),
+        Deformation(0.04, -0.08, 0.05, skew=0.2),
+        replace(Deformation.cylinder(0.6, 0.1), skew=0.2),
     ],
-    ids=["flat", "along rows", "along columns", "oblique and skewed"],
+    ids=["flat", "along rows", "along columns", "twisted", "saddle", "oblique and skewed"],
 )
 def test_gradient_of_the_bent_cell_is_the_derivative_of_its_energy(
     deformation: Deformation,
@@ -121,11 +125,25 @@ def test_linear_response_is_the_second_derivative_of_the_relaxed_energy() -> Non
     assert rise == pytest.approx(0.5 * shear * cell.area_mm2 * skew**2, rel=0.01)
 
 
+@pytest.mark.parametrize("fabric", ["rib", "seed"])
+def test_coupling_and_twist_are_those_that_bending_along_the_diagonals_has(fabric: str) -> None:
+    """D(45°) = (D_x + D_y) / 4 + (D₁ + 2 D₆₆) / 2, the mean over both diagonals."""
+    found = bending_response(without_mirrors(_relaxed(REPEATS[fabric], fabric)).state)
+    assert found.oblique is not None
+    assert found.coupling_n_mm is not None
+    assert found.twist_n_mm is not None
+    diagonal = np.mean([response.rigidity_n_mm for response in found.oblique])
+    straight = found.course.rigidity_n_mm + found.wale.rigidity_n_mm
+    both = found.coupling_n_mm + 2.0 * found.twist_n_mm
+    assert diagonal == pytest.approx(0.25 * straight + 0.5 * both, rel=1e-3)
+
+
 def test_a_state_that_is_not_a_minimum_without_mirrors_is_marked() -> None:
     seed = _bending(REPEATS["seed"], "seed")
     assert not seed.minimum
     assert seed.shear_modulus_n_per_mm is None
     assert seed.twist_n_mm is None
+    assert seed.coupling_n_mm is None
     assert _bending("K").minimum
 
 
@@ -159,7 +177,9 @@ def test_a_minimum_has_no_other_state() -> None:
 
 def test_a_repeat_that_is_held_flat_is_refused() -> None:
     sample = load_samples()[0]
-    held = relax(StitchChart.parse("K"), sample.yarn, sample.loop_length_mm, flat=True)
+    held = relax(
+        StitchChart.parse("K"), sample.yarn, sample.loop_length_mm, flat=True, branch="mirrored"
+    )
     with pytest.raises(InputError, match="flat"):
         bending_response(held)
 
