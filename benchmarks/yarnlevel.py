@@ -56,7 +56,12 @@ def stitches() -> None:
     print(f"{'sample':24}{'relax s':>9}{'x authors':>11}{'course s':>10}{'wale s':>8}{'N·mm':>9}")
     total = slowest = longest = 0.0
     for entry in load_samples():
-        zero = relax(StitchChart.of_fabric(entry.fabric, 2, 2), entry.yarn, entry.loop_length_mm)
+        zero = relax(
+            StitchChart.of_fabric(entry.fabric, 2, 2),
+            entry.yarn,
+            entry.loop_length_mm,
+            branch="mirrored",
+        )
         times = []
         for direction, far in zip(Direction, FAR[entry.fabric], strict=True):
             began = time.process_time()
@@ -89,7 +94,9 @@ def cells(sides: list[int], charts: int) -> None:
                 entry = sample(name, "stockinette")
                 began = time.perf_counter()
                 one = [Start("usual")] if chart.stitches < ROUGH_FROM else None
-                found = relax(chart, entry.yarn, entry.loop_length_mm, starts=one)
+                found = relax(
+                    chart, entry.yarn, entry.loop_length_mm, starts=one, branch="mirrored"
+                )
                 wall = time.perf_counter() - began
                 times.append(found.seconds)
                 state = "" if found.converged else "  not converged"
@@ -112,7 +119,7 @@ def authors_sample() -> None:
     for grid in (SplineGrid(16, 3), SplineGrid(20, 4), SplineGrid(24, 5), SplineGrid(32, 5)):
         held = relax(
             stitch, yarn, loop_mm, convention=Convention.AUTHORS_CODE, grid=grid,
-            cell_course_mm=AUTHORS_COURSE_MM,
+            cell_course_mm=AUTHORS_COURSE_MM, branch="mirrored",
         )  # fmt: skip
         found.append(held.energy_n_mm)
         print(f"  {grid.controls}: {held.energy_n_mm:.6f} N·mm")
@@ -160,8 +167,8 @@ def main() -> None:
     parser.add_argument("--cells-only", action="store_true")
     parser.add_argument("--skip-published", action="store_true")
     asked = parser.parse_args()
-    relax(StitchChart.parse("K"), YARN, LOOP_MM)  # compiles
-    relax(StitchChart.parse("KP/KK"), YARN, LOOP_MM)
+    relax(StitchChart.parse("K"), YARN, LOOP_MM, branch="mirrored")  # compiles
+    relax(StitchChart.parse("KP/KK"), YARN, LOOP_MM, branch="mirrored")
     cells(asked.sides, asked.charts)
     if asked.cells_only:
         return

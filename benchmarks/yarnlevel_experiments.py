@@ -43,7 +43,12 @@ def as_measured(sample: Sample) -> Sample:
 
 def moduli(sample: Sample) -> tuple[float, float]:
     """Simulated moduli of a sample, course and wale, N/mm."""
-    zero = relax(StitchChart.of_fabric(sample.fabric, 2, 2), sample.yarn, sample.loop_length_mm)
+    zero = relax(
+        StitchChart.of_fabric(sample.fabric, 2, 2),
+        sample.yarn,
+        sample.loop_length_mm,
+        branch="mirrored",
+    )
     curves: dict[Direction, Sweep] = {}
     for direction, most in zip(Direction, RANGE_N_PER_MM[sample.fabric], strict=True):
         curve = sweep(

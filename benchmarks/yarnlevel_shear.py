@@ -85,7 +85,7 @@ def main() -> None:
     text, name = (sys.argv[1:] + ["K", "acrylic"][len(sys.argv) - 1 :])[:2]
     chart = StitchChart.parse(text)
     used = yarn_for(material(name), chart)
-    rest = settled(relax(chart, used.yarn, used.loop_length_mm))
+    rest = settled(relax(chart, used.yarn, used.loop_length_mm, branch="mirrored"))
     modulus = rest.sheared()
     print(f"at rest {modulus:.4f} N/mm")
     cell, least, _ = balanced(SkewedCell(rest.energy, rest.state, rest.tension), 0.0)

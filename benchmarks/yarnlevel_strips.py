@@ -185,7 +185,7 @@ def compared_all(
     found = []
     for fabric, entry in entries.items():
         chart = StitchChart.of_fabric(fabric, 2, 2)
-        relaxed = relax(chart, entry.yarn, entry.loop_length_mm)
+        relaxed = relax(chart, entry.yarn, entry.loop_length_mm, branch="mirrored")
         shear = shear_modulus(relaxed)
         found += [compared(relaxed, shear, strip, friction) for strip in tests[fabric]]
     return found

@@ -75,8 +75,10 @@ export interface BendResult {
   strain_across_wale_mm: number;
   /** Null where no stable state was found. */
   shear_modulus_n_per_mm: number | null;
-  /** D1 + 2 D66, from bending at 45°. */
+  /** Rigidity of twist D66; null where no stable state was found, as is the next. */
   twist_n_mm: number | null;
+  /** Coupling D1 of the two curvatures. */
+  coupling_n_mm: number | null;
   thickness_mm: number;
   /** How free edges curl. */
   curl: string;
@@ -1794,6 +1796,13 @@ export interface NoRequest {
 /** Where the constants of a law come from. */
 export type Origin = "measured" | "simulated" | "fitted" | "estimated";
 
+/** Energy and size of a stitch in another shape of the repeat. */
+export interface OtherShapeResult {
+  energy_n_mm: number;
+  cell_course_mm: number;
+  cell_wale_mm: number;
+}
+
 /** A fabric, and how far a strip of it hangs over the edge of a table. */
 export interface OverhangRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
@@ -2210,7 +2219,8 @@ export interface RelaxRequest {
   loop_lengths_mm?: number[][] | null;
   /** Hold the stitches in one plane, as a fabric laid flat; not published. */
   flat?: boolean;
-  branch?: Branch;
+  /** Without one, the symmetries of the chart are only where it begins: the mirrored shape is followed to the minimum that it leads to without them. Shapes that are held, or have friction, keep them, and repeats of more than 16 stitches are relaxed in the free branch. */
+  branch?: Branch | null;
   convention?: Convention;
   /** Compute again, even if the result is stored. */
   fresh?: boolean;
@@ -2264,8 +2274,12 @@ export interface RelaxResult {
   history: History | null;
   /** With friction, the size after each history: the range in which the fabric may rest. */
   rest_sizes: RestSizeResult[] | null;
-  /** Without the mirror symmetries; null for other branches, shapes that are held, with friction, and for free cells of more than 16 stitches. */
-  unmirrored: UnmirroredResult | null;
+  /** Whether the shape is a minimum without the mirror symmetries of the chart; null where that was not looked at: shapes that are held, with friction, of the published branch, mirrored with free cells of more than 16 stitches, or of 100 stitches and more. */
+  minimum: boolean | null;
+  /** The mirrored shape that led to this one, which is lower. The laws of stored repeats and learned answers are of mirrored shapes, which are nearer to knitted cloth. */
+  mirrored: OtherShapeResult | null;
+  /** In the mirrored branch: the lower shape that it leads to without its symmetries, if it is not a minimum. */
+  unmirrored: OtherShapeResult | null;
   /** For the `gauge` of other requests about this chart and material, which become more certain by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes that are held, other loop lengths than the material's, and friction. */
   gauge: FoundGauge | null;
   notes: string[];
@@ -2791,15 +2805,6 @@ export interface TubeResult {
   flat_energy_n_mm: number;
   yarn: YarnResult;
   notes: string[];
-}
-
-/** The minimum that the shape is, or leads to, once its mirror symmetries are dropped. */
-export interface UnmirroredResult {
-  /** Whether the mirrored shape is that minimum. */
-  minimum: boolean;
-  energy_n_mm: number;
-  cell_course_mm: number;
-  cell_wale_mm: number;
 }
 
 /** A file's name and its content. */

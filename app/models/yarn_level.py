@@ -68,7 +68,7 @@ class YarnLevelRequest(StitchRequest):
     flat: bool = Field(
         False, description="Hold the stitches in one plane, as a fabric laid flat; not published."
     )
-    branch: Branch = Branch.MIRRORED
+    branch: Branch | None = None
     convention: Convention = Convention.PUBLISHED
     fresh: bool = Field(False, description="Compute again, even if the result is stored.")
 

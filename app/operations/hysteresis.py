@@ -95,7 +95,9 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     known = yarn_friction(context.material(request.material))
     given = request.friction
     coefficient = known.coefficient if given is None else given
-    relaxed = relax(repeat, used.yarn, used.loop_length_mm, cancelled=context.cancelled)
+    relaxed = relax(
+        repeat, used.yarn, used.loop_length_mm, cancelled=context.cancelled, branch="mirrored"
+    )
 
     def rubbed(friction: float) -> tuple[loops.Hysteresis, tuple[loops.RestSize, ...]]:
         found = request.pass_to(

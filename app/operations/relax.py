@@ -21,6 +21,7 @@ from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.materials.uncertainty import (
     YARN_LEVEL_ERRORS,
+    YARN_LEVEL_FREE_SIZE_LOG_SD,
     YARN_LEVEL_SIZE_LOG_SD,
     log_interval,
 )
@@ -28,14 +29,23 @@ from knitcore.phases import pure_fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.hysteresis import History, rest_sizes
 from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
-from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
+from knitcore.yarnlevel.relax import NO_UNMIRRORED, Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlevel.splines import has_mirrors
+from knitcore.yarnlevel.whole import WINDOWS_FROM
 from knitcore.yarnlibrary.yarns import ChartYarn, phase_shares
 
 
 class RelaxRequest(RubbedRequest):
     """A repeat, its yarn, what may be held while it relaxes, and what happened to the fabric."""
 
+    branch: Branch | None = Field(
+        None,
+        description="Without one, the symmetries of the chart are only where it begins: the "
+        "mirrored shape is followed to the minimum that it leads to without them. Shapes that are "
+        f"held, or have friction, keep them, and repeats of more than {FOLLOWED_UP_TO} stitches "
+        "are relaxed in the free branch.",
+    )
     history: History | None = Field(
         None,
         description="What happened to the fabric before it came to rest, with friction: that of "
@@ -58,9 +68,13 @@ class RelaxRequest(RubbedRequest):
     def with_friction(self, context: Context) -> Self:
         """The request with its coefficient of friction and its history."""
         asked = super().with_friction(context)
-        if not asked.has_friction or asked.history is not None:
+        if not asked.has_friction:
             return asked
-        return asked.model_copy(update={"history": History.KNITTED})
+        usual = {
+            "history": asked.history or History.KNITTED,
+            "branch": asked.branch or Branch.MIRRORED,
+        }
+        return asked.model_copy(update=usual)
 
     def _against_friction(self) -> Iterator[InputError]:
         yield from super()._against_friction()
@@ -81,10 +95,9 @@ class StartResult(ResultModel):
     cell_wale_mm: Known
 
 
-class UnmirroredResult(ResultModel):
-    """The minimum that the shape is, or leads to, once its mirror symmetries are dropped."""
+class OtherShapeResult(ResultModel):
+    """Energy and size of a stitch in another shape of the repeat."""
 
-    minimum: bool = Field(description="Whether the mirrored shape is that minimum.")
     energy_n_mm: float
     cell_course_mm: float
     cell_wale_mm: float
@@ -130,10 +143,22 @@ class RelaxResult(IntervalResult):
         description="With friction, the size after each history: the range in which the fabric "
         "may rest.",
     )
-    unmirrored: UnmirroredResult | None = Field(
+    minimum: bool | None = Field(
         None,
-        description="Without the mirror symmetries; null for other branches, shapes that are held, "
-        f"with friction, and for free cells of more than {FOLLOWED_UP_TO} stitches.",
+        description="Whether the shape is a minimum without the mirror symmetries of the chart; "
+        "null where that was not looked at: shapes that are held, with friction, of the published "
+        f"branch, mirrored with free cells of more than {FOLLOWED_UP_TO} stitches, or of "
+        f"{WINDOWS_FROM} stitches and more.",
+    )
+    mirrored: OtherShapeResult | None = Field(
+        None,
+        description="The mirrored shape that led to this one, which is lower. The laws of stored "
+        "repeats and learned answers are of mirrored shapes, which are nearer to knitted cloth.",
+    )
+    unmirrored: OtherShapeResult | None = Field(
+        None,
+        description="In the mirrored branch: the lower shape that it leads to without its "
+        "symmetries, if it is not a minimum.",
     )
     gauge: FoundGauge | None = Field(
         None,
@@ -166,11 +191,11 @@ def _relaxed(
     unmirrored, rests = None, None
     if request.friction is not None:
         cell, rests = _after_history(on_splines(cell), request.friction, request, context)
-    elif sizes == (None, None):
-        unmirrored, note = _unmirrored(cell, context)
-        cell = replace(cell, notes=(*cell.notes, *note))
+    elif request.branch is Branch.MIRRORED and sizes == (None, None):
+        cell, unmirrored = _unmirrored(cell, context)
+    log_sd = _log_sd(cell)
     free = [
-        log_interval(size, YARN_LEVEL_SIZE_LOG_SD) if held is None else None
+        log_interval(size, log_sd) if held is None else None
         for size, held in zip((cell.cell_course_mm, cell.cell_wale_mm), sizes, strict=True)
     ]
     return RelaxResult.of(
@@ -209,44 +234,57 @@ def _after_history(
     return told, [RestSizeResult.of(rest) for rest in rests]
 
 
-def _unmirrored(
-    cell: RelaxedCell, context: Context
-) -> tuple[UnmirroredResult | None, tuple[str, ...]]:
-    """What becomes of the shape without its symmetries, and a note where it does not stay."""
-    if not isinstance(cell, RelaxedRepeat) or not can_be_followed(cell):
-        return None, ()
+def _log_sd(cell: RelaxedCell) -> float:
+    """Standard deviation of the logarithm of knitted over relaxed sizes."""
+    mirrored = cell.branch is not Branch.FREE or not has_mirrors(cell.chart)
+    return YARN_LEVEL_SIZE_LOG_SD if mirrored else YARN_LEVEL_FREE_SIZE_LOG_SD
+
+
+def _unmirrored(cell: RelaxedCell, context: Context) -> tuple[RelaxedCell, RelaxedRepeat | None]:
+    """A mirrored shape that knows whether it is a minimum, and the one it leads to otherwise."""
+    if not isinstance(cell, RelaxedRepeat) or cell.minimum or not can_be_followed(cell):
+        return cell, None
     try:
         found = without_mirrors(cell, cancelled=context.cancelled)
     except (ConvergenceError, UnravelledError):
-        return None, ("Without its mirror symmetries no shape was found.",)
-    told = UnmirroredResult.of(found.state, found)
+        return replace(cell, notes=(*cell.notes, NO_UNMIRRORED)), None
     if found.minimum:
-        return told, ()
-    return told, (
+        return replace(cell, minimum=True), None
+    note = (
         "This shape is a minimum only among mirrored ones: without the symmetries it leaves for "
-        f"one with {found.lower:.1%} less energy, {told.cell_course_mm:.2f} x "
-        f"{told.cell_wale_mm:.2f} mm a stitch. The free branch looks for the lowest.",
+        f"one with {found.lower:.1%} less energy, {found.state.cell_course_mm:.2f} x "
+        f"{found.state.cell_wale_mm:.2f} mm a stitch."
     )
+    return replace(cell, minimum=False, notes=(*cell.notes, note)), found.state
 
 
 def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> FoundGauge | None:
-    """The gauge of a simulated material's cloth: its pure fabrics are relaxed in the same way."""
+    """The gauge of a simulated material's cloth: its pure fabrics are relaxed in the same way.
+
+    It is that of the mirrored shape, as learned answers are.
+    """
     usual = RelaxRequest(
         chart=request.chart, material=request.material, convention=request.convention
     )
     asked = request.model_copy(update={"fresh": False, "centre_lines": False})
+    alike = usual, usual.model_copy(update={"branch": Branch.MIRRORED})
     material, repeat = context.material(request.material), request.repeat()
-    if asked != usual or not material.is_simulated or pure_fabric(repeat) is not None:
+    known = (
+        result if result.branch is Branch.MIRRORED or not has_mirrors(repeat) else result.mirrored
+    )
+    if known is None or asked not in alike:
+        return None
+    if not material.is_simulated or pure_fabric(repeat) is not None:
         return None
     pure_mm = {}
     for fabric in phase_shares(repeat):
         text = StitchChart.of_fabric(fabric).repeat().text
         try:
-            pure = relax(usual.model_copy(update={"chart": text}), context)
+            pure = relax(alike[1].model_copy(update={"chart": text}), context)
         except (ConvergenceError, UnravelledError):
             return None
         pure_mm[fabric] = (pure.cell_course_mm, pure.cell_wale_mm)
-    cell_mm = result.cell_course_mm, result.cell_wale_mm
+    cell_mm = known.cell_course_mm, known.cell_wale_mm
     return FoundGauge.of(size_from_relaxation(repeat, material, cell_mm, pure_mm))
 
 
@@ -263,11 +301,20 @@ def _gauge_line(gauge: FoundGauge | None) -> list[str]:
     ]
 
 
+def _other_shape(name: str, shape: OtherShapeResult | None, why: str) -> list[str]:
+    if shape is None:
+        return []
+    size = f"{shape.cell_course_mm:.3f} mm wide, {shape.cell_wale_mm:.3f} mm high"
+    return [f"{name:16}{size}, {shape.energy_n_mm:.4f} N·mm{why}"]
+
+
 def _lines(r: RelaxResult) -> list[str]:
     return [
         f"repeat          {size_in_words(r.repeat_columns, r.repeat_rows)}, {r.branch} branch",
         f"stitch          {r.cell_course_mm:.3f} mm wide{_between(r.cell_course_interval_mm)}, "
         f"{r.cell_wale_mm:.3f} mm high{_between(r.cell_wale_interval_mm)}",
+        *_other_shape("with mirrors", r.mirrored, "; laws and learned answers are of this shape"),
+        *_other_shape("without mirrors", r.unmirrored, ""),
         f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
         f"bending, {100 * r.contact_share:.1f} % contact",
         f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",

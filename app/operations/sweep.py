@@ -47,6 +47,7 @@ _HOW = {
 class SweepRequest(RubbedRequest):
     """A repeat, its yarn and the stretch."""
 
+    branch: Branch = Branch.MIRRORED
     direction: Direction = Field(description="Along rows, or along columns.")
     max_strain: float = Field(gt=0, le=20, description="Largest strain: 0.5 is 50 %.")
     points: int = Field(25, ge=2, le=400)

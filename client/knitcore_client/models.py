@@ -906,7 +906,10 @@ class RelaxRequest(TypedDict):
     length for all its stitches or one for each."""
     flat: NotRequired[bool]
     """Hold the stitches in one plane, as a fabric laid flat; not published."""
-    branch: NotRequired[Branch]
+    branch: NotRequired[Branch | None]
+    """Without one, the symmetries of the chart are only where it begins: the mirrored shape is
+    followed to the minimum that it leads to without them. Shapes that are held, or have friction,
+    keep them, and repeats of more than 16 stitches are relaxed in the free branch."""
     convention: NotRequired[Convention]
     fresh: NotRequired[bool]
     """Compute again, even if the result is stored."""
@@ -1338,7 +1341,9 @@ class BendResult(BaseModel):
     shear_modulus_n_per_mm: float | None
     """Null where no stable state was found."""
     twist_n_mm: float | None
-    """D1 + 2 D66, from bending at 45°."""
+    """Rigidity of twist D66; null where no stable state was found, as is the next."""
+    coupling_n_mm: float | None
+    """Coupling D1 of the two curvatures."""
     thickness_mm: float
     curl: str
     """How free edges curl."""
@@ -2504,6 +2509,14 @@ class NewShare(BaseModel):
     """The design is at /api/v1/shared/{token} for who has this."""
 
 
+class OtherShapeResult(BaseModel):
+    """Energy and size of a stitch in another shape of the repeat."""
+
+    energy_n_mm: float
+    cell_course_mm: float
+    cell_wale_mm: float
+
+
 class OverhangResult(BaseModel):
     """A strip at rest."""
 
@@ -2813,9 +2826,16 @@ class RelaxResult(BaseModel):
     """What the fabric comes to rest after; null without friction."""
     rest_sizes: list[RestSizeResult] | None = None
     """With friction, the size after each history: the range in which the fabric may rest."""
-    unmirrored: UnmirroredResult | None = None
-    """Without the mirror symmetries; null for other branches, shapes that are held, with
-    friction, and for free cells of more than 16 stitches."""
+    minimum: bool | None = None
+    """Whether the shape is a minimum without the mirror symmetries of the chart; null where that
+    was not looked at: shapes that are held, with friction, of the published branch, mirrored with
+    free cells of more than 16 stitches, or of 100 stitches and more."""
+    mirrored: OtherShapeResult | None = None
+    """The mirrored shape that led to this one, which is lower. The laws of stored repeats and
+    learned answers are of mirrored shapes, which are nearer to knitted cloth."""
+    unmirrored: OtherShapeResult | None = None
+    """In the mirrored branch: the lower shape that it leads to without its symmetries, if it is
+    not a minimum."""
     gauge: FoundGauge | None = None
     """For the `gauge` of other requests about this chart and material, which become more certain
     by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes
@@ -3122,16 +3142,6 @@ class TubeResult(BaseModel):
     flat_energy_n_mm: float
     yarn: YarnResult
     notes: list[str]
-
-
-class UnmirroredResult(BaseModel):
-    """The minimum that the shape is, or leads to, once its mirror symmetries are dropped."""
-
-    minimum: bool
-    """Whether the mirrored shape is that minimum."""
-    energy_n_mm: float
-    cell_course_mm: float
-    cell_wale_mm: float
 
 
 class Use(BaseModel):

@@ -23,7 +23,7 @@ def main() -> None:
     for fabric in FABRICS:
         entry = sample("acrylic", fabric)
         chart = StitchChart.of_fabric(fabric, 2, 2)
-        rest = relax(chart, entry.yarn, entry.loop_length_mm)
+        rest = relax(chart, entry.yarn, entry.loop_length_mm, branch="mirrored")
         for friction, dash in ((COEFFICIENT, ""), (0.0, "2 4")):
             loop = hysteresis(rest, "course", STRAIN, friction, cycles=2 if friction else 1)
             for leg in loop.legs if friction else loop.legs[:1]:

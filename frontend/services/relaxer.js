@@ -32,7 +32,7 @@ export function startRelaxer(studio) {
       relaxing.value = true;
       try {
         /** @type {RelaxResult} */
-        const { gauge } = await runJob("relax", { chart, material }, { signal });
+        const { gauge } = await runJob("relax", { chart, material, branch: "mirrored" }, { signal });
         if (signal.aborted) return;
         if (gauge) gauges.keep(cloth, gauge);
         else refused.add(`${material}\n${chart}`);

@@ -40,6 +40,9 @@ YARN_LEVEL_SIZE_LOG_SD = 0.16
 """Standard deviation of the logarithm of a relaxed width or height: rms of yarn-level over knitted
 sizes, the four pure fabrics of acrylic and cotton (``benchmarks/against_knitted.py``)."""
 
+YARN_LEVEL_FREE_SIZE_LOG_SD = 0.27
+"""The same of the shapes that they lead to without the symmetries of the chart."""
+
 YARN_LEVEL_STRAIN_LOG_SD = 0.41
 """Standard deviation of the logarithm of the strain at 0.05 to 0.3 N/mm, likewise."""
 

@@ -73,7 +73,7 @@ def mirrored_bending(repeat: StitchChart, used: ChartYarn) -> FabricBending:
     """
     stored = stored_for(repeat, used)
     if stored is None or stored.bending is None:
-        return bending_response(relax(repeat, used.yarn, used.loop_length_mm))
+        return bending_response(relax(repeat, used.yarn, used.loop_length_mm, branch="mirrored"))
     if stored.bending.mirrored is None:
         raise ConvergenceError(stored.bending.failure)
     return stored.bending.mirrored

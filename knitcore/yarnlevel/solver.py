@@ -78,6 +78,7 @@ class Options:
     tolerance : stop when a Newton step would lower the energy by less than this part of it.
     slack : stop only when the lengths are within this part of a loop length.
     iterations : most Newton steps.
+    damping : of the first step, relative to the usual one; little where a minimum is near.
     mended : whether steps of a large cell keep the lengths: what a straight one stretches the yarn
         would cut it down. A small cell's few states are found without.
     """
@@ -88,6 +89,7 @@ class Options:
     tolerance: float = 1e-7
     slack: float = 1e-7
     iterations: int = 400
+    damping: float = 1.0
     mended: bool = True
 
 
@@ -173,7 +175,7 @@ class _Descent:
         self.free[held] = False
         self.held, self.goal = held, goal
         self.first_damping = _DAMPING * energy.unit / energy.mean_loop_mm**2
-        self.damping = self.first_damping
+        self.damping = options.damping * self.first_damping
         dense_only = energy.slides or energy.sliding is not None
         self.sparse = energy.cell.stitches >= SPARSE_FROM and not dense_only
         self.single = self.sparse or energy.cell.unknowns >= _SINGLE_FROM

@@ -74,12 +74,17 @@ class RelaxedRepeat(RelaxedCell):
     tension_n : tension of every course (or stitch) of the cell, then the forces that hold it flat.
     flat : the middles of all stitches were held in one plane.
     slides : where the yarn was kept from sliding.
+    minimum : whether it is a minimum without the symmetries of the chart; None where this was not
+        found out, and where more was prescribed than one length for every course.
+    mirrored : the state with these symmetries that led to this one; None if it is one itself.
     """
 
     cell: YarnCell
     tension_n: Array
     flat: bool = False
     slides: tuple[SlideConstraint, ...] = ()
+    minimum: bool | None = None
+    mirrored: RelaxedRepeat | None = None
 
     @property
     def control_points(self) -> Array:
@@ -132,7 +137,7 @@ def relax_splines(
     if branch is Branch.FREE:  # neighbouring repeats need not look alike there
         repeat = StitchChart(draft.purl)
     chosen = _starts(branch, draft, starts)
-    shakes = _SHAKES[: 2 if draft.stitches <= SEVERAL_UP_TO else 1]
+    shakes = _SHAKES[: 2 if draft.stitches <= SEVERAL_UP_TO else int(has_mirrors(repeat))]
     shakes = shakes if branch is Branch.FREE and uniform else ()
     if not chosen and not shakes:
         raise InputError("starts", "is empty.", "Give at least one start, or leave it out.")
@@ -167,12 +172,16 @@ def relax_splines(
             energy, cell=replace(draft, grid=grid), spacing_per_bending=SPACING_PER_BENDING
         )
         best = search.refined(energy, options)
-    if any(size is not None for size in sizes_mm):
+    held = any(size is not None for size in sizes_mm)
+    if held:
         best = _held_at(energy, best, sizes_mm, options, cancelled)
-    return relaxed_repeat(
+    imposed = held or flat or lengths.ndim > 1
+    imposed = imposed or (branch is Branch.MIRRORED and has_mirrors(repeat))
+    relaxed = relaxed_repeat(
         repeat, energy, branch, best, seconds=time.process_time() - clock,
         evaluations=search.evaluations, starts=tuple(search.reports), notes=search.notes(best),
     )  # fmt: skip
+    return relaxed if imposed else replace(relaxed, minimum=best.stable)
 
 
 def drafted(
@@ -247,6 +256,12 @@ def relaxed_repeat(
         flat=energy.flat,
         slides=energy.slides,
     )
+
+
+def has_mirrors(repeat: StitchChart) -> bool:
+    """Whether the mirrored branch imposes symmetries on a repeat."""
+    cell = mirrored_cell(repeat, COARSE)
+    return cell.symmetric or cell.stitches < free_cell(repeat, COARSE).stitches
 
 
 def _starts(branch: Branch, cell: YarnCell, starts: Sequence[Start] | None) -> Sequence[Start]:

@@ -65,7 +65,7 @@ def lowest(task: LowestTask) -> Document:
     chart = StitchChart.parse(task.chart)
     states = []
     try:
-        mirrored = relax(chart, task.yarn, task.loop_length_mm)
+        mirrored = relax(chart, task.yarn, task.loop_length_mm, branch="mirrored")
         if can_be_followed(mirrored):
             found = without_mirrors(mirrored).state
             states.append((found.energy_n_mm, found.cell_course_mm, found.cell_wale_mm))

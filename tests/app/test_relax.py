@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -31,16 +32,31 @@ def test_relax_on_the_command_line_and_over_rest_agree(client: TestClient) -> No
 
 
 def test_a_shape_that_only_its_mirrors_hold_says_so() -> None:
-    garter = run("relax", "garter", "--size", "2x2", "--material", "cotton")
-    assert not garter["unmirrored"]["minimum"]
+    asked = "relax", "garter", "--size", "2x2", "--material", "cotton"
+    garter = run(*asked, "--branch", "mirrored")
+    assert garter["minimum"] is False
+    assert garter["mirrored"] is None
     assert garter["unmirrored"]["energy_n_mm"] < 0.995 * garter["energy_n_mm"]
     assert any("only among mirrored ones" in note for note in garter["notes"])
-    stockinette = run("relax", "stockinette", "--size", "2x2", "--material", "acrylic")
-    assert stockinette["unmirrored"]["minimum"]
-    held = run(
-        "relax", "stockinette", "--size", "2x2", "--material", "acrylic", "--cell-course-mm", "3"
+    lowest = run(*asked)
+    assert (lowest["branch"], lowest["minimum"]) == ("free", True)
+    assert lowest["energy_n_mm"] == pytest.approx(garter["unmirrored"]["energy_n_mm"])
+    assert lowest["mirrored"]["energy_n_mm"] == pytest.approx(garter["energy_n_mm"])
+    low, high = (
+        math.log(told["cell_wale_interval_mm"][1] / told["cell_wale_mm"])
+        for told in (garter, lowest)
     )
-    assert held["unmirrored"] is None
+    assert high > 1.5 * low  # such shapes are farther from cloth
+
+
+def test_a_shape_that_needs_no_mirrors_says_so() -> None:
+    asked = "relax", "stockinette", "--size", "2x2", "--material", "acrylic"
+    for told in (run(*asked), run(*asked, "--branch", "mirrored")):
+        assert told["branch"] == "mirrored"
+        assert told["minimum"]
+        assert told["mirrored"] is told["unmirrored"] is None
+    held = run(*asked, "--cell-course-mm", "3")
+    assert held["minimum"] is None
 
 
 def test_relax_in_the_published_branch() -> None:

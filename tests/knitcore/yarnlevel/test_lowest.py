@@ -17,7 +17,7 @@ from knitcore.yarnlevel.splines import COARSE
 def mirrored(yarn, fabric):
     entry = sample(yarn, fabric)
     chart = StitchChart.of_fabric(Fabric(fabric), 2, 2)
-    return relax(chart, entry.yarn, entry.loop_length_mm, grid=COARSE)
+    return relax(chart, entry.yarn, entry.loop_length_mm, grid=COARSE, branch="mirrored")
 
 
 def test_stockinette_needs_no_mirrors():

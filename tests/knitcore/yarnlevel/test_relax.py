@@ -29,7 +29,8 @@ STUDY_YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 def test_the_eight_samples_relax_below_the_published_energy(entry):
     """The spline is freer than the paper's ansatz: its energy is lower, by at most 6 %
     (garter acrylic: the published state is another branch, 1 % lower)."""
-    found = relax(StitchChart.of_fabric(entry.fabric, 2, 2), entry.yarn, entry.loop_length_mm)
+    chart = StitchChart.of_fabric(entry.fabric, 2, 2)
+    found = relax(chart, entry.yarn, entry.loop_length_mm, branch="mirrored")
     assert found.converged
     assert 0.94 < found.energy_n_mm / entry.energy_n_mm < 1.012
     assert found.contact_share == pytest.approx(entry.contact_share, abs=0.02)
@@ -99,7 +100,9 @@ def test_the_general_cell_relaxes_to_the_same_stitch_or_a_little_lower():
 
 
 def test_two_by_two_rib_is_narrower_than_one_by_one():
-    one, two = (relax(StitchChart.parse(t), STUDY_YARN, 11.28) for t in ("KP", "KKPP"))
+    one, two = (
+        relax(StitchChart.parse(t), STUDY_YARN, 11.28, branch="mirrored") for t in ("KP", "KKPP")
+    )
     assert one.cell_course_mm == pytest.approx(1.81, rel=0.05)  # study, with C as in authors-code
     assert two.cell_course_mm < 0.95 * one.cell_course_mm
 
@@ -115,6 +118,40 @@ def test_free_branch_is_not_above_the_mirrored_one():
     assert free.energy_n_mm < mirrored.energy_n_mm * (1 + 1e-6)
     assert free.cell.stitches == 4
     assert any("differs from the mirrored" in note for note in free.notes)
+
+
+@pytest.mark.parametrize("fabric", ["rib", "garter"])
+def test_without_a_branch_the_mirrors_are_only_where_it_begins(fabric):
+    entry = sample("cotton", fabric)
+    repeat = StitchChart.of_fabric(entry.fabric, 2, 2)
+    mirrored = relax(repeat, entry.yarn, entry.loop_length_mm, branch="mirrored")
+    found = relax(repeat, entry.yarn, entry.loop_length_mm)
+    assert found.minimum
+    assert found.branch is Branch.FREE
+    assert found.mirrored is not None
+    assert found.mirrored.energy_n_mm == pytest.approx(mirrored.energy_n_mm, rel=1e-6)
+    assert found.energy_n_mm < 0.995 * mirrored.energy_n_mm
+    assert found.starts == found.mirrored.starts
+    assert len(found.starts) == 2
+
+
+def test_without_a_branch_a_minimum_keeps_its_mirrors():
+    found = relax(StitchChart.parse("K"), STUDY_YARN, 11.28)
+    assert found.minimum
+    assert found.branch is Branch.MIRRORED
+    assert found.mirrored is None
+    held = relax(StitchChart.parse("K"), STUDY_YARN, 11.28, cell_wale_mm=found.cell_wale_mm)
+    assert held.minimum is None
+
+
+def test_a_large_repeat_has_no_mirrors_unless_asked_for():
+    """It is symmetric about a wale, which the mirrored branch would keep."""
+    entry = sample("cotton", "stockinette")
+    chart = StitchChart.parse("KKPPPKK\nKKKPKKK\nPKKPKKP")
+    found = relax(chart, entry.yarn, entry.loop_length_mm)
+    assert found.branch is Branch.FREE
+    assert not found.cell.symmetric
+    assert found.converged
 
 
 def test_the_free_branch_continues_from_the_lowest_mirrored_state():
@@ -139,7 +176,7 @@ def test_swapping_or_mirroring_the_chart_changes_nothing():
 
 
 def test_centre_lines_cover_the_repeat_and_go_on():
-    found = relax(StitchChart.parse("KP"), STUDY_YARN, 11.28)
+    found = relax(StitchChart.parse("KP"), STUDY_YARN, 11.28, branch="mirrored")
     (line,) = found.centre_lines
     step = np.linalg.norm(np.diff(line, axis=0), axis=1)
     length = step.sum() + np.linalg.norm(line[0] + [2 * found.cell_course_mm, 0, 0] - line[-1])

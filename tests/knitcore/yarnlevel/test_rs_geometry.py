@@ -41,7 +41,9 @@ def test_the_papers_own_curves_give_its_tables(yarn, fabric):
 def test_a_spline_has_much_the_same_feet(fabric):
     """It has no explicit crossovers, so that the edges of the regions differ more wale-wise."""
     entry = sample("acrylic", fabric)
-    relaxed = relax(StitchChart.of_fabric(fabric, 2, 2), entry.yarn, entry.loop_length_mm)
+    relaxed = relax(
+        StitchChart.of_fabric(fabric, 2, 2), entry.yarn, entry.loop_length_mm, branch="mirrored"
+    )
     found = segment_geometry(relaxed)
     assert (found[Direction.COURSE].parity is Parity.ODD) == fabric.course_odd
     assert (found[Direction.WALE].parity is Parity.ODD) == fabric.wale_odd
@@ -54,7 +56,7 @@ def test_a_spline_has_much_the_same_feet(fabric):
 
 def test_entangled_regions_mirror_each_other_about_the_wale_axis():
     entry = sample("cotton", "stockinette")
-    relaxed = relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm)
+    relaxed = relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, branch="mirrored")
     first, second, third, fourth = entangled_regions(relaxed)
     assert third == pytest.approx((1 - second[1], 1 - second[0]), abs=1e-6)
     assert fourth == pytest.approx((1 - first[1], 1 - first[0]), abs=1e-6)
@@ -62,6 +64,6 @@ def test_entangled_regions_mirror_each_other_about_the_wale_axis():
 
 def test_a_mixed_repeat_is_refused():
     entry = sample("cotton", "stockinette")
-    relaxed = relax(StitchChart.parse("KKP"), entry.yarn, entry.loop_length_mm)
+    relaxed = relax(StitchChart.parse("KKP"), entry.yarn, entry.loop_length_mm, branch="mirrored")
     with pytest.raises(InputError, match="single stitch"):
         segment_geometry(relaxed)

@@ -14,7 +14,12 @@ from knitcore.yarnlevel.sweep import sweep
 @pytest.fixture(scope="module")
 def seed():
     entry = sample("acrylic", Fabric.SEED)
-    return relax(StitchChart.of_fabric(Fabric.SEED, 2, 2), entry.yarn, entry.loop_length_mm)
+    return relax(
+        StitchChart.of_fabric(Fabric.SEED, 2, 2),
+        entry.yarn,
+        entry.loop_length_mm,
+        branch="mirrored",
+    )
 
 
 def test_a_stitch_has_the_two_slides_of_the_paper(seed):

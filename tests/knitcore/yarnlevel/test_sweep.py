@@ -18,7 +18,13 @@ from knitcore.yarnlibrary.store import stored_stitch
 @pytest.fixture(scope="module")
 def zero():
     entry = sample("cotton", "stockinette")
-    return relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, grid=SplineGrid(16, 5))
+    return relax(
+        StitchChart.parse("K"),
+        entry.yarn,
+        entry.loop_length_mm,
+        grid=SplineGrid(16, 5),
+        branch="mirrored",
+    )
 
 
 @pytest.mark.parametrize("direction", list(Direction))
@@ -76,7 +82,9 @@ def test_two_by_two_rib_stretches_more_than_one_by_one():
     yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
     strains = []
     for text in ("KP", "KKPP"):
-        rest = relax(StitchChart.parse(text), yarn, 11.28, grid=SplineGrid(12, 4))
+        rest = relax(
+            StitchChart.parse(text), yarn, 11.28, grid=SplineGrid(12, 4), branch="mirrored"
+        )
         curve = sweep(rest, "course", 3.0, points=40, max_stress_n_per_mm=0.06, back=False)
         strains.append(np.interp(0.05, curve.stress_n_per_mm, curve.strain))
     assert strains[1] > 1.05 * strains[0]
@@ -86,7 +94,7 @@ def test_a_stretch_that_buckles_jumps_however_many_points_it_has():
     """Acrylic seed pulled wale-wise leaves the plane (paper, Supplementary Fig. 8): both states
     have the same energy there, so that the work balances."""
     entry = sample("acrylic", "seed")
-    rest = relax(StitchChart.parse("KP\nPK"), entry.yarn, entry.loop_length_mm)
+    rest = relax(StitchChart.parse("KP\nPK"), entry.yarn, entry.loop_length_mm, branch="mirrored")
     curve = sweep(rest, "wale", 1.46, points=61, max_stress_n_per_mm=0.1)
     (after,) = curve.jumps
     assert curve.stress_n_per_mm[after] < 0.7 * curve.stress_n_per_mm[after - 1]
@@ -99,7 +107,7 @@ def test_a_stretch_that_buckles_jumps_however_many_points_it_has():
 
 def test_a_stretch_in_few_steps_has_no_jump_for_that():
     entry = sample("acrylic", "rib")
-    rest = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm)
+    rest = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm, branch="mirrored")
     assert sweep(rest, "course", 1.0, points=6).jumps == ()
 
 
@@ -118,7 +126,7 @@ def test_a_held_state_is_refused_as_rest():
     entry = sample("cotton", "stockinette")
     held = relax(
         StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, cell_course_mm=3.6,
-        grid=SplineGrid(12, 4),
+        grid=SplineGrid(12, 4), branch="mirrored",
     )  # fmt: skip
     with pytest.raises(InputError, match="its size is held"):
         sweep(held, "wale", 0.1)
@@ -126,7 +134,7 @@ def test_a_held_state_is_refused_as_rest():
 
 def test_a_stretch_that_opens_at_another_strain_than_it_folds_jumps_once():
     entry = stored_stitch(StitchChart.parse("KK\nKP"), "cotton")
-    rest = relax(entry.chart, entry.yarn, entry.loop_length_mm)
+    rest = relax(entry.chart, entry.yarn, entry.loop_length_mm, branch="mirrored")
     there = sweep(rest, "course", 0.6, points=25, back=False)
     curve = sweep(rest, "course", 0.6, points=25)
     (opens,), (folds,) = there.jumps, curve.jumps

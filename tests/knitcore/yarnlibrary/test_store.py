@@ -38,7 +38,7 @@ def test_turned_and_moved_charts_are_found_with_their_own_shape(text):
     chart = StitchChart.parse(text)
     stored = stored_stitch(chart, "cotton")
     assert stored is not None
-    fresh = relax(chart, stored.yarn, stored.loop_length_mm)
+    fresh = relax(chart, stored.yarn, stored.loop_length_mm, branch="mirrored")
     assert fresh.convention is Convention.PUBLISHED
     assert stored.cell_course_mm == pytest.approx(fresh.cell_course_mm, rel=0.01)
     a, b = stored.centre_lines(3)[0], fresh.centre_lines[0]
