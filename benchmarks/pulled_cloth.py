@@ -16,6 +16,7 @@ from skfem import Basis, ElementQuad2, ElementVector, MeshQuad
 from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError
 from knitcore.fabric import Direction
+from knitcore.yarnlevel.friction import RubbedCell
 from knitcore.yarnlevel.hysteresis import Leg, pull
 from knitcore.yarnlevel.splines import RelaxedRepeat
 
@@ -99,10 +100,11 @@ class PulledCloth:
 
     @classmethod
     def of_yarn(
-        cls, relaxed: RelaxedRepeat, along: Direction, friction: float, shear_modulus: float,
+        cls, begin: RelaxedRepeat | RubbedCell, along: Direction, friction: float,
+        shear_modulus: float,
         *, max_strain: float, points: int, shares: tuple[float, ...] = SHARES,
     ) -> PulledCloth:  # fmt: skip
-        """From first pulls of a relaxed repeat.
+        """From pulls of a relaxed repeat, or of a state that other pulls have left.
 
         Where a pull locks it goes on in a straight line. Where its stress falls the yarn snaps, all
         stitches at once in the repeat; in cloth they snap one after the other while the stress
@@ -114,7 +116,7 @@ class PulledCloth:
             If the yarn locks in the first step.
         """
         free = pull(
-            relaxed, along, max_strain, friction, points=points, max_stress_n_per_mm=TOP_N_PER_MM
+            begin, along, max_strain, friction, points=points, max_stress_n_per_mm=TOP_N_PER_MM
         )
         kept = _rising(free)
         if kept.sum() < 3:
@@ -129,7 +131,7 @@ class PulledCloth:
         stress = np.empty((len(strain), len(shares), 2))
         for i, share in enumerate(shares):
             leg = free if share == 1.0 else pull(
-                relaxed, along, longest, friction, points=len(free.strain),
+                begin, along, longest, friction, points=len(free.strain),
                 max_stress_n_per_mm=TOP_N_PER_MM, across=narrowed(share),
             )  # fmt: skip
             both = np.column_stack([leg.stress_n_per_mm, leg.transverse_stress_n_per_mm])

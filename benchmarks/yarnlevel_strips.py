@@ -1,6 +1,7 @@
 """Strips of the yarn level's fabrics in the acrylic stretch tests: strain at equal stress.
 
-    python -m benchmarks.yarnlevel_strips FOLDER [--friction 0.26] [--draws 40] [--specimens 10]
+    python -m benchmarks.yarnlevel_strips FOLDER [--friction 0.26 [--as-tested]] [--draws 40]
+        [--specimens 10]
 
 FOLDER holds the authors' acrylic tests. Each fabric is relaxed and pulled at the yarn level with
 the yarn as measured in it (the convention of ``yarnlevel_experiments.py``), at several widths.
@@ -10,6 +11,8 @@ nothing measured on the fabric is fed in, and no law is fitted. Waists are compa
 at which the test carries these stresses.
 
 ``--friction`` pulls the yarn with friction, from its relaxed shape; 0.26 is the library's default.
+``--as-tested`` first does what the authors did: a whole test before those that count, then a pull
+across it that brings the fabric back to its length.
 ``--draws`` repeats the comparison with loop length and diameter of each fabric, bending modulus and
 contact stiffness drawn from their printed scatter, as that of a mean over ``--specimens`` (1: of a
 single stitch or length of yarn).
@@ -23,7 +26,14 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.pulled_cloth import CELLS, SHARES, PulledCloth, Reading, Strip
+from benchmarks.pulled_cloth import (
+    CELLS,
+    SHARES,
+    TOP_N_PER_MM,
+    PulledCloth,
+    Reading,
+    Strip,
+)
 from benchmarks.true_to_tests import strips
 from benchmarks.yarnlevel_experiments import _FAR, _POINTS, as_measured
 from knitcore.arrays import Array
@@ -33,12 +43,16 @@ from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM
 from knitcore.swatch.measured_strip import MeasuredStrip
 from knitcore.yarnlevel.bending import bending_response
+from knitcore.yarnlevel.friction import RubbedCell, agitated
+from knitcore.yarnlevel.hysteresis import MAX_STRIDES, RubbedStretch
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.samples import Sample, sample
 from knitcore.yarnlevel.splines import RelaxedRepeat
 
 STRESSES = np.array([0.05, 0.1, 0.2, 0.3])
 OUTLIER = f"{Fabric.SEED} along the {Direction.COURSE}"
+_STRIDE = 0.02
+"""Steps of the pulls before a test, in strain."""
 LEVELS = 60
 """Strains of a strip up to the largest of the free pull."""
 BENDING_LOG_SD, CONTACT_LOG_SD = 5.96 / 45.15, 0.10 / 0.62
@@ -79,7 +93,7 @@ def shear_modulus(relaxed: RelaxedRepeat) -> float:
 
 
 def compared(
-    relaxed: RelaxedRepeat, shear: float, strip: MeasuredStrip, friction: float,
+    begin: RelaxedRepeat | RubbedCell, shear: float, strip: MeasuredStrip, friction: float,
     *, shares: tuple[float, ...] = SHARES, refined: int = 1, cells: int = CELLS,
 ) -> Comparison:  # fmt: skip
     """The strip of a simulated fabric beside its test; ``refined`` divides the steps of pulls."""
@@ -87,7 +101,7 @@ def compared(
     along = strip.direction
     far, points = _FAR[along], refined * (_POINTS[along] - 1) + 1
     cloth = PulledCloth.of_yarn(
-        relaxed, along, friction, shear, max_strain=far, points=points, shares=shares
+        begin, along, friction, shear, max_strain=far, points=points, shares=shares
     )
     stress, waist = strip.means
     known = np.isfinite(stress)
@@ -107,6 +121,36 @@ def compared(
         np.interp(at, strain, narrowing, right=np.nan),
         np.interp(at, strip.strain[known], waist[known]),
     )
+
+
+def as_tested(relaxed: RelaxedRepeat, along: Direction, friction: float) -> RubbedCell:
+    """The fabric free of force after a whole test along a direction, and after a pull across that
+    brings it back to its length.
+    """
+    length, width = relaxed.cell_mm(along), relaxed.cell_mm(along.other)
+    test = RubbedStretch(agitated(relaxed), along, friction)
+    for step in range(1, MAX_STRIDES):
+        try:
+            pulled = test.reach((), length * (1.0 + _STRIDE * step))
+        except (ConvergenceError, UnravelledError):
+            break  # the yarn locks: the test cannot have gone further
+        if pulled.force_n[along.axis] > TOP_N_PER_MM * width:
+            break
+    left = _released(test, _STRIDE * length)
+    reset = RubbedStretch(left, along.other, friction)
+    here = left.cell.cell_mm(along.other)
+    for step in range(1, MAX_STRIDES):
+        reset.reach((), here + _STRIDE * width * step)
+        left = _released(replace(reset), _STRIDE * width)
+        if left.cell.cell_mm(along) <= length:
+            break
+    return left
+
+
+def _released(stretch: RubbedStretch, stride_mm: float) -> RubbedCell:
+    for _ in stretch.release(stride_mm):
+        pass
+    return stretch.state
 
 
 def drawn(entry: Sample, rng: np.random.Generator, shared: Array, specimens: int) -> Sample:
@@ -140,12 +184,15 @@ def main() -> None:
     parser.add_argument("--friction", type=float, default=0.0)
     parser.add_argument("--draws", type=int, default=0)
     parser.add_argument("--specimens", type=int, default=10)
+    parser.add_argument("--as-tested", action="store_true")
     asked = parser.parse_args()
+    if asked.as_tested and not asked.friction:
+        parser.error("--as-tested: without friction the past leaves no trace. Give --friction.")
     tests = {fabric: strips(asked.folder, fabric) for fabric in Fabric}
     printed = {fabric: as_measured(sample("acrylic", fabric)) for fabric in Fabric}
     print("simulated over measured strain at", ", ".join(map(str, STRESSES)), "N/mm")
     names = [f"{fabric} along the {strip.direction}" for fabric in tests for strip in tests[fabric]]
-    rows = compared_all(printed, tests, asked.friction)
+    rows = compared_all(printed, tests, asked.friction, tested=asked.as_tested)
     for name, row in zip(names, rows, strict=True):
         waists = f"waist {_shown(row.waist)}, measured {_shown(row.measured_waist)}"
         print(f"  {name}: {_shown(row.ratio)}; {waists}")
@@ -161,7 +208,7 @@ def main() -> None:
             fabric: drawn(entry, rng, shared, asked.specimens) for fabric, entry in printed.items()
         }
         try:
-            rows = compared_all(entries, tests, asked.friction)
+            rows = compared_all(entries, tests, asked.friction, tested=asked.as_tested)
         except KnitcoreError:
             failed += 1
         else:
@@ -179,15 +226,18 @@ def main() -> None:
 
 
 def compared_all(
-    entries: dict[Fabric, Sample], tests: dict[Fabric, list[MeasuredStrip]], friction: float
-) -> list[Comparison]:
+    entries: dict[Fabric, Sample], tests: dict[Fabric, list[MeasuredStrip]], friction: float,
+    *, tested: bool,
+) -> list[Comparison]:  # fmt: skip
     """Every test."""
     found = []
     for fabric, entry in entries.items():
         chart = StitchChart.of_fabric(fabric, 2, 2)
         relaxed = relax(chart, entry.yarn, entry.loop_length_mm, branch="mirrored")
         shear = shear_modulus(relaxed)
-        found += [compared(relaxed, shear, strip, friction) for strip in tests[fabric]]
+        for strip in tests[fabric]:
+            begin = as_tested(relaxed, strip.direction, friction) if tested else relaxed
+            found.append(compared(begin, shear, strip, friction))
     return found
 
 

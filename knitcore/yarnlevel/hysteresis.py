@@ -218,7 +218,7 @@ class RubbedStretch:
 
 
 def pull(
-    relaxed: RelaxedRepeat,
+    begin: RelaxedRepeat | RubbedCell,
     direction: Direction | str,
     max_strain: float,
     coefficient: float,
@@ -228,25 +228,29 @@ def pull(
     across: Callable[[float], float] | None = None,
     cancelled: Cancelled | None = None,
 ) -> Leg:
-    """Pull in one direction with friction, from the agitated state.
+    """Pull in one direction with friction.
 
     Where the yarn locks or unravels, the pull ends, with a note. Parameters and errors are those of
     :func:`hysteresis`, and:
 
     Parameters
     ----------
+    begin : a relaxed repeat, which begins in its agitated state, or a state free of force that
+        other pulls have left; strains and stresses refer to its size.
     max_stress_n_per_mm : stop beyond this nominal stress.
     across : strain of the other direction, by that of the pull: 0 throughout holds the width, for
         example. By default the other direction is free of force.
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, max_stress_n_per_mm)
-    long, wide = relaxed.cell_mm(along), relaxed.cell_mm(along.other)
+    state = begin if isinstance(begin, RubbedCell) else agitated(begin)
+    long, wide = state.cell.cell_mm(along), state.cell.cell_mm(along.other)
     stretch = RubbedStretch(
-        agitated(relaxed), along, coefficient, cancelled,
+        state, along, coefficient, cancelled,
         across and (lambda size_mm: wide * (1.0 + across(size_mm / long - 1.0))),
     )  # fmt: skip
-    return _pulled(stretch, relaxed, np.linspace(0.0, max_strain, points), max_stress_n_per_mm)
+    strain = np.linspace(0.0, max_strain, points)
+    return _pulled(stretch, state.cell, strain, max_stress_n_per_mm)
 
 
 def hysteresis(

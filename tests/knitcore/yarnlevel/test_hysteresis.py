@@ -63,6 +63,16 @@ def test_a_pull_is_the_first_leg_of_a_loop(stockinette, loop):
     assert len(stopped.cells) == beyond[0] + 1
 
 
+def test_a_pull_may_begin_where_other_pulls_have_left_the_fabric(stockinette):
+    worn = at_rest(stockinette, "stretched-course", 0.25)
+    again = pull(worn, "course", 0.1, 0.25, points=6)
+    assert again.strain[0] == 0.0
+    assert abs(again.stress_n_per_mm[0]) < 1e-6
+    assert worn.cell.cell_course_mm > 1.001 * stockinette.cell_course_mm
+    assert again.zero is worn.cell
+    assert again.cells[-1].cell_course_mm == pytest.approx(1.1 * worn.cell.cell_course_mm)
+
+
 def test_a_pull_at_the_free_narrowing_is_free_and_a_held_width_takes_more(stockinette):
     free = pull(stockinette, "wale", 0.2, 0.0, points=17)
     strain, narrowing = free.strain, free.transverse_strain
