@@ -19,6 +19,9 @@ from knitcore.yarnlevel.topology import Clearance
 STRAIGHT = 0.97
 """A stitch is pulled straight when its size nears this part of its loop length."""
 _HALVINGS = 3
+_TOLERANCE = 4e-6
+"""Of the energy, in cells of more than four stitches: stresses are within .3 % of the largest in
+the median, 1 % at most, as with 1e-6, in four fifths of the time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,11 +74,12 @@ class SplineStretch:
     def _held(self, last: RelaxedRepeat, size_mm: float) -> RelaxedRepeat:
         if size_mm > STRAIGHT * float(last.loop_lengths_mm.max()):
             raise ConvergenceError("the yarn is pulled straight.")
+        small = last.cell.stitches <= 4
         found = minimise(
             last.energy, last.state, tension=last.tension_n,
             fixed=(COURSE if self.along is Direction.COURSE else WALE,),
             target=np.array([size_mm, size_mm]), cancelled=self.cancelled,
-            options=Options(tolerance=1e-8 if last.cell.stitches <= 4 else 1e-6, iterations=80),
+            options=Options(tolerance=1e-8 if small else _TOLERANCE, iterations=80),
         )  # fmt: skip
         became = outcome(last.energy, found)
         if became == "unravelled":
