@@ -16,9 +16,11 @@ from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_stitches
 from knitcore.errors import InputError
 from knitcore.materials import Material
+from knitcore.materials.uncertainty import YARN_LEVEL_FREE_SIZE_LOG_SD, YARN_LEVEL_SIZE_LOG_SD
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import Branch, relax
 from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlevel.splines import has_mirrors
 from knitcore.yarnlibrary.yarns import ChartYarn, yarn_for
 
 LoopLength = Annotated[float, Field(gt=0, le=1000)]
@@ -151,6 +153,12 @@ def relax_requested(
         flat=request.flat,
         cancelled=context.cancelled,
     )
+
+
+def size_log_sd(cell: RelaxedCell) -> float:
+    """Standard deviation of the logarithm of knitted over relaxed sizes."""
+    folded = cell.branch is Branch.FREE and has_mirrors(cell.chart)
+    return YARN_LEVEL_FREE_SIZE_LOG_SD if folded else YARN_LEVEL_SIZE_LOG_SD
 
 
 Request = TypeVar("Request", bound=YarnLevelRequest)

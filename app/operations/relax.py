@@ -14,17 +14,12 @@ from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
 from app.models.gauge import FoundGauge
-from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
+from app.models.yarn_level import YarnResult, kept_or_made, relax_requested, size_log_sd
 from app.operations.registry import Command, Operation
 from knitcore.answer.relaxation import size_from_relaxation
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
-from knitcore.materials.uncertainty import (
-    YARN_LEVEL_ERRORS,
-    YARN_LEVEL_FREE_SIZE_LOG_SD,
-    YARN_LEVEL_SIZE_LOG_SD,
-    log_interval,
-)
+from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS, log_interval
 from knitcore.phases import pure_fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.hysteresis import History, rest_sizes
@@ -193,7 +188,7 @@ def _relaxed(
         cell, rests = _after_history(on_splines(cell), request.friction, request, context)
     elif request.branch is Branch.MIRRORED and sizes == (None, None):
         cell, unmirrored = _unmirrored(cell, context)
-    log_sd = _log_sd(cell)
+    log_sd = size_log_sd(cell)
     free = [
         log_interval(size, log_sd) if held is None else None
         for size, held in zip((cell.cell_course_mm, cell.cell_wale_mm), sizes, strict=True)
@@ -232,12 +227,6 @@ def _after_history(
         notes=(*zero.notes, request.friction_note(context), HISTORIES),
     )
     return told, [RestSizeResult.of(rest) for rest in rests]
-
-
-def _log_sd(cell: RelaxedCell) -> float:
-    """Standard deviation of the logarithm of knitted over relaxed sizes."""
-    mirrored = cell.branch is not Branch.FREE or not has_mirrors(cell.chart)
-    return YARN_LEVEL_SIZE_LOG_SD if mirrored else YARN_LEVEL_FREE_SIZE_LOG_SD
 
 
 def _unmirrored(cell: RelaxedCell, context: Context) -> tuple[RelaxedCell, RelaxedRepeat | None]:

@@ -11,14 +11,10 @@ from pydantic import BaseModel, Field
 from app.context import Context
 from app.models.base import Ends, IntervalResult
 from app.models.charts import to_chart
-from app.models.yarn_level import StitchRequest, YarnResult
+from app.models.yarn_level import StitchRequest, YarnResult, size_log_sd
 from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words
-from knitcore.materials.uncertainty import (
-    YARN_LEVEL_ERRORS,
-    YARN_LEVEL_SIZE_LOG_SD,
-    log_interval,
-)
+from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS, log_interval
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.whole import MAX_ROUNDS, WholeShape, relax_whole
 
@@ -82,6 +78,7 @@ class KeptSheet(BaseModel):
     fine: bool
     rounds: list[tuple[float, float, float]]
     earlier: int
+    evaluations: int = 0
 
     @classmethod
     def of(cls, sheet: WholeShape) -> KeptSheet:
@@ -90,13 +87,14 @@ class KeptSheet(BaseModel):
             controls=sheet.controls.tolist(), sizes_mm=sheet.sizes_mm.tolist(),
             tension_n=sheet.tension_n.tolist(), core_radius_mm=sheet.core_radius_mm,
             fine=sheet.fine, rounds=list(sheet.rounds), earlier=sheet.earlier,
+            evaluations=sheet.evaluations,
         )  # fmt: skip
 
     def sheet(self) -> WholeShape:
         """As the library takes it."""
         return WholeShape(
             np.array(self.controls), np.array(self.sizes_mm), np.array(self.tension_n),
-            self.core_radius_mm, self.fine, tuple(self.rounds), self.earlier,
+            self.core_radius_mm, self.fine, tuple(self.rounds), self.earlier, self.evaluations,
         )  # fmt: skip
 
 
@@ -124,8 +122,8 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
         found,
         rows=chart.rows,
         columns=chart.columns,
-        cell_course_interval_mm=log_interval(found.cell_course_mm, YARN_LEVEL_SIZE_LOG_SD),
-        cell_wale_interval_mm=log_interval(found.cell_wale_mm, YARN_LEVEL_SIZE_LOG_SD),
+        cell_course_interval_mm=log_interval(found.cell_course_mm, size_log_sd(found)),
+        cell_wale_interval_mm=log_interval(found.cell_wale_mm, size_log_sd(found)),
         interval_source=YARN_LEVEL_ERRORS,
         yarn=YarnResult.of(used, used.yarn),
         centre_lines_mm=[line.tolist() for line in found.centre_lines]

@@ -20,8 +20,9 @@ STRAIGHT = 0.97
 """A stitch is pulled straight when its size nears this part of its loop length."""
 _HALVINGS = 3
 _TOLERANCE = 4e-6
-"""Of the energy, in cells of more than four stitches: stresses differ from those of 1e-7 by .03 % of
-the largest in the median and 1 % at most (with 1e-6 by .01 and .6 %), in two thirds of the time."""
+"""Of the energy, in cells of more than four stitches: stresses differ from those of 1e-7 by .03 %
+of the largest in the median and 1 % at most (with 1e-6 by .01 and .6 %), in two thirds of the
+time."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,7 @@ from knitcore.errors import (
     check_cancelled,
 )  # fmt: skip
 from knitcore.threads import on_halves, one_blas_thread
-from knitcore.yarnlevel.cell import plain_cell
+from knitcore.yarnlevel.cell import free_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import (
@@ -319,9 +319,12 @@ class _Work:
         return self._fitted(sheet, FIRST_OPENING)
 
     def _tiled(self) -> WholeShape:
-        """The chart's repeat, relaxed and laid out."""
+        """The chart's repeat, relaxed without its mirrors where that fits, and laid out."""
+        free = free_cell(self.chart.repeat(), COARSE)
+        fits = self.chart.rows % free.rows == self.chart.columns % free.wales == 0
         found = relax_splines(
-            self.chart, self.yarn, self.loop_lengths_mm[0], branch=Branch.MIRRORED,
+            self.chart, self.yarn, self.loop_lengths_mm[0],
+            branch=Branch.FREE if fits and not self.flat else Branch.MIRRORED,
             convention=self.convention, sizes_mm=(None, None), flat=self.flat, grid=COARSE,
             starts=None, time_limit_s=None, cancelled=self.cancelled,
         )  # fmt: skip

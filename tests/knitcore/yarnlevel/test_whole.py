@@ -203,6 +203,16 @@ def test_a_whole_chart_can_be_cancelled() -> None:
         relax_whole(StitchChart(PURL), SAMPLE.yarn, SAMPLE.loop_length_mm, cancelled=lambda: True)
 
 
+def test_a_whole_chart_of_a_repeat_has_no_mirrors() -> None:
+    entry = sample("cotton", "rib")
+    one = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm)
+    chart = StitchChart.parse("KPKP\nKPKP\nKPKP\nKPKP")
+    whole = relax_whole(chart, entry.yarn, entry.loop_length_mm)
+    assert one.mirrored is not None
+    assert whole.energy_n_mm < 0.95 * one.mirrored.energy_n_mm
+    assert whole.energy_n_mm == pytest.approx(one.energy_n_mm, rel=2e-3)
+
+
 @pytest.mark.slow
 def test_a_whole_chart_of_stockinette_relaxes_like_one_stitch_and_can_be_resumed() -> None:
     chart = StitchChart(np.zeros((10, 13), bool))
