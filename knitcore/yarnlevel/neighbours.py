@@ -18,6 +18,8 @@ EXCLUSION_RADII = 2.1
 """Samples of one yarn nearer than this many radii along it do not touch (authors' code)."""
 _BINS = 3
 """Bins per reach: finer ones follow its circle more closely."""
+_LEAST_CHANGE = 1e-300
+"""So that nothing is divided by zero, mm."""
 
 
 @numba.njit(cache=True, nogil=True)
@@ -163,16 +165,75 @@ def pair_distances(
 
     The vectors are linear in curve and cell: differences of both give how far the vectors change.
     """
-    rows, wales = shape
     at = laid_out(curve, place, *cell)
     distance = np.empty(pairs.shape[0])
     for q in range(pairs.shape[0]):
-        i, j = pairs[q, 0], pairs[q, 1]
-        x = at[j, 0] - at[i, 0] + wales * pairs[q, 2] * cell[0]
-        y = at[j, 1] - at[i, 1] + rows * pairs[q, 3] * cell[1]
-        z = pairs[q, 4] * at[j, 2] - at[i, 2]
-        distance[q] = np.sqrt(x * x + y * y + z * z)
+        distance[q] = np.sqrt(_square(at, cell, shape, pairs, q))
     return distance
+
+
+@numba.njit(cache=True, nogil=True)
+def extremes(
+    curve: NDArray[np.float64],
+    cell: tuple[float, float],
+    place: NDArray[np.float64],
+    shape: tuple[int, int],
+    pairs: Pairs,
+) -> tuple[float, float]:
+    """Least and greatest of the :func:`pair_distances`; infinite and zero without pairs."""
+    at = laid_out(curve, place, *cell)
+    least, greatest = np.inf, 0.0
+    for q in range(pairs.shape[0]):
+        square = _square(at, cell, shape, pairs, q)
+        least, greatest = min(least, square), max(greatest, square)
+    return np.sqrt(least), np.sqrt(greatest)
+
+
+@numba.njit(cache=True, nogil=True)
+def part_apart(
+    curves: tuple[NDArray[np.float64], NDArray[np.float64]],
+    cells: tuple[tuple[float, float], tuple[float, float]],
+    place: NDArray[np.float64],
+    shape: tuple[int, int],
+    pairs: Pairs,
+    used: tuple[float, float],
+    longest: float,
+    most: float,
+) -> float:
+    """Part of a step, at most ``most``, on which no pair uses up its distance.
+
+    Parameters
+    ----------
+    curves, cells : where the step begins, and how they change on the whole of it.
+    used : distance, mm, that a pair has to keep, and part of what is beyond it that may be used.
+    longest : greatest change of the vector of a pair, mm.
+    """
+    at, moved = laid_out(curves[0], place, *cells[0]), laid_out(curves[1], place, *cells[1])
+    keep, usable = used
+    part = most
+    near = (keep + most * longest / usable) ** 2 * (1.0 + 1e-9)  # pairs beyond it have room
+    for q in range(pairs.shape[0]):
+        square = _square(at, cells[0], shape, pairs, q)
+        if square <= near:
+            change = max(np.sqrt(_square(moved, cells[1], shape, pairs, q)), _LEAST_CHANGE)
+            part = min(part, usable * (max(np.sqrt(square) - keep, 0.0) / change))
+    return part
+
+
+@numba.njit(cache=True, nogil=True)
+def _square(
+    at: NDArray[np.float64],
+    cell: tuple[float, float],
+    shape: tuple[int, int],
+    pairs: Pairs,
+    q: int,
+) -> float:
+    """Square of the length of the vector of a pair, mm²."""
+    i, j = pairs[q, 0], pairs[q, 1]
+    x = at[j, 0] - at[i, 0] + shape[1] * pairs[q, 2] * cell[0]
+    y = at[j, 1] - at[i, 1] + shape[0] * pairs[q, 3] * cell[1]
+    z = pairs[q, 4] * at[j, 2] - at[i, 2]
+    return float(x * x + y * y + z * z)
 
 
 @numba.njit(cache=True, nogil=True)
