@@ -63,7 +63,8 @@ class Slope:
     Attributes
     ----------
     gradient : (unknowns,) of the Lagrangian.
-    lengths : (constraints, unknowns), of the prescribed lengths and the other constraints.
+    lengths : (constraints, unknowns), of the prescribed lengths and the other constraints; none
+        where they were not wanted.
     hessian : (unknowns, unknowns) of the Lagrangian; None where it was not wanted.
     sparse : the same in tiles, where that was wanted.
     """
@@ -286,11 +287,12 @@ class CellEnergy:
 
     def derivatives(
         self, state: Array, curve: Array, pairs: Pairs, start: Ints, tension: Array,
-        *, hessian: bool = True, sparse: bool = False,
+        *, hessian: bool = True, sparse: bool = False, lengths: bool = True,
     ) -> Slope:  # fmt: skip
         """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty.
 
-        A sparse Hessian leaves out slides and friction, whose Hessians are dense.
+        A sparse Hessian leaves out slides and friction, whose Hessians are dense. The gradients of
+        the lengths are left out unless ``lengths``: a large sheet's have mostly zeros.
         """
         layout, law = self.cell.layout, self.contact_law
         pressed = on_halves(
@@ -311,13 +313,12 @@ class CellEnergy:
         gradient = kernels.scatter_gradient(force, slopes, layout)
         gradient[-2:] += force[-1, :2]
         slides = np.array([slide.gradient(state) for slide in self.slides])
-        lengths = np.concatenate(
-            [self.length_gradients(curve), self.held, slides.reshape(-1, len(gradient))]
-        )
+        rules = np.concatenate([self.held, slides.reshape(-1, len(gradient))])
         beside = len(self.prescribed_mm)
-        gradient += tension[beside:] @ lengths[beside:]
+        gradient += tension[beside:] @ rules
+        rows = np.concatenate([self.length_gradients(curve), rules]) if lengths else rules[:0]
         if not hessian:
-            return Slope(gradient, lengths)
+            return Slope(gradient, rows)
         size = self.cell.unknowns
         if sparse:
             at = kernels.laid_out(curve, layout.place, state[-2], state[-1])
@@ -335,7 +336,7 @@ class CellEnergy:
         )
         sizes[:, -2:] = 0.5 * (sizes[:, -2:] + sizes[:, -2:].T)
         if sparse:
-            return Slope(gradient, lengths, sparse=SparseHessian(touching, matrix, sizes))
+            return Slope(gradient, rows, sparse=SparseHessian(touching, matrix, sizes))
         whole = matrix.tiles[0]
         whole[-2:] = sizes
         whole[:, -2:] = sizes.T
@@ -343,7 +344,7 @@ class CellEnergy:
             whole += pull * slide.hessian()
         if self.sliding is not None:
             kernels.friction_hessian(*rubbing, whole)
-        return Slope(gradient, lengths, whole)
+        return Slope(gradient, rows, whole)
 
     def along_yarn(
         self, curve: Array, tension: Array, by_speed: Array
@@ -362,8 +363,7 @@ class CellEnergy:
 
     def length_gradients(self, curve: Array) -> Array:
         """(m, unknowns): gradient of each prescribed length."""
-        cell = self.cell
-        tangent = curve[:, 1] / np.linalg.norm(curve[:, 1], axis=1)[:, None] / cell.grid.samples
+        cell, tangent = self.cell, self._tangent(curve)
         if self.per_stitch:
             own = self.stretch_of == np.arange(len(self.prescribed_mm))[:, None]
             return np.array([self._by_tangent(np.where(o[:, None], tangent, 0.0)) for o in own])
@@ -374,6 +374,15 @@ class CellEnergy:
             row[unknowns] = every[unknowns]
         rows[:, -2] = tangent[:, 0].reshape(cell.rows, -1).sum(axis=1)
         return rows
+
+    def pulled(self, curve: Array, pulls: Array) -> Array:
+        """(unknowns,) gradient of the prescribed lengths, each times its pull (m,)."""
+        return self._by_tangent(pulls[self.stretch_of, None] * self._tangent(curve))
+
+    def _tangent(self, curve: Array) -> Array:
+        """(rows * S, 3): gradient of the length of a sample by d1."""
+        speed = np.linalg.norm(curve[:, 1], axis=1)[:, None]
+        return np.asarray(curve[:, 1] / speed / self.cell.grid.samples)
 
     def _by_tangent(self, by_speed: Array) -> Array:
         """Gradient by the unknowns, given the slopes by d1."""

@@ -142,7 +142,7 @@ def polished(
     """
     path = Trajectory(sheet, state, _PAIR_CAP)
     inverse = _Inverse(sheet, state, tension, windows, flat)
-    slope = path.slope(tension, hessian=False)
+    slope = path.slope(tension, hessian=False, lengths=False)
     tension = tension + inverse.relaxed(slope.gradient, path.here.terms.excess_mm)[1]
     slope = _resized(sheet, path, inverse, tension)
     past: deque[tuple[Array, Array]] = deque(maxlen=_MEMORY)
@@ -152,7 +152,7 @@ def polished(
         terms, gradient = path.here.terms, slope.gradient
         step = -_two_loops(inverse, past, gradient, terms.excess_mm)
         before = sheet.merit(terms, tension)
-        pull = sheet.penalty * terms.excess_mm @ slope.lengths
+        pull = sheet.pulled(path.here.curve, sheet.penalty * terms.excess_mm)
         downhill = min(float((gradient + pull) @ step), 0.0)
         share = 1.0
         for _ in range(_TRIALS):
@@ -168,7 +168,7 @@ def polished(
             continue
         moved = found.to.state - path.here.state
         path.advance(found)
-        slope = path.slope(tension, hessian=False)
+        slope = path.slope(tension, hessian=False, lengths=False)
         if moved @ (slope.gradient - gradient) > 0.0:
             past.append((moved, slope.gradient - gradient))
         taken += 1
@@ -183,7 +183,7 @@ def polished(
 def _resized(sheet: CellEnergy, path: Trajectory, inverse: _Inverse, tension: Array) -> Slope:
     """Let the sizes go where they want to, as far as that pays; the slope there."""
     for _ in range(_SIZE_STEPS):
-        slope, here = path.slope(tension, hessian=False), path.here
+        slope, here = path.slope(tension, hessian=False, lengths=False), path.here
         step = -inverse.resized(slope.gradient)
         strain = float(np.abs(step[-2:] / here.state[-2:]).max())
         found = path.certified(_LARGEST_STRAIN / max(strain, _LARGEST_STRAIN) * step)
@@ -192,7 +192,7 @@ def _resized(sheet: CellEnergy, path: Trajectory, inverse: _Inverse, tension: Ar
         path.advance(found)
         if found.fraction * strain < _LEAST_STRAIN:
             break
-    return path.slope(tension, hessian=False)
+    return path.slope(tension, hessian=False, lengths=False)
 
 
 def _part(sheet: CellEnergy, state: Array, tension: Array, window: Window, flat: bool) -> _Part:
@@ -232,7 +232,10 @@ def _gradient(sheet: CellEnergy, state: Array, tension: Array) -> Array:
     """Of the Lagrangian, at any state."""
     curve = sheet.curve(state)
     pairs, start = sheet.pairs(curve, state, 2.0 * sheet.yarn.radius_mm)
-    return sheet.derivatives(state, curve, pairs, start, tension, hessian=False).gradient
+    slope = sheet.derivatives(
+        state, curve, pairs, start, tension, hessian=False, lengths=False
+    )  # fmt: skip
+    return slope.gradient
 
 
 def _two_loops(

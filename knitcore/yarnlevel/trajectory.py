@@ -66,12 +66,14 @@ class Trajectory:
         """Smallest distance between different stretches of yarn."""
         return self.clearance.min_distance_mm
 
-    def slope(self, tension: Array, *, hessian: bool, sparse: bool = False) -> Slope:
+    def slope(
+        self, tension: Array, *, hessian: bool, sparse: bool = False, lengths: bool = True
+    ) -> Slope:
         """Derivatives of the Lagrangian here."""
         here = self.here
         return self._energy.derivatives(
             here.state, here.curve, self._pairs, self._start, tension,
-            hessian=hessian, sparse=sparse,
+            hessian=hessian, sparse=sparse, lengths=lengths,
         )  # fmt: skip
 
     def certified(

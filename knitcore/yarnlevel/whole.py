@@ -460,8 +460,9 @@ class _Work:
         tension = sheet.tension_n.mean(axis=1)
         start = np.searchsorted(clearance.pairs[:, 0], np.arange(len(clearance.curve) + 1))
         slope = energy.derivatives(
-            sheet.state, clearance.curve, clearance.pairs, start, tension, hessian=False
-        )
+            sheet.state, clearance.curve, clearance.pairs, start, tension,
+            hessian=False, lengths=False,
+        )  # fmt: skip
         left = slope.gradient[:-2].reshape(*sheet.controls.shape)
         if self.flat:  # the plane carries the mean over a stitch
             heights = left[..., 2].reshape(*self.chart.purl.shape, -1)
