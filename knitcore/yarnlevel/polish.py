@@ -73,10 +73,12 @@ class _Inverse:
         self, sheet: CellEnergy, state: Array, tension: Array, windows: list[Window], flat: bool
     ) -> None:
         self._sheet = sheet
-        made = on_halves(
-            lambda some: [_part(sheet, state, tension, window, flat) for window in some], windows, 2
-        )
-        self._parts = list(chain.from_iterable(made))
+
+        def made(some: Sequence[Window]) -> list[_Part]:
+            room = Room()
+            return [_part(sheet, state, tension, window, flat, room) for window in some]
+
+        self._parts = list(chain.from_iterable(on_halves(made, windows, 2)))
         self._sizes = np.array([self._with_size(k, len(state)) for k in range(2)])
         here = _gradient(sheet, state, tension)
         slopes = [
@@ -195,7 +197,9 @@ def _resized(sheet: CellEnergy, path: Trajectory, inverse: _Inverse, tension: Ar
     return path.slope(tension, hessian=False, lengths=False)
 
 
-def _part(sheet: CellEnergy, state: Array, tension: Array, window: Window, flat: bool) -> _Part:
+def _part(
+    sheet: CellEnergy, state: Array, tension: Array, window: Window, flat: bool, room: Room
+) -> _Part:
     rows, wales = window
     none = np.zeros(sheet.cell.rows)
     controls = sheet.cell.controls(state)
@@ -208,12 +212,12 @@ def _part(sheet: CellEnergy, state: Array, tension: Array, window: Window, flat:
     touching = slope.sparse.touching
     free = np.arange(len(here)) < len(here) - 2
     fronts = elimination(touching, dissected(touching))
-    system = SparseSystem(slope, energy.penalty, free, fronts, Room())
+    system = SparseSystem(slope, energy.penalty, free, fronts, room)
     unit = sheet.unit / sheet.mean_loop_mm**2
     damping, longest = _DAMPING, _LONGEST * sheet.yarn.radius_mm
     while not (system.factorise(damping * unit) and _is_short(system, slope, longest)):
         damping = max(_GROWTH * damping, _INDEFINITE_DAMPING)
-    system.free_matrix()  # the factors of all windows are kept at a time
+    system.keep()  # the factors of all windows are there at a time
     places = np.arange(controls.size).reshape(controls.shape)
     places = places[np.ix_(rows.stitches, each(wales.stitches, sheet.cell.grid.controls))]
     unknowns = places[energy.cell.free].ravel()
