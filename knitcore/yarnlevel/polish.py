@@ -30,7 +30,8 @@ from knitcore.yarnlevel.systems import SparseSystem
 from knitcore.yarnlevel.trajectory import Trajectory
 from knitcore.yarnlevel.windows import Ints, Window, each, window_energy
 
-_PAIR_CAP = 0.3
+PAIR_CAP = 0.3
+"""Longest change of the vector between near samples in a step of a sheet, in radii."""
 _DAMPING = 0.1
 """Least damping of a window's Hessian, in B / L³."""
 _INDEFINITE_DAMPING = 5.0
@@ -128,7 +129,7 @@ class _Inverse:
 
 
 def polished(
-    sheet: CellEnergy, state: Array, tension: Array, windows: list[Window], *, flat: bool,
+    sheet: CellEnergy, path: Trajectory, tension: Array, windows: list[Window], *, flat: bool,
     steps: int, cancelled: Cancelled | None = None,
 ) -> Minimum:  # fmt: skip
     """Lower the energy of a whole sheet, its two sizes included, along certified steps.
@@ -136,14 +137,13 @@ def polished(
     Parameters
     ----------
     sheet : energy of a plain periodic cell, without a plane of its own.
-    state : unknowns to begin with.
+    path : where to begin; it moves.
     tension : (rows,) of the courses, N.
     windows : cover the sheet without overlap.
     flat : keep the middle of every stitch where it is.
     steps : most steps.
     """
-    path = Trajectory(sheet, state, _PAIR_CAP)
-    inverse = _Inverse(sheet, state, tension, windows, flat)
+    inverse = _Inverse(sheet, path.here.state, tension, windows, flat)
     slope = path.slope(tension, hessian=False, lengths=False)
     tension = tension + inverse.relaxed(slope.gradient, path.here.terms.excess_mm)[1]
     slope = _resized(sheet, path, inverse, tension)
