@@ -26,8 +26,8 @@ SPACING_PER_BENDING = 100.0
 STIFF_SPACING_PER_BENDING = 1000.0
 """The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
 the lengths, is then convex in them. It costs 1e-4 of the energy, so the fine grid goes without."""
-PAIRS_TO_SHARE, _SAMPLES_TO_SHARE = 1_000_000, 20_000
-"""So many pairs, or samples, are worth two threads."""
+PAIRS_TO_SHARE = 1_000_000
+"""So many pairs are worth two threads."""
 BLOCK = 12
 """Unknowns in a block of the sparse Hessian: those of four control points."""
 PENALTY_PER_BENDING = 3e4
@@ -222,26 +222,10 @@ class CellEnergy:
         cell = self.cell
         sizes = float(state[-2]), float(state[-1])
         exclusion = EXCLUSION_RADII * self.yarn.radius_mm / self.mean_loop_mm
-
-        def listed(of: Ints) -> tuple[Pairs, Ints]:
-            found: tuple[Pairs, Ints] = neighbour_pairs(
-                curve, cell.place, sizes, (cell.rows, cell.wales), cell.mirror, reach, exclusion,
-                of, moving, cut,
-            )  # fmt: skip
-            return found
-
-        parts = on_halves(listed, np.arange(len(curve)), _SAMPLES_TO_SHARE)
-        if len(parts) == 1:
-            return parts[0]
-        (pairs, start), (_, later) = parts
-        start = np.concatenate([start[:-1], later + len(pairs)])
-        joined = np.empty((start[-1], pairs.shape[1]), np.int32)
-        end = len(joined)
-        while parts:  # each half is freed before the next is copied
-            pairs, _ = parts.pop()
-            joined[end - len(pairs) : end] = pairs
-            end -= len(pairs)
-        return joined, start
+        return neighbour_pairs(
+            curve, cell.place, sizes, (cell.rows, cell.wales), cell.mirror, reach, exclusion,
+            moving, cut,
+        )  # fmt: skip
 
     @cached_property
     def speeds(self) -> Array:
