@@ -58,9 +58,13 @@ _LEAST_STIFFNESS = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """A window's share of the inverse: its factor, and where its unknowns are in the sheet's."""
+    """A window's share of the inverse: its factor, and where its unknowns are in the sheet's.
+
+    ``answers`` (2, unknowns) are how they follow either size of a stitch.
+    """
 
     system: SparseSystem
+    answers: Array
     lengths: Array
     unknowns: Ints
     rows: Ints
@@ -122,9 +126,7 @@ class _Inverse:
         out = np.zeros(unknowns)
         out[size - 2] = 1.0
         for part in self._parts:
-            rest = Slope(np.zeros(len(part.unknowns) + 2), part.lengths)
-            moved, _ = part.system.solve(rest, np.zeros(len(part.lengths)), np.eye(2)[size])
-            out[part.unknowns] = moved[:-2]
+            out[part.unknowns] = part.answers[size]
         return out
 
 
@@ -215,21 +217,28 @@ def _part(
     system = SparseSystem(slope, energy.penalty, free, fronts, room)
     unit = sheet.unit / sheet.mean_loop_mm**2
     damping, longest = _DAMPING, _LONGEST * sheet.yarn.radius_mm
-    while not (system.factorise(damping * unit) and _is_short(system, slope, longest)):
+    while True:
+        answers = _answers(system, slope, longest) if system.factorise(damping * unit) else None
+        if answers is not None:
+            break
         damping = max(_GROWTH * damping, _INDEFINITE_DAMPING)
     system.keep()  # the factors of all windows are there at a time
     places = np.arange(controls.size).reshape(controls.shape)
     places = places[np.ix_(rows.stitches, each(wales.stitches, sheet.cell.grid.controls))]
     unknowns = places[energy.cell.free].ravel()
-    return _Part(system, slope.lengths, unknowns, rows.own, len(wales.own) / sheet.cell.wales)
+    share = len(wales.own) / sheet.cell.wales
+    return _Part(system, answers[:, :-2], slope.lengths, unknowns, rows.own, share)
 
 
-def _is_short(system: SparseSystem, slope: Slope, longest_mm: float) -> bool:
-    """Whether a window's Newton step, and its answers to the sizes, move no point too far."""
+def _answers(system: SparseSystem, slope: Slope, longest_mm: float) -> Array | None:
+    """How a window's unknowns follow either size; None if that, or its Newton step, moves a point
+    too far."""
     none = np.zeros(len(slope.lengths))
     still = Slope(np.zeros(len(slope.gradient)), slope.lengths)
-    steps = [(slope, np.zeros(2), longest_mm), *((still, size, _ANSWER) for size in np.eye(2))]
-    return all(np.abs(system.solve(at, none, by)[0]).max() < most for at, by, most in steps)
+    if not np.abs(system.solve(slope, none, np.zeros(2))[0]).max() < longest_mm:
+        return None
+    answers = np.array([system.solve(still, none, size)[0] for size in np.eye(2)])
+    return answers if np.abs(answers).max() < _ANSWER else None
 
 
 def _gradient(sheet: CellEnergy, state: Array, tension: Array) -> Array:
