@@ -64,15 +64,16 @@ class Clearance:
         found = pair_distances(self.curve, (course, wale), self.cell.place, shape, self.pairs)
         return np.asarray(found)
 
-    def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> float:
-        """Fraction (at most 1) of the way to another state that is certified.
+    def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> tuple[float, float]:
+        """Fraction (at most 1) of the way to another state that is certified, and the most by
+        which an unlisted pair gets nearer on the whole way, mm.
 
         ``pair_cap_mm`` also bounds the change of the vector between any listed pair.
         """
-        allowed = (self.reach_mm - self.touch_mm) / max(self.approach_mm(state, curve), 1e-300)
-        allowed = min(1.0, allowed)
+        approach = self._approach_mm(state, curve)
+        allowed = min(1.0, (self.reach_mm - self.touch_mm) / max(approach, 1e-300))
         if not len(self.pairs):
-            return allowed
+            return allowed, approach
         moved, by = curve - self.curve, state[-2:] - self.state[-2:]
         _, shift = self._extremes(moved, by)
         allowed = min(allowed, pair_cap_mm / max(shift, 1e-300))
@@ -83,9 +84,9 @@ class Clearance:
             lambda of: part_apart(curves, cells, place, shape, of, used, shift, allowed),
             self.pairs, PAIRS_TO_SHARE,
         )  # fmt: skip
-        return float(min(parts))
+        return float(min(parts)), approach
 
-    def approach_mm(self, state: Array, curve: Array) -> float:
+    def _approach_mm(self, state: Array, curve: Array) -> float:
         """Most by which an unlisted pair gets nearer on the way to another state."""
         old, new = self.state[-2:], state[-2:]
         strain = float(np.abs(new / old - 1.0).max())

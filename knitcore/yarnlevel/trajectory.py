@@ -94,20 +94,20 @@ class Trajectory:
             found = self.certified(straight * step + mended)
             return replace(found, fraction=straight * found.fraction)
         state = here.state + step
-        fraction, curve = self._allowed(state)
-        approach = fraction * self.clearance.approach_mm(state, curve)
+        fraction, approach, curve = self._allowed(state)
         if fraction < 1.0:
             state = here.state + fraction * step
             curve = here.curve + fraction * (curve - here.curve)
         terms = self._energy.value(state, curve, self._pairs)
-        return CertifiedStep(Configuration(state, curve, terms), fraction, approach)
+        return CertifiedStep(Configuration(state, curve, terms), fraction, fraction * approach)
 
-    def _allowed(self, state: Array) -> tuple[float, Array]:
-        """Fraction of the straight way to a state that is certified, and the curve at its end."""
+    def _allowed(self, state: Array) -> tuple[float, float, Array]:
+        """Fraction of the straight way to a state that is certified, the most by which unlisted
+        pairs get nearer on the whole way, mm, and the curve at its end."""
         if state[-2] <= 0.0 or state[-1] <= 0.0:
-            return 0.0, self.here.curve
+            return 0.0, 0.0, self.here.curve
         curve = self._energy.curve(state)
-        return self.clearance.longest_step(state, curve, self._cap), curve
+        return *self.clearance.longest_step(state, curve, self._cap), curve
 
     def advance(self, step: CertifiedStep) -> None:
         """Take a certified step from here."""
