@@ -26,8 +26,8 @@ SPACING_PER_BENDING = 100.0
 STIFF_SPACING_PER_BENDING = 1000.0
 """The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
 the lengths, is then convex in them. It costs 1e-4 of the energy, so the fine grid goes without."""
-PAIRS_TO_SHARE, _SAMPLES_TO_SHARE = 1_000_000, 20_000
-"""So many pairs, or samples, are worth two threads."""
+PAIRS_TO_SHARE = 1_000_000
+"""So many pairs are worth two threads."""
 BLOCK = 12
 """Unknowns in a block of the sparse Hessian: those of four control points."""
 PENALTY_PER_BENDING = 3e4
@@ -63,7 +63,8 @@ class Slope:
     Attributes
     ----------
     gradient : (unknowns,) of the Lagrangian.
-    lengths : (constraints, unknowns), of the prescribed lengths and the other constraints.
+    lengths : (constraints, unknowns), of the prescribed lengths and the other constraints; none
+        where they were not wanted.
     hessian : (unknowns, unknowns) of the Lagrangian; None where it was not wanted.
     sparse : the same in tiles, where that was wanted.
     """
@@ -221,26 +222,10 @@ class CellEnergy:
         cell = self.cell
         sizes = float(state[-2]), float(state[-1])
         exclusion = EXCLUSION_RADII * self.yarn.radius_mm / self.mean_loop_mm
-
-        def listed(of: Ints) -> tuple[Pairs, Ints]:
-            found: tuple[Pairs, Ints] = neighbour_pairs(
-                curve, cell.place, sizes, (cell.rows, cell.wales), cell.mirror, reach, exclusion,
-                of, moving, cut,
-            )  # fmt: skip
-            return found
-
-        parts = on_halves(listed, np.arange(len(curve)), _SAMPLES_TO_SHARE)
-        if len(parts) == 1:
-            return parts[0]
-        (pairs, start), (_, later) = parts
-        start = np.concatenate([start[:-1], later + len(pairs)])
-        joined = np.empty((start[-1], pairs.shape[1]), np.int32)
-        end = len(joined)
-        while parts:  # each half is freed before the next is copied
-            pairs, _ = parts.pop()
-            joined[end - len(pairs) : end] = pairs
-            end -= len(pairs)
-        return joined, start
+        return neighbour_pairs(
+            curve, cell.place, sizes, (cell.rows, cell.wales), cell.mirror, reach, exclusion,
+            moving, cut,
+        )  # fmt: skip
 
     @cached_property
     def speeds(self) -> Array:
@@ -286,11 +271,12 @@ class CellEnergy:
 
     def derivatives(
         self, state: Array, curve: Array, pairs: Pairs, start: Ints, tension: Array,
-        *, hessian: bool = True, sparse: bool = False,
+        *, hessian: bool = True, sparse: bool = False, lengths: bool = True,
     ) -> Slope:  # fmt: skip
         """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty.
 
-        A sparse Hessian leaves out slides and friction, whose Hessians are dense.
+        A sparse Hessian leaves out slides and friction, whose Hessians are dense. The gradients of
+        the lengths are left out unless ``lengths``: a large sheet's have mostly zeros.
         """
         layout, law = self.cell.layout, self.contact_law
         pressed = on_halves(
@@ -311,13 +297,12 @@ class CellEnergy:
         gradient = kernels.scatter_gradient(force, slopes, layout)
         gradient[-2:] += force[-1, :2]
         slides = np.array([slide.gradient(state) for slide in self.slides])
-        lengths = np.concatenate(
-            [self.length_gradients(curve), self.held, slides.reshape(-1, len(gradient))]
-        )
+        rules = np.concatenate([self.held, slides.reshape(-1, len(gradient))])
         beside = len(self.prescribed_mm)
-        gradient += tension[beside:] @ lengths[beside:]
+        gradient += tension[beside:] @ rules
+        rows = np.concatenate([self.length_gradients(curve), rules]) if lengths else rules[:0]
         if not hessian:
-            return Slope(gradient, lengths)
+            return Slope(gradient, rows)
         size = self.cell.unknowns
         if sparse:
             at = kernels.laid_out(curve, layout.place, state[-2], state[-1])
@@ -335,7 +320,7 @@ class CellEnergy:
         )
         sizes[:, -2:] = 0.5 * (sizes[:, -2:] + sizes[:, -2:].T)
         if sparse:
-            return Slope(gradient, lengths, sparse=SparseHessian(touching, matrix, sizes))
+            return Slope(gradient, rows, sparse=SparseHessian(touching, matrix, sizes))
         whole = matrix.tiles[0]
         whole[-2:] = sizes
         whole[:, -2:] = sizes.T
@@ -343,7 +328,7 @@ class CellEnergy:
             whole += pull * slide.hessian()
         if self.sliding is not None:
             kernels.friction_hessian(*rubbing, whole)
-        return Slope(gradient, lengths, whole)
+        return Slope(gradient, rows, whole)
 
     def along_yarn(
         self, curve: Array, tension: Array, by_speed: Array
@@ -362,8 +347,7 @@ class CellEnergy:
 
     def length_gradients(self, curve: Array) -> Array:
         """(m, unknowns): gradient of each prescribed length."""
-        cell = self.cell
-        tangent = curve[:, 1] / np.linalg.norm(curve[:, 1], axis=1)[:, None] / cell.grid.samples
+        cell, tangent = self.cell, self._tangent(curve)
         if self.per_stitch:
             own = self.stretch_of == np.arange(len(self.prescribed_mm))[:, None]
             return np.array([self._by_tangent(np.where(o[:, None], tangent, 0.0)) for o in own])
@@ -374,6 +358,15 @@ class CellEnergy:
             row[unknowns] = every[unknowns]
         rows[:, -2] = tangent[:, 0].reshape(cell.rows, -1).sum(axis=1)
         return rows
+
+    def pulled(self, curve: Array, pulls: Array) -> Array:
+        """(unknowns,) gradient of the prescribed lengths, each times its pull (m,)."""
+        return self._by_tangent(pulls[self.stretch_of, None] * self._tangent(curve))
+
+    def _tangent(self, curve: Array) -> Array:
+        """(rows * S, 3): gradient of the length of a sample by d1."""
+        speed = np.linalg.norm(curve[:, 1], axis=1)[:, None]
+        return np.asarray(curve[:, 1] / speed / self.cell.grid.samples)
 
     def _by_tangent(self, by_speed: Array) -> Array:
         """Gradient by the unknowns, given the slopes by d1."""

@@ -115,10 +115,6 @@ class Room:
         flat = self._lent.pop(array.ctypes.data)
         self._spare[len(flat).bit_length() - 1].append(flat)
 
-    def free_spare(self) -> None:
-        """Free the memory that is not lent."""
-        self._spare.clear()
-
     def take_all_back(self) -> None:
         """None of the arrays is used any more."""
         for flat in self._lent.values():
@@ -183,10 +179,10 @@ class FrontalFactor:
             remainders.append(rest)
         return True
 
-    def free_matrix(self) -> None:
-        """Free what only another factorisation would need."""
-        del self._matrix
-        self._room.free_spare()
+    def keep(self) -> None:
+        """Leave the room to others, and free what only another factorisation would need."""
+        self._factors = [(upper.copy("F"), side.copy("F")) for upper, side in self._factors]
+        del self._matrix, self._room
 
     def solve(self, right: Array) -> Array:
         """The inverse times the columns (unknowns, k)."""

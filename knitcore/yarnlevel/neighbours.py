@@ -11,17 +11,23 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.threads import on_halves
 from knitcore.yarnlevel.kernels.curve import laid_out
-from knitcore.yarnlevel.kernels.structures import Pairs
+from knitcore.yarnlevel.kernels.structures import Ints, Pairs
 
 EXCLUSION_RADII = 2.1
 """Samples of one yarn nearer than this many radii along it do not touch (authors' code)."""
 _BINS = 3
 """Bins per reach: finer ones follow its circle more closely."""
+_ROOM = 128
+"""Pairs for which there is room at first, of a sample."""
+_SAMPLES_TO_SHARE = 20_000
+"""So many samples are worth two threads."""
+_LEAST_CHANGE = 1e-300
+"""So that nothing is divided by zero, mm."""
 
 
-@numba.njit(cache=True, nogil=True)
-def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
+def neighbour_pairs(
     curve: NDArray[np.float64],
     place: NDArray[np.float64],
     cell: tuple[float, float],
@@ -29,10 +35,9 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     mirror: tuple[int, int],
     reach: float,
     exclusion: float,
-    of: NDArray[np.int64],
     moving: NDArray[np.bool_],
     cut: tuple[bool, bool],
-) -> tuple[Pairs, NDArray[np.int64]]:
+) -> tuple[Pairs, Ints]:
     """All pairs of samples nearer than ``reach`` of which one moves.
 
     Parameters
@@ -44,14 +49,62 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     mirror : -1 where z changes its sign from one cell to the next (course, wale), else 1.
     reach : mm.
     exclusion : stitches of yarn within which a yarn does not touch itself.
-    of : (k,) samples i whose pairs are wanted.
     moving : (courses * S,) which samples move.
     cut : whether images across, and up, are left out.
 
     Returns
     -------
     pairs : int (n, 5): i, j, across, up, sign of z of the image of j relative to i.
-    start : int (k + 1): pairs start[q] … start[q + 1] belong to sample of[q].
+    start : int (courses * S + 1): pairs start[i] … start[i + 1] belong to sample i.
+    """
+    room = _ROOM
+
+    def listed(of: Ints) -> Ints:
+        found: Ints = _listed(
+            curve, place, cell, shape, mirror, reach, exclusion, of, moving, cut,
+            pairs[room * of[0] : room * (of[-1] + 1)],
+        )  # fmt: skip
+        return found
+
+    while True:
+        # every thread writes into its part, of which only the pages that it fills take memory
+        pairs = np.empty((room * len(curve), 5), np.int32)
+        starts = on_halves(listed, np.arange(len(curve)), _SAMPLES_TO_SHARE)
+        if all(start[-1] <= room * (len(start) - 1) for start in starts):
+            break
+        room *= 2
+    start = starts[0]
+    for later in starts[1:]:
+        _move(pairs, room * (len(start) - 1), start[-1], later[-1])
+        start = np.concatenate([start[:-1], later + start[-1]])
+    pairs.resize((start[-1], 5), refcheck=False)  # gives the rest back
+    return pairs, start
+
+
+@numba.njit(cache=True, nogil=True)
+def _move(pairs: Pairs, begin: int, to: int, count: int) -> None:
+    """Move pairs towards the front."""
+    for q in range(count):
+        pairs[to + q] = pairs[begin + q]
+
+
+@numba.njit(cache=True, nogil=True)
+def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
+    curve: NDArray[np.float64],
+    place: NDArray[np.float64],
+    cell: tuple[float, float],
+    shape: tuple[int, int],
+    mirror: tuple[int, int],
+    reach: float,
+    exclusion: float,
+    of: Ints,
+    moving: NDArray[np.bool_],
+    cut: tuple[bool, bool],
+    pairs: Pairs,
+) -> Ints:
+    """Fill ``pairs`` with those of the samples ``of``, and tell where each sample's begin.
+
+    Those for which there is no room are only counted.
     """
     rows, wales = shape
     n = curve.shape[0]
@@ -91,8 +144,7 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
         filled[bin_of[i]] += 1
         sample[k] = i
         there[k, 0], there[k, 1], there[k, 2] = x[i], y[i], z[i]
-    capacity = 64 * of.shape[0]
-    pairs = np.empty((capacity, 5), np.int32)
+    capacity = pairs.shape[0]
     start = np.zeros(of.shape[0] + 1, np.int64)
     count = 0
     square = reach * reach
@@ -136,19 +188,15 @@ def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
                         along = abs(place[j - row_j * samples] + across * wales - t_i)
                         if along <= exclusion:
                             continue
-                    if count == capacity:
-                        capacity *= 2
-                        grown = np.empty((capacity, 5), np.int32)
-                        grown[:count] = pairs[:count]
-                        pairs = grown
-                    pairs[count, 0] = i
-                    pairs[count, 1] = j
-                    pairs[count, 2] = across
-                    pairs[count, 3] = up
-                    pairs[count, 4] = flip
+                    if count < capacity:
+                        pairs[count, 0] = i
+                        pairs[count, 1] = j
+                        pairs[count, 2] = across
+                        pairs[count, 3] = up
+                        pairs[count, 4] = flip
                     count += 1
     start[-1] = count
-    return pairs[:count], start
+    return start
 
 
 @numba.njit(cache=True, nogil=True)
@@ -163,16 +211,75 @@ def pair_distances(
 
     The vectors are linear in curve and cell: differences of both give how far the vectors change.
     """
-    rows, wales = shape
     at = laid_out(curve, place, *cell)
     distance = np.empty(pairs.shape[0])
     for q in range(pairs.shape[0]):
-        i, j = pairs[q, 0], pairs[q, 1]
-        x = at[j, 0] - at[i, 0] + wales * pairs[q, 2] * cell[0]
-        y = at[j, 1] - at[i, 1] + rows * pairs[q, 3] * cell[1]
-        z = pairs[q, 4] * at[j, 2] - at[i, 2]
-        distance[q] = np.sqrt(x * x + y * y + z * z)
+        distance[q] = np.sqrt(_square(at, cell, shape, pairs, q))
     return distance
+
+
+@numba.njit(cache=True, nogil=True)
+def extremes(
+    curve: NDArray[np.float64],
+    cell: tuple[float, float],
+    place: NDArray[np.float64],
+    shape: tuple[int, int],
+    pairs: Pairs,
+) -> tuple[float, float]:
+    """Least and greatest of the :func:`pair_distances`; infinite and zero without pairs."""
+    at = laid_out(curve, place, *cell)
+    least, greatest = np.inf, 0.0
+    for q in range(pairs.shape[0]):
+        square = _square(at, cell, shape, pairs, q)
+        least, greatest = min(least, square), max(greatest, square)
+    return np.sqrt(least), np.sqrt(greatest)
+
+
+@numba.njit(cache=True, nogil=True)
+def part_apart(
+    curves: tuple[NDArray[np.float64], NDArray[np.float64]],
+    cells: tuple[tuple[float, float], tuple[float, float]],
+    place: NDArray[np.float64],
+    shape: tuple[int, int],
+    pairs: Pairs,
+    used: tuple[float, float],
+    longest: float,
+    most: float,
+) -> float:
+    """Part of a step, at most ``most``, on which no pair uses up its distance.
+
+    Parameters
+    ----------
+    curves, cells : where the step begins, and how they change on the whole of it.
+    used : distance, mm, that a pair has to keep, and part of what is beyond it that may be used.
+    longest : greatest change of the vector of a pair, mm.
+    """
+    at, moved = laid_out(curves[0], place, *cells[0]), laid_out(curves[1], place, *cells[1])
+    keep, usable = used
+    part = most
+    near = (keep + most * longest / usable) ** 2 * (1.0 + 1e-9)  # pairs beyond it have room
+    for q in range(pairs.shape[0]):
+        square = _square(at, cells[0], shape, pairs, q)
+        if square <= near:
+            change = max(np.sqrt(_square(moved, cells[1], shape, pairs, q)), _LEAST_CHANGE)
+            part = min(part, usable * (max(np.sqrt(square) - keep, 0.0) / change))
+    return part
+
+
+@numba.njit(cache=True, nogil=True)
+def _square(
+    at: NDArray[np.float64],
+    cell: tuple[float, float],
+    shape: tuple[int, int],
+    pairs: Pairs,
+    q: int,
+) -> float:
+    """Square of the length of the vector of a pair, mm²."""
+    i, j = pairs[q, 0], pairs[q, 1]
+    x = at[j, 0] - at[i, 0] + shape[1] * pairs[q, 2] * cell[0]
+    y = at[j, 1] - at[i, 1] + shape[0] * pairs[q, 3] * cell[1]
+    z = pairs[q, 4] * at[j, 2] - at[i, 2]
+    return float(x * x + y * y + z * z)
 
 
 @numba.njit(cache=True, nogil=True)

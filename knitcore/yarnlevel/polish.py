@@ -30,7 +30,8 @@ from knitcore.yarnlevel.systems import SparseSystem
 from knitcore.yarnlevel.trajectory import Trajectory
 from knitcore.yarnlevel.windows import Ints, Window, each, window_energy
 
-_PAIR_CAP = 0.3
+PAIR_CAP = 0.3
+"""Longest change of the vector between near samples in a step of a sheet, in radii."""
 _DAMPING = 0.1
 """Least damping of a window's Hessian, in B / L³."""
 _INDEFINITE_DAMPING = 5.0
@@ -57,9 +58,13 @@ _LEAST_STIFFNESS = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """A window's share of the inverse: its factor, and where its unknowns are in the sheet's."""
+    """A window's share of the inverse: its factor, and where its unknowns are in the sheet's.
+
+    ``answers`` (2, unknowns) are how they follow either size of a stitch.
+    """
 
     system: SparseSystem
+    answers: Array
     lengths: Array
     unknowns: Ints
     rows: Ints
@@ -73,10 +78,12 @@ class _Inverse:
         self, sheet: CellEnergy, state: Array, tension: Array, windows: list[Window], flat: bool
     ) -> None:
         self._sheet = sheet
-        made = on_halves(
-            lambda some: [_part(sheet, state, tension, window, flat) for window in some], windows, 2
-        )
-        self._parts = list(chain.from_iterable(made))
+
+        def made(some: Sequence[Window]) -> list[_Part]:
+            room = Room()
+            return [_part(sheet, state, tension, window, flat, room) for window in some]
+
+        self._parts = list(chain.from_iterable(on_halves(made, windows, 2)))
         self._sizes = np.array([self._with_size(k, len(state)) for k in range(2)])
         here = _gradient(sheet, state, tension)
         slopes = [
@@ -119,14 +126,12 @@ class _Inverse:
         out = np.zeros(unknowns)
         out[size - 2] = 1.0
         for part in self._parts:
-            rest = Slope(np.zeros(len(part.unknowns) + 2), part.lengths)
-            moved, _ = part.system.solve(rest, np.zeros(len(part.lengths)), np.eye(2)[size])
-            out[part.unknowns] = moved[:-2]
+            out[part.unknowns] = part.answers[size]
         return out
 
 
 def polished(
-    sheet: CellEnergy, state: Array, tension: Array, windows: list[Window], *, flat: bool,
+    sheet: CellEnergy, path: Trajectory, tension: Array, windows: list[Window], *, flat: bool,
     steps: int, cancelled: Cancelled | None = None,
 ) -> Minimum:  # fmt: skip
     """Lower the energy of a whole sheet, its two sizes included, along certified steps.
@@ -134,15 +139,14 @@ def polished(
     Parameters
     ----------
     sheet : energy of a plain periodic cell, without a plane of its own.
-    state : unknowns to begin with.
+    path : where to begin; it moves.
     tension : (rows,) of the courses, N.
     windows : cover the sheet without overlap.
     flat : keep the middle of every stitch where it is.
     steps : most steps.
     """
-    path = Trajectory(sheet, state, _PAIR_CAP)
-    inverse = _Inverse(sheet, state, tension, windows, flat)
-    slope = path.slope(tension, hessian=False)
+    inverse = _Inverse(sheet, path.here.state, tension, windows, flat)
+    slope = path.slope(tension, hessian=False, lengths=False)
     tension = tension + inverse.relaxed(slope.gradient, path.here.terms.excess_mm)[1]
     slope = _resized(sheet, path, inverse, tension)
     past: deque[tuple[Array, Array]] = deque(maxlen=_MEMORY)
@@ -152,7 +156,7 @@ def polished(
         terms, gradient = path.here.terms, slope.gradient
         step = -_two_loops(inverse, past, gradient, terms.excess_mm)
         before = sheet.merit(terms, tension)
-        pull = sheet.penalty * terms.excess_mm @ slope.lengths
+        pull = sheet.pulled(path.here.curve, sheet.penalty * terms.excess_mm)
         downhill = min(float((gradient + pull) @ step), 0.0)
         share = 1.0
         for _ in range(_TRIALS):
@@ -168,7 +172,7 @@ def polished(
             continue
         moved = found.to.state - path.here.state
         path.advance(found)
-        slope = path.slope(tension, hessian=False)
+        slope = path.slope(tension, hessian=False, lengths=False)
         if moved @ (slope.gradient - gradient) > 0.0:
             past.append((moved, slope.gradient - gradient))
         taken += 1
@@ -183,7 +187,7 @@ def polished(
 def _resized(sheet: CellEnergy, path: Trajectory, inverse: _Inverse, tension: Array) -> Slope:
     """Let the sizes go where they want to, as far as that pays; the slope there."""
     for _ in range(_SIZE_STEPS):
-        slope, here = path.slope(tension, hessian=False), path.here
+        slope, here = path.slope(tension, hessian=False, lengths=False), path.here
         step = -inverse.resized(slope.gradient)
         strain = float(np.abs(step[-2:] / here.state[-2:]).max())
         found = path.certified(_LARGEST_STRAIN / max(strain, _LARGEST_STRAIN) * step)
@@ -192,10 +196,12 @@ def _resized(sheet: CellEnergy, path: Trajectory, inverse: _Inverse, tension: Ar
         path.advance(found)
         if found.fraction * strain < _LEAST_STRAIN:
             break
-    return path.slope(tension, hessian=False)
+    return path.slope(tension, hessian=False, lengths=False)
 
 
-def _part(sheet: CellEnergy, state: Array, tension: Array, window: Window, flat: bool) -> _Part:
+def _part(
+    sheet: CellEnergy, state: Array, tension: Array, window: Window, flat: bool, room: Room
+) -> _Part:
     rows, wales = window
     none = np.zeros(sheet.cell.rows)
     controls = sheet.cell.controls(state)
@@ -208,31 +214,41 @@ def _part(sheet: CellEnergy, state: Array, tension: Array, window: Window, flat:
     touching = slope.sparse.touching
     free = np.arange(len(here)) < len(here) - 2
     fronts = elimination(touching, dissected(touching))
-    system = SparseSystem(slope, energy.penalty, free, fronts, Room())
+    system = SparseSystem(slope, energy.penalty, free, fronts, room)
     unit = sheet.unit / sheet.mean_loop_mm**2
     damping, longest = _DAMPING, _LONGEST * sheet.yarn.radius_mm
-    while not (system.factorise(damping * unit) and _is_short(system, slope, longest)):
+    while True:
+        answers = _answers(system, slope, longest) if system.factorise(damping * unit) else None
+        if answers is not None:
+            break
         damping = max(_GROWTH * damping, _INDEFINITE_DAMPING)
-    system.free_matrix()  # the factors of all windows are kept at a time
+    system.keep()  # the factors of all windows are there at a time
     places = np.arange(controls.size).reshape(controls.shape)
     places = places[np.ix_(rows.stitches, each(wales.stitches, sheet.cell.grid.controls))]
     unknowns = places[energy.cell.free].ravel()
-    return _Part(system, slope.lengths, unknowns, rows.own, len(wales.own) / sheet.cell.wales)
+    share = len(wales.own) / sheet.cell.wales
+    return _Part(system, answers[:, :-2], slope.lengths, unknowns, rows.own, share)
 
 
-def _is_short(system: SparseSystem, slope: Slope, longest_mm: float) -> bool:
-    """Whether a window's Newton step, and its answers to the sizes, move no point too far."""
+def _answers(system: SparseSystem, slope: Slope, longest_mm: float) -> Array | None:
+    """How a window's unknowns follow either size; None if that, or its Newton step, moves a point
+    too far."""
     none = np.zeros(len(slope.lengths))
     still = Slope(np.zeros(len(slope.gradient)), slope.lengths)
-    steps = [(slope, np.zeros(2), longest_mm), *((still, size, _ANSWER) for size in np.eye(2))]
-    return all(np.abs(system.solve(at, none, by)[0]).max() < most for at, by, most in steps)
+    if not np.abs(system.solve(slope, none, np.zeros(2))[0]).max() < longest_mm:
+        return None
+    answers = np.array([system.solve(still, none, size)[0] for size in np.eye(2)])
+    return answers if np.abs(answers).max() < _ANSWER else None
 
 
 def _gradient(sheet: CellEnergy, state: Array, tension: Array) -> Array:
     """Of the Lagrangian, at any state."""
     curve = sheet.curve(state)
     pairs, start = sheet.pairs(curve, state, 2.0 * sheet.yarn.radius_mm)
-    return sheet.derivatives(state, curve, pairs, start, tension, hessian=False).gradient
+    slope = sheet.derivatives(
+        state, curve, pairs, start, tension, hessian=False, lengths=False
+    )  # fmt: skip
+    return slope.gradient
 
 
 def _two_loops(

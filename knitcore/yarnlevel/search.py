@@ -225,5 +225,5 @@ def _shaken_safely(energy: CellEnergy, state: Array, seed: int) -> Array:
     # half of the way to the hard cores at most
     room = 0.25 * max(clearance.min_distance_mm - 2.0 * energy.yarn.core_radius_mm, 0.0)
     moved = shaken(energy.cell, state, min(0.02 * radius, 0.3 * room), seed=seed)
-    scale = clearance.longest_step(moved, energy.curve(moved), radius)
+    scale, _ = clearance.longest_step(moved, energy.curve(moved), radius)
     return np.asarray(state + scale * (moved - state))

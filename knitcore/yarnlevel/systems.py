@@ -203,9 +203,10 @@ class SparseSystem(System):
         sizes = np.linalg.solve(self._rest, right[local:] - self._through.T @ right[:local])
         return np.concatenate([found - self._through @ sizes, sizes])
 
-    def free_matrix(self) -> None:
-        """Free what only another factor, or a predicted decrease, would need."""
-        self._factor.free_matrix()
+    def keep(self) -> None:
+        """Leave the room to others, and free what only another factor, or a predicted decrease,
+        would need."""
+        self._factor.keep()
         self._hessian = replace(self._hessian, matrix=one_tile(0))
 
     def _times(self, step: Array) -> Array:

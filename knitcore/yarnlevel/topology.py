@@ -13,7 +13,6 @@ to cross.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -22,15 +21,13 @@ from knitcore.threads import on_halves
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.energy import PAIRS_TO_SHARE
 from knitcore.yarnlevel.kernels.structures import Pairs
-from knitcore.yarnlevel.neighbours import pair_distances
+from knitcore.yarnlevel.neighbours import extremes, pair_distances, part_apart
 
 CROSSING = 0.75
 """Two polylines that meet have samples within h / sqrt(2) of each other; the rest is for the bend
 of the yarn between its samples."""
 SAFETY = 0.95
 """Part of the free distance that a step may use."""
-_LEAST_SHIFT = 1e-300
-"""So that nothing is divided by zero, mm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,30 +53,40 @@ class Clearance:
     @property
     def min_distance_mm(self) -> float:
         """Smallest distance between samples of different stretches of yarn."""
-        return float(self.distances_mm.min(initial=self.reach_mm))
+        least, _ = self._extremes(self.curve, self.state[-2:])
+        return min(least, self.reach_mm)
 
-    @cached_property
+    @property
     def distances_mm(self) -> Array:
         """Of the listed pairs."""
-        return self._lengths(self.curve, self.state[-2:])
+        course, wale = self.state[-2:]
+        shape = self.cell.rows, self.cell.wales
+        found = pair_distances(self.curve, (course, wale), self.cell.place, shape, self.pairs)
+        return np.asarray(found)
 
-    def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> float:
-        """Fraction (at most 1) of the way to another state that is certified.
+    def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> tuple[float, float]:
+        """Fraction (at most 1) of the way to another state that is certified, and the most by
+        which an unlisted pair gets nearer on the whole way, mm.
 
         ``pair_cap_mm`` also bounds the change of the vector between any listed pair.
         """
-        allowed = (self.reach_mm - self.touch_mm) / max(self.approach_mm(state, curve), 1e-300)
-        allowed = min(1.0, allowed)
-        if len(self.pairs):
-            shift = self.changes_mm(state, curve)
-            allowed = min(allowed, pair_cap_mm / max(float(shift.max()), 1e-300))
-            spacing = self._spacing(curve, allowed)
-            room = np.maximum(self.distances_mm - CROSSING * spacing, 0.0)
-            room /= np.maximum(shift, _LEAST_SHIFT, out=shift)  # in place: there may be millions
-            allowed = min(allowed, SAFETY * float(room.min()))
-        return allowed
+        approach = self._approach_mm(state, curve)
+        allowed = min(1.0, (self.reach_mm - self.touch_mm) / max(approach, 1e-300))
+        if not len(self.pairs):
+            return allowed, approach
+        moved, by = curve - self.curve, state[-2:] - self.state[-2:]
+        _, shift = self._extremes(moved, by)
+        allowed = min(allowed, pair_cap_mm / max(shift, 1e-300))
+        used = CROSSING * self._spacing(curve, allowed), SAFETY
+        curves, cells = (self.curve, moved), (tuple(self.state[-2:]), tuple(by))
+        place, shape = self.cell.place, (self.cell.rows, self.cell.wales)
+        parts = on_halves(
+            lambda of: part_apart(curves, cells, place, shape, of, used, shift, allowed),
+            self.pairs, PAIRS_TO_SHARE,
+        )  # fmt: skip
+        return float(min(parts)), approach
 
-    def approach_mm(self, state: Array, curve: Array) -> float:
+    def _approach_mm(self, state: Array, curve: Array) -> float:
         """Most by which an unlisted pair gets nearer on the way to another state."""
         old, new = self.state[-2:], state[-2:]
         strain = float(np.abs(new / old - 1.0).max())
@@ -92,17 +99,18 @@ class Clearance:
         far = 2.0 * float(np.sqrt(np.einsum("im,im->i", moved, moved).max()))
         return far + strain * self.reach_mm
 
-    def changes_mm(self, state: Array, curve: Array) -> Array:
-        """How far the vectors of the listed pairs change to another state."""
-        return self._lengths(curve - self.curve, state[-2:] - self.state[-2:])
+    def _extremes(self, curve: Array, size: Array) -> tuple[float, float]:
+        """Least and greatest length of the vectors of the listed pairs, mm.
 
-    def _lengths(self, curve: Array, size: Array) -> Array:
+        There may be millions: their lengths are not kept.
+        """
         shape, sizes = (self.cell.rows, self.cell.wales), (size[0], size[1])
         parts = on_halves(
-            lambda of: pair_distances(curve, sizes, self.cell.place, shape, of),
+            lambda of: extremes(curve, sizes, self.cell.place, shape, of),
             self.pairs, PAIRS_TO_SHARE,
         )  # fmt: skip
-        return parts[0] if len(parts) == 1 else np.concatenate(parts)
+        least, greatest = zip(*parts, strict=True)
+        return min(least), max(greatest)
 
     def _spacing(self, curve: Array, fraction: float) -> float:
         """Largest distance of consecutive samples up to a fraction of the step, mm.

@@ -66,12 +66,14 @@ class Trajectory:
         """Smallest distance between different stretches of yarn."""
         return self.clearance.min_distance_mm
 
-    def slope(self, tension: Array, *, hessian: bool, sparse: bool = False) -> Slope:
+    def slope(
+        self, tension: Array, *, hessian: bool, sparse: bool = False, lengths: bool = True
+    ) -> Slope:
         """Derivatives of the Lagrangian here."""
         here = self.here
         return self._energy.derivatives(
             here.state, here.curve, self._pairs, self._start, tension,
-            hessian=hessian, sparse=sparse,
+            hessian=hessian, sparse=sparse, lengths=lengths,
         )  # fmt: skip
 
     def certified(
@@ -92,20 +94,20 @@ class Trajectory:
             found = self.certified(straight * step + mended)
             return replace(found, fraction=straight * found.fraction)
         state = here.state + step
-        fraction, curve = self._allowed(state)
-        approach = fraction * self.clearance.approach_mm(state, curve)
+        fraction, approach, curve = self._allowed(state)
         if fraction < 1.0:
             state = here.state + fraction * step
             curve = here.curve + fraction * (curve - here.curve)
         terms = self._energy.value(state, curve, self._pairs)
-        return CertifiedStep(Configuration(state, curve, terms), fraction, approach)
+        return CertifiedStep(Configuration(state, curve, terms), fraction, fraction * approach)
 
-    def _allowed(self, state: Array) -> tuple[float, Array]:
-        """Fraction of the straight way to a state that is certified, and the curve at its end."""
+    def _allowed(self, state: Array) -> tuple[float, float, Array]:
+        """Fraction of the straight way to a state that is certified, the most by which unlisted
+        pairs get nearer on the whole way, mm, and the curve at its end."""
         if state[-2] <= 0.0 or state[-1] <= 0.0:
-            return 0.0, self.here.curve
+            return 0.0, 0.0, self.here.curve
         curve = self._energy.curve(state)
-        return self.clearance.longest_step(state, curve, self._cap), curve
+        return *self.clearance.longest_step(state, curve, self._cap), curve
 
     def advance(self, step: CertifiedStep) -> None:
         """Take a certified step from here."""

@@ -28,7 +28,7 @@ from knitcore.errors import (
     check_cancelled,
 )  # fmt: skip
 from knitcore.threads import on_halves, one_blas_thread
-from knitcore.yarnlevel.cell import free_cell, plain_cell
+from knitcore.yarnlevel.cell import YarnCell, free_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import (
@@ -39,9 +39,10 @@ from knitcore.yarnlevel.growth import (
     does_not_fit,
     with_stiff_shell,
 )  # fmt: skip
+from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.limits import check_loop
 from knitcore.yarnlevel.neighbours import reaches
-from knitcore.yarnlevel.polish import polished
+from knitcore.yarnlevel.polish import PAIR_CAP, polished
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome, overlong
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
@@ -49,7 +50,7 @@ from knitcore.yarnlevel.splines import COARSE, ROUGH, RelaxedRepeat, relax_splin
 from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 from knitcore.yarnlevel.topology import Clearance
-from knitcore.yarnlevel.trajectory import SKIN
+from knitcore.yarnlevel.trajectory import SKIN, Trajectory
 from knitcore.yarnlevel.windows import Window, each, row_lengths, touch, window_energy, windows
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -372,11 +373,13 @@ class _Work:
             number = len(sheet.rounds)
             energy = self.energy(sheet)
             sheet = self._one_pass(sheet, energy, _PASS, number)
+            path = Trajectory(energy, sheet.state, PAIR_CAP)
             found = polished(
-                energy, sheet.state, sheet.tension_n.mean(axis=1),
-                self._windows(energy, sheet, number), flat=self.flat, steps=_DESCENT_STEPS,
-                cancelled=self.cancelled,
+                energy, path, sheet.tension_n.mean(axis=1),
+                _windows(energy.cell, path.clearance.pairs, number), flat=self.flat,
+                steps=_DESCENT_STEPS, cancelled=self.cancelled,
             )  # fmt: skip
+            del path  # its list of pairs is most of the memory
             per_stitch = found.terms.energy / energy.cell.stitches
             wide, high = found.state[-2:].tolist()
             sheet = replace(
@@ -433,7 +436,8 @@ class _Work:
             return lay
 
         laid, evaluations = 0, sheet.evaluations
-        for some in _side_by_side(self._windows(energy, sheet, number)):
+        covering = _windows(energy.cell, self._clearance(energy, sheet).pairs, number)
+        for some in _side_by_side(covering):
             check_cancelled(self.cancelled)
             for lay in chain.from_iterable(on_halves(lambda of: [*map(settled, of)], some, 2)):
                 if lay is not None:
@@ -443,13 +447,6 @@ class _Work:
             raise UnravelledError("No window of the chart could be relaxed.")
         return replace(sheet, controls=controls, tension_n=tension, evaluations=evaluations)
 
-    def _windows(self, energy: CellEnergy, sheet: WholeShape, number: int) -> list[Window]:
-        """Windows with as many resting stitches around them as strands reach."""
-        cell = energy.cell
-        pairs = self._clearance(energy, sheet).pairs
-        around = reaches(pairs, cell.grid.samples, (cell.rows, cell.wales))
-        return windows(around, _WINDOW, _FIRSTS[number % len(_FIRSTS)])
-
     def _clearance(self, energy: CellEnergy, sheet: WholeShape) -> Clearance:
         reach = (2.0 + SKIN) * self.yarn.radius_mm
         curve = energy.curve(sheet.state)
@@ -458,21 +455,18 @@ class _Work:
 
     def _minimum(self, energy: CellEnergy, sheet: WholeShape) -> tuple[Minimum, float]:
         """The sheet as a minimum, and the largest force that is left, N."""
-        clearance = self._clearance(energy, sheet)
-        terms = energy.value(sheet.state, clearance.curve, clearance.pairs)
+        path = Trajectory(energy, sheet.state, PAIR_CAP)
         tension = sheet.tension_n.mean(axis=1)
-        start = np.searchsorted(clearance.pairs[:, 0], np.arange(len(clearance.curve) + 1))
-        slope = energy.derivatives(
-            sheet.state, clearance.curve, clearance.pairs, start, tension, hessian=False
-        )
+        slope = path.slope(tension, hessian=False, lengths=False)
         left = slope.gradient[:-2].reshape(*sheet.controls.shape)
         if self.flat:  # the plane carries the mean over a stitch
             heights = left[..., 2].reshape(*self.chart.purl.shape, -1)
             heights -= heights.mean(axis=2, keepdims=True)
         found = Minimum(
-            state=sheet.state, tension=tension, terms=terms, force=slope.gradient[-2:].copy(),
-            min_distance_mm=clearance.min_distance_mm, converged=sheet.change <= self.tolerance,
-            stable=False, steps=0, evaluations=sheet.evaluations,
+            state=sheet.state, tension=tension, terms=path.here.terms,
+            force=slope.gradient[-2:].copy(), min_distance_mm=path.min_distance_mm,
+            converged=sheet.change <= self.tolerance, stable=False, steps=0,
+            evaluations=sheet.evaluations,
         )  # fmt: skip
         return found, float(np.abs(left).max())
 
@@ -486,6 +480,12 @@ class _Work:
             share = max(float(near), len(sheet.rounds) / self.rounds)
             grown = sheet.core_radius_mm / self.yarn.core_radius_mm
             self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)
+
+
+def _windows(cell: YarnCell, pairs: Pairs, number: int) -> list[Window]:
+    """Windows with as many resting stitches around them as strands reach."""
+    around = reaches(pairs, cell.grid.samples, (cell.rows, cell.wales))
+    return windows(around, _WINDOW, _FIRSTS[number % len(_FIRSTS)])
 
 
 def _side_by_side(covering: list[Window]) -> Iterator[list[Window]]:

@@ -191,8 +191,7 @@ class WindowEnergy(CellEnergy):
 
     def length_gradients(self, curve: Array) -> Array:
         """(k, unknowns): gradient of each prescribed length."""
-        speed = np.linalg.norm(curve[:, 1], axis=1)[:, None]
-        tangent = (curve[:, 1] / speed / self.cell.grid.samples).reshape(self.cell.rows, -1, 3)
+        tangent = self._tangent(curve).reshape(self.cell.rows, -1, 3)
         every = self._by_tangent(tangent.reshape(-1, 3))
         rows = np.zeros((len(self.own_rows), self.cell.unknowns))
         for row, own in zip(rows, self.own_rows, strict=True):

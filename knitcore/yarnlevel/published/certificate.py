@@ -56,7 +56,7 @@ def _certified(stitch: Stitch, start: Array, end: Array, halvings: int) -> bool:
     sizes = [(float(x[-2]), float(x[-1])) for x in (start, end)]
     pairs, _ = neighbour_pairs(
         curves[0], place, sizes[0], (1, 1), mirror, reach, EXCLUSION_RADII * radius / length,
-        np.arange(len(place)), np.ones(len(place), bool), (False, False),
+        np.ones(len(place), bool), (False, False),
     )  # fmt: skip
     step = sizes[1][0] - sizes[0][0], sizes[1][1] - sizes[0][1]
     distance = pair_distances(curves[0], sizes[0], place, (1, 1), pairs)

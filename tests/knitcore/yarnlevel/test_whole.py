@@ -8,7 +8,7 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Fabric
-from knitcore.yarnlevel import energy
+from knitcore.yarnlevel import energy, neighbours
 from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import CellEnergy
@@ -103,7 +103,7 @@ def test_pairs_found_in_two_threads_are_those_found_in_one(
     pairs, start = whole.pairs(curve, state, reach)
     value = whole.value(state, curve, pairs)
     slope = _slope(whole, state, tension)
-    monkeypatch.setattr(energy, "_SAMPLES_TO_SHARE", 2)
+    monkeypatch.setattr(neighbours, "_SAMPLES_TO_SHARE", 2)
     monkeypatch.setattr(energy, "PAIRS_TO_SHARE", 2)
     again, begin = whole.pairs(curve, state, reach)
     assert np.array_equal(again, pairs)
