@@ -25,6 +25,8 @@ import { REST } from "../studio.js";
 const DELAY_MS = 650;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
+/** A frame whose page did not come is loaded again after this time. */
+const RELOAD_MS = 2500;
 /** The service draws so many stitches as yarn at most; of larger charts only a part. */
 const MAX_DRAWN = 40_000;
 
@@ -76,11 +78,22 @@ export function fabricview(host, studio, view) {
     }
   };
 
+  /** Whether the view's page runs in the frame. */
+  let loaded = false;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let reloading;
+  const reload = () => {
+    if (shown && !loaded) frame.src = shown;
+  };
+  frame.addEventListener("load", () => {
+    if (shown) reloading = setTimeout(reload, RELOAD_MS); // the browser's own page about a failure loads, too
+  });
   /** The browser draws nothing in 3D. */
   let blind = false;
   addEventListener("message", ({ source, data }) => {
     if (source !== frame.contentWindow) return;
     if (data.view === "loaded") {
+      loaded = true;
       blind = false;
       tellFrame({ hold: drawing.held });
       if (pass) tellFrame({ pass });
@@ -154,6 +167,8 @@ export function fabricview(host, studio, view) {
     setLive(false);
     status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
     still.clear();
+    clearTimeout(reloading);
+    loaded = false;
     frame.src = url;
     link.disconnect();
   };

@@ -405,6 +405,15 @@ def test_a_lost_view_is_restored_automatically(studio: Page) -> None:
 
 
 @pytest.mark.slow
+def test_a_view_whose_page_did_not_come_is_loaded_again(visitor: Page, service: str) -> None:
+    visitor.route("**/view/**", lambda route: route.abort())
+    open_small_chart(visitor, service)
+    wait_for_colour(visitor, CLOTH, YARN)  # the picture
+    visitor.unroute_all()
+    _wait_for_live_cloth(visitor)
+
+
+@pytest.mark.slow
 def test_a_page_is_saved_that_needs_no_service(studio: Page, tmp_path: Path) -> None:
     _wait_for_live_cloth(studio)
     studio.click("#fabric-share-button")
