@@ -2219,7 +2219,7 @@ export interface RelaxRequest {
   loop_lengths_mm?: number[][] | null;
   /** Hold the stitches in one plane, as a fabric laid flat; not published. */
   flat?: boolean;
-  /** Without one, the symmetries of the chart are only where it begins: the mirrored shape is followed to the minimum that it leads to without them. Shapes that are held, or have friction, keep them, and repeats of more than 16 stitches are relaxed in the free branch. */
+  /** By default symmetry is only the start: the mirrored shape is followed to the minimum that it leads to without the symmetries of the chart. Shapes that are held, or have friction, keep them; repeats of more than 16 stitches are relaxed in the free branch. */
   branch?: Branch | null;
   convention?: Convention;
   /** Compute again, even if the result is stored. */

@@ -96,7 +96,7 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     given = request.friction
     coefficient = known.coefficient if given is None else given
     relaxed = relax(
-        repeat, used.yarn, used.loop_length_mm, cancelled=context.cancelled, branch="mirrored"
+        repeat, used.yarn, used.loop_length_mm, branch="mirrored", cancelled=context.cancelled
     )
 
     def rubbed(friction: float) -> tuple[loops.Hysteresis, tuple[loops.RestSize, ...]]:

@@ -23,8 +23,8 @@ from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS, log_interval
 from knitcore.phases import pure_fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.hysteresis import History, rest_sizes
-from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
-from knitcore.yarnlevel.relax import NO_UNMIRRORED, Branch, RelaxedRepeat
+from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, lowest
+from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.splines import has_mirrors
 from knitcore.yarnlevel.whole import WINDOWS_FROM
@@ -36,10 +36,10 @@ class RelaxRequest(RubbedRequest):
 
     branch: Branch | None = Field(
         None,
-        description="Without one, the symmetries of the chart are only where it begins: the "
-        "mirrored shape is followed to the minimum that it leads to without them. Shapes that are "
-        f"held, or have friction, keep them, and repeats of more than {FOLLOWED_UP_TO} stitches "
-        "are relaxed in the free branch.",
+        description="By default symmetry is only the start: the mirrored shape is followed to the "
+        "minimum that it leads to without the symmetries of the chart. Shapes that are held, or "
+        f"have friction, keep them; repeats of more than {FOLLOWED_UP_TO} stitches are relaxed in "
+        "the free branch.",
     )
     history: History | None = Field(
         None,
@@ -231,20 +231,17 @@ def _after_history(
 
 def _unmirrored(cell: RelaxedCell, context: Context) -> tuple[RelaxedCell, RelaxedRepeat | None]:
     """A mirrored shape that knows whether it is a minimum, and the one it leads to otherwise."""
-    if not isinstance(cell, RelaxedRepeat) or cell.minimum or not can_be_followed(cell):
+    if not isinstance(cell, RelaxedRepeat):
         return cell, None
-    try:
-        found = without_mirrors(cell, cancelled=context.cancelled)
-    except (ConvergenceError, UnravelledError):
-        return replace(cell, notes=(*cell.notes, NO_UNMIRRORED)), None
-    if found.minimum:
-        return replace(cell, minimum=True), None
+    found = lowest(cell, cancelled=context.cancelled)
+    if found.mirrored is None:
+        return found, None
     note = (
         "This shape is a minimum only among mirrored ones: without the symmetries it leaves for "
-        f"one with {found.lower:.1%} less energy, {found.state.cell_course_mm:.2f} x "
-        f"{found.state.cell_wale_mm:.2f} mm a stitch."
+        f"one with {1.0 - found.energy_n_mm / cell.energy_n_mm:.1%} less energy, "
+        f"{found.cell_course_mm:.2f} x {found.cell_wale_mm:.2f} mm a stitch."
     )
-    return replace(cell, minimum=False, notes=(*cell.notes, note)), found.state
+    return replace(cell, minimum=False, notes=(*cell.notes, note)), found
 
 
 def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> FoundGauge | None:

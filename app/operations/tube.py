@@ -64,7 +64,7 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
     repeat = request.repeat(MAX_STITCHES)
     used = request.yarn(repeat, context)
     flat = relax(
-        repeat, used.yarn, used.loop_length_mm, cancelled=context.cancelled, branch="mirrored"
+        repeat, used.yarn, used.loop_length_mm, branch="mirrored", cancelled=context.cancelled
     )
     found = in_the_round(
         flat, request.wales, face_outside=request.face_outside, cancelled=context.cancelled

@@ -907,9 +907,9 @@ class RelaxRequest(TypedDict):
     flat: NotRequired[bool]
     """Hold the stitches in one plane, as a fabric laid flat; not published."""
     branch: NotRequired[Branch | None]
-    """Without one, the symmetries of the chart are only where it begins: the mirrored shape is
-    followed to the minimum that it leads to without them. Shapes that are held, or have friction,
-    keep them, and repeats of more than 16 stitches are relaxed in the free branch."""
+    """By default symmetry is only the start: the mirrored shape is followed to the minimum that
+    it leads to without the symmetries of the chart. Shapes that are held, or have friction, keep
+    them; repeats of more than 16 stitches are relaxed in the free branch."""
     convention: NotRequired[Convention]
     fresh: NotRequired[bool]
     """Compute again, even if the result is stored."""

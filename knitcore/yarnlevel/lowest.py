@@ -13,7 +13,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_stitches
-from knitcore.errors import Cancelled, ConvergenceError, InputError
+from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import free_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.results import Branch
@@ -118,3 +118,25 @@ def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = Non
     return Followed(
         lower < SAME_ENERGY and found.stable, replace(shown, notes=relaxed.notes), lower
     )
+
+
+def lowest(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> RelaxedRepeat:
+    """The minimum that a relaxed repeat is, or leads to, without the symmetries of its chart.
+
+    Its ``mirrored`` is the state that led to it. A repeat that cannot be followed is returned as it
+    is, one from which no shape was found with a note.
+    """
+    if relaxed.minimum or not can_be_followed(relaxed):
+        return relaxed
+    try:
+        found = without_mirrors(relaxed, cancelled=cancelled)
+    except (ConvergenceError, UnravelledError):
+        lost = "Without its mirror symmetries no shape was found."
+        return replace(relaxed, notes=(*relaxed.notes, lost))
+    seconds = relaxed.seconds + found.state.seconds
+    if found.minimum:
+        return replace(relaxed, minimum=True, seconds=seconds)
+    return replace(
+        found.state, minimum=True, mirrored=relaxed, starts=relaxed.starts, seconds=seconds,
+        evaluations=relaxed.evaluations + found.state.evaluations,
+    )  # fmt: skip

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.chart import StitchChart, check_stitches
-from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
+from knitcore.errors import Cancelled, InputError
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.growth import Start
 from knitcore.yarnlevel.limits import check_time
-from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
+from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, lowest
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.stitch import published_fabric
 from knitcore.yarnlevel.results import Branch, RelaxedCell
@@ -25,8 +25,6 @@ from knitcore.yarnlevel.yarn import YarnModel
 
 __all__ = ["Branch", "OnSplines", "RelaxedRepeat", "relax"]
 
-NO_UNMIRRORED = "Without its mirror symmetries no shape was found."
-"""A note where a mirrored state could not be followed."""
 OnSplines = Literal[Branch.MIRRORED, Branch.FREE, "mirrored", "free"]
 
 
@@ -92,10 +90,11 @@ def relax(
         it to that after it. Where they do not repeat with the chart, the whole chart is the cell.
     branch : ``mirrored`` imposes the symmetries of the chart, ``free`` none (it also continues the
         mirrored state, shaken, and keeps the lowest). ``published`` is the paper's own
-        description: a stitch of a pure fabric with one loop length. Without one, the symmetries are
-        a start: the mirrored state is followed to the minimum that it leads to without them. A
-        repeat of more than ``FOLLOWED_UP_TO`` stitches is relaxed in the free branch; a shape that
-        is held, on a grid or from starts of your own, keeps its symmetries.
+        description: a stitch of a pure fabric with one loop length. By default symmetry is only
+        the start: the mirrored state is followed to the minimum that it leads to without its
+        symmetries (:func:`~knitcore.yarnlevel.lowest.lowest`). A repeat of more than
+        ``FOLLOWED_UP_TO`` stitches is then relaxed in the free branch; a shape that is held, or
+        has a grid or starts of your own, keeps its symmetries.
     convention : factors of the energy.
     cell_course_mm, cell_wale_mm : size of a stitch to hold, mm; None leaves it free of force.
     flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
@@ -142,7 +141,7 @@ def relax(
             explore=explored if in_rounds else None,
             time_limit_s=time_limit_s, cancelled=cancelled,
         )  # fmt: skip
-        return relaxed if branch is not None or prescribed else _followed(relaxed, cancelled)
+        return relaxed if branch is not None or prescribed else lowest(relaxed, cancelled=cancelled)
     if flat or grid is not None or starts is not None or np.size(loop_length_mm) != 1:
         raise InputError(
             "branch",
@@ -152,21 +151,4 @@ def relax(
     return relax_published(
         published_fabric(chart), yarn, np.asarray(loop_length_mm, dtype=float).item(),
         cell_course_mm, cell_wale_mm, factors, cancelled=cancelled,
-    )  # fmt: skip
-
-
-def _followed(relaxed: RelaxedRepeat, cancelled: Cancelled | None) -> RelaxedRepeat:
-    """The minimum that a relaxed repeat is, or leads to, without the symmetries of its chart."""
-    if relaxed.minimum or not can_be_followed(relaxed):
-        return relaxed
-    try:
-        found = without_mirrors(relaxed, cancelled=cancelled)
-    except (ConvergenceError, UnravelledError):
-        return replace(relaxed, notes=(*relaxed.notes, NO_UNMIRRORED))
-    if found.minimum:
-        return replace(relaxed, minimum=True, seconds=relaxed.seconds + found.state.seconds)
-    return replace(
-        found.state, minimum=True, mirrored=relaxed, starts=relaxed.starts,
-        seconds=relaxed.seconds + found.state.seconds,
-        evaluations=relaxed.evaluations + found.state.evaluations,
     )  # fmt: skip
