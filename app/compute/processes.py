@@ -23,6 +23,7 @@ from functools import cache
 from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any, TypeVar
+from weakref import WeakSet
 
 from app.compute.workers import call
 
@@ -72,6 +73,7 @@ class ProcessWorker:
         self._scratch = Path(tempfile.mkdtemp(prefix=f"{SCRATCH}{os.getpid()}-"))
         self._slots = CONTEXT.Array("d", len(Slot), lock=False)
         self._executor = self._new()
+        self._ending: WeakSet[threading.Thread] = WeakSet()
 
     async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
         """Begin a job."""
@@ -104,15 +106,31 @@ class ProcessWorker:
 
     def replace(self) -> None:
         """Kill the process; the next job gets a new one."""
-        _kill(self._executor)
+        self._kill()
         for left in self._scratch.iterdir():  # uploads that it was reading
             shutil.rmtree(left, ignore_errors=True)
         self._executor = self._new()
 
     def close(self) -> None:
-        """End the process."""
-        _kill(self._executor)
+        """End the process, and wait for the threads that clear up after it and those before it.
+
+        Python's exit wakes such threads, and fails where one closes its pipe at that moment.
+        """
+        self._kill()
+        for thread in list(self._ending):
+            thread.join()
         shutil.rmtree(self._scratch, ignore_errors=True)
+
+    def _kill(self) -> None:
+        executor = self._executor
+        with executor._shutdown_lock:  # not while it starts a process
+            started = executor._processes
+            thread: Any = executor._executor_manager_thread
+        executor.shutdown(wait=False, cancel_futures=True)
+        if thread is not None:  # it has started a process
+            self._ending.add(thread)
+            for process in list(started.values()):
+                process.kill()
 
     def _new(self) -> ProcessPoolExecutor:
         return ProcessPoolExecutor(
@@ -164,13 +182,6 @@ def _sweep() -> None:
         owner = folder.name.removeprefix(SCRATCH).partition("-")[0]
         if not Path(f"/proc/{owner}").exists():
             shutil.rmtree(folder, ignore_errors=True)
-
-
-def _kill(executor: ProcessPoolExecutor) -> None:
-    started = executor._processes  # shutdown forgets it, after a start that is under way
-    executor.shutdown(wait=False, cancel_futures=True)
-    for process in list((started or {}).values()):
-        process.kill()
 
 
 _slots: Any = None

@@ -7,7 +7,11 @@ import contextlib
 import os
 import signal
 import tempfile
+import threading
+from asyncio import Future
 from collections.abc import Iterator
+from concurrent.futures.process import _ExecutorManagerThread
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -103,6 +107,25 @@ def test_uploads_of_a_lost_worker_are_removed(
     assert list(scratch.iterdir()) == []
     worker.close()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_closed_worker_leaves_no_thread_that_clears_up() -> None:
+    """Python's exit could meet it, and write of that into the log."""
+    workers = processes(6)
+
+    async def closed() -> list[threading.Thread]:
+        before = set(threading.enumerate())
+        for worker in workers:
+            job = await worker.submit(partial(jobs.stubborn, 60.0))
+            job.add_done_callback(Future.exception)
+        for worker in workers:
+            worker.replace()
+        for worker in workers:
+            worker.close()
+        left = set(threading.enumerate()) - before
+        return [thread for thread in left if isinstance(thread, _ExecutorManagerThread)]
+
+    assert asyncio.run(closed()) == []
 
 
 def test_a_worker_that_dies_loses_only_its_own_job(tmp_path: Path) -> None:
