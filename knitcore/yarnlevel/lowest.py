@@ -14,7 +14,7 @@ import numpy as np
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
-from knitcore.yarnlevel.cell import free_cell
+from knitcore.yarnlevel.cell import free_cell, plain_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
@@ -85,8 +85,15 @@ def _held(relaxed: RelaxedRepeat) -> bool:
     return bool(relaxed.flat or relaxed.slides or relaxed.loop_lengths_mm.ndim != 1)
 
 
-def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> Followed:
+def without_mirrors(
+    relaxed: RelaxedRepeat, *, part: StitchChart | None = None, cancelled: Cancelled | None = None
+) -> Followed:
     """Drop the symmetries of a relaxed repeat, and follow its instability if there is one.
+
+    Parameters
+    ----------
+    part : several repeats to do this in, where they need not look alike; by default one, or two
+        where one is a single row or column.
 
     Raises
     ------
@@ -95,7 +102,8 @@ def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = Non
     ConvergenceError, UnravelledError
         If the descent from it finds no state of the fabric.
     """
-    cell = free_cell(relaxed.chart, relaxed.cell.grid)
+    grid = relaxed.cell.grid
+    cell = free_cell(relaxed.chart, grid) if part is None else plain_cell(part, grid)
     if _held(relaxed):
         raise InputError(
             "relaxed",

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import chain, zip_longest
 
@@ -41,6 +42,7 @@ from knitcore.yarnlevel.growth import (
 )  # fmt: skip
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.limits import check_loop
+from knitcore.yarnlevel.lowest import MAX_STITCHES, without_mirrors
 from knitcore.yarnlevel.neighbours import reaches
 from knitcore.yarnlevel.polish import PAIR_CAP, polished
 from knitcore.yarnlevel.results import Branch
@@ -320,15 +322,21 @@ class _Work:
         return self._fitted(sheet, FIRST_OPENING)
 
     def _tiled(self) -> WholeShape:
-        """The chart's repeat, relaxed without its mirrors where that fits, and laid out."""
-        free = free_cell(self.chart.repeat(), COARSE)
-        fits = self.chart.rows % free.rows == self.chart.columns % free.wales == 0
+        """The chart's repeat, relaxed and laid out; without its mirrors, unless it is held flat."""
+        repeat = self.chart.repeat()
+        part = repeat.resized(
+            _least(repeat.rows, self.chart.rows), _least(repeat.columns, self.chart.columns)
+        )
+        fits = part.stitches == free_cell(repeat, COARSE).stitches
         found = relax_splines(
             self.chart, self.yarn, self.loop_lengths_mm[0],
             branch=Branch.FREE if fits and not self.flat else Branch.MIRRORED,
             convention=self.convention, sizes_mm=(None, None), flat=self.flat, grid=COARSE,
             starts=None, time_limit_s=None, cancelled=self.cancelled,
         )  # fmt: skip
+        if not fits and not self.flat and part.stitches <= MAX_STITCHES:
+            with suppress(ConvergenceError, UnravelledError):  # then with its mirrors
+                found = without_mirrors(found, part=part, cancelled=self.cancelled).state
         cell = plain_cell(self.chart, COARSE)
         state = tiled_state(found.cell, found.state, cell)
         tension = np.resize(found.tension_n[: found.cell.rows], cell.rows)
@@ -480,6 +488,11 @@ class _Work:
             share = max(float(near), len(sheet.rounds) / self.rounds)
             grown = sheet.core_radius_mm / self.yarn.core_radius_mm
             self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)
+
+
+def _least(repeat: int, whole: int) -> int:
+    """Rows or columns of the smallest part of a chart that is no single one and repeats in it."""
+    return min(n for n in range(repeat, whole + 1) if whole % n == 0 and (n > 1 or whole == 1))
 
 
 def _windows(cell: YarnCell, pairs: Pairs, number: int) -> list[Window]:
