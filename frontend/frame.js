@@ -2,7 +2,7 @@
  * Runs before viser's client in the frame of the 3D view, which is sandboxed: it has no origin, no
  * cookies, and in most browsers a process of its own. It talks to the page around by messages:
  *
- *   page to frame    {pass} the right to watch, {hold} whether frames wait while somebody paints
+ *   page to frame    {pass} the right to watch, {hold} whether frames wait while somebody paints, {ink} colour of words
  *   frame to page    {view: "loaded" | "seen" | "none" where the browser draws nothing in 3D}, {slow} whether drawing takes long
  *
  * A plain script without imports, after aside.js: the service puts it into viser's page.

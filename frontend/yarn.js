@@ -1,7 +1,8 @@
 /**
  * Yarn that looks like yarn: plies that wind around each other, fibres that stand off, and the dark
  * between strands, which the service computes. viser's tubes are plain, so this adds to the shaders
- * that draw them, before viser starts; a shader that is not as expected stays as it is.
+ * that draw them, before viser starts; a shader that is not as expected stays as it is. The words of
+ * the scale are black on viser's white box, light or dark; here they have the colour of the page's words.
  *
  * A plain script without imports: the service puts it into viser's page.
  */
@@ -79,29 +80,49 @@
   const MAIN = "void main() {";
   const AFTER_PLACE = "vViewPosition = - mvPosition.xyz;";
   const AFTER_NORMAL = "vec3 nonPerturbedNormal = normal;";
+  const BOX = "gl_FragColor = vec4(1.0, 1.0, 1.0, 0.85 * vAlpha);";
+  const WORDS = "gl_FragColor = vec4(0.0, 0.0, 0.0, a);";
 
   /** @param {string} source */
   function dressed(source) {
+    if (source.includes(BOX)) return source.replace(BOX, "gl_FragColor = vec4(0.0);");
+    if (source.includes(WORDS))
+      return source.replace(WORDS, "gl_FragColor = vec4(ink, a);").replace(MAIN, `uniform vec3 ink; ${MAIN}`);
     if (!source.includes("#define USE_INSTANCING_INDIRECT") || !source.includes("#define STANDARD")) return source;
     const [mark, added] = source.includes("gl_Position") ? [AFTER_PLACE, PLACED] : [AFTER_NORMAL, LIT];
     const whole = [MAIN, mark].every((each) => source.split(each).length === 2);
     return whole ? source.replace(MAIN, `${DECLARED}${MAIN}`).replace(mark, `${mark}${added}`) : source;
   }
 
+  /** Colour of words, if a page around tells it. */
+  let told = "";
+  addEventListener("message", ({ source, data }) => {
+    if (source === parent && data.ink) told = data.ink;
+  });
+  const ink = () =>
+    (told || getComputedStyle(document.body).color)
+      .match(/[\d.]+/g)
+      ?.slice(0, 3)
+      .map((part) => Number(part) / 255) ?? [0, 0, 0];
+
   const gl = WebGL2RenderingContext.prototype;
   const { shaderSource, useProgram } = gl;
   gl.shaderSource = function (shader, source) {
     shaderSource.call(this, shader, dressed(source));
   };
-  /** Where programs take the yarn and its pixels. @type {WeakMap<WebGLProgram, (WebGLUniformLocation | null)[]>} */
+  /** Where programs take the yarn, its pixels and the ink. @type {WeakMap<WebGLProgram, (WebGLUniformLocation | null)[]>} */
   const places = new WeakMap();
   gl.useProgram = function (program) {
     useProgram.call(this, program);
     if (!program) return;
     let found = places.get(program);
     if (!found)
-      places.set(program, (found = ["yarn", "yarnPixels"].map((name) => this.getUniformLocation(program, name))));
-    const [place, pixels] = found;
+      places.set(
+        program,
+        (found = ["yarn", "yarnPixels", "ink"].map((name) => this.getUniformLocation(program, name))),
+      );
+    const [place, pixels, words] = found;
+    if (words) this.uniform3fv(words, ink());
     if (!place) return;
     this.uniform3fv(place, yarn);
     this.uniform1f(pixels, (yarn[2] * this.drawingBufferHeight) / 2);

@@ -52,8 +52,9 @@ export function fabricview(host, studio, view) {
   const caption = h("div", { class: "fabric-caption" });
   const still = new Still(frame);
   const drawing = { slow: false, held: false };
-  /** @param {{pass: string} | {hold: boolean}} message */
+  /** @param {{pass: string} | {hold: boolean} | {ink: string}} message */
   const tellFrame = (message) => frame.contentWindow?.postMessage(message, "*");
+  const tellInk = () => tellFrame({ ink: getComputedStyle(host).color });
   /** Let its frames wait, or go on. @param {boolean} held */
   const hold = (held) => {
     if (drawing.held === held) return;
@@ -96,6 +97,7 @@ export function fabricview(host, studio, view) {
       loaded = true;
       blind = false;
       tellFrame({ hold: drawing.held });
+      tellInk();
       if (pass) tellFrame({ pass });
     }
     if (data.view === "seen") knitted();
@@ -279,7 +281,10 @@ export function fabricview(host, studio, view) {
     describe();
   });
   studio.step.listen(now);
-  onTheme(soon);
+  onTheme(() => {
+    tellInk();
+    soon();
+  });
   studio.stretch.watch(describe);
   studio.step.listen(describe);
   void nextTask().then(now);

@@ -204,6 +204,22 @@ def test_the_shaders_know_the_yarn_they_draw(studio: Page) -> None:
 
 
 @pytest.mark.slow
+def test_the_words_of_the_scale_stand_on_the_page_in_its_colour(studio: Page) -> None:
+    def light(picture: np.ndarray) -> int:
+        high, wide, _ = picture.shape
+        return int((picture[high // 2 :, wide // 2 :].min(axis=2) > 160).sum())
+
+    _wait_for_live_cloth(studio)
+    studio.evaluate("document.documentElement.dataset.theme = 'dark'")
+    for _ in range(100):
+        words = light(pixels(studio, CLOTH))
+        if 5 < words < 150:  # the light page has many more, and a box around them 500
+            break
+        studio.wait_for_timeout(200)
+    assert 5 < words < 150
+
+
+@pytest.mark.slow
 def test_what_is_selected_in_the_chart_is_outlined_on_the_fabric(studio: Page) -> None:
     _wait_for_live_cloth(studio)
     with studio.expect_request(
