@@ -70,12 +70,12 @@ export interface BendResult {
   /** Bending rigidity, with the size across held. */
   bending_held_course_n_mm: number;
   bending_held_wale_n_mm: number;
-  /** Strain across per curvature, bent along the rows. */
+  /** Strain across the bend per curvature, bent along the rows. */
   strain_across_course_mm: number;
   strain_across_wale_mm: number;
   /** Null where no stable state was found. */
   shear_modulus_n_per_mm: number | null;
-  /** Rigidity of twist D66; null where no stable state was found, as is the next. */
+  /** Rigidity of twist D66; null, as is the coupling, without a stable state. */
   twist_n_mm: number | null;
   /** Coupling D1 of the two curvatures. */
   coupling_n_mm: number | null;
@@ -1439,7 +1439,7 @@ export interface HysteresisResult {
   /** Strain that remains after unloading. */
   left_strain: number;
   left_strain_interval: [number, number] | null;
-  /** Change of the greatest stress from the first cycle to the last. */
+  /** Change of the greatest stress from the first cycle to the last, as a part of the first. */
   closes_within: number;
   rest_sizes: RestSizeResult[];
   yarn: YarnResult;
@@ -2217,7 +2217,7 @@ export interface RelaxRequest {
   loop_length_mm?: number | null;
   /** Instead of one length: a list for every row of the chart, the bottom row first, of one length for all its stitches or one for each. */
   loop_lengths_mm?: number[][] | null;
-  /** Hold the stitches in one plane, as a fabric laid flat; not published. */
+  /** Hold the stitches in one plane, as a fabric laid flat; not in the published branch. */
   flat?: boolean;
   /** By default symmetry is only the start: the mirrored shape is followed to the minimum that it leads to without the symmetries of the chart. Shapes that are held, or have friction, keep them; repeats of more than 16 stitches are relaxed in the free branch. */
   branch?: Branch | null;
@@ -2226,7 +2226,7 @@ export interface RelaxRequest {
   fresh?: boolean;
   /** Coefficient of friction between yarns. Without it, and without the other options that need one, there is no friction. */
   friction?: number | null;
-  /** What happened to the fabric before it came to rest, with friction: that of the yarn unless a coefficient is given. As-knitted by default if one is. */
+  /** What happened to the fabric before it came to rest, with the friction of the yarn unless a coefficient is given. If only a coefficient is given, as-knitted. */
   history?: History | null;
   /** Hold a stitch at this width. */
   cell_course_mm?: number | null;
@@ -2255,7 +2255,7 @@ export interface RelaxResult {
   bending_share: number;
   contact_share: number;
   yarn_length_mm: number;
-  /** Force per stitch that holds a prescribed width; null in the published branch. */
+  /** Force per stitch that holds a prescribed width; near 0 where it is free. */
   force_course_n: number | null;
   force_wale_n: number | null;
   min_distance_mm: number | null;
@@ -2274,13 +2274,13 @@ export interface RelaxResult {
   history: History | null;
   /** With friction, the size after each history: the range in which the fabric may rest. */
   rest_sizes: RestSizeResult[] | null;
-  /** Whether the shape is a minimum without the mirror symmetries of the chart; null where that was not looked at: shapes that are held, with friction, of the published branch, mirrored with free cells of more than 16 stitches, or of 100 stitches and more. */
+  /** Whether the shape is a minimum without the mirror symmetries of the chart; null where that was not checked: for shapes that are held, have friction or are of the published branch, for mirrored ones whose free cell has more than 16 stitches, and for cells of 100 stitches and more. */
   minimum: boolean | null;
-  /** The mirrored shape that led to this one, which is lower. The laws of stored repeats and learned answers are of mirrored shapes, which are nearer to knitted cloth. */
+  /** The mirrored shape from which this one, of less energy, was found. The laws of stored repeats and learned answers are of mirrored shapes, which are nearer to knitted cloth. */
   mirrored: OtherShapeResult | null;
   /** In the mirrored branch: the lower shape that it leads to without its symmetries, if it is not a minimum. */
   unmirrored: OtherShapeResult | null;
-  /** For the `gauge` of other requests about this chart and material, which become more certain by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes that are held, other loop lengths than the material's, and friction. */
+  /** For the `gauge` of other requests about this chart and material, which makes their answers more certain. Null unless the material is simulated, and for pure fabrics, other branches, shapes that are held, other loop lengths than the material's, and friction. */
   gauge: FoundGauge | null;
   notes: string[];
   /** Bottom course first; each runs once across the repeat. */
@@ -2606,7 +2606,7 @@ export interface SweepRequest {
   loop_length_mm?: number | null;
   /** Instead of one length: a list for every row of the chart, the bottom row first, of one length for all its stitches or one for each. */
   loop_lengths_mm?: number[][] | null;
-  /** Hold the stitches in one plane, as a fabric laid flat; not published. */
+  /** Hold the stitches in one plane, as a fabric laid flat; not in the published branch. */
   flat?: boolean;
   branch?: Branch;
   convention?: Convention;
@@ -2633,11 +2633,11 @@ export interface SweepResult {
   direction: Direction;
   branch: Branch;
   strain: number[];
-  /** Of knitted cloth, at each stress. */
+  /** 90 % interval for knitted cloth, at each stress. */
   strain_interval: [number[], number[]];
   transverse_strain: number[];
   stress_n_per_mm: number[];
-  /** Of bending and contact; what friction took is not in. */
+  /** Of bending and contact, without losses to friction. */
   energy_n_mm: number[];
   bending_share: number[];
   contact_share: number[];
@@ -2666,7 +2666,7 @@ export interface SweepResult {
   notes: string[];
 }
 
-/** Constitutive law fitted to the stretches along and across (N/mm). */
+/** Law fitted to stretches along courses and along wales; stiffnesses and errors in N/mm. */
 export interface SweptLaw {
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
@@ -2774,7 +2774,7 @@ export interface TubeRequest {
   material: string;
   /** Yarn per stitch; the material's by default. */
   loop_length_mm?: number | null;
-  /** Stitches around, a multiple of the repeat's. */
+  /** Stitches around, a multiple of the repeat's columns. */
   wales: number;
   /** Whether the face is outside. */
   face_outside?: boolean;
@@ -2904,7 +2904,7 @@ export interface WholeRequest {
   material: string;
   /** Yarn per stitch; the material's by default. */
   loop_length_mm?: number | null;
-  /** Hold the stitches in one plane, as a fabric laid flat; not published. */
+  /** Hold the stitches in one plane, as a fabric laid flat. */
   flat?: boolean;
   convention?: Convention;
   /** Stop when a round changes the energy by less than this part of it, and the sizes by less than ten times this part. */

@@ -68,7 +68,9 @@ class YarnLevelRequest(StitchRequest):
         examples=[[[14.0], [12.0]]],
     )
     flat: bool = Field(
-        False, description="Hold the stitches in one plane, as a fabric laid flat; not published."
+        False,
+        description="Hold the stitches in one plane, as a fabric laid flat; not in the published "
+        "branch.",
     )
     branch: Branch | None = None
     convention: Convention = Convention.PUBLISHED

@@ -25,10 +25,10 @@ from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlibrary.store import stored_for
 
 FAR_APART = 1.5
-"""A note is added where the two states differ by this factor or more."""
+"""A note is added where the two states differ by more than this factor."""
 _FRICTIONLESS = (
-    "Without friction and set, so qualitative: measured knits of 187 to 284 g/m² have rigidities "
-    "of .007 to .10 N·mm."
+    "Friction and set are left out, so these values are qualitative: measured knits of 187 to "
+    "284 g/m² have rigidities of .007 to .10 N·mm."
 )
 
 
@@ -58,14 +58,14 @@ class BendResult(ResultModel):
     )
     bending_held_wale_n_mm: float
     strain_across_course_mm: float = Field(
-        description="Strain across per curvature, bent along the rows."
+        description="Strain across the bend per curvature, bent along the rows."
     )
     strain_across_wale_mm: float
     shear_modulus_n_per_mm: float | None = Field(
         description="Null where no stable state was found."
     )
     twist_n_mm: float | None = Field(
-        description="Rigidity of twist D66; null where no stable state was found, as is the next."
+        description="Rigidity of twist D66; null, as is the coupling, without a stable state."
     )
     coupling_n_mm: float | None = Field(description="Coupling D1 of the two curvatures.")
     thickness_mm: float
@@ -166,8 +166,8 @@ def _compared(found: RepeatBending) -> Iterator[str]:
         apart = max(ratio, 1.0 / ratio)
         if apart > FAR_APART:
             yield (
-                f"Bent {way}, the rigidity is {rigidity:.3g} N·mm without the symmetries of the "
-                f"chart, {apart:.1f} times apart: treat it as a range."
+                f"Bent {way}, the rigidity without the symmetries of the chart is {rigidity:.3g} "
+                f"N·mm, which differs by a factor of {apart:.1f}: treat it as a range."
             )
 
 

@@ -72,7 +72,8 @@ class HysteresisResult(IntervalResult):
     left_strain: float = Field(description="Strain that remains after unloading.")
     left_strain_interval: Ends | None = None
     closes_within: float = Field(
-        description="Change of the greatest stress from the first cycle to the last."
+        description="Change of the greatest stress from the first cycle to the last, as a part of "
+        "the first."
     )
     rest_sizes: list[RestSizeResult]
     yarn: YarnResult

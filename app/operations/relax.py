@@ -43,8 +43,8 @@ class RelaxRequest(RubbedRequest):
     )
     history: History | None = Field(
         None,
-        description="What happened to the fabric before it came to rest, with friction: that of "
-        "the yarn unless a coefficient is given. As-knitted by default if one is.",
+        description="What happened to the fabric before it came to rest, with the friction of the "
+        "yarn unless a coefficient is given. If only a coefficient is given, as-knitted.",
     )
 
     cell_course_mm: float | None = Field(
@@ -117,7 +117,7 @@ class RelaxResult(IntervalResult):
     contact_share: float
     yarn_length_mm: float
     force_course_n: float | None = Field(
-        description="Force per stitch that holds a prescribed width; null in the published branch."
+        description="Force per stitch that holds a prescribed width; near 0 where it is free."
     )
     force_wale_n: float | None
     min_distance_mm: float | None
@@ -141,14 +141,15 @@ class RelaxResult(IntervalResult):
     minimum: bool | None = Field(
         None,
         description="Whether the shape is a minimum without the mirror symmetries of the chart; "
-        "null where that was not looked at: shapes that are held, with friction, of the published "
-        f"branch, mirrored with free cells of more than {FOLLOWED_UP_TO} stitches, or of "
-        f"{WINDOWS_FROM} stitches and more.",
+        "null where that was not checked: for shapes that are held, have friction or are of the "
+        f"published branch, for mirrored ones whose free cell has more than {FOLLOWED_UP_TO} "
+        f"stitches, and for cells of {WINDOWS_FROM} stitches and more.",
     )
     mirrored: OtherShapeResult | None = Field(
         None,
-        description="The mirrored shape that led to this one, which is lower. The laws of stored "
-        "repeats and learned answers are of mirrored shapes, which are nearer to knitted cloth.",
+        description="The mirrored shape from which this one, of less energy, was found. The laws "
+        "of stored repeats and learned answers are of mirrored shapes, which are nearer to knitted "
+        "cloth.",
     )
     unmirrored: OtherShapeResult | None = Field(
         None,
@@ -157,9 +158,10 @@ class RelaxResult(IntervalResult):
     )
     gauge: FoundGauge | None = Field(
         None,
-        description="For the `gauge` of other requests about this chart and material, which become "
-        "more certain by it. Null unless the material is simulated, and for pure fabrics, other "
-        "branches, shapes that are held, other loop lengths than the material's, and friction.",
+        description="For the `gauge` of other requests about this chart and material, which makes "
+        "their answers more certain. Null unless the material is simulated, and for pure fabrics, "
+        "other branches, shapes that are held, other loop lengths than the material's, and "
+        "friction.",
     )
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = Field(

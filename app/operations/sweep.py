@@ -32,9 +32,9 @@ from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_s
 from knitcore.yarnlibrary.yarns import ChartYarn
 
 FACTOR = log_interval(1.0, YARN_LEVEL_STRAIN_LOG_SD).high
-"""Of strains of knitted cloth either way, 90 %."""
+"""90 % interval of the strains of knitted cloth, as a factor either way."""
 _FAR_STRAIN = {Direction.COURSE: 3.5, Direction.WALE: 2.5}
-"""Largest strain of the stretch across, which the law also needs; a stress may end it before."""
+"""Largest strain of the two stretches that the law is fitted to; a stress may end them before."""
 _FAR_POINTS = 60
 _HOW = {
     False: "Pulled once from the state that shaking leaves, as for the law.",
@@ -78,7 +78,7 @@ class SweepRequest(RubbedRequest):
 
 
 class SweptLaw(ElasticConstants):
-    """Constitutive law fitted to the stretches along and across (N/mm)."""
+    """Law fitted to stretches along courses and along wales; stiffnesses and errors in N/mm."""
 
     stiffness_xxxx: float
     stiffness_yyyy: float
@@ -105,10 +105,12 @@ class SweepResult(IntervalResult):
     direction: Direction
     branch: Branch
     strain: Floats
-    strain_interval: EndsOfList = Field(description="Of knitted cloth, at each stress.")
+    strain_interval: EndsOfList = Field(
+        description="90 % interval for knitted cloth, at each stress."
+    )
     transverse_strain: Floats
     stress_n_per_mm: Floats
-    energy_n_mm: Floats = Field(description="Of bending and contact; what friction took is not in.")
+    energy_n_mm: Floats = Field(description="Of bending and contact, without losses to friction.")
     bending_share: Floats
     contact_share: Floats
     jumps: list[int] = Field(description="Points at which the shape changes abruptly.")
@@ -141,8 +143,8 @@ def sweep(request: SweepRequest, context: Context) -> SweepResult:
     """Stress-strain curve and fitted law of the repeat; stops when the caller disconnects.
 
     With friction, the first pull from the state that shaking leaves, and the release if it is asked
-    for. The law is that of pulling; it also needs the stretch across. A stretch that was run before
-    is returned from storage.
+    for. The law is that of pulling, fitted to two further stretches, along courses and along wales.
+    A stretch that was run before is returned from storage.
     """
     return kept_or_made(SweepResult, request.with_friction(context), context, _result)
 

@@ -24,7 +24,9 @@ class TubeRequest(StitchRequest):
     """A repeat, its yarn, and how many stitches go around."""
 
     wales: int = Field(
-        ge=MIN_WALES, le=MAX_WALES, description="Stitches around, a multiple of the repeat's."
+        ge=MIN_WALES,
+        le=MAX_WALES,
+        description="Stitches around, a multiple of the repeat's columns.",
     )
     face_outside: bool = Field(True, description="Whether the face is outside.")
 
@@ -58,8 +60,8 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
     ------
     InputError
         If the repeat is too large or does not go around a whole number of times.
-    ConvergenceError
-        If the repeat is not stable without its symmetries, or the tube is too narrow for it.
+    ConvergenceError, UnravelledError
+        If the repeat is not in equilibrium without its symmetries, or the tube is too narrow.
     """
     repeat = request.repeat(MAX_STITCHES)
     used = request.yarn(repeat, context)

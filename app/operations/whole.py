@@ -22,9 +22,7 @@ from knitcore.yarnlevel.whole import MAX_ROUNDS, WholeShape, relax_whole
 class WholeRequest(StitchRequest):
     """A chart, its yarn, and when to stop."""
 
-    flat: bool = Field(
-        False, description="Hold the stitches in one plane, as a fabric laid flat; not published."
-    )
+    flat: bool = Field(False, description="Hold the stitches in one plane, as a fabric laid flat.")
     convention: Convention = Convention.PUBLISHED
     tolerance: float = Field(
         1e-3, ge=1e-6, le=0.1,

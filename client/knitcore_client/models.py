@@ -905,7 +905,7 @@ class RelaxRequest(TypedDict):
     """Instead of one length: a list for every row of the chart, the bottom row first, of one
     length for all its stitches or one for each."""
     flat: NotRequired[bool]
-    """Hold the stitches in one plane, as a fabric laid flat; not published."""
+    """Hold the stitches in one plane, as a fabric laid flat; not in the published branch."""
     branch: NotRequired[Branch | None]
     """By default symmetry is only the start: the mirrored shape is followed to the minimum that
     it leads to without the symmetries of the chart. Shapes that are held, or have friction, keep
@@ -917,8 +917,8 @@ class RelaxRequest(TypedDict):
     """Coefficient of friction between yarns. Without it, and without the other options that need
     one, there is no friction."""
     history: NotRequired[History | None]
-    """What happened to the fabric before it came to rest, with friction: that of the yarn unless
-    a coefficient is given. As-knitted by default if one is."""
+    """What happened to the fabric before it came to rest, with the friction of the yarn unless a
+    coefficient is given. If only a coefficient is given, as-knitted."""
     cell_course_mm: NotRequired[float | None]
     """Hold a stitch at this width."""
     cell_wale_mm: NotRequired[float | None]
@@ -1094,7 +1094,7 @@ class SweepRequest(TypedDict):
     """Instead of one length: a list for every row of the chart, the bottom row first, of one
     length for all its stitches or one for each."""
     flat: NotRequired[bool]
-    """Hold the stitches in one plane, as a fabric laid flat; not published."""
+    """Hold the stitches in one plane, as a fabric laid flat; not in the published branch."""
     branch: NotRequired[Branch]
     convention: NotRequired[Convention]
     fresh: NotRequired[bool]
@@ -1181,7 +1181,7 @@ class TubeRequest(TypedDict):
     loop_length_mm: NotRequired[float | None]
     """Yarn per stitch; the material's by default."""
     wales: int
-    """Stitches around, a multiple of the repeat's."""
+    """Stitches around, a multiple of the repeat's columns."""
     face_outside: NotRequired[bool]
     """Whether the face is outside."""
 
@@ -1234,7 +1234,7 @@ class WholeRequest(TypedDict):
     loop_length_mm: NotRequired[float | None]
     """Yarn per stitch; the material's by default."""
     flat: NotRequired[bool]
-    """Hold the stitches in one plane, as a fabric laid flat; not published."""
+    """Hold the stitches in one plane, as a fabric laid flat."""
     convention: NotRequired[Convention]
     tolerance: NotRequired[float]
     """Stop when a round changes the energy by less than this part of it, and the sizes by less
@@ -1336,12 +1336,12 @@ class BendResult(BaseModel):
     """Bending rigidity, with the size across held."""
     bending_held_wale_n_mm: float
     strain_across_course_mm: float
-    """Strain across per curvature, bent along the rows."""
+    """Strain across the bend per curvature, bent along the rows."""
     strain_across_wale_mm: float
     shear_modulus_n_per_mm: float | None
     """Null where no stable state was found."""
     twist_n_mm: float | None
-    """Rigidity of twist D66; null where no stable state was found, as is the next."""
+    """Rigidity of twist D66; null, as is the coupling, without a stable state."""
     coupling_n_mm: float | None
     """Coupling D1 of the two curvatures."""
     thickness_mm: float
@@ -2211,7 +2211,7 @@ class HysteresisResult(BaseModel):
     """Strain that remains after unloading."""
     left_strain_interval: tuple[float, float] | None = None
     closes_within: float
-    """Change of the greatest stress from the first cycle to the last."""
+    """Change of the greatest stress from the first cycle to the last, as a part of the first."""
     rest_sizes: list[RestSizeResult]
     yarn: YarnResult
     notes: list[str]
@@ -2808,7 +2808,7 @@ class RelaxResult(BaseModel):
     contact_share: float
     yarn_length_mm: float
     force_course_n: float | None
-    """Force per stitch that holds a prescribed width; null in the published branch."""
+    """Force per stitch that holds a prescribed width; near 0 where it is free."""
     force_wale_n: float | None
     min_distance_mm: float | None
     seconds: float
@@ -2828,18 +2828,19 @@ class RelaxResult(BaseModel):
     """With friction, the size after each history: the range in which the fabric may rest."""
     minimum: bool | None = None
     """Whether the shape is a minimum without the mirror symmetries of the chart; null where that
-    was not looked at: shapes that are held, with friction, of the published branch, mirrored with
-    free cells of more than 16 stitches, or of 100 stitches and more."""
+    was not checked: for shapes that are held, have friction or are of the published branch, for
+    mirrored ones whose free cell has more than 16 stitches, and for cells of 100 stitches and
+    more."""
     mirrored: OtherShapeResult | None = None
-    """The mirrored shape that led to this one, which is lower. The laws of stored repeats and
-    learned answers are of mirrored shapes, which are nearer to knitted cloth."""
+    """The mirrored shape from which this one, of less energy, was found. The laws of stored
+    repeats and learned answers are of mirrored shapes, which are nearer to knitted cloth."""
     unmirrored: OtherShapeResult | None = None
     """In the mirrored branch: the lower shape that it leads to without its symmetries, if it is
     not a minimum."""
     gauge: FoundGauge | None = None
-    """For the `gauge` of other requests about this chart and material, which become more certain
-    by it. Null unless the material is simulated, and for pure fabrics, other branches, shapes
-    that are held, other loop lengths than the material's, and friction."""
+    """For the `gauge` of other requests about this chart and material, which makes their answers
+    more certain. Null unless the material is simulated, and for pure fabrics, other branches,
+    shapes that are held, other loop lengths than the material's, and friction."""
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = None
     """Bottom course first; each runs once across the repeat."""
@@ -3033,11 +3034,11 @@ class SweepResult(BaseModel):
     branch: Branch
     strain: list[float]
     strain_interval: tuple[list[float], list[float]]
-    """Of knitted cloth, at each stress."""
+    """90 % interval for knitted cloth, at each stress."""
     transverse_strain: list[float]
     stress_n_per_mm: list[float]
     energy_n_mm: list[float]
-    """Of bending and contact; what friction took is not in."""
+    """Of bending and contact, without losses to friction."""
     bending_share: list[float]
     contact_share: list[float]
     jumps: list[int]
@@ -3067,7 +3068,7 @@ class SweepResult(BaseModel):
 
 
 class SweptLaw(BaseModel):
-    """Constitutive law fitted to the stretches along and across (N/mm)."""
+    """Law fitted to stretches along courses and along wales; stiffnesses and errors in N/mm."""
 
     modulus_course_n_per_mm: float
     modulus_wale_n_per_mm: float

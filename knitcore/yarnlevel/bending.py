@@ -23,7 +23,7 @@ MAX_STITCHES = 36
 ROLLS_FROM = 0.5
 """Half thickness times natural curvature from which free edges roll up."""
 OBLIQUE = np.pi / 4.0
-"""Angle of the diagonals along which it is bent too, from the course, rad."""
+"""Angle from the course of the diagonals along which a repeat is bent too, rad."""
 
 
 class Curl(Choice):
@@ -41,17 +41,16 @@ class FabricBending:
     Parameters
     ----------
     course, wale : bent along the rows, and along the columns.
-    oblique : bent along the diagonals that rise and fall to the right, at 45°; None where the state
-        is not a minimum.
-    twist_n_mm : rigidity of twist D₆₆, N·mm: twisting by κ_xy costs 2 D₆₆ κ_xy² per area; both
-        sizes are free. None where the state is not a minimum.
+    oblique : bent along the diagonals that rise and fall to the right, at 45°.
+    twist_n_mm : rigidity of twist D₆₆, N·mm: twisting by κ_xy costs 2 D₆₆ κ_xy² per area, both
+        sizes free.
     coupling_n_mm : D₁, N·mm: curvatures along both directions at once cost D₁ κ_x κ_y more per area
-        than each alone. None where the state is not a minimum.
-    shear_modulus_n_per_mm : resistance to moving the courses sideways, both sizes free, N/mm; None
-        where the state is not a minimum.
+        than the two one by one.
+    shear_modulus_n_per_mm : resistance to moving the courses sideways, both sizes free, N/mm.
     thickness_mm : extent of the yarn across the fabric.
-    minimum : whether the state is a minimum without the symmetries that were imposed on it. Bending
-        along rows and columns keeps these symmetries, and is reported even where it is not.
+    minimum : whether the state is a minimum without the symmetries that were imposed on it. Where
+        it is not, oblique bending, twist, coupling and shear are None; bending along rows and
+        columns keeps these symmetries and is still given.
     """
 
     course: BendingResponse
@@ -144,7 +143,7 @@ class RepeatBending:
 
     @property
     def shown(self) -> FabricBending:
-        """With symmetries if possible.
+        """The bending to report: with symmetries if possible.
 
         Raises
         ------
@@ -158,7 +157,7 @@ class RepeatBending:
 
     @property
     def stable(self) -> FabricBending:
-        """What is shown, or the minimum that it goes to if it is not one itself."""
+        """``shown`` if its state is a minimum, else of the minimum that it leads to, if known."""
         shown = self.shown
         return shown if shown.minimum else self.unmirrored or shown
 
@@ -176,6 +175,11 @@ class RepeatBending:
 
 def bending_length_mm(rigidity_n_mm: float, weight_n_per_mm2: float) -> float:
     """Peirce's bending length, (D / w)^(1/3): half the length that hangs over an edge at 41.5°.
+
+    Parameters
+    ----------
+    rigidity_n_mm : bending rigidity D, a moment per width over a curvature.
+    weight_n_per_mm2 : weight w per area.
 
     Peirce, "The handle of cloth as a measurable quantity", J. Text. Inst. 21 (1930) T377.
 
@@ -197,16 +201,18 @@ def bending_response(relaxed: RelaxedRepeat) -> FabricBending:
     Raises
     ------
     InputError
-        If the repeat was held, or is too large.
+        If the repeat was held flat or kept from sliding, or is too large.
     ConvergenceError, UnravelledError
         If the repeat is not in equilibrium without its symmetries, or folds spontaneously: a
-        rigidity along rows or columns is not positive. :func:`repeat_bending` has the state that it
-        goes to.
+        rigidity along rows or columns is not positive. :func:`repeat_bending` also follows it to
+        the minimum that it then goes to.
     """
     check_stitches(relaxed.chart.stitches, MAX_STITCHES, "its repeat")
     if relaxed.flat or relaxed.slides:
         raise InputError(
-            "flat", "a repeat that is held flat cannot be bent.", "Relax it without `flat`."
+            "flat",
+            "a repeat that is held flat or kept from sliding cannot be bent.",
+            "Relax it with nothing held.",
         )
     cell = settled(relaxed)
     course, wale = cell.bent(0.0), cell.bent(0.5 * np.pi)
@@ -233,13 +239,15 @@ def repeat_bending(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None
 
     Parameters
     ----------
-    relaxed : free of force. Where it can be bent, its instability is followed in free cells of up
-        to ``FOLLOWED_UP_TO`` stitches only.
+    relaxed : free of force. Its instability is followed in free cells of up to ``MAX_STITCHES``
+        stitches, or up to ``FOLLOWED_UP_TO`` if it can be bent as it is.
 
     Raises
     ------
     InputError
-        If the repeat was held, or is too large.
+        If the repeat was held flat or kept from sliding, or is too large.
+    CancelledError
+        If ``cancelled`` says so.
     """
     mirrored = unmirrored = None
     failure = unmirrored_failure = ""

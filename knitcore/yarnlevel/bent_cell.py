@@ -58,7 +58,7 @@ _STEP = 1e-3
 _SKEW_STEP = 1e-5
 """Skew of the central differences, small because hard cores leave the yarn little room."""
 _REACH = 1.05
-"""Pairs are listed to this many diameters, so that none is missed in the bent cell."""
+"""Pairs are listed up to this many yarn diameters, so that none is missed in the bent cell."""
 GRID = SplineGrid(controls=24, per_span=5)
 """On this grid rigidities are within 2 % of those on finer ones (garter is the worst)."""
 _STEPS = 20
@@ -129,7 +129,7 @@ def settled(relaxed: RelaxedRepeat) -> BentCell:
     Raises
     ------
     ConvergenceError, UnravelledError
-        If it has no equilibrium nearby, also after it relaxed again on a finer grid.
+        If it has no equilibrium nearby, not even relaxed again on a finer grid.
     """
     found = _by_newton(relaxed)
     if found is None and relaxed.cell.grid.samples < GRID.samples:
@@ -175,7 +175,7 @@ class BentCell:
     """A cell at a state, with the factors of its linear response.
 
     Besides the lengths the rules hold the motions that cost no energy: of the cell as a whole, and
-    of each yarn along itself. ``reach`` is that of the pairs, in diameters of the flat cell.
+    of each yarn along itself. Pairs nearer than ``reach`` yarn diameters in the flat cell count.
     """
 
     def __init__(

@@ -1,6 +1,6 @@
 """The periodic cell of yarn that represents a chart, with the symmetries imposed on it.
 
-A repeat of K and P is one curve per course. Three symmetries make it smaller:
+A repeat of K and P is one curve per course. Two kinds of symmetry make it smaller:
 
 - a shift by half the repeat that swaps K and P (1x1 rib, garter, seed, basket) halves the cell; the
   next cell is its image in the plane of the fabric (the paper's operation M). The four pure
@@ -118,7 +118,7 @@ class YarnCell:
 
     @property
     def sign(self) -> NDArray[np.float64]:
-        """(rows, controls, 3) its sign there; 0 where symmetry makes the coordinate zero."""
+        """(rows, controls, 3) sign of that unknown in it; 0 where symmetry makes it zero."""
         return self._ties[1]
 
     @property

@@ -11,8 +11,8 @@ arc. The determinant of these relations is the torsion of the space around the y
 upper side: up to a factor ± t^i x^j y^k it is the same however the yarn is moved and from wherever
 it is seen, as long as it does not pass through itself (Fox calculus on the Wirtinger presentation,
 equivariant under the translations of the fabric). With |t| = |x| = |y| = 1 the factor has modulus
-one, so the modulus of the determinant is an invariant. Courses that have come loose give that of
-parallel lines, and a stitch on the wrong side another value again.
+one, so the modulus of the determinant is an invariant. Courses that have come loose give the value
+of parallel lines, and a stitch on the wrong side yet another.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _PLACES = np.exp(1j * np.array([[0.7, 1.9, 2.6], [2.2, 0.9, 1.3], [1.4, 2.9, 0.5
 """Where (t, x, y) the determinant is taken."""
 _SAME = 1e-6
 _DENSE_UP_TO = 1500
-"""Crossings up to which the determinant is dense; it has four entries in a row."""
+"""Crossings up to which the matrix is dense; it has at most three entries in a row."""
 
 
 def clasp_code(lines: Array, width_mm: float, height_mm: float) -> Array:

@@ -27,7 +27,7 @@ STIFF_SPACING_PER_BENDING = 1000.0
 """The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
 the lengths, is then convex in them. It costs 1e-4 of the energy, so the fine grid goes without."""
 PAIRS_TO_SHARE = 1_000_000
-"""So many pairs are worth two threads."""
+"""From this many pairs on a second thread pays."""
 BLOCK = 12
 """Unknowns in a block of the sparse Hessian: those of four control points."""
 PENALTY_PER_BENDING = 3e4
@@ -63,8 +63,8 @@ class Slope:
     Attributes
     ----------
     gradient : (unknowns,) of the Lagrangian.
-    lengths : (constraints, unknowns), of the prescribed lengths and the other constraints; none
-        where they were not wanted.
+    lengths : (constraints, unknowns), of the prescribed lengths and the other constraints; without
+        rows where they were not wanted.
     hessian : (unknowns, unknowns) of the Lagrangian; None where it was not wanted.
     sparse : the same in tiles, where that was wanted.
     """
@@ -82,7 +82,7 @@ class SparseHessian:
     Attributes
     ----------
     touching : (blocks, blocks) the tiles that are not zero.
-    matrix : rows and columns of the control points.
+    matrix : its part in the control points, without the sizes.
     sizes : (2, unknowns) rows of the two sizes of a stitch.
     """
 
@@ -235,7 +235,7 @@ class CellEnergy:
         )
 
     def excess(self, state: Array, curve: Array) -> Array:
-        """Constrained quantities less their values: lengths, linear rules, slides, mm."""
+        """(constraints,) lengths, linear rules and slides less their prescribed values, mm."""
         speed = np.sqrt(np.einsum("im,im->i", curve[:, 1], curve[:, 1]))
         lengths = np.bincount(self.stretch_of, speed) / self.cell.grid.samples
         slid = np.array([slide.value(state) for slide in self.slides])
@@ -276,7 +276,7 @@ class CellEnergy:
         """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty.
 
         A sparse Hessian leaves out slides and friction, whose Hessians are dense. The gradients of
-        the lengths are left out unless ``lengths``: a large sheet's have mostly zeros.
+        the constraints are left out unless ``lengths``: a large sheet's are mostly zeros.
         """
         layout, law = self.cell.layout, self.contact_law
         pressed = on_halves(

@@ -1,11 +1,11 @@
 """Dry friction between yarns, step by step along a history of loading.
 
 Every pair of samples that press on each other holds a friction force of two components, along
-either strand. A step adds the slide of the pair over its slip length to this force, which never
-exceeds the coefficient of friction times the normal force (an elastic-plastic return mapping, as
-for Coulomb friction with a small elastic slip: Wriggers, Computational Contact Mechanics, 2nd ed.,
-section 5.2). The normal forces are those at the beginning of the step, so the equilibrium of a step
-is the minimum of a potential. The model is independent of rate. Rolling of one strand over the
+either strand. As the pair slides, this force grows like that of a spring until it reaches its
+limit, the coefficient of friction times the normal force, after a small elastic slip (an
+elastic-plastic return mapping for Coulomb friction: Wriggers, Computational Contact Mechanics, 2nd
+ed., section 5.2). The normal forces are those at the beginning of the step, so the equilibrium of a
+step is the minimum of a potential. The model is independent of rate. Rolling of one strand over the
 other is free.
 """
 
@@ -60,7 +60,7 @@ class RubbedCell:
     ----------
     cell : the state in equilibrium; its energy is without friction, its forces with it.
     rubbing : the friction forces that it holds.
-    lost_n_mm : energy of one stitch that friction has taken since the history began, N·mm.
+    lost_n_mm : energy per stitch that friction has taken since the history began, N·mm.
     """
 
     cell: RelaxedRepeat
@@ -74,13 +74,15 @@ def agitated(relaxed: RelaxedRepeat) -> RubbedCell:
     Raises
     ------
     InputError
-        If the cell is too large, its size is held, it is held flat, or its slides are held.
+        If the cell is too large, or its size is held, or it is held flat or kept from sliding.
     """
     check_stitches(relaxed.cell.stitches, MAX_STITCHES, "its cell")
     check_at_rest(relaxed)
     if relaxed.flat or relaxed.slides:
         raise InputError(
-            "flat", "a repeat that is held flat cannot have friction.", "Relax it without `flat`."
+            "flat",
+            "a repeat that is held flat or kept from sliding cannot have friction.",
+            "Relax it with nothing held.",
         )
     return RubbedCell(relaxed, Rubbing(np.zeros(0, np.int64), np.zeros((0, 2))), 0.0)
 
@@ -109,6 +111,8 @@ def rubbed(
         If the coefficient is out of range.
     ConvergenceError, UnravelledError
         If the yarn locks or unravels on the way.
+    CancelledError
+        If ``cancelled`` says so.
     """
     check_range("friction", coefficient, 0, MAX_COEFFICIENT, what="a coefficient of friction")
     began = time.process_time()

@@ -32,6 +32,7 @@ STAGE = Options(tolerance=1e-3, iterations=12)
 _SHORT_STAGE = Options(tolerance=1e-3, slack=1e-2, iterations=3)
 """In large cells: strands part in a few steps; more would settle the shape of a stiff shell."""
 START_HEIGHT = 0.8
+"""Height of the first shape's crossings above the middle plane, in radii."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,8 @@ class Start:
     ----------
     name : its name in reports.
     course, wale : size of the first cell relative to the usual one.
-    noise : random displacement of the control points, in radii.
-    seed : of that noise.
+    noise : standard deviation of random displacements of the control points, in radii.
+    seed : of these displacements.
     """
 
     name: str

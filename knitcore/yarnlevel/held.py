@@ -2,7 +2,8 @@
 
 - The foot of every stitch: where each stitch has its own length, its yarn is measured between the
   lowest points of the feet before and after it, so these points are kept at whole t.
-- The plane: a fabric laid flat has the middle of every stitch at the same height.
+- The plane: a fabric laid flat has the middle of every stitch, the mean height of its control
+  points, in one plane.
 
 Rules that symmetry already keeps are left out.
 """

@@ -27,7 +27,7 @@ TAKE_DOWN_N_PER_MM = 0.02
 WORN_N_PER_MM = 0.1
 """Pull of the stretched histories, that of snug clothing."""
 _STRIDE = 0.02
-"""Steps to a pull, in strain."""
+"""Strain of a step towards a pull."""
 MAX_STRIDES = 150
 _FREE = 1e-6
 """Pull that counts as none, as a part of that at which the release began."""
@@ -80,7 +80,7 @@ class Hysteresis:
     coefficient : of friction between yarns.
     zero : the agitated state, to which strains refer.
     legs : ways there and back in turn; each begins where the last one ended.
-    lost_n_mm : energy of one stitch that slipping took in each leg, N·mm.
+    lost_n_mm : (legs,) energy per stitch that slipping took in each leg, N·mm.
     """
 
     direction: Direction
@@ -135,7 +135,7 @@ class Hysteresis:
 
     @property
     def closes_within(self) -> float:
-        """Change of the greatest stress from the first cycle to the last, as a part of it."""
+        """Change of the greatest stress from the first cycle to the last, over the first."""
         first, last = self.legs[0].stress_n_per_mm[-1], self.legs[-2].stress_n_per_mm[-1]
         return float(abs(last - first) / abs(first))
 
@@ -230,16 +230,23 @@ def pull(
 ) -> Leg:
     """Pull in one direction with friction.
 
-    Where the yarn locks or unravels, the pull ends, with a note. Parameters and errors are those of
-    :func:`hysteresis`, and:
+    Where the yarn locks or unravels, the pull ends, with a note. The other parameters are those of
+    :func:`hysteresis`.
 
     Parameters
     ----------
     begin : a relaxed repeat, which begins in its agitated state, or a state free of force that
         other pulls have left; strains and stresses refer to its size.
     max_stress_n_per_mm : stop beyond this nominal stress.
-    across : strain of the other direction, by that of the pull: 0 throughout holds the width, for
-        example. By default the other direction is free of force.
+    across : strain of the other direction as a function of that of the pull; one that is always 0
+        holds the width. By default the other direction is free of force.
+
+    Raises
+    ------
+    InputError
+        If an input is out of range, or the repeat is too large or held.
+    CancelledError
+        If ``cancelled`` says so.
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, max_stress_n_per_mm)
@@ -271,8 +278,9 @@ def hysteresis(
     direction : course or wale.
     max_strain : largest strain, above 0.
     coefficient : of friction between yarns.
-    points : strains on the way there.
-    cycles : of pulling and letting go; the first begins in the agitated state.
+    points : number of strains on the way there, the first of them 0.
+    cycles : number of times to pull and let go; the first begins in the agitated state.
+    cancelled : called before every step; True stops with CancelledError.
 
     Where the yarn locks or unravels on the way there, the fabric turns, with a note.
 
@@ -282,6 +290,8 @@ def hysteresis(
         If an input is out of range, or the repeat is too large or held.
     ConvergenceError, UnravelledError
         If the yarn locks in the first step, or unravels on the way back.
+    CancelledError
+        If ``cancelled`` says so.
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, None)

@@ -15,10 +15,10 @@ _JUMP_FLOOR = 0.004
 
 
 def find_jumps(centre_lines: list[Array], loop_length_mm: float) -> tuple[int, ...]:
-    """Steps i at which the shape changes far more than at the steps around them.
+    """Steps i, from state i - 1 to i, at which the shape changes far more than at those around.
 
-    The change is that of the centre lines (root mean square, their mean and their affine part left
-    out).
+    The change is the root mean square displacement of the centre lines, less its mean and affine
+    part. Fewer than four states have no jumps.
 
     Parameters
     ----------

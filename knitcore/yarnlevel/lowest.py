@@ -28,8 +28,8 @@ FOLLOWED_UP_TO = 16
 """Free cells of up to this many stitches are followed along with every relaxation or bending."""
 
 _LITTLE = 0.1
-"""First damping in cells of a pure fabric, relative to the usual one: a minimum is known after one
-step."""
+"""First damping in cells of up to four stitches, as those of pure fabrics, relative to the usual
+one: a minimum is known after one step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Followed:
     minimum : whether it is still a minimum (samples that find a slightly better place along the
         yarn may lower its energy by less than ``SAME_ENERGY``).
     state : that minimum, or the one that its instability leads to, in the free branch.
-    lower : by which part of the energy that one is lower.
+    lower : part of the mirrored state's energy by which ``state`` is lower.
     """
 
     minimum: bool
@@ -76,7 +76,8 @@ def followed(
 
 
 def can_be_followed(relaxed: RelaxedRepeat, most_stitches: int = FOLLOWED_UP_TO) -> bool:
-    """Whether a repeat has mirrors to drop, and no more stitches without them than given."""
+    """Whether a repeat of the mirrored branch, without a plane, slides or lengths of single
+    stitches, has at most ``most_stitches`` in its free cell."""
     stitches = free_cell(relaxed.chart, relaxed.cell.grid).stitches
     return relaxed.branch is Branch.MIRRORED and not _held(relaxed) and stitches <= most_stitches
 
@@ -92,15 +93,20 @@ def without_mirrors(
 
     Parameters
     ----------
+    relaxed : the repeat, free of force.
     part : several repeats to do this in, where they need not look alike; by default one, or two
         where one is a single row or column.
+    cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
     InputError
-        If the repeat was held, has a length for every stitch, or is too large.
+        If the repeat was held flat or kept from sliding, has a length for every stitch, or is too
+        large.
     ConvergenceError, UnravelledError
         If the descent from it finds no state of the fabric.
+    CancelledError
+        If ``cancelled`` says so.
     """
     grid = relaxed.cell.grid
     cell = free_cell(relaxed.chart, grid) if part is None else plain_cell(part, grid)
@@ -131,8 +137,8 @@ def without_mirrors(
 def lowest(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> RelaxedRepeat:
     """The minimum that a relaxed repeat is, or leads to, without the symmetries of its chart.
 
-    Its ``mirrored`` is the state that led to it. A repeat that cannot be followed is returned as it
-    is, one from which no shape was found with a note.
+    Its ``mirrored`` is the state that led to it. A repeat that cannot be followed is returned
+    unchanged; one that leads to no state of the fabric gets a note.
     """
     if relaxed.minimum or not can_be_followed(relaxed):
         return relaxed

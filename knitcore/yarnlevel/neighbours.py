@@ -20,9 +20,9 @@ EXCLUSION_RADII = 2.1
 _BINS = 3
 """Bins per reach: finer ones follow its circle more closely."""
 _ROOM = 128
-"""Pairs for which there is room at first, of a sample."""
+"""Pairs per sample for which there is room at first."""
 _SAMPLES_TO_SHARE = 20_000
-"""So many samples are worth two threads."""
+"""From this many samples on a second thread pays."""
 _LEAST_CHANGE = 1e-300
 """So that nothing is divided by zero, mm."""
 
@@ -38,7 +38,7 @@ def neighbour_pairs(
     moving: NDArray[np.bool_],
     cut: tuple[bool, bool],
 ) -> tuple[Pairs, Ints]:
-    """All pairs of samples nearer than ``reach`` of which one moves.
+    """All pairs of samples nearer than ``reach`` of which at least one moves.
 
     Parameters
     ----------

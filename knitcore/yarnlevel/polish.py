@@ -35,10 +35,10 @@ PAIR_CAP = 0.3
 _DAMPING = 0.1
 """Least damping of a window's Hessian, in B / L³."""
 _INDEFINITE_DAMPING = 5.0
-"""Least damping that is tried where it is not positive definite."""
+"""Least damping that is tried where that is not enough."""
 _GROWTH = 3.0
 _LONGEST = 0.5
-"""Longest step of a window with its factor, in radii: its Hessian is damped until it is shorter."""
+"""Longest step of a window, in radii: its Hessian is damped until its Newton step is shorter."""
 _ANSWER = 8.0
 """Farthest that a window's control point may move where a size of the stitch changes by one."""
 _MEMORY = 12
@@ -49,7 +49,7 @@ _SHORTER = 0.3
 _TRIALS = 8
 _SIZE_STEPS = 8
 _LARGEST_STRAIN, _LEAST_STRAIN = 0.03, 2e-3
-"""Of a step of the sizes, and from which on there is another one."""
+"""Largest strain of a step of the sizes, and least after which another one follows."""
 _PROBE_MM = 1e-6
 """Change of a size for the stiffness of the sheet."""
 _LEAST_STIFFNESS = 1e-3
@@ -138,7 +138,7 @@ def polished(
 
     Parameters
     ----------
-    sheet : energy of a plain periodic cell, without a plane of its own.
+    sheet : energy of a plain periodic cell whose own ``flat`` is False.
     path : where to begin; it moves.
     tension : (rows,) of the courses, N.
     windows : cover the sheet without overlap.

@@ -99,10 +99,10 @@ def relax(
     cell_course_mm, cell_wale_mm : size of a stitch to hold, mm; None leaves it free of force.
     flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
     grid : resolution; by default finer for small cells.
-    starts : by default two, and four in the free branch (fewer for large cells). Cells of 100 and
+    starts : by default two, and five in the free branch (fewer for large cells). Cells of 100 and
         more stitches without symmetry, nothing else prescribed, are relaxed by
         :func:`~knitcore.yarnlevel.whole.relax_whole`, smaller ones of 12 and more begin like this.
-    time_limit_s : refuse a cell that would probably take more CPU time.
+    time_limit_s : refuse a cell that would probably take more CPU time, s.
     cancelled : called before every step; True stops with CancelledError.
 
     Raises
@@ -114,6 +114,8 @@ def relax(
         If no start relaxed.
     UnravelledError
         If every start lost its topology.
+    CancelledError
+        If ``cancelled`` says so.
     """
     factors = Convention.parse(convention)
     prescribed = flat or (cell_course_mm, cell_wale_mm, grid, starts) != (None,) * 4

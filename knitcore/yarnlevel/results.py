@@ -50,16 +50,16 @@ class RelaxedCell:
     branch : the shapes that were admitted.
     convention : the factors of the energy.
     chart : the repeat that the centre lines show; in the free branch at least two stitches each
-        way, as they need not look alike there.
+        way, as neighbours need not look alike there.
     yarn : the yarn.
     loop_lengths_mm : length of yarn per stitch of every course of the solved cell, (rows,), or of
         every stitch, (rows, wales).
     cell_course_mm, cell_wale_mm : size of one stitch, mm (of a repeat: its mean stitch).
-    energy_n_mm : energy of one stitch, N·mm, all terms.
+    energy_n_mm : energy of one stitch, N·mm: bending, regularisation and contact.
     bending_share : share of bending and regularisation in it.
     contact_share : share of contact in it.
     yarn_length_mm : length of yarn in one stitch, mm.
-    seconds : CPU time it took.
+    seconds : CPU time it took, s.
     evaluations : evaluations of the energy with its gradient.
     converged : whether the optimiser reached its tolerance.
     force_n : dE/d(size of a stitch) of one stitch, course-wise and wale-wise.
@@ -125,7 +125,7 @@ class Sweep:
     ----------
     direction : the stretched direction.
     zero : the force-free cell that strain and stress refer to.
-    cells : the cells, by increasing stretch.
+    cells : the cell at each point, by increasing stretch; a release in falling order.
     stress_n_per_mm : nominal stress at each cell: ∂E/∂l over the transverse size at zero force.
     jumps : indices i where the lowest state changes shape abruptly between cell i - 1 and cell i.
     notes : remarks for the user, in sentences.
@@ -182,7 +182,7 @@ class Sweep:
         return float(np.interp(0.5, self.contact_share[pair], self.strain[pair]))
 
     def stress_from_energies(self) -> tuple[Array, Array]:
-        """Strain and stress (N/mm) between the points, by the paper's midpoint rule.
+        """Strain and stress (N/mm), (points - 1,) each, by the paper's midpoint rule.
 
         It differs from ``stress_n_per_mm`` at jumps, and in the published branch where pairs of
         points enter or leave the exclusion along the yarn (the energy as published steps there).

@@ -86,7 +86,13 @@ def _measured(direction: Direction, odd: bool, points: Array) -> SegmentGeometry
 
 
 def entangled_regions(relaxed: RelaxedRepeat) -> list[tuple[float, float]]:
-    """Ends (in stitches of yarn, from the middle of the foot) of the four entangled regions."""
+    """Ends (in stitches of yarn, from the middle of the foot) of the four entangled regions.
+
+    Raises
+    ------
+    InputError
+        If a quarter of the stitch touches nothing.
+    """
     cell = relaxed.cell
     place = cell.place
     load = _contact_load(relaxed)

@@ -60,7 +60,7 @@ class Sample:
     def as_configured(self) -> tuple[YarnModel, float]:
         """Yarn and loop length (mm) of the authors' public configuration file.
 
-        It differs from their table in B (.045), loop length and core radius.
+        It differs from the paper's table in B (0.045 N·mm²), loop length and core radius.
 
         Raises
         ------

@@ -19,7 +19,7 @@ from knitcore.yarnlevel.tiling import refined_state, tiled_state
 from knitcore.yarnlevel.topology import Clearance
 
 SAME_ENERGY = 1e-3
-"""Starts whose energies agree within this are the same minimum."""
+"""Starts whose energies agree within this part of them are the same minimum."""
 OVERLONG = 1e-4
 """Relative error of the length beyond which a state does not count."""
 _STRAIGHT = 0.9
@@ -35,7 +35,7 @@ UNSETTLED = "not converged"
 
 
 def overlong(energy: CellEnergy, found: Minimum) -> bool:
-    """Whether a course is longer than its yarn: jammed or locked, not a state of the fabric."""
+    """Whether a prescribed length is missed: jammed or locked, not a state of the fabric."""
     lengths = found.terms.excess_mm[: len(energy.prescribed_mm)]
     return bool(np.any(np.abs(lengths) > OVERLONG * energy.prescribed_mm))
 
@@ -78,7 +78,7 @@ class Search:
     ) -> None:
         """Continue from the lowest state of a more symmetric cell, randomly perturbed.
 
-        ``follow`` also leaves it as it is: the solver descends from a saddle along the direction
+        ``follow`` also starts from it unperturbed: the solver leaves a saddle along the direction
         of lowest curvature.
         """
         mirrored: list[Minimum] = []

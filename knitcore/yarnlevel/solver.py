@@ -1,13 +1,14 @@
 """Damped Newton iterations on the energy of a cell, every step certified.
 
-The Hessian is exact (48 unknowns a stitch, half of that with a wale axis), dense in small cells and
-sparse in large ones. Where the energy is not convex, H + mu I is factorised with increasing mu
-until a factor exists (Levenberg-Marquardt); inverse iterations with the factor then find the lowest
-curvature, and the next steps are damped just beyond it, so that they leave a saddle fast. The
-length of each course is a constraint: a step and the change of the tensions follow from one system
-(Newton on the Lagrangian), and the augmented Lagrangian with these tensions is the merit function,
-which must fall. Inextensible yarn makes its valley narrow and curved, so that a step along it
-leaves it; steps with the factor of the last Hessian return to it at a fraction of the cost.
+The Hessian is exact (three unknowns a control point, half of that with a wale axis), dense in small
+cells and sparse in large ones. Where the energy is not convex, H + mu I is factorised with
+increasing mu until a factor exists (Levenberg-Marquardt); inverse iterations with the factor then
+find the lowest curvature, and the next steps are damped just beyond it, so that they leave a saddle
+fast. The length of each course is a constraint: a step and the change of the tensions follow from
+one system (Newton on the Lagrangian), and the augmented Lagrangian with these tensions is the merit
+function, which must fall. Inextensible yarn makes the valley of the merit narrow and curved, so
+that a step along the valley leaves it; chord steps, with the factor of the last Hessian, return to
+it at a fraction of the cost.
 
 On convergence the Hessian distinguishes a minimum from a saddle, where a state can be trapped by a
 symmetry of the first shape; a saddle is left along its direction of most negative curvature.
@@ -42,8 +43,8 @@ _INDEFINITE_DAMPING = 0.05
 """Least damping that is tried where the Hessian is not positive definite, relative to the first."""
 _SINGLE_FROM = 450
 """Systems of at least this many unknowns are factored in single precision, in half the time. With
-its diagonal
-scaled to one the damped matrix has a condition of some 1e5, which leaves steps of two digits."""
+its diagonal scaled to one the damped matrix has a condition of some 1e5, which leaves steps of two
+digits."""
 SPARSE_FROM = 12
 """Cells of at least this many stitches have a sparse factor."""
 _MIN_DAMPING_SINGLE = 1e-3
@@ -53,8 +54,8 @@ _WORTH = 0.2
 """A step with an old factor that gains less than this part of the step before is the last."""
 _NO_STEP = 1e-9
 _STABLE = 0.02
-"""Damping, relative to the first, below which the factor of a minimum exists (rigid motions of the
-sheet have no stiffness)."""
+"""Damping, relative to the first, with which the Hessian of a minimum is positive definite (rigid
+motions of the sheet have no stiffness)."""
 _STABLE_LARGE = 2e-3
 """The same for cells with a sparse factor, whose folds are softer."""
 _NUDGES = 6
@@ -79,8 +80,8 @@ class Options:
     slack : stop only when the lengths are within this part of a loop length.
     iterations : most Newton steps.
     damping : of the first step, relative to the usual one; little where a minimum is near.
-    mended : whether steps of a large cell keep the lengths: what a straight one stretches the yarn
-        would cut it down. A small cell's few states are found without.
+    mended : whether steps of a large cell are mended so that the yarn keeps its length; a
+        straight step stretches it, and would have to be short. Small cells do without.
     """
 
     pair_cap: float = 0.3
@@ -144,6 +145,8 @@ def minimise(
 
     Raises
     ------
+    ConvergenceError
+        If the Hessian is not finite.
     UnravelledError
         If no step can be certified any more.
     CancelledError

@@ -53,12 +53,20 @@ class SplineStretch:
 
     @property
     def note(self) -> str:
-        """Number of slides that are held."""
+        """How many slides are held; empty if none is."""
         held = len(self.zero.slides)
         return f"Slide quenching: {held} slides are held." if held else ""
 
     def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedRepeat:
-        """The relaxed state with one size prescribed, continued from the last state."""
+        """The relaxed state with one size prescribed, continued from the last state.
+
+        Raises
+        ------
+        ConvergenceError, UnravelledError
+            If the yarn locks or unravels on the way, in halved steps too.
+        CancelledError
+            If ``cancelled`` says so.
+        """
         last = known[-1] if known else self.zero
         assert isinstance(last, RelaxedRepeat)  # noqa: S101 - the states are this stretch's own
         return self._reach(last, size_mm, _HALVINGS)

@@ -76,7 +76,7 @@ class RelaxedRepeat(RelaxedCell):
     slides : where the yarn was kept from sliding.
     minimum : whether it is a minimum without the symmetries of the chart; None where this was not
         found out, and where more was prescribed than one length for every course.
-    mirrored : the state with these symmetries that led to this one; None if it is one itself.
+    mirrored : the state with these symmetries that led to this one; None if none did.
     """
 
     cell: YarnCell
@@ -122,7 +122,7 @@ def relax_splines(
 
     Parameters and errors are those of :func:`knitcore.yarnlevel.relax.relax`; ``sizes_mm`` are the
     sizes of a stitch to hold, course-wise and wale-wise. Large cells take the shape that
-    ``explore`` finds on the coarse grid in place of the usual start.
+    ``explore`` finds on the grid ``ROUGH`` in place of the usual start.
     """
     draft, repeat, lengths = drafted(chart, loop_length_mm, branch)
     for length in lengths.ravel():
@@ -187,7 +187,7 @@ def relax_splines(
 def drafted(
     chart: StitchChart, loop_length_mm: ArrayLike, branch: Branch
 ) -> tuple[YarnCell, StitchChart, Array]:
-    """The cell of a chart, the repeat that it is of, and the loop lengths (rows,) or (rows, wales).
+    """The cell of a chart, its repeat, and the repeat's loop lengths, mm, (rows,) or (rows, wales).
 
     Raises
     ------

@@ -32,8 +32,10 @@ def start_state(
 
     Parameters
     ----------
-    radius_mm : height of the crossings above the mid-plane; strands that cross are twice that
+    loop_length_mm : length of yarn in a stitch.
+    radius_mm : height of the crossings above the middle plane; strands that cross are twice that
         apart.
+    course_per_loop, wale_per_loop : size of a stitch over its loop length.
     """
     size = (course_per_loop * loop_length_mm, wale_per_loop * loop_length_mm)
     grid = cell.grid

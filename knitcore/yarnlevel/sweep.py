@@ -71,9 +71,11 @@ def sweep(
 ) -> Sweep:
     """Stretch in one direction, the other free of force.
 
+    Where the yarn locks or unravels, the stretch ends, with a note.
+
     Parameters
     ----------
-    zero : the relaxed repeat.
+    zero : the relaxed repeat, free of force.
     direction : course or wale.
     max_strain : largest strain, above 0.
     points : number of strains, the first of them 0.
@@ -86,7 +88,8 @@ def sweep(
     Raises
     ------
     InputError
-        If the strain or the number of points cannot be used.
+        If a size of the repeat is held, the strain, the stress or the number of points cannot be
+        used, or the cell is too large for slide quenching.
     CancelledError
         If ``cancelled`` says so.
     """
@@ -140,7 +143,7 @@ def follow(
             best[i] = returned
     if 0 in other:
         notes.append("The way back ends in a state lower than that at rest.")
-    # the way back leaves the lower states before the first of them
+    # above a run of lower states the two ways agree, so the kept states jump only below it
     jumps = {i for i in other if i > 0 and i - 1 not in other} | _abrupt(best, along)
     if jumps:
         notes.append(f"{len(jumps)} jump(s): the shape changes abruptly, there or on the way back.")

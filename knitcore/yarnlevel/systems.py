@@ -77,8 +77,8 @@ class System(ABC):
     def solve(self, slope: Slope, excess: Array, remaining: Array) -> tuple[Array, Array]:
         """Step to the prescribed lengths, and the change of the tensions.
 
-        What the tensions do is solved for once with each factor: later steps with it meet the
-        lengths just as well.
+        The response to the tensions is solved for once for each factor: later steps with the same
+        factor meet the lengths just as well.
         """
         lengths = slope.lengths[:, self._free]
         missing = excess + slope.lengths[:, self._held] @ remaining

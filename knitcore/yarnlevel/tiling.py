@@ -10,7 +10,7 @@ from knitcore.yarnlevel.cell import YarnCell
 
 
 def tiled_controls(cell: YarnCell, state: Array, rows: int, wales: int) -> Array:
-    """(rows, wales * N, 3): control points over rows x wales stitches, without the drift.
+    """(rows, wales * controls, 3): control points of rows × wales stitches, without drift, mm.
 
     Where the cell repeats mirrored, its copies have z reversed.
     """
@@ -43,7 +43,7 @@ def refined_state(cell: YarnCell, state: Array, finer: YarnCell) -> Array:
 
 
 def centre_lines(cell: YarnCell, state: Array, rows: int, wales: int) -> Array:
-    """(rows, wales * S, 3): samples of the centre lines, mm, bottom course first.
+    """(rows, wales * samples, 3): samples of the centre lines, mm, bottom course first.
 
     Each course runs from left to right over ``wales`` stitches; the next repeat follows ``wales``
     stitches further.

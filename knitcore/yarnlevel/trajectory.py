@@ -81,9 +81,8 @@ class Trajectory:
     ) -> CertifiedStep:
         """The part of a step that is certified.
 
-        With ``mending``, the step that takes an excess of the lengths away, the path ends beside
-        the straight step, where the yarn is not longer: a straight step along inextensible yarn
-        stretches it.
+        A straight step along inextensible yarn stretches it. ``mending`` gives the step that takes
+        an excess of the lengths away; with it the path ends where the yarn has its length.
         """
         here = self.here
         if mending is not None:

@@ -31,7 +31,7 @@ _TURN = 0.05
 _PROBE = 1e-4
 """Change of the curvature for its derivative, times the loop length."""
 _REACH = 1.05
-"""Reach of the pairs in diameters of the bent cell."""
+"""Pairs are listed up to this many yarn diameters in the bent cell."""
 _SETTLED = 1e-5
 """Step, in radii, after which a shape counts as settled."""
 _STEPS = 20
@@ -46,7 +46,7 @@ class Tube:
     ----------
     wales : around it.
     face_outside : whether the face is outside.
-    cell_course_mm, cell_wale_mm : size of a stitch, around on the surface of mean height, and up.
+    cell_course_mm, cell_wale_mm : size of a stitch around, on the surface of mean height, and up.
     energy_n_mm : of a stitch, N·mm; that of the flat repeat is ``flat_energy_n_mm``.
     flat_course_mm, flat_wale_mm : size of a stitch of the flat repeat.
     """
@@ -78,15 +78,16 @@ def in_the_round(
     Parameters
     ----------
     relaxed : the repeat, free of force; symmetries imposed on it are dropped.
-    wales : around the tube, a multiple of the repeat's.
+    wales : number around the tube, a multiple of the repeat's.
     face_outside : whether the face is outside.
     cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
     InputError
-        If the repeat is too large, or the number of wales is out of range or no multiple of it.
-    ConvergenceError
+        If the repeat is too large, or the number of wales is out of range or not a multiple of the
+        repeat's.
+    ConvergenceError, UnravelledError
         If the repeat is not in equilibrium without its symmetries, or no shape is found on the way
         to the tube.
     CancelledError
@@ -114,7 +115,7 @@ def in_the_round(
 
 
 def _turned(begin: BentCell, turn: float, cancelled: Cancelled | None) -> tuple[BentCell, float]:
-    """Equilibrium with every stitch turned, rad, and its energy.
+    """Equilibrium with every stitch turned by ``turn``, rad, and its energy, N·mm.
 
     The equations are multiplied by the inverse of the unbent shape's Hessian, so that a residual is
     a step of the points, and solved by a Newton-Krylov method.

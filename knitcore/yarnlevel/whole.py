@@ -67,14 +67,15 @@ with one factor."""
 SECONDS_PER_STITCH = 0.25
 """CPU time (measured, an upper estimate)."""
 _FIRSTS = ((0, 0), (_WINDOW // 2, _WINDOW // 2), (0, _WINDOW // 2), (_WINDOW // 2, 0))
-"""Where the first window of a round begins."""
+"""Where the first window of a round begins, round after round."""
 _GROWING = Options(tolerance=1e-3, iterations=4, mended=False)
 _PASS = Options(tolerance=1e-6, iterations=3, mended=False)
 _LAST_PASS = Options(tolerance=1e-6, iterations=6)
 """Its steps keep the lengths, which no later pass would mend."""
 _DESCENT_STEPS = 20
 _SIZES = 10.0
-"""Sizes may still change by so many times the tolerance: near its least the energy hardly does."""
+"""Sizes may still change by this many times the tolerance, as the energy near its minimum hardly
+depends on them."""
 _EXPLORED = 4e-3
 """Least tolerance on the coarser grid."""
 _REPEAT = 36
@@ -140,7 +141,7 @@ class WholeShape:
 
     @property
     def change(self) -> float:
-        """Least tolerance at which the last round is the end."""
+        """Smallest tolerance that the last round meets; infinite before the second."""
         return max(abs(self.energy_change), self.size_change / _SIZES)
 
 
@@ -178,7 +179,7 @@ def relax_whole(
     progress: Callable[[float, float], None] | None = None,
     cancelled: Cancelled | None = None,
 ) -> RelaxedChart:
-    """Shape of least energy of a chart of up to some thousand stitches, free of force.
+    """Shape of least energy of a chart of up to ``MAX_STITCHES_WHOLE`` stitches, free of force.
 
     The chart repeats; no symmetry is imposed. ``converged`` says whether the last round changed the
     energy, and the sizes, by less than the tolerance allows; the result also says how much they
@@ -195,7 +196,7 @@ def relax_whole(
         by ten times as much.
     rounds : most rounds on each of the two grids, at least two.
     resume : where an earlier call was, as it gave it to ``kept``.
-    kept : called with the sheet after every round.
+    kept : called with the shape so far after every round.
     progress : called with (done, total).
     cancelled : called before every step; True stops with CancelledError.
 
@@ -491,7 +492,7 @@ class _Work:
 
 
 def _least(repeat: int, whole: int) -> int:
-    """Rows or columns of the smallest part of a chart that is no single one and repeats in it."""
+    """Fewest rows or columns whose repetition makes up the chart; more than one if it has more."""
     return min(n for n in range(repeat, whole + 1) if whole % n == 0 and (n > 1 or whole == 1))
 
 

@@ -217,7 +217,7 @@ def window_energy(
     sheet : energy of the whole sheet, a plain periodic cell with a loop length a course.
     controls : (rows, controls, 3) of the sheet, mm.
     sizes : (2,) of a stitch, mm.
-    missing : (rows,) length that each course of the sheet should have more in a stitch, mm.
+    missing : (rows,) length that each course of the sheet lacks, mm per stitch.
     flat : hold the middle of every free stitch at height zero.
     """
     rows, wales = window
