@@ -13,10 +13,10 @@ import numpy as np
 
 from knitcore.chart import check_stitches
 from knitcore.choice import Choice
-from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, UnravelledError
 from knitcore.yarnlevel.bent_cell import BendingResponse, settled
 from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
-from knitcore.yarnlevel.splines import RelaxedRepeat
+from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld
 
 MAX_STITCHES = 36
 """Largest repeat; the unknowns fill a dense matrix."""
@@ -201,19 +201,14 @@ def bending_response(relaxed: RelaxedRepeat) -> FabricBending:
     Raises
     ------
     InputError
-        If the repeat was held flat or kept from sliding, or is too large.
+        If the repeat is held, or too large.
     ConvergenceError, UnravelledError
         If the repeat is not in equilibrium without its symmetries, or folds spontaneously: a
         rigidity along rows or columns is not positive. :func:`repeat_bending` also follows it to
         the minimum that it then goes to.
     """
     check_stitches(relaxed.chart.stitches, MAX_STITCHES, "its repeat")
-    if relaxed.flat or relaxed.slides:
-        raise InputError(
-            "flat",
-            "a repeat that is held flat or kept from sliding cannot be bent.",
-            "Relax it with nothing held.",
-        )
+    check_unheld(relaxed)
     cell = settled(relaxed)
     course, wale = cell.bent(0.0), cell.bent(0.5 * np.pi)
     if min(course.rigidity_n_mm, course.held_n_mm, wale.rigidity_n_mm, wale.held_n_mm) <= 0.0:
@@ -245,7 +240,7 @@ def repeat_bending(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None
     Raises
     ------
     InputError
-        If the repeat was held flat or kept from sliding, or is too large.
+        If the repeat is held, or too large.
     CancelledError
         If ``cancelled`` says so.
     """

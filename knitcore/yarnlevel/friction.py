@@ -20,14 +20,13 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.bounds import check_range
 from knitcore.chart import check_stitches
-from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, UnravelledError
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.kernels.structures import Pairs
-from knitcore.yarnlevel.limits import check_at_rest
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import Options, minimise
-from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld, relaxed_repeat
 
 MAX_COEFFICIENT = 2.0
 MAX_STITCHES = 36
@@ -74,16 +73,10 @@ def agitated(relaxed: RelaxedRepeat) -> RubbedCell:
     Raises
     ------
     InputError
-        If the cell is too large, or its size is held, or it is held flat or kept from sliding.
+        If the cell is too large, or is held.
     """
     check_stitches(relaxed.cell.stitches, MAX_STITCHES, "its cell")
-    check_at_rest(relaxed)
-    if relaxed.flat or relaxed.slides:
-        raise InputError(
-            "flat",
-            "a repeat that is held flat or kept from sliding cannot have friction.",
-            "Relax it with nothing held.",
-        )
+    check_unheld(relaxed)
     return RubbedCell(relaxed, Rubbing(np.zeros(0, np.int64), np.zeros((0, 2))), 0.0)
 
 

@@ -80,19 +80,24 @@ def check_stretch(max_strain: float, points: int, max_stress_n_per_mm: float | N
         )
 
 
-def check_at_rest(zero: RelaxedCell) -> None:
-    """Refuse a state that is held: strain and stress would not start from rest.
+def is_at_rest(relaxed: RelaxedCell) -> bool:
+    """Whether no force holds its size."""
+    sizes = relaxed.cell_course_mm, relaxed.cell_wale_mm
+    work = max(abs(f) * size for f, size in zip(relaxed.force_n, sizes, strict=True))
+    return work <= _AT_REST * relaxed.energy_n_mm
+
+
+def check_at_rest(relaxed: RelaxedCell, field: str) -> None:
+    """Refuse a state whose size is held: strain and stress would not start from rest.
 
     Raises
     ------
     InputError
     """
-    sizes = zero.cell_course_mm, zero.cell_wale_mm
-    work = max(abs(f) * size for f, size in zip(zero.force_n, sizes, strict=True))
-    if work > _AT_REST * zero.energy_n_mm:
+    if not is_at_rest(relaxed):
         raise InputError(
-            "zero",
-            f"its size is held by {zero.force_n[0]:.3g} and {zero.force_n[1]:.3g} N.",
+            field,
+            f"its size is held by {relaxed.force_n[0]:.3g} and {relaxed.force_n[1]:.3g} N.",
             "Relax it without a prescribed size.",
         )
 

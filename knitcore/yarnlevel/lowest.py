@@ -19,7 +19,7 @@ from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import Minimum, Options, minimise
-from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld, relaxed_repeat
 from knitcore.yarnlevel.tiling import tiled_state
 
 MAX_STITCHES = 100
@@ -76,14 +76,11 @@ def followed(
 
 
 def can_be_followed(relaxed: RelaxedRepeat, most_stitches: int = FOLLOWED_UP_TO) -> bool:
-    """Whether a repeat of the mirrored branch, without a plane, slides or lengths of single
-    stitches, has at most ``most_stitches`` in its free cell."""
+    """Whether a repeat of the mirrored branch is not held, nor has lengths of single stitches, nor
+    more than ``most_stitches`` in its free cell."""
     stitches = free_cell(relaxed.chart, relaxed.cell.grid).stitches
-    return relaxed.branch is Branch.MIRRORED and not _held(relaxed) and stitches <= most_stitches
-
-
-def _held(relaxed: RelaxedRepeat) -> bool:
-    return bool(relaxed.flat or relaxed.slides or relaxed.loop_lengths_mm.ndim != 1)
+    free = relaxed.loop_lengths_mm.ndim == 1 and not relaxed.held
+    return free and relaxed.branch is Branch.MIRRORED and stitches <= most_stitches
 
 
 def without_mirrors(
@@ -101,8 +98,7 @@ def without_mirrors(
     Raises
     ------
     InputError
-        If the repeat was held flat or kept from sliding, has a length for every stitch, or is too
-        large.
+        If the repeat is held, has a length for every stitch, or is too large.
     ConvergenceError, UnravelledError
         If the descent from it finds no state of the fabric.
     CancelledError
@@ -110,12 +106,9 @@ def without_mirrors(
     """
     grid = relaxed.cell.grid
     cell = free_cell(relaxed.chart, grid) if part is None else plain_cell(part, grid)
-    if _held(relaxed):
-        raise InputError(
-            "relaxed",
-            "is held by more than its symmetries.",
-            "Relax it with nothing prescribed but the loop length.",
-        )
+    check_unheld(relaxed)
+    if relaxed.loop_lengths_mm.ndim != 1:
+        raise InputError("relaxed", "it has a length for every stitch.", "Give a course one.")
     check_stitches(cell.stitches, MAX_STITCHES, "its cell")
     lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
     energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)

@@ -18,7 +18,13 @@ from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_ce
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import Start, grow
-from knitcore.yarnlevel.limits import check_loop, check_stitch_size, check_time
+from knitcore.yarnlevel.limits import (
+    check_at_rest,
+    check_loop,
+    check_stitch_size,
+    check_time,
+    is_at_rest,
+)
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
 from knitcore.yarnlevel.search import (
     RELAXED,
@@ -85,6 +91,11 @@ class RelaxedRepeat(RelaxedCell):
     slides: tuple[SlideConstraint, ...] = ()
     minimum: bool | None = None
     mirrored: RelaxedRepeat | None = None
+
+    @property
+    def held(self) -> bool:
+        """Whether more than symmetries and lengths of yarn holds it."""
+        return bool(self.flat or self.slides) or not is_at_rest(self)
 
     @property
     def control_points(self) -> Array:
@@ -220,6 +231,19 @@ def refined(relaxed: RelaxedRepeat, grid: SplineGrid) -> RelaxedRepeat:
         relaxed.chart, energy, relaxed.branch, found, seconds=time.process_time() - clock,
         evaluations=found.evaluations, notes=relaxed.notes,
     )  # fmt: skip
+
+
+def check_unheld(relaxed: RelaxedRepeat) -> None:
+    """Refuse a repeat that is held by more than symmetries and lengths of yarn.
+
+    Raises
+    ------
+    InputError
+    """
+    check_at_rest(relaxed, "relaxed")
+    if relaxed.held:
+        how = "flat" if relaxed.flat else "where its yarn would slide"
+        raise InputError("relaxed", f"it is held {how}.", "Relax it with nothing held.")
 
 
 def relaxed_repeat(

@@ -95,7 +95,7 @@ def sweep(
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, max_stress_n_per_mm)
-    check_at_rest(zero)
+    check_at_rest(zero, "zero")
     if isinstance(zero, RelaxedRepeat):
         stretch: Stretch = SplineStretch.of(zero, along, bool(slide_quenching), cancelled)
     else:

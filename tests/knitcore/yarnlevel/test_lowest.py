@@ -7,7 +7,7 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.yarnlevel.lowest import without_mirrors
+from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.samples import sample
@@ -51,3 +51,9 @@ def test_the_free_branch_is_not_above_what_an_instability_leads_to():
 def test_a_state_that_is_held_is_refused():
     with pytest.raises(InputError, match="held"):
         without_mirrors(replace(mirrored("acrylic", "stockinette"), flat=True))
+    entry = sample("acrylic", "stockinette")
+    wide = relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, cell_course_mm=4.0)
+    assert wide.held
+    assert not can_be_followed(wide)
+    with pytest.raises(InputError, match="size is held"):
+        without_mirrors(wide)

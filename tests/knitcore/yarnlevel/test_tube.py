@@ -1,5 +1,7 @@
 """Repeats relaxed in the round."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -46,6 +48,8 @@ def test_wrong_tubes_are_refused(stockinette: RelaxedRepeat) -> None:
     rib = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm, branch="mirrored")
     with pytest.raises(InputError, match="not a multiple"):
         in_the_round(rib, 25)
+    with pytest.raises(InputError, match="held flat"):
+        in_the_round(replace(stockinette, flat=True), 24)
 
 
 def test_a_tube_can_be_cancelled(stockinette: RelaxedRepeat) -> None:
