@@ -16,6 +16,7 @@ from knitcore.materials.uncertainty import (
     log_interval,
 )
 from knitcore.yarnlevel.bending import MAX_STITCHES
+from knitcore.yarnlevel.lowest import lowest
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.tube import MAX_WALES, MIN_WALES, in_the_round
 
@@ -61,7 +62,8 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
     InputError
         If the repeat is too large or does not go around a whole number of times.
     ConvergenceError, UnravelledError
-        If the repeat is not in equilibrium without its symmetries, or the tube is too narrow.
+        If the repeat is not in equilibrium without its symmetries, or no shape is found on the
+        way to the tube.
     """
     repeat = request.repeat(MAX_STITCHES)
     used = request.yarn(repeat, context)
@@ -71,6 +73,14 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
     found = in_the_round(
         flat, request.wales, face_outside=request.face_outside, cancelled=context.cancelled
     )
+    leads_to = lowest(flat, cancelled=context.cancelled)
+    notes = list(leads_to.notes)
+    if leads_to.mirrored is not None:
+        notes.append(
+            "The tube is of the mirrored shape, which is no minimum: without its mirror symmetries "
+            f"the flat repeat has {leads_to.energy_n_mm:.4f} N·mm a stitch, with them "
+            f"{flat.energy_n_mm:.4f}."
+        )
     around, up, across = (
         log_interval(size, YARN_LEVEL_SIZE_LOG_SD)
         for size in (found.cell_course_mm, found.cell_wale_mm, found.diameter_mm)
@@ -82,7 +92,7 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
         diameter_interval_mm=across,
         interval_source=YARN_LEVEL_ERRORS,
         yarn=YarnResult.of(used, used.yarn),
-        notes=list(flat.notes),
+        notes=notes,
     )
 
 

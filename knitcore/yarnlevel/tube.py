@@ -28,6 +28,8 @@ MIN_WALES = 8
 MAX_WALES = 100_000
 _TURN = 0.05
 """Most by which the angle of a stitch grows at once, rad."""
+_LEAST_TURN = 0.002
+"""Where a step fails it is halved, down to this, rad."""
 _PROBE = 1e-4
 """Change of the curvature for its derivative, times the loop length."""
 _REACH = 1.05
@@ -106,8 +108,20 @@ def in_the_round(
     angle = (1.0 if face_outside else -1.0) * 2.0 * math.pi / wales
     here, value = flat, flat.lagrangian(Deformation()).value
     flat_value = value
-    for turn in np.linspace(0.0, angle, math.ceil(abs(angle) / _TURN) + 1)[1:]:
-        here, value = _turned(here, float(turn), cancelled)
+    done, parts = 0, math.ceil(abs(angle) / _TURN)
+    while done < parts:
+        turned = _turned(here, angle * (done + 1) / parts, cancelled)
+        if turned is not None:
+            (here, value), done = turned, done + 1
+        elif abs(angle) < 2.0 * _LEAST_TURN * parts:
+            raise ConvergenceError(
+                f"The shape gives way in tubes of fewer than {math.ceil(wales * parts / done)} "
+                "wales: no equilibrium follows. Use more wales."
+                if done
+                else "No equilibrium follows from the flat repeat when it is bent. Use more wales."
+            )
+        else:
+            done, parts = 2 * done, 2 * parts
     stitches = flat.energy.cell.stitches
     return Tube(
         wales, face_outside, float(here.state[COURSE]), float(here.state[WALE]), value / stitches,
@@ -115,8 +129,11 @@ def in_the_round(
     )  # fmt: skip
 
 
-def _turned(begin: BentCell, turn: float, cancelled: Cancelled | None) -> tuple[BentCell, float]:
-    """Equilibrium with every stitch turned by ``turn``, rad, and its energy, N·mm.
+def _turned(
+    begin: BentCell, turn: float, cancelled: Cancelled | None
+) -> tuple[BentCell, float] | None:
+    """Equilibrium with every stitch turned by ``turn``, rad, and its energy, N·mm; None if it is
+    not found.
 
     The equations are multiplied by the inverse of the unbent shape's Hessian, so that a residual is
     a step of the points, and solved by a Newton-Krylov method.
@@ -149,12 +166,15 @@ def _turned(begin: BentCell, turn: float, cancelled: Cancelled | None) -> tuple[
         return np.concatenate(begin.solve(gradient, off, None))
 
     nothing = np.zeros(len(begin.state) + len(begin.rows))
-    found = root(
-        residual, nothing, method="krylov",
-        options={"fatol": _SETTLED * begin.energy.yarn.radius_mm, "maxiter": _STEPS},
-    )  # fmt: skip
+    try:
+        found = root(
+            residual, nothing, method="krylov",
+            options={"fatol": _SETTLED * begin.energy.yarn.radius_mm, "maxiter": _STEPS},
+        )  # fmt: skip
+    except ZeroDivisionError:  # scipy's, when its steps no longer change the residual
+        return None
     if not found.success:
-        raise ConvergenceError("No relaxed shape was found in a tube this narrow. Use more wales.")
+        return None
     here = moved(np.asarray(found.x))
     curvature = turn / float(here.state[COURSE])
     return here, here.lagrangian(Deformation(course_per_mm=curvature)).value

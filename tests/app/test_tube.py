@@ -20,6 +20,7 @@ def test_a_tube_is_the_same_over_rest_and_on_the_command_line(client: TestClient
     low, high = found["diameter_interval_mm"]
     assert low < found["diameter_mm"] < high
     assert found["energy_n_mm"] < found["flat_energy_n_mm"]  # it curls that way by itself
+    assert found["notes"] == []  # it is a minimum without mirrors
 
 
 def test_the_command_compares_the_tube_with_flat_fabric() -> None:
@@ -35,3 +36,10 @@ def test_a_repeat_goes_around_a_whole_number_of_times(client: TestClient) -> Non
     answer = client.post("/api/v1/tube", json=asked)
     assert answer.status_code == 422
     assert answer.json()["field"] == "wales"
+
+
+def test_a_tube_says_that_its_mirrored_shape_is_no_minimum() -> None:
+    told = run("tube", "rib", "--material", "acrylic", "--wales", 96)
+    (note,) = told["notes"]
+    assert "mirrored shape" in note
+    assert "has 0.1775 N·mm a stitch, with them 0.1825." in note

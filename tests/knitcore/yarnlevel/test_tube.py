@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from knitcore.chart import StitchChart
-from knitcore.errors import CancelledError, InputError
+from knitcore.errors import CancelledError, ConvergenceError, InputError
 from knitcore.fabric import Fabric
+from knitcore.yarnlevel import tube
 from knitcore.yarnlevel.bending import bending_response
 from knitcore.yarnlevel.relax import RelaxedRepeat, relax
 from knitcore.yarnlevel.samples import sample
@@ -24,13 +25,13 @@ def stockinette() -> RelaxedRepeat:
 def test_a_wide_tube_follows_the_linear_response(
     stockinette: RelaxedRepeat, face_outside: bool
 ) -> None:
-    tube = in_the_round(stockinette, 2000, face_outside=face_outside)
-    curvature = (1.0 if face_outside else -1.0) * 2.0 / tube.diameter_mm
+    found = in_the_round(stockinette, 2000, face_outside=face_outside)
+    curvature = (1.0 if face_outside else -1.0) * 2.0 / found.diameter_mm
     response = bending_response(stockinette).course
-    higher = tube.cell_wale_mm / tube.flat_wale_mm - 1.0
+    higher = found.cell_wale_mm / found.flat_wale_mm - 1.0
     assert higher / curvature == pytest.approx(response.strain_across_mm, rel=5e-3)
-    area = tube.flat_course_mm * tube.flat_wale_mm
-    moment = (tube.energy_n_mm - tube.flat_energy_n_mm) / area / curvature
+    area = found.flat_course_mm * found.flat_wale_mm
+    moment = (found.energy_n_mm - found.flat_energy_n_mm) / area / curvature
     assert moment == pytest.approx(response.moment_n, rel=5e-3)
 
 
@@ -39,6 +40,43 @@ def test_stockinette_curls_the_way_of_its_tube(stockinette: RelaxedRepeat) -> No
     assert outside.energy_n_mm < outside.flat_energy_n_mm < inside.energy_n_mm
     assert outside.cell_wale_mm > outside.flat_wale_mm > inside.cell_wale_mm
     assert outside.diameter_mm == pytest.approx(60 * outside.cell_course_mm / np.pi)
+
+
+def test_a_step_that_fails_is_halved() -> None:
+    entry = sample("cotton", Fabric.RIB)
+    tubes = [
+        in_the_round(
+            relax(StitchChart.parse(text), entry.yarn, entry.loop_length_mm, branch="mirrored"), 24
+        )
+        for text in ("KP", "PK")
+    ]
+    one, other = ((t.cell_course_mm, t.cell_wale_mm, t.energy_n_mm) for t in tubes)
+    np.testing.assert_allclose(one, other, rtol=1e-5)
+
+
+@pytest.mark.slow
+def test_a_shifted_repeat_makes_the_same_tube() -> None:
+    entry = sample("acrylic", Fabric.RIB)
+    length = 1.03 * entry.loop_length_mm
+    tubes = [
+        in_the_round(relax(StitchChart.parse(t), entry.yarn, length, branch="mirrored"), 36)
+        for t in ("KKP", "PKK")
+    ]
+    one, other = ((t.cell_course_mm, t.cell_wale_mm, t.energy_n_mm) for t in tubes)
+    np.testing.assert_allclose(one, other, rtol=1e-4)
+
+
+def test_a_tube_without_an_equilibrium_says_where_its_shape_gives_way(
+    stockinette: RelaxedRepeat, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = tube._turned
+    monkeypatch.setattr(
+        tube,
+        "_turned",
+        lambda begin, turn, cancelled: None if turn > 0.1 else found(begin, turn, cancelled),
+    )
+    with pytest.raises(ConvergenceError, match="of fewer than 64 wales"):
+        in_the_round(stockinette, 32)
 
 
 def test_wrong_tubes_are_refused(stockinette: RelaxedRepeat) -> None:
