@@ -4,9 +4,9 @@ Every pair of samples that press on each other holds a friction force of two com
 either strand. As the pair slides, this force grows like that of a spring until it reaches its
 limit, the coefficient of friction times the normal force, after a small elastic slip (an
 elastic-plastic return mapping for Coulomb friction: Wriggers, Computational Contact Mechanics, 2nd
-ed., section 5.2). The normal forces are those at the beginning of the step, so the equilibrium of a
-step is the minimum of a potential. The model is independent of rate. Rolling of one strand over the
-other is free.
+ed., section 5.2). The normal forces are given in a step, so its equilibrium is the minimum of a
+potential: first those at its beginning, then those of the end so found. The model is independent of
+rate. Rolling of one strand over the other is free.
 """
 
 from __future__ import annotations
@@ -33,6 +33,10 @@ MAX_STITCHES = 36
 """Largest cell; the unknowns fill a dense matrix."""
 SLIP_RADII = 0.02
 """Elastic slip of a contact, in radii of the yarn."""
+_NORMAL_FORCES = 2
+"""Times that a step is solved, each with the normal forces that the last one found."""
+_LEAST = 1e-12
+"""Limit, N, and stiffness, N/mm, of a pair without pressure."""
 _IMAGES = 64
 """More images of a sample than can touch, on either side."""
 
@@ -59,7 +63,8 @@ class RubbedCell:
     ----------
     cell : the state in equilibrium; its energy is without friction, its forces with it.
     rubbing : the friction forces that it holds.
-    lost_n_mm : energy per stitch that friction has taken since the history began, N·mm.
+    lost_n_mm : work per stitch against friction since the history began, N·mm. Some of it is held
+        elastically and comes back.
     """
 
     cell: RelaxedRepeat
@@ -111,65 +116,86 @@ def rubbed(
     began = time.process_time()
     cell = last.cell
     energy = cell.energy
-    sliding, rest = _sliding(energy, cell.state, last.rubbing, coefficient)
-    rubbing = replace(energy, sliding=sliding)
     small = cell.cell.stitches <= 4
-    found = minimise(
-        rubbing, cell.state, tension=cell.tension_n, fixed=fixed, target=target,
-        options=Options(tolerance=1e-8 if small else 1e-6, iterations=80), cancelled=cancelled,
-    )  # fmt: skip
-    became = outcome(energy, found)
-    if became == "unravelled":
-        raise UnravelledError("the stitches come undone.")
-    if became not in (RELAXED, UNSETTLED, "pulled straight"):
-        raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
-    held, lost = _held(rubbing, sliding, found.state)
+    state, tension, evaluations = cell.state, cell.tension_n, 0
+    for _ in range(_NORMAL_FORCES):
+        sliding, pairs = _sliding(energy, cell.state, state, last.rubbing, coefficient)
+        found = minimise(
+            replace(energy, sliding=sliding), state, tension=tension, fixed=fixed, target=target,
+            options=Options(tolerance=1e-8 if small else 1e-6, iterations=80), cancelled=cancelled,
+        )  # fmt: skip
+        became = outcome(energy, found)
+        if became == "unravelled":
+            raise UnravelledError("the stitches come undone.")
+        if became not in (RELAXED, UNSETTLED, "pulled straight"):
+            raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
+        state, tension = found.state, found.tension
+        evaluations += found.evaluations
+    held, lost = _held(energy, sliding, cell.state, state)
     shown = relaxed_repeat(
         cell.chart, energy, cell.branch, found,
-        seconds=time.process_time() - began, evaluations=found.evaluations,
+        seconds=time.process_time() - began, evaluations=evaluations,
     )  # fmt: skip
     return RubbedCell(
-        shown, Rubbing(rest, held), last.lost_n_mm + lost / cell.cell.stitches
+        shown, Rubbing(pairs, held), last.lost_n_mm + lost / cell.cell.stitches
     )  # fmt: skip
 
 
 def _sliding(
-    energy: CellEnergy, state: Array, before: Rubbing, coefficient: float
+    energy: CellEnergy, begin: Array, end: Array, before: Rubbing, coefficient: float
 ) -> tuple[kernels.Sliding, NDArray[np.int64]]:
-    """The pairs that touch, with the forces that they hold, and their keys."""
-    curve, layout = energy.curve(state), energy.cell.layout
-    pairs, _ = energy.pairs(curve, state, 2.0 * energy.yarn.radius_mm)
+    """The pairs that touch at the end of a step, as far as it is known, and their keys.
+
+    They begin with the forces that they hold. They stick with the mean of the stiffness at the
+    beginning and the end, and slip at the limit of the end.
+    """
+    curve, layout = energy.curve(end), energy.cell.layout
+    pairs, _ = energy.pairs(curve, end, 2.0 * energy.yarn.radius_mm)
     key = _keys(pairs, len(curve))
     order = np.argsort(key)
     pairs, key = pairs[order], key[order]
-    size = float(state[-2]), float(state[-1])
-    limit = coefficient * kernels.normal_forces(curve, *size, pairs, layout, energy.contact_law)
-    slide, cosine = kernels.slides(curve, *size, pairs, layout, energy.speeds)
+    first, limit = (
+        coefficient
+        * kernels.normal_forces(
+            energy.curve(state), float(state[-2]), float(state[-1]), pairs, layout,
+            energy.contact_law,
+        )
+        for state in (begin, end)
+    )  # fmt: skip
+    slide, cosine = kernels.slides(
+        energy.curve(begin), float(begin[-2]), float(begin[-1]), pairs, layout, energy.speeds
+    )
     force = np.zeros((len(key), 2))
     if len(before.key):
         place = np.minimum(np.searchsorted(before.key, key), len(before.key) - 1)
         known = before.key[place] == key
         force[known] = before.force_n[place[known]]
-    # where the pressure has fallen, the pair has let go
-    size_of = np.maximum(np.hypot(*force.T), 1e-300)
-    force *= np.minimum(1.0, limit / size_of)[:, None]
-    slip = SLIP_RADII * energy.yarn.radius_mm
+    mean = 0.5 * (first + limit)
+    stiffness = np.maximum(mean / (SLIP_RADII * energy.yarn.radius_mm), _LEAST)
+    slip = np.maximum(limit, _LEAST) / stiffness
     scale = 1.0 / np.sqrt(1.0 + cosine**2)
-    elastic = slip * force / np.maximum(limit, 1e-300)[:, None]
-    return kernels.Sliding(pairs, limit, slide - elastic / scale[:, None], scale, slip), key
+    rest = slide - force / (stiffness * scale)[:, None]
+    return kernels.Sliding(pairs, limit, rest, scale, slip), key
 
 
-def _held(energy: CellEnergy, sliding: kernels.Sliding, state: Array) -> tuple[Array, float]:
-    """(n, 2) friction forces after a step, N, and the energy that slipping took in it, N·mm."""
-    slide, _ = kernels.slides(
-        energy.curve(state), float(state[-2]), float(state[-1]), sliding.pairs,
-        energy.cell.layout, energy.speeds,
+def _held(
+    energy: CellEnergy, sliding: kernels.Sliding, begin: Array, end: Array
+) -> tuple[Array, float]:
+    """(n, 2) friction forces after a step, N, and the work against friction in it, N·mm."""
+    before, after = (
+        sliding.scale[:, None]
+        * (
+            kernels.slides(
+                energy.curve(state), float(state[-2]), float(state[-1]), sliding.pairs,
+                energy.cell.layout, energy.speeds,
+            )[0]
+            - sliding.rest
+        )
+        for state in (begin, end)
     )  # fmt: skip
-    elastic = sliding.scale[:, None] * (slide - sliding.rest)
-    size = np.hypot(*elastic.T)
-    lost = float(sliding.limit @ np.maximum(size - sliding.slip, 0.0))
-    pull = sliding.limit / np.maximum(size, sliding.slip)
-    return elastic * pull[:, None], lost
+    force = after * (sliding.limit / np.maximum(np.hypot(*after.T), sliding.slip))[:, None]
+    first = before * (sliding.limit / sliding.slip)[:, None]
+    return force, float(np.sum(0.5 * (first + force) * (after - before)))
 
 
 def _keys(pairs: Pairs, samples: int) -> NDArray[np.int64]:

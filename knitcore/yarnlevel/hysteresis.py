@@ -33,6 +33,10 @@ _FREE = 1e-6
 """Pull that counts as none, as a part of that at which the release began."""
 _THERE = 1e-9
 """Part of a size by which it may differ and still count as the same."""
+_UNBALANCED = 0.1
+"""Part of the work against friction by which a loop's area may miss it without a note."""
+_SLIGHT = 1e-3
+"""The same as a part of the work of the pull, for loops that lose next to nothing."""
 
 
 class History(Choice):
@@ -80,7 +84,8 @@ class Hysteresis:
     coefficient : of friction between yarns.
     zero : the agitated state, to which strains refer.
     legs : ways there and back in turn; each begins where the last one ended.
-    lost_n_mm : (legs,) energy per stitch that slipping took in each leg, N·mm.
+    lost_n_mm : (legs,) work per stitch against friction in each leg, N·mm; below 0 where the
+        contacts give back more than slipping takes.
     """
 
     direction: Direction
@@ -105,7 +110,17 @@ class Hysteresis:
     @property
     def notes(self) -> tuple[str, ...]:
         """Remarks for the user, in sentences."""
-        return tuple(dict.fromkeys(note for leg in self.legs for note in leg.notes))
+        found = dict.fromkeys(note for leg in self.legs for note in leg.notes)
+        area, work = self.zero.cell_course_mm * self.zero.cell_wale_mm, self.lost_n_mm[-2:].sum()
+        # of a loop that does not close, the yarn keeps a part
+        kept = self.legs[-1].energy_n_mm[-1] - self.legs[-2].energy_n_mm[0]
+        missed = abs(area * self.lost_per_cycle_n_per_mm - kept - work)
+        if missed > max(_UNBALANCED * work, _SLIGHT * area * self.legs[-2].work_n_per_mm):
+            found[
+                "The loop's area and the work against friction differ by "
+                f"{100 * missed / work:.0f} %: take more points."
+            ] = None
+        return tuple(found)
 
     @property
     def lost_per_cycle_n_per_mm(self) -> float:

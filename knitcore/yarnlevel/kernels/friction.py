@@ -30,14 +30,14 @@ class Sliding(NamedTuple):
     limit : (n,) coefficient of friction times normal force, N.
     rest : (n, 2) slides at which no friction acts, mm.
     scale : (n,) g, which makes |e| the slide whatever the angle of the strands.
-    slip : slide at which a pair lets go, mm.
+    slip : (n,) slide at which a pair lets go, mm; above 0.
     """
 
     pairs: Pairs
     limit: Array
     rest: Array
     scale: Array
-    slip: float
+    slip: Array
 
 
 @numba.njit(cache=True)
@@ -88,8 +88,8 @@ def friction_energy(
     for q in range(c.shape[0]):
         e0 = sliding.scale[q] * (c[q, 0] - sliding.rest[q, 0])
         e1 = sliding.scale[q] * (c[q, 1] - sliding.rest[q, 1])
-        y = np.sqrt(e0 * e0 + e1 * e1) / sliding.slip
-        total += sliding.limit[q] * sliding.slip * (0.5 * y * y if y < 1.0 else y - 0.5)
+        y = np.sqrt(e0 * e0 + e1 * e1) / sliding.slip[q]
+        total += sliding.limit[q] * sliding.slip[q] * (0.5 * y * y if y < 1.0 else y - 0.5)
     return total
 
 
@@ -107,7 +107,7 @@ def friction_slopes(
         e0 = sliding.scale[q] * (c[q, 0] - sliding.rest[q, 0])
         e1 = sliding.scale[q] * (c[q, 1] - sliding.rest[q, 1])
         pull = sliding.limit[q] * sliding.scale[q]
-        pull /= max(np.sqrt(e0 * e0 + e1 * e1), sliding.slip)
+        pull /= max(np.sqrt(e0 * e0 + e1 * e1), sliding.slip[q])
         p0, p1 = pull * e0 / speeds[i], pull * e1 / speeds[j]
         d = apart(at, sliding.pairs, q, layout, course_mm, wale_mm)
         across = at[j, 3] - at[i, 3] + layout.wales * sliding.pairs[q, 2]
@@ -174,11 +174,11 @@ def friction_hessian(
         g = sliding.scale[q]
         e0, e1 = g * (c[q, 0] - sliding.rest[q, 0]), g * (c[q, 1] - sliding.rest[q, 1])
         size = np.sqrt(e0 * e0 + e1 * e1)
-        pull = sliding.limit[q] * g / max(size, sliding.slip)
+        pull = sliding.limit[q] * g / max(size, sliding.slip[q])
         p0, p1 = pull * e0 / speeds[i], pull * e1 / speeds[j]
         stiff = pull * g
         # a pair that slips has no stiffness along its slide
-        h0, h1 = (e0 / size, e1 / size) if size > sliding.slip else (0.0, 0.0)
+        h0, h1 = (e0 / size, e1 / size) if size > sliding.slip[q] else (0.0, 0.0)
         for u in range(38):
             s0 = stiff * ((1.0 - h0 * h0) * slope[u, 0] - h0 * h1 * slope[u, 1])
             s1 = stiff * ((1.0 - h1 * h1) * slope[u, 1] - h0 * h1 * slope[u, 0])

@@ -50,7 +50,8 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
     # about half of the pairs slip
     rest = slide + 0.03 * rng.standard_normal(slide.shape)
     limit = 1.0 + rng.random(len(pairs))
-    sliding = kernels.Sliding(pairs, limit, rest, 1.0 / np.sqrt(1.0 + cosine**2), 0.03)
+    slip = np.full(len(pairs), 0.03)
+    sliding = kernels.Sliding(pairs, limit, rest, 1.0 / np.sqrt(1.0 + cosine**2), slip)
     # no contact: its stiff cores would hide the friction
     empty = pairs[:0]
     rubbing = replace(energy, sliding=sliding)
@@ -121,17 +122,19 @@ def test_smaller_steps_give_the_same_curve(stockinette):
 def test_waiting_changes_nothing(stockinette):
     moved = walk(stockinette, [0.05, 0.1, 0.1, 0.1, 0.1], 0.25)
     force = forces(moved)
-    # the first wait takes up the normal forces of the step before it
-    np.testing.assert_allclose(force[2:], force[1], rtol=0.015)
-    np.testing.assert_allclose(force[3:], force[2], rtol=2e-3)
+    np.testing.assert_allclose(force[2:], force[1], rtol=2e-3)
 
 
-def test_friction_never_gives_energy(stockinette):
+def test_friction_takes_energy_in_every_step_but_the_first_one_back(stockinette):
     there = np.linspace(0, 0.15, 6)[1:]
     states = walk(stockinette, [*there, *there[-2::-1]], 0.25)
     lost = [s.lost_n_mm for s in states]
     assert lost[0] > 0.0
-    assert np.all(np.diff(lost) >= 0.0)
+    step = np.diff(lost)
+    turn = len(there) - 1
+    assert np.all(np.delete(step, turn) > 0.0)
+    # there the contacts give back what they hold elastically
+    assert step[turn] < 0.0 < step[turn - 1 : turn + 1].sum()
 
 
 @pytest.mark.parametrize("coefficient", [-0.1, 3.0, np.nan])

@@ -31,17 +31,34 @@ def test_the_loop_closes_after_the_first_cycle(loop):
 def test_unloading_takes_less_force(loop):
     there, back = loop.legs[2], loop.legs[3]
     known = np.interp(there.strain[2:-1], back.strain[::-1], back.stress_n_per_mm[::-1])
-    assert np.all(known < 0.9 * there.stress_n_per_mm[2:-1])
+    assert np.all(known < 0.92 * there.stress_n_per_mm[2:-1])
 
 
 def test_the_first_step_back_is_stiffer_than_the_last_one_there(loop):
     assert 1.5 < loop.stiffer_at_turn < 3.0
 
 
-def test_the_area_of_the_loop_is_the_energy_that_slipping_takes(loop):
+def test_the_area_of_the_loop_is_the_work_against_friction(loop):
     area = loop.zero.cell_course_mm * loop.zero.cell_wale_mm
-    assert loop.lost_per_cycle_n_per_mm * area == pytest.approx(loop.lost_n_mm[2:].sum(), rel=0.2)
+    assert loop.lost_per_cycle_n_per_mm * area == pytest.approx(loop.lost_n_mm[2:].sum(), rel=0.02)
     assert 0.05 < loop.lost_share < 0.5
+    assert loop.notes == ()
+
+
+def test_a_loop_near_locking_changes_little_with_more_points(stockinette):
+    coarse, fine = (
+        hysteresis(stockinette, "wale", 0.3, 0.25, points=points) for points in (24, 48)
+    )
+    top, top_of_fine = (loop.legs[-2].stress_n_per_mm[-1] for loop in (coarse, fine))
+    assert top == pytest.approx(top_of_fine, rel=0.03)
+    lost = fine.lost_per_cycle_n_per_mm
+    assert coarse.lost_per_cycle_n_per_mm == pytest.approx(lost, rel=0.03)
+
+
+def test_a_loop_of_too_few_points_says_so(stockinette):
+    loop = hysteresis(stockinette, "wale", 0.3, 0.25, points=4, cycles=1)
+    (note,) = loop.notes
+    assert "differ by 26 %: take more points." in note
 
 
 def test_the_last_cycle_is_one_stretch_there_and_back(loop):
