@@ -40,6 +40,7 @@ from knitcore.yarnlevel.growth import (
     does_not_fit,
     with_stiff_shell,
 )  # fmt: skip
+from knitcore.yarnlevel.held import foot_slopes
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.limits import check_loop
 from knitcore.yarnlevel.lowest import MAX_STITCHES, without_mirrors
@@ -191,7 +192,8 @@ def relax_whole(
     yarn : the yarn.
     loop_length_mm : mm of yarn per stitch, one number or one for every course, bottom first.
     convention : factors of the energy.
-    flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
+    flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds;
+        no yarn passes from stitch to stitch.
     tolerance : relative change of the energy in a round at which to stop; the sizes may then change
         by ten times as much.
     rounds : most rounds on each of the two grids, at least two.
@@ -468,9 +470,11 @@ class _Work:
         tension = sheet.tension_n.mean(axis=1)
         slope = path.slope(tension, hessian=False, lengths=False)
         left = slope.gradient[:-2].reshape(*sheet.controls.shape)
-        if self.flat:  # the plane carries the mean over a stitch
+        if self.flat:  # the plane carries the mean over a stitch, and the feet their slopes
             heights = left[..., 2].reshape(*self.chart.purl.shape, -1)
             heights -= heights.mean(axis=2, keepdims=True)
+            feet = foot_slopes(energy.cell.grid, energy.cell.wales)
+            left[..., 1] -= np.linalg.lstsq(feet.T, left[..., 1].T, rcond=None)[0].T @ feet
         found = Minimum(
             state=sheet.state, tension=tension, terms=path.here.terms,
             force=slope.gradient[-2:].copy(), min_distance_mm=path.min_distance_mm,
