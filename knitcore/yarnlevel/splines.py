@@ -94,8 +94,9 @@ class RelaxedRepeat(RelaxedCell):
 
     @property
     def held(self) -> bool:
-        """Whether more than symmetries and lengths of yarn holds it."""
-        return bool(self.flat or self.slides) or not is_at_rest(self)
+        """Whether more than symmetries and the yarn of each course holds it."""
+        per_stitch = self.loop_lengths_mm.ndim > 1
+        return bool(self.flat or self.slides or per_stitch) or not is_at_rest(self)
 
     @property
     def control_points(self) -> Array:
@@ -234,7 +235,7 @@ def refined(relaxed: RelaxedRepeat, grid: SplineGrid) -> RelaxedRepeat:
 
 
 def check_unheld(relaxed: RelaxedRepeat) -> None:
-    """Refuse a repeat that is held by more than symmetries and lengths of yarn.
+    """Refuse a repeat that is held by more than symmetries and the yarn of each course.
 
     Raises
     ------
@@ -242,8 +243,12 @@ def check_unheld(relaxed: RelaxedRepeat) -> None:
     """
     check_at_rest(relaxed, "relaxed")
     if relaxed.held:
-        how = "flat" if relaxed.flat else "where its yarn would slide"
-        raise InputError("relaxed", f"it is held {how}.", "Relax it with nothing held.")
+        how = (
+            "it is held flat" if relaxed.flat
+            else "its yarn is kept from sliding" if relaxed.slides
+            else "it has a loop length for every stitch"
+        )  # fmt: skip
+        raise InputError("relaxed", f"{how}.", "Relax it with one loop length and nothing held.")
 
 
 def relaxed_repeat(
