@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.arrays import Array
-from knitcore.bounds import check_range
+from knitcore.bounds import check_count, check_range
 from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import (
     Cancelled,
@@ -49,7 +49,14 @@ from knitcore.yarnlevel.polish import PAIR_CAP, polished
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome, overlong
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
-from knitcore.yarnlevel.splines import COARSE, ROUGH, RelaxedRepeat, relax_splines, relaxed_repeat
+from knitcore.yarnlevel.splines import (
+    COARSE,
+    ROUGH,
+    RelaxedRepeat,
+    loop_lengths,
+    relax_splines,
+    relaxed_repeat,
+)  # fmt: skip
 from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 from knitcore.yarnlevel.topology import Clearance
@@ -190,7 +197,8 @@ def relax_whole(
     ----------
     chart : the chart, taken as it stands.
     yarn : the yarn.
-    loop_length_mm : mm of yarn per stitch, one number or one for every course, bottom first.
+    loop_length_mm : mm of yarn per stitch, one number or one for every course of the chart or of
+        its repeat, bottom first.
     convention : factors of the energy.
     flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds;
         no yarn passes from stitch to stitch.
@@ -216,14 +224,8 @@ def relax_whole(
     """
     check_stitches(chart.stitches, MAX_STITCHES_WHOLE, "a whole chart")
     check_range("tolerance", tolerance, 1e-6, 0.1)
-    check_range("rounds", rounds, 2, MAX_ROUNDS)
-    lengths = np.asarray(loop_length_mm, dtype=float)
-    if lengths.ndim > 1 or lengths.size not in (1, chart.rows):
-        raise InputError(
-            "loop_length_mm",
-            f"{lengths.size} lengths were given for {chart.rows} courses.",
-            "Give one length, or one for every course.",
-        )
+    check_count("rounds", rounds, 2, MAX_ROUNDS)
+    _, lengths = loop_lengths(loop_length_mm, chart, by_stitch=False)
     for length in np.unique(lengths):
         check_loop(yarn, float(length))
     work = _Work(
@@ -491,7 +493,8 @@ class _Work:
             there = max(sheet.change, self.tolerance)
             near = np.log(min(there, 1.0)) / np.log(self.tolerance) if there < np.inf else 0.0
             share = max(float(near), len(sheet.rounds) / self.rounds)
-            grown = sheet.core_radius_mm / self.yarn.core_radius_mm
+            core = self.yarn.core_radius_mm
+            grown = sheet.core_radius_mm / core if core else 1.0
             self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)
 
 
