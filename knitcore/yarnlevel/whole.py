@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain, zip_longest
 
 import numpy as np
@@ -41,6 +42,7 @@ from knitcore.yarnlevel.growth import (
     with_stiff_shell,
 )  # fmt: skip
 from knitcore.yarnlevel.held import foot_slopes
+from knitcore.yarnlevel.images import same_for_images
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.limits import check_loop
 from knitcore.yarnlevel.lowest import MAX_STITCHES, without_mirrors
@@ -333,12 +335,13 @@ class _Work:
             _least(repeat.rows, self.chart.rows), _least(repeat.columns, self.chart.columns)
         )
         fits = part.stitches == free_cell(repeat, COARSE).stitches
-        found = relax_splines(
-            self.chart, self.yarn, self.loop_lengths_mm[0],
+        search = partial(
+            relax_splines, yarn=self.yarn, loop_length_mm=self.loop_lengths_mm[0],
             branch=Branch.FREE if fits and not self.flat else Branch.MIRRORED,
             convention=self.convention, sizes_mm=(None, None), flat=self.flat, grid=COARSE,
             starts=None, time_limit_s=None, cancelled=self.cancelled,
         )  # fmt: skip
+        found = same_for_images(search, repeat, cancelled=self.cancelled)
         if not fits and not self.flat and part.stitches <= MAX_STITCHES:
             with suppress(ConvergenceError, UnravelledError):  # then with its mirrors
                 found = without_mirrors(found, part=part, cancelled=self.cancelled).state
