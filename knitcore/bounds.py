@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf
+from numbers import Integral
 
 from knitcore.errors import InputError
 
@@ -46,6 +47,24 @@ def check_positive(
         end = "" if most == inf else f"{most:g}"
         remedy = f"Give above 0 to {end} {unit}" if end else f"Give a number above 0 {unit}"
         raise InputError(field, _problem(value, unit, what), remedy.rstrip() + ".")
+
+
+def check_count(field: str, value: int, low: int, high: int) -> None:
+    """Refuse what is no whole number from ``low`` to ``high``.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> check_count("rounds", 2.5, 2, 200)
+    Traceback (most recent call last):
+    knitcore.errors.InputError: rounds: 2.5 is not a whole number. Give 2 to 200.
+    """
+    if not isinstance(value, Integral):
+        raise InputError(field, _problem(value, "", "a whole number"), f"Give {low} to {high}.")
+    check_range(field, value, low, high)
 
 
 def check_linear_density(g_per_m: float) -> None:

@@ -46,10 +46,12 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
 
     def callback(**given: Any) -> None:
         context = Context(user_data_dir, local=True)
-        request = options.request(given)
         run: Callable[..., Any] = described.run or operation.run
         run = partial(run, **_taken(described.run, given))
-        found = carried_out(run, request, context)
+        try:
+            found = carried_out(run, options.request(given), context)
+        except InputError as error:
+            raise _of_options(error, made) from error
         result = found.result if isinstance(found, Viewed) else found
         emit(result, "\n".join(described.lines(result)), as_json=given["as_json"])
         for remark in () if given["as_json"] else _remarks(result):
@@ -62,6 +64,16 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
     return made
 
 
+def _of_options(error: InputError, command: click.Command) -> InputError:
+    """The error, and those with it, with the names of options instead of those of fields."""
+    options = (option for option in command.params if isinstance(option, click.Option))
+    names = {option.name: max(option.opts, key=len).removeprefix("--") for option in options}
+    field = names.get(error.field, error.field)
+    named = InputError(field, error.problem, error.remedy, most=error.most)
+    named.others = tuple(_of_options(other, command) for other in error.others)
+    return named
+
+
 def _remarks(result: BaseModel) -> list[str]:
     """What a result says besides its figures."""
     told = [
@@ -70,7 +82,8 @@ def _remarks(result: BaseModel) -> list[str]:
         for remark in getattr(result, field, ())
     ]
     if isinstance(result, IntervalResult):
-        told.append(f"90 % intervals: {result.interval_source}")
+        source = result.interval_source
+        told.append(source if source.startswith("No interval") else f"90 % intervals: {source}")
     return told
 
 

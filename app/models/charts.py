@@ -55,9 +55,20 @@ Column = Annotated[int, Field(ge=0, description="From 0, at the left.")]
 TEXT_TAG, FABRIC_TAG = "K/P text", "pure fabric"
 """Tags of the two ways to give a chart; errors leave them out of the field's name."""
 
+
+def _way(given: object) -> str | None:
+    if isinstance(given, str):
+        return TEXT_TAG
+    return FABRIC_TAG if isinstance(given, dict | PureFabricChart) else None
+
+
 ChartInput = Annotated[
     Annotated[ChartText, Tag(TEXT_TAG)] | Annotated[PureFabricChart, Tag(FABRIC_TAG)],
-    Discriminator(lambda given: TEXT_TAG if isinstance(given, str) else FABRIC_TAG),
+    Discriminator(
+        _way,
+        custom_error_type="chart_type",
+        custom_error_message="Input should be a text of K and P or a fabric with its size",
+    ),
     CheckedBy(lambda chart, _: to_chart(chart)),
 ]
 IS_REPEAT = "repeat"

@@ -10,13 +10,14 @@ _PROBLEMS = {
     "too_long": "more than {max_length} given",
 }
 """By pydantic's type of error, where its own message speaks of Python."""
+_OBJECTS = "model_attributes_type", "model_type"
+_BODY = "Send a JSON object, with Content-Type: application/json."
 _REMEDIES = {
     "missing": "Give {field}; /docs has an example.",
     "extra_forbidden": "Leave {field} out, or compare its name with /docs.",
-    **dict.fromkeys(
-        ("model_attributes_type", "model_type"),
-        "Send a JSON object, with Content-Type: application/json.",
-    ),
+    **dict.fromkeys(_OBJECTS, "Give {field} as a JSON object; /docs has an example."),
+    "chart_type": 'Give rows such as "KP/PK", the top row first, or a fabric such as '
+    '{{"fabric": "rib", "columns": 4, "rows": 2}}.',
     "union_tag_invalid": "Use one of {expected_tags}.",
     "literal_error": "Use {expected}.",
     "enum": "Use {expected}.",
@@ -33,9 +34,7 @@ _REMEDIES = {
     "float_parsing": "Use a number.",
 }
 """What would be accepted, by pydantic's type of error; fields in braces are of its context."""
-OF_VALUES = frozenset(_REMEDIES) - {
-    "missing", "extra_forbidden", "model_attributes_type", "model_type",
-}  # fmt: skip
+OF_VALUES = frozenset(_REMEDIES) - {"missing", "extra_forbidden", *_OBJECTS}
 """Types of errors whose remedy says nothing of how the value was sent."""
 
 
@@ -47,5 +46,7 @@ def problem_in_words(fault: Mapping[str, Any]) -> str:
 
 def remedy_in_words(fault: Mapping[str, Any], field: str) -> str:
     """What would be accepted instead."""
+    if fault["type"] in _OBJECTS and field == "body":
+        return _BODY
     words: str = _REMEDIES.get(fault["type"], "{msg}; see /docs.")
     return words.format_map({"msg": fault["msg"], **fault.get("ctx", {}), "field": field})

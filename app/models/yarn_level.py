@@ -13,7 +13,7 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
-from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_stitches
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_stitches, size_in_words
 from knitcore.errors import InputError
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import YARN_LEVEL_FREE_SIZE_LOG_SD, YARN_LEVEL_SIZE_LOG_SD
@@ -128,8 +128,8 @@ def _lengths(request: YarnLevelRequest, used: ChartYarn, rows: int, columns: int
     if len(table) != rows or any(len(row) not in (1, columns) for row in table):
         raise InputError(
             "loop_lengths_mm",
-            f"they do not fit a chart of {rows} rows and {columns} columns.",
-            f"Give {rows} rows of one length or of {columns} lengths, the bottom row first.",
+            f"they do not fit a chart of {size_in_words(columns, rows)}.",
+            "Give every row one length, or one for each of its stitches, the bottom row first.",
         )
     if all(len(row) == 1 for row in table):
         return [row[0] for row in table]

@@ -111,6 +111,11 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     notes = [_FRICTIONLESS, *_failures(found), *_compared(found)]
     density = request.linear_density_g_per_m
     weight = None if density is None else 1e-6 * STANDARD_GRAVITY * density * loop / area  # N/mm²
+    if not stable.minimum:
+        notes.append(
+            "Its shape is not quite a minimum, as a slight change lowers the energy a little: "
+            "twist, coupling, shear and bending along diagonals are left out."
+        )
     shear = stable.shear_modulus_n_per_mm
     if shear is not None and shear <= 0.0:
         notes.append("The courses slide over each other freely: the shear modulus is not positive.")

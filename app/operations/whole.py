@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 
 from app.context import Context
 from app.models.base import Ends, IntervalResult
-from app.models.charts import to_chart
+from app.models.charts import ChartInput, to_chart
 from app.models.yarn_level import StitchRequest, YarnResult, size_log_sd
 from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words
@@ -22,6 +22,7 @@ from knitcore.yarnlevel.whole import MAX_ROUNDS, WholeShape, relax_whole
 class WholeRequest(StitchRequest):
     """A chart, its yarn, and when to stop."""
 
+    chart: ChartInput  # as it stands, so that a fabric needs a size
     flat: bool = Field(False, description="Hold the stitches in one plane, as a fabric laid flat.")
     convention: Convention = Convention.PUBLISHED
     tolerance: float = Field(
@@ -116,8 +117,11 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
         kept=lambda sheet: context.kept.keep(inputs, KeptSheet.of(sheet)),
         progress=context.progress, cancelled=context.cancelled,
     )  # fmt: skip
+    after = 0 if before is None else before.earlier + len(before.rounds)
+    resumed = f"Continued after {after} round{'' if after == 1 else 's'} of an earlier run."
     return WholeResult.of(
         found,
+        notes=[*found.notes, resumed] if after else [*found.notes],
         rows=chart.rows,
         columns=chart.columns,
         cell_course_interval_mm=log_interval(found.cell_course_mm, size_log_sd(found)),

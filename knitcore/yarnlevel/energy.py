@@ -110,7 +110,7 @@ class CellEnergy:
     loop_length_mm : (rows,) mean length of yarn per stitch of each course, or (rows, wales), that
         of each stitch from foot to foot.
     convention : factors of the terms.
-    flat : the middles of all stitches are held in one plane.
+    flat : the middles of all stitches are held in one plane, and their feet at whole t.
     slides : where the yarn may not slide.
     spacing_per_bending : stiffness of the spacing penalty in units of B / L.
     sliding : pairs of samples that rub in this step; None without friction.
@@ -166,7 +166,7 @@ class CellEnergy:
     def held(self) -> Array:
         """(k, unknowns): linear rules besides the lengths."""
         rules = [np.zeros((0, self.cell.unknowns))]
-        if self.per_stitch:
+        if self.per_stitch or self.flat:
             rules.append(foot_rows(self.cell))
         if self.flat:
             rules.append(plane_rows(self.cell))

@@ -72,6 +72,16 @@ class RubbedCell:
     lost_n_mm: float
 
 
+def check_coefficient(coefficient: float) -> None:
+    """Refuse what is no coefficient of friction.
+
+    Raises
+    ------
+    InputError
+    """
+    check_range("friction", coefficient, 0, MAX_COEFFICIENT, what="a coefficient of friction")
+
+
 def agitated(relaxed: RelaxedRepeat) -> RubbedCell:
     """The state without any friction force: where shaking and washing take the fabric.
 
@@ -112,7 +122,7 @@ def rubbed(
     CancelledError
         If ``cancelled`` says so.
     """
-    check_range("friction", coefficient, 0, MAX_COEFFICIENT, what="a coefficient of friction")
+    check_coefficient(coefficient)
     began = time.process_time()
     cell = last.cell
     energy = cell.energy

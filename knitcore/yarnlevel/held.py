@@ -3,7 +3,8 @@
 - The foot of every stitch: where each stitch has its own length, its yarn is measured between the
   lowest points of the feet before and after it, so these points are kept at whole t.
 - The plane: a fabric laid flat has the middle of every stitch, the mean height of its control
-  points, in one plane.
+  points, in one plane. It also keeps the feet: yarn that slid by half a stitch would fold as if
+  nothing held it, its heads and feet in place of the middles.
 
 Rules that symmetry already keeps are left out.
 """
@@ -14,23 +15,37 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.yarnlevel.cell import YarnCell
-from knitcore.yarnlevel.spline import SUPPORT, quintic_basis
+from knitcore.yarnlevel.spline import SUPPORT, SplineGrid, quintic_basis
 
 _Y, _Z = 1, 2
+FOOT = -2
+"""The first of the control points around a foot, from that at the foot."""
 _SMALL = 1e-9
 _INDEPENDENT = 1e-6
 
 
+def foot_weights(grid: SplineGrid) -> Array:
+    """(6,) weights of the control points around a foot in the slope there, per unit of t."""
+    return np.asarray(quintic_basis(np.array([0.0]), 1)[0] * grid.controls)
+
+
+def foot_slopes(grid: SplineGrid, wales: int) -> Array:
+    """(wales, controls): slopes dy/dt at the feet of a course, from its control points."""
+    count = wales * grid.controls
+    around = (grid.controls * np.arange(wales)[:, None] + FOOT + np.arange(SUPPORT)) % count
+    slopes = np.zeros((wales, count))
+    np.add.at(slopes, (np.arange(wales)[:, None], around), foot_weights(grid))
+    return slopes
+
+
 def foot_rows(cell: YarnCell) -> Array:
     """(k, unknowns): slope dy/dt at the foot between every two stitches, mm."""
-    weights = quintic_basis(np.array([0.0]), 1)[0] * cell.grid.controls
+    slopes = foot_slopes(cell.grid, cell.wales)
     rows = []
     for course in range(cell.rows):
-        for wale in range(cell.wales):
+        for slope in slopes:
             row = np.zeros(cell.unknowns)
-            for a in range(SUPPORT):
-                c = (wale * cell.grid.controls - 2 + a) % cell.controls_per_course
-                row[cell.dof[course, c, _Y]] += weights[a] * cell.sign[course, c, _Y]
+            np.add.at(row, cell.dof[course, :, _Y], slope * cell.sign[course, :, _Y])
             rows.append(row)
     return independent(np.array(rows))
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from knitcore.arrays import Array
-from knitcore.bounds import check_range
+from knitcore.bounds import check_count
 from knitcore.choice import Choice
 from knitcore.errors import Cancelled, ConvergenceError, check_cancelled
 from knitcore.fabric import Direction
-from knitcore.yarnlevel.friction import RubbedCell, agitated, rubbed
+from knitcore.yarnlevel.friction import RubbedCell, agitated, check_coefficient, rubbed
 from knitcore.yarnlevel.limits import check_stretch
 from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.solver import COURSE, WALE
@@ -310,7 +310,7 @@ def hysteresis(
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, None)
-    check_range("cycles", cycles, 1, MAX_CYCLES)
+    check_count("cycles", cycles, 1, MAX_CYCLES)
     stretch = RubbedStretch(agitated(relaxed), along, coefficient, cancelled)
     strain = np.linspace(0.0, max_strain, points)
     legs, lost = [], [0.0]
@@ -343,6 +343,7 @@ def at_rest(
     ConvergenceError, UnravelledError
         If the yarn locks or unravels on the way.
     """
+    check_coefficient(coefficient)
     state = agitated(relaxed)
     what = History.parse(history)
     if what is History.AGITATED:

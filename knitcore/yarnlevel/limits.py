@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from knitcore.bounds import check_positive, check_range
+from knitcore.bounds import check_count, check_positive
 from knitcore.errors import InputError
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.yarn import YarnModel
@@ -71,7 +71,7 @@ def check_stretch(max_strain: float, points: int, max_stress_n_per_mm: float | N
         Naming the value that cannot be used.
     """
     check_positive("max_strain", max_strain, what="a stretch")
-    check_range("points", points, 2, MAX_POINTS)
+    check_count("points", points, 2, MAX_POINTS)
     if max_stress_n_per_mm is not None and not max_stress_n_per_mm > 0.0:
         raise InputError(
             "max_stress_n_per_mm",

@@ -13,7 +13,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_stitches
-from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, UnravelledError
 from knitcore.yarnlevel.cell import free_cell, plain_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.results import Branch
@@ -76,11 +76,10 @@ def followed(
 
 
 def can_be_followed(relaxed: RelaxedRepeat, most_stitches: int = FOLLOWED_UP_TO) -> bool:
-    """Whether a repeat of the mirrored branch is not held, nor has lengths of single stitches, nor
-    more than ``most_stitches`` in its free cell."""
+    """Whether a repeat of the mirrored branch is not held, and its free cell has at most
+    ``most_stitches``."""
     stitches = free_cell(relaxed.chart, relaxed.cell.grid).stitches
-    free = relaxed.loop_lengths_mm.ndim == 1 and not relaxed.held
-    return free and relaxed.branch is Branch.MIRRORED and stitches <= most_stitches
+    return relaxed.branch is Branch.MIRRORED and not relaxed.held and stitches <= most_stitches
 
 
 def without_mirrors(
@@ -98,7 +97,7 @@ def without_mirrors(
     Raises
     ------
     InputError
-        If the repeat is held, has a length for every stitch, or is too large.
+        If the repeat is held, or too large.
     ConvergenceError, UnravelledError
         If the descent from it finds no state of the fabric.
     CancelledError
@@ -107,8 +106,6 @@ def without_mirrors(
     grid = relaxed.cell.grid
     cell = free_cell(relaxed.chart, grid) if part is None else plain_cell(part, grid)
     check_unheld(relaxed)
-    if relaxed.loop_lengths_mm.ndim != 1:
-        raise InputError("relaxed", "it has a length for every stitch.", "Give a course one.")
     check_stitches(cell.stitches, MAX_STITCHES, "its cell")
     lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
     energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
@@ -122,9 +119,8 @@ def without_mirrors(
         seconds=time.process_time() - clock, evaluations=found.evaluations,
     )  # fmt: skip
     lower = 1.0 - shown.energy_n_mm / relaxed.energy_n_mm
-    return Followed(
-        lower < SAME_ENERGY and found.stable, replace(shown, notes=relaxed.notes), lower
-    )
+    state = replace(shown, minimum=found.stable, notes=relaxed.notes)
+    return Followed(lower < SAME_ENERGY and found.stable, state, lower)
 
 
 def lowest(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> RelaxedRepeat:
@@ -141,9 +137,9 @@ def lowest(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> Rel
         lost = "Without its mirror symmetries no shape was found."
         return replace(relaxed, notes=(*relaxed.notes, lost))
     seconds = relaxed.seconds + found.state.seconds
-    if found.minimum:
-        return replace(relaxed, minimum=True, seconds=seconds)
+    if found.lower < SAME_ENERGY:
+        return replace(relaxed, minimum=found.minimum, seconds=seconds)
     return replace(
-        found.state, minimum=True, mirrored=relaxed, starts=relaxed.starts, seconds=seconds,
+        found.state, mirrored=relaxed, starts=relaxed.starts, seconds=seconds,
         evaluations=relaxed.evaluations + found.state.evaluations,
     )  # fmt: skip

@@ -13,11 +13,13 @@ from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import Cancelled, InputError
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.growth import Start
+from knitcore.yarnlevel.images import same_for_images
 from knitcore.yarnlevel.limits import check_time
 from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, lowest
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.stitch import published_fabric
 from knitcore.yarnlevel.results import Branch, RelaxedCell
+from knitcore.yarnlevel.solver import COURSE, WALE
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.splines import MAX_STITCHES, RelaxedRepeat, drafted, relax_splines
 from knitcore.yarnlevel.whole import SECONDS_PER_STITCH, WINDOWS_FROM, explored, relax_whole
@@ -97,7 +99,8 @@ def relax(
         has a grid or starts of your own, keeps its symmetries.
     convention : factors of the energy.
     cell_course_mm, cell_wale_mm : size of a stitch to hold, mm; None leaves it free of force.
-    flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
+    flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds;
+        no yarn passes from stitch to stitch.
     grid : resolution; by default finer for small cells.
     starts : by default two, and five in the free branch (fewer for large cells). Cells of 100 and
         more stitches without symmetry, nothing else prescribed, are relaxed by
@@ -121,6 +124,7 @@ def relax(
     prescribed = flat or (cell_course_mm, cell_wale_mm, grid, starts) != (None,) * 4
     free, _, lengths = drafted(chart, loop_length_mm, Branch.FREE)
     prescribed = prescribed or lengths.ndim > 1
+    uniform = bool(np.ptp(lengths) == 0.0)
     if branch is not None:
         kind = Branch.parse(branch)
     else:
@@ -137,13 +141,22 @@ def relax(
                 convention=factors, cancelled=cancelled,
             )  # fmt: skip
             return replace(found, branch=kind)
-        relaxed = relax_splines(
-            chart, yarn, loop_length_mm, branch=kind, convention=factors,
-            sizes_mm=(cell_course_mm, cell_wale_mm), flat=flat, grid=grid, starts=starts,
-            explore=explored if in_rounds else None,
-            time_limit_s=time_limit_s, cancelled=cancelled,
-        )  # fmt: skip
-        return relaxed if branch is not None or prescribed else lowest(relaxed, cancelled=cancelled)
+
+        def searched(image: StitchChart) -> RelaxedRepeat:
+            relaxed = relax_splines(
+                image, yarn, lengths[0] if uniform else loop_length_mm, branch=kind,
+                convention=factors, sizes_mm=(cell_course_mm, cell_wale_mm), flat=flat, grid=grid,
+                starts=starts, explore=explored if in_rounds else None,
+                time_limit_s=time_limit_s, cancelled=cancelled,
+            )  # fmt: skip
+            if branch is not None or prescribed:
+                return relaxed
+            return lowest(relaxed, cancelled=cancelled)
+
+        if starts is not None or not uniform:
+            return searched(chart)
+        fixed = [k for k, size in ((COURSE, cell_course_mm), (WALE, cell_wale_mm)) if size]
+        return same_for_images(searched, chart.repeat(), fixed=tuple(fixed), cancelled=cancelled)
     if flat or grid is not None or starts is not None or np.size(loop_length_mm) != 1:
         raise InputError(
             "branch",

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.arrays import Array
-from knitcore.chart import StitchChart, check_stitches
+from knitcore.chart import StitchChart, check_stitches, size_in_words
 from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
@@ -94,8 +94,9 @@ class RelaxedRepeat(RelaxedCell):
 
     @property
     def held(self) -> bool:
-        """Whether more than symmetries and lengths of yarn holds it."""
-        return bool(self.flat or self.slides) or not is_at_rest(self)
+        """Whether more than symmetries and the yarn of each course holds it."""
+        per_stitch = self.loop_lengths_mm.ndim > 1
+        return bool(self.flat or self.slides or per_stitch) or not is_at_rest(self)
 
     @property
     def control_points(self) -> Array:
@@ -205,7 +206,7 @@ def drafted(
     InputError
         If the lengths do not fit the chart.
     """
-    repeat, lengths = _loop_lengths(loop_length_mm, chart)
+    repeat, lengths = loop_lengths(loop_length_mm, chart)
     if np.ptp(lengths) > 0.0:
         return plain_cell(repeat, COARSE), repeat, lengths
     cell_of = mirrored_cell if branch is Branch.MIRRORED else free_cell
@@ -234,7 +235,7 @@ def refined(relaxed: RelaxedRepeat, grid: SplineGrid) -> RelaxedRepeat:
 
 
 def check_unheld(relaxed: RelaxedRepeat) -> None:
-    """Refuse a repeat that is held by more than symmetries and lengths of yarn.
+    """Refuse a repeat that is held by more than symmetries and the yarn of each course.
 
     Raises
     ------
@@ -242,8 +243,12 @@ def check_unheld(relaxed: RelaxedRepeat) -> None:
     """
     check_at_rest(relaxed, "relaxed")
     if relaxed.held:
-        how = "flat" if relaxed.flat else "where its yarn would slide"
-        raise InputError("relaxed", f"it is held {how}.", "Relax it with nothing held.")
+        how = (
+            "it is held flat" if relaxed.flat
+            else "its yarn is kept from sliding" if relaxed.slides
+            else "it has a loop length for every stitch"
+        )  # fmt: skip
+        raise InputError("relaxed", f"{how}.", "Relax it with one loop length and nothing held.")
 
 
 def relaxed_repeat(
@@ -328,8 +333,18 @@ def _held_at(
     return found
 
 
-def _loop_lengths(loop_length_mm: ArrayLike, chart: StitchChart) -> tuple[StitchChart, Array]:
-    """Repeat and its loop lengths: (rows,), or (rows, columns) where stitches differ."""
+def loop_lengths(
+    loop_length_mm: ArrayLike, chart: StitchChart, *, by_stitch: bool = True
+) -> tuple[StitchChart, Array]:
+    """Repeat and its loop lengths: (rows,), or (rows, columns) where stitches differ.
+
+    ``by_stitch`` says whether a length for every stitch is accepted.
+
+    Raises
+    ------
+    InputError
+        If the lengths do not fit the chart.
+    """
     try:
         lengths = np.atleast_1d(np.asarray(loop_length_mm, dtype=float))
     except ValueError as error:
@@ -337,9 +352,9 @@ def _loop_lengths(loop_length_mm: ArrayLike, chart: StitchChart) -> tuple[Stitch
             "loop_length_mm", "is not a table of numbers.", "Give mm for every stitch."
         ) from error
     repeat = chart.repeat()
-    if lengths.ndim == 2 and lengths.shape in (chart.purl.shape, repeat.purl.shape):
+    if by_stitch and lengths.ndim == 2 and lengths.shape in (chart.purl.shape, repeat.purl.shape):
         if np.all(lengths == lengths[:, :1]):
-            return _loop_lengths(lengths[:, 0], chart)
+            return loop_lengths(lengths[:, 0], chart)
         small = lengths[: repeat.rows, : repeat.columns]
         tiles = (lengths.shape[0] // repeat.rows, lengths.shape[1] // repeat.columns)
         if np.array_equal(np.tile(small, tiles), lengths):
@@ -348,9 +363,11 @@ def _loop_lengths(loop_length_mm: ArrayLike, chart: StitchChart) -> tuple[Stitch
     if lengths.ndim != 1 or len(lengths) not in (1, chart.rows, repeat.rows):
         raise InputError(
             "loop_length_mm",
-            f"{' x '.join(map(str, lengths.shape))} lengths were given for {repeat.rows} courses "
-            f"of {repeat.columns} stitches.",
-            "Give one length, one for every course, or one for every stitch of the repeat.",
+            f"{' x '.join(map(str, lengths.shape))} lengths were given for a repeat of "
+            f"{size_in_words(repeat.columns, repeat.rows)}.",
+            "Give one length, one for every course, or one for every stitch of the repeat."
+            if by_stitch
+            else "Give one length, or one for every course.",
         )
     if len(lengths) == chart.rows and not np.array_equal(
         lengths, np.resize(lengths[: repeat.rows], len(lengths))

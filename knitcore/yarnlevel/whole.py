@@ -13,13 +13,14 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain, zip_longest
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.arrays import Array
-from knitcore.bounds import check_range
+from knitcore.bounds import check_count, check_range
 from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import (
     Cancelled,
@@ -40,6 +41,8 @@ from knitcore.yarnlevel.growth import (
     does_not_fit,
     with_stiff_shell,
 )  # fmt: skip
+from knitcore.yarnlevel.held import foot_slopes
+from knitcore.yarnlevel.images import same_for_images
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.limits import check_loop
 from knitcore.yarnlevel.lowest import MAX_STITCHES, without_mirrors
@@ -48,7 +51,14 @@ from knitcore.yarnlevel.polish import PAIR_CAP, polished
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome, overlong
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
-from knitcore.yarnlevel.splines import COARSE, ROUGH, RelaxedRepeat, relax_splines, relaxed_repeat
+from knitcore.yarnlevel.splines import (
+    COARSE,
+    ROUGH,
+    RelaxedRepeat,
+    loop_lengths,
+    relax_splines,
+    relaxed_repeat,
+)  # fmt: skip
 from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 from knitcore.yarnlevel.topology import Clearance
@@ -189,9 +199,11 @@ def relax_whole(
     ----------
     chart : the chart, taken as it stands.
     yarn : the yarn.
-    loop_length_mm : mm of yarn per stitch, one number or one for every course, bottom first.
+    loop_length_mm : mm of yarn per stitch, one number or one for every course of the chart or of
+        its repeat, bottom first.
     convention : factors of the energy.
-    flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
+    flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds;
+        no yarn passes from stitch to stitch.
     tolerance : relative change of the energy in a round at which to stop; the sizes may then change
         by ten times as much.
     rounds : most rounds on each of the two grids, at least two.
@@ -214,14 +226,8 @@ def relax_whole(
     """
     check_stitches(chart.stitches, MAX_STITCHES_WHOLE, "a whole chart")
     check_range("tolerance", tolerance, 1e-6, 0.1)
-    check_range("rounds", rounds, 2, MAX_ROUNDS)
-    lengths = np.asarray(loop_length_mm, dtype=float)
-    if lengths.ndim > 1 or lengths.size not in (1, chart.rows):
-        raise InputError(
-            "loop_length_mm",
-            f"{lengths.size} lengths were given for {chart.rows} courses.",
-            "Give one length, or one for every course.",
-        )
+    check_count("rounds", rounds, 2, MAX_ROUNDS)
+    _, lengths = loop_lengths(loop_length_mm, chart, by_stitch=False)
     for length in np.unique(lengths):
         check_loop(yarn, float(length))
     work = _Work(
@@ -329,12 +335,13 @@ class _Work:
             _least(repeat.rows, self.chart.rows), _least(repeat.columns, self.chart.columns)
         )
         fits = part.stitches == free_cell(repeat, COARSE).stitches
-        found = relax_splines(
-            self.chart, self.yarn, self.loop_lengths_mm[0],
+        search = partial(
+            relax_splines, yarn=self.yarn, loop_length_mm=self.loop_lengths_mm[0],
             branch=Branch.FREE if fits and not self.flat else Branch.MIRRORED,
             convention=self.convention, sizes_mm=(None, None), flat=self.flat, grid=COARSE,
             starts=None, time_limit_s=None, cancelled=self.cancelled,
         )  # fmt: skip
+        found = same_for_images(search, repeat, cancelled=self.cancelled)
         if not fits and not self.flat and part.stitches <= MAX_STITCHES:
             with suppress(ConvergenceError, UnravelledError):  # then with its mirrors
                 found = without_mirrors(found, part=part, cancelled=self.cancelled).state
@@ -468,9 +475,11 @@ class _Work:
         tension = sheet.tension_n.mean(axis=1)
         slope = path.slope(tension, hessian=False, lengths=False)
         left = slope.gradient[:-2].reshape(*sheet.controls.shape)
-        if self.flat:  # the plane carries the mean over a stitch
+        if self.flat:  # the plane carries the mean over a stitch, and the feet their slopes
             heights = left[..., 2].reshape(*self.chart.purl.shape, -1)
             heights -= heights.mean(axis=2, keepdims=True)
+            feet = foot_slopes(energy.cell.grid, energy.cell.wales)
+            left[..., 1] -= np.linalg.lstsq(feet.T, left[..., 1].T, rcond=None)[0].T @ feet
         found = Minimum(
             state=sheet.state, tension=tension, terms=path.here.terms,
             force=slope.gradient[-2:].copy(), min_distance_mm=path.min_distance_mm,
@@ -487,7 +496,8 @@ class _Work:
             there = max(sheet.change, self.tolerance)
             near = np.log(min(there, 1.0)) / np.log(self.tolerance) if there < np.inf else 0.0
             share = max(float(near), len(sheet.rounds) / self.rounds)
-            grown = sheet.core_radius_mm / self.yarn.core_radius_mm
+            core = self.yarn.core_radius_mm
+            grown = sheet.core_radius_mm / core if core else 1.0
             self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)
 
 

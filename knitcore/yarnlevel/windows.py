@@ -19,6 +19,7 @@ from knitcore.arrays import Array
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.held import FOOT, foot_weights
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.spline import SUPPORT
 
@@ -135,7 +136,7 @@ class WindowEnergy(CellEnergy):
     own_rows : rows of the cell that have free stitches.
     length_mm : (k,) length of yarn that each of them is to have in the cell.
 
-    ``flat`` holds the middle of every free stitch at height zero.
+    ``flat`` holds the middle of every free stitch at height zero, and its foot.
     """
 
     cell: WindowCell
@@ -159,21 +160,28 @@ class WindowEnergy(CellEnergy):
 
     @cached_property
     def held(self) -> Array:
-        """(h, unknowns): mean height of every free stitch, mm, less what rests of it."""
-        return self._heights[0]
+        """(h, unknowns): height of the middle and slope at the foot of every free stitch, mm, less
+        what rests of them."""
+        return self._rules[0]
 
     @cached_property
-    def _heights(self) -> tuple[Array, Array]:
+    def _rules(self) -> tuple[Array, Array]:
         """The rows of ``held``, and what the resting control points add to each."""
         cell, count = self.cell, self.cell.grid.controls
+        middle = np.full(count + 1, 1.0 / count)
+        middle[[0, -1]] *= 0.5  # the control points at the two feet count half
+        rules = [self._rule(0, middle, 2), self._rule(FOOT, foot_weights(cell.grid), 1)]
+        return np.concatenate([r for r, _ in rules]), np.concatenate([rest for _, rest in rules])
+
+    def _rule(self, first: int, weights: Array, axis: int) -> tuple[Array, Array]:
+        """A weighted sum of control points of every free stitch, from the first after its foot."""
+        cell, count = self.cell, self.cell.grid.controls
         row, wale = np.nonzero(cell.free[:, ::count] & self.flat)
-        place = (count * wale[:, None] + np.arange(count + 1)) % cell.controls_per_course
-        weight = np.full(count + 1, 1.0 / count)
-        weight[[0, -1]] *= 0.5  # the control points at the two feet count half
+        place = (count * wale[:, None] + first + np.arange(len(weights))) % cell.controls_per_course
         rows = np.zeros((len(row), cell.unknowns))
-        free = cell.free[row[:, None], place] * weight
-        np.add.at(rows, (np.arange(len(row))[:, None], cell.dof[row[:, None], place, 2]), free)
-        return rows, cell.resting[row[:, None], place, 2] @ weight
+        free = cell.free[row[:, None], place] * weights
+        np.add.at(rows, (np.arange(len(row))[:, None], cell.dof[row[:, None], place, axis]), free)
+        return rows, cell.resting[row[:, None], place, axis] @ weights
 
     def curve(self, state: Array) -> Array:
         """(rows * S, 4, 3): samples with three derivatives, as the sheet has them."""
@@ -184,10 +192,10 @@ class WindowEnergy(CellEnergy):
         return self._near(curve, state, reach, self.moving, self.cut)
 
     def excess(self, state: Array, curve: Array) -> Array:
-        """Lengths of the rows less those prescribed, and heights of the stitches, mm."""
+        """Lengths of the rows less those prescribed, and what ``held`` keeps at zero, mm."""
         lengths = row_lengths(self.cell, curve)[self.own_rows] - self.length_mm
-        heights = self.held @ state + self._heights[1]
-        return np.concatenate([lengths, heights])
+        held = self.held @ state + self._rules[1]
+        return np.concatenate([lengths, held])
 
     def length_gradients(self, curve: Array) -> Array:
         """(k, unknowns): gradient of each prescribed length."""

@@ -82,6 +82,27 @@ def test_a_loop_that_is_too_short_is_refused_with_a_bound() -> None:
     assert "at least" in result.stderr
 
 
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--cell-course-mm", "40"], "cell-course-mm: 40 mm cannot be reached"),
+        (
+            ["--loop-lengths-mm", "14/12"],
+            "loop-lengths-mm: they do not fit a chart of 2 columns x 1 row. Give every row one "
+            "length, or one for each of its stitches",
+        ),
+        (
+            ["--flat", "--cell-course-mm", "3", "--friction", "0.2"],
+            "Leave it out.\ncell-course-mm: a fabric at rest",
+        ),
+    ],
+)
+def test_a_refusal_names_the_option(options: list[str], says: str) -> None:
+    told = CliRunner().invoke(main, ["relax", "rib", "--material", "cotton", *options])
+    assert told.exit_code == 2
+    assert says in told.stderr
+
+
 def test_loop_lengths_give_the_same_on_the_command_line_and_over_rest(client: TestClient) -> None:
     told = run(
         "relax", "stockinette", "--size", "1x2", "--material", "cotton",

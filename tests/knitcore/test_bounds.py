@@ -1,8 +1,9 @@
 import math
 
+import numpy as np
 import pytest
 
-from knitcore.bounds import check_linear_density, check_positive, check_range
+from knitcore.bounds import check_count, check_linear_density, check_positive, check_range
 from knitcore.errors import InputError
 
 
@@ -25,6 +26,15 @@ def test_a_range_has_both_its_ends(value: float) -> None:
     check_range("ease", 1, -0.6, 1)
     with pytest.raises(InputError, match=r"not in range. Give -0.6 to 1.$"):
         check_range("ease", value, -0.6, 1)
+
+
+@pytest.mark.parametrize("value", [2.5, 2.0, math.nan])
+def test_a_count_is_a_whole_number(value: float) -> None:
+    check_count("rounds", np.int64(2), 2, 200)
+    with pytest.raises(InputError, match=r"is not a whole number. Give 2 to 200.$"):
+        check_count("rounds", value, 2, 200)
+    with pytest.raises(InputError, match=r"1 is not in range. Give 2 to 200.$"):
+        check_count("rounds", 1, 2, 200)
 
 
 def test_a_linear_density_in_tex_is_refused_with_the_unit() -> None:

@@ -26,6 +26,10 @@ TESTS = {"a.csv", "b.csv"}
         ("/stretch", STRETCH | {"steps": "many"}, "steps", "Use a whole number."),
         ("/stretch", STRETCH | {"direction": "up"}, "direction", "Use 'course' or 'wale'."),
         ("/stretch", STRETCH | {"colour": 1}, "colour", "Leave colour out"),
+        ("/stretch", STRETCH | {"chart": 5}, "chart", 'Give rows such as "KP/PK"'),
+        ("/stretch", STRETCH | {"chart": None}, "chart", '"rib", "columns": 4, "rows": 2}.'),
+        ("/stretch", STRETCH | {"gauge": 5}, "gauge", "Give gauge as a JSON object"),
+        ("/stretch", [], "body", "Send a JSON object, with Content-Type"),
         ("/stretch", {**STRETCH, "material": None}, "material", "valid string"),
         (
             "/limb",
@@ -38,6 +42,12 @@ TESTS = {"a.csv", "b.csv"}
         ("/jobs", {"kind": "dance", "request": {}}, "kind", "Use one of 'atlas', 'bend'"),
         ("/jobs", {"kind": [], "request": {}}, "kind", "Use one of 'atlas', 'bend'"),
         ("/jobs", {"request": {}}, "kind", "kind"),
+        (
+            "/jobs",
+            {"kind": "whole", "request": {"chart": {"fabric": "rib"}, "material": "acrylic"}},
+            "request.chart.columns",
+            "Give request.chart.columns",
+        ),
         (
             "/estimate",
             {"bending_modulus_n_mm2": 0.04, "loop_length_mm": 1},

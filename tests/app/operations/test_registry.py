@@ -17,7 +17,7 @@ from pydantic import Field, ValidationError
 from app.cli.commands import command_of
 from app.cli.main import main
 from app.context import Context
-from app.models.base import Ends, Floats, Known, RequestModel, ResultModel
+from app.models.base import Ends, Floats, IntervalResult, Known, RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, RepeatInput
 from app.models.gauge import GaugeInput
 from app.models.uploads import UploadedFile, stored
@@ -183,6 +183,21 @@ def test_remarks_do_not_mix_with_the_result() -> None:
     assert (told.stdout, told.stderr) == ("4\n", "note: one\nwarning: two\n")
     told = CliRunner().invoke(command_of(operation, "remark"), ["rib", "--json"])
     assert told.stderr == ""
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        ("Ten swatches.", "90 % intervals: Ten swatches.\n"),
+        ("No intervals: nothing is known.", "No intervals: nothing is known.\n"),
+    ],
+)
+def test_a_result_says_what_its_intervals_rest_on(source: str, told: str) -> None:
+    def known(_: Repeat, __: Context) -> IntervalResult:
+        return IntervalResult(interval_source=source)
+
+    operation = Operation(known, tag="tests", summary="Known", command=Command(lambda _: []))
+    assert CliRunner().invoke(command_of(operation, "known"), ["rib"]).stderr == told
 
 
 @pytest.mark.parametrize("name", [name for name, of in operations().items() if of.example])

@@ -9,6 +9,7 @@ from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.friction import agitated, rubbed
+from knitcore.yarnlevel.hysteresis import at_rest
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.solver import COURSE
@@ -141,6 +142,8 @@ def test_friction_takes_energy_in_every_step_but_the_first_one_back(stockinette)
 def test_coefficients_out_of_range_are_refused(stockinette, coefficient):
     with pytest.raises(InputError, match="friction"):
         rubbed(agitated(stockinette), coefficient)
+    with pytest.raises(InputError, match="friction"):
+        at_rest(stockinette, "agitated", coefficient)
 
 
 def test_yarn_that_is_held_flat_is_refused(stockinette):

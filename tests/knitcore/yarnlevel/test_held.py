@@ -10,6 +10,7 @@ from knitcore.yarnlevel.held import foot_rows, independent, plane_rows
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.start import start_state
+from knitcore.yarnlevel.whole import relax_whole
 from knitcore.yarnlevel.yarn import YarnModel
 
 YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
@@ -67,6 +68,17 @@ def test_a_fabric_laid_flat_is_wider_and_thinner_than_a_folded_one():
     assert stockinette.energy_n_mm == pytest.approx(
         relax(StitchChart.parse("K"), YARN, LENGTH).energy_n_mm, rel=1e-6
     )
+
+
+def test_yarn_does_not_slide_out_of_a_plane():
+    rib = StitchChart.parse("KP")
+    folded = relax(rib, YARN, LENGTH)
+    flat = relax(rib, YARN, LENGTH, flat=True)
+    free = relax(rib, YARN, LENGTH, flat=True, branch="free")
+    whole = relax_whole(rib.tile(4, 2), YARN, LENGTH, flat=True)
+    assert flat.energy_n_mm > 1.2 * folded.energy_n_mm
+    assert free.energy_n_mm == pytest.approx(flat.energy_n_mm, rel=0.02)
+    assert whole.energy_n_mm == pytest.approx(flat.energy_n_mm, rel=0.02)
 
 
 def test_rules_that_symmetry_keeps_are_left_out():

@@ -164,3 +164,7 @@ def test_every_history_has_its_rest_size(stockinette):
 def test_a_cycle_count_out_of_range_is_refused(stockinette):
     with pytest.raises(InputError, match="cycles"):
         hysteresis(stockinette, Direction.COURSE, 0.1, 0.2, cycles=0)
+    with pytest.raises(InputError, match=r"cycles: 1.5 is not a whole number"):
+        hysteresis(stockinette, Direction.COURSE, 0.1, 0.2, cycles=1.5)
+    with pytest.raises(InputError, match=r"points: 4.5 is not a whole number"):
+        hysteresis(stockinette, Direction.COURSE, 0.1, 0.2, points=4.5)

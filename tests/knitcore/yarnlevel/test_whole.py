@@ -22,6 +22,7 @@ from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.topology import Clearance
 from knitcore.yarnlevel.whole import WholeShape, relax_whole
 from knitcore.yarnlevel.windows import each, row_lengths, touch, window_energy, windows
+from knitcore.yarnlevel.yarn import YarnModel
 
 SAMPLE = sample("acrylic", Fabric.STOCKINETTE)
 ROWS, WALES = 9, 8
@@ -173,12 +174,16 @@ def test_the_lengths_of_windows_add_up_to_those_of_the_courses(
 
 def test_wrong_input_is_refused() -> None:
     chart = StitchChart(PURL)
-    with pytest.raises(InputError, match="3 lengths were given for 9 courses"):
+    with pytest.raises(InputError, match="3 lengths were given for a repeat of 8 columns x 9 rows"):
         relax_whole(chart, SAMPLE.yarn, [11.0, 11.0, 11.0])
+    with pytest.raises(InputError, match=r"Give one length, or one for every course.$"):
+        relax_whole(chart, SAMPLE.yarn, np.full((ROWS, WALES), 11.0))
     with pytest.raises(InputError, match="tolerance"):
         relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=0.5)
     with pytest.raises(InputError, match="rounds"):
         relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, rounds=1)
+    with pytest.raises(InputError, match=r"rounds: 2.5 is not a whole number"):
+        relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, rounds=2.5)
     other = WholeShape(np.zeros((2, 24, 3)), np.ones(2), np.zeros((2, 2)), 0.1)
     with pytest.raises(InputError, match="another chart"):
         relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, resume=other)
@@ -196,6 +201,25 @@ def test_a_chart_is_settled_when_neither_energy_nor_size_changes_much() -> None:
     narrower = replace(sheet, rounds=((0.2, 3.0, 2.0), (0.2, 2.7, 2.1)))
     assert narrower.energy_change == 0.0
     assert narrower.change == pytest.approx(0.01)  # a tenth of the size's
+
+
+def test_progress_is_told_of_yarn_without_a_core() -> None:
+    shares: list[float] = []
+    yarn = YarnModel(0.045, 3e-3, 2.4, 0.74, 0.0)
+    relax_whole(
+        StitchChart.parse("KP\nKP"), yarn, 11.3, tolerance=0.1,
+        progress=lambda done, total: shares.append(done / total),
+    )  # fmt: skip
+    assert 0.1 <= min(shares) <= max(shares) == pytest.approx(1.0)
+
+
+def test_loop_lengths_repeat_with_the_chart() -> None:
+    chart = StitchChart.parse("K\nP").resized(4, 2)
+    short, long = 0.98 * SAMPLE.loop_length_mm, SAMPLE.loop_length_mm
+    given = [[short, long], [short, long, short, long]]
+    two, four = (relax_whole(chart, SAMPLE.yarn, mm, tolerance=0.1, rounds=2) for mm in given)
+    assert two.energy_n_mm == four.energy_n_mm
+    assert two.loop_lengths_mm.tolist() == given[1]
 
 
 def test_a_whole_chart_can_be_cancelled() -> None:
