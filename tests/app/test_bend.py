@@ -32,6 +32,13 @@ def test_the_bending_length_needs_the_weight_of_the_yarn() -> None:
     assert bent.bending_length_course_mm == pytest.approx(18.0, rel=0.02)
 
 
+def test_bend_says_why_twist_is_left_out() -> None:
+    bent = bend(BendRequest(chart="K\nP\nP\nK", material="acrylic"), Context(Path()))
+    assert not bent.stable
+    assert bent.twist_n_mm is None
+    assert any("not quite a minimum" in note for note in bent.notes)
+
+
 def test_states_that_differ_much_are_noted() -> None:
     bent = bend(BendRequest(chart="P\nK", material="cotton"), Context(Path()))
     assert not bent.stable

@@ -7,11 +7,13 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
+from knitcore.materials import material
 from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.splines import COARSE
+from knitcore.yarnlibrary.yarns import yarn_for
 
 
 def mirrored(yarn, fabric):
@@ -36,6 +38,14 @@ def test_an_instability_is_followed_to_a_lower_minimum():
     again = without_mirrors(found.state)
     assert again.minimum
     assert again.state.energy_n_mm == pytest.approx(found.state.energy_n_mm, rel=1e-4)
+
+
+def test_a_shape_that_was_followed_to_no_minimum_is_not_called_one():
+    chart = StitchChart.parse("KKPP\nKKPP\nKKPP\nPKKK")  # without mirrors of its own
+    used = yarn_for(material("cotton"), chart)
+    relaxed = relax(chart, used.yarn, used.loop_length_mm)
+    assert relaxed.mirrored is None
+    assert relaxed.minimum is False  # a shallow saddle
 
 
 @pytest.mark.slow
