@@ -7,13 +7,12 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.materials import material
-from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
+from knitcore.yarnlevel import lowest as lowest_module
+from knitcore.yarnlevel.lowest import Followed, can_be_followed, lowest, without_mirrors
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.splines import COARSE
-from knitcore.yarnlibrary.yarns import yarn_for
 
 
 def mirrored(yarn, fabric):
@@ -40,12 +39,16 @@ def test_an_instability_is_followed_to_a_lower_minimum():
     assert again.state.energy_n_mm == pytest.approx(found.state.energy_n_mm, rel=1e-4)
 
 
-def test_a_shape_that_was_followed_to_no_minimum_is_not_called_one():
-    chart = StitchChart.parse("KKPP\nKKPP\nKKPP\nPKKK")  # without mirrors of its own
-    used = yarn_for(material("cotton"), chart)
-    relaxed = relax(chart, used.yarn, used.loop_length_mm)
-    assert relaxed.mirrored is None
-    assert relaxed.minimum == without_mirrors(relaxed).minimum  # a shallow saddle
+@pytest.mark.parametrize("lower", [1e-5, 0.1])
+def test_a_shape_that_is_not_known_to_be_a_minimum_is_not_called_one(monkeypatch, lower):
+    relaxed = mirrored("acrylic", "stockinette")
+    saddle = replace(without_mirrors(relaxed).state, minimum=False)
+    monkeypatch.setattr(
+        lowest_module, "without_mirrors", lambda *_, **__: Followed(False, saddle, lower)
+    )
+    found = lowest(relaxed)
+    assert found.minimum is False
+    assert (found.mirrored is relaxed) == (lower == 0.1)
 
 
 @pytest.mark.slow
