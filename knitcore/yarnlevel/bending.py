@@ -16,7 +16,7 @@ from knitcore.choice import Choice
 from knitcore.errors import Cancelled, ConvergenceError, UnravelledError
 from knitcore.yarnlevel.bent_cell import BendingResponse, settled
 from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
-from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld
+from knitcore.yarnlevel.splines import RelaxedRepeat
 
 MAX_STITCHES = 36
 """Largest repeat; the unknowns fill a dense matrix."""
@@ -208,7 +208,6 @@ def bending_response(relaxed: RelaxedRepeat) -> FabricBending:
         the minimum that it then goes to.
     """
     check_stitches(relaxed.chart.stitches, MAX_STITCHES, "its repeat")
-    check_unheld(relaxed)
     cell = settled(relaxed)
     course, wale = cell.bent(0.0), cell.bent(0.5 * np.pi)
     if min(course.rigidity_n_mm, course.held_n_mm, wale.rigidity_n_mm, wale.held_n_mm) <= 0.0:

@@ -50,7 +50,7 @@ from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.splines import RelaxedRepeat, refined
+from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld, refined
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 
 _STEP = 1e-3
@@ -128,9 +128,12 @@ def settled(relaxed: RelaxedRepeat) -> BentCell:
 
     Raises
     ------
+    InputError
+        If it is held.
     ConvergenceError, UnravelledError
         If it has no equilibrium nearby, not even relaxed again on a finer grid.
     """
+    check_unheld(relaxed)
     found = _by_newton(relaxed)
     if found is None and relaxed.cell.grid.samples < GRID.samples:
         found = _by_newton(refined(relaxed, GRID))
@@ -148,16 +151,9 @@ def _by_newton(relaxed: RelaxedRepeat) -> BentCell | None:
     if cell.grid.samples < GRID.samples:
         finer = plain_cell(relaxed.chart, GRID)
         state, cell = refined_state(cell, state, finer), finer
-    repeats = cell.rows // relaxed.cell.rows
-    lengths = np.tile(
-        relaxed.loop_lengths_mm.reshape(relaxed.cell.rows, -1),
-        (repeats, cell.wales // relaxed.cell.wales if relaxed.loop_lengths_mm.ndim == 2 else 1),
-    )
-    energy = CellEnergy(
-        cell, relaxed.yarn, lengths if lengths.shape[1] > 1 else lengths[:, 0], relaxed.convention
-    )
-    tension = np.tile(relaxed.tension_n[: relaxed.loop_lengths_mm.size], repeats)
-    tension = np.resize(tension, len(energy.prescribed_mm))
+    lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
+    energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
+    tension = np.resize(relaxed.tension_n, cell.rows)
     radius = relaxed.yarn.radius_mm
     for _ in range(_STEPS):
         here = BentCell(energy, state, tension)

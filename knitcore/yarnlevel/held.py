@@ -24,6 +24,14 @@ _SMALL = 1e-9
 _INDEPENDENT = 1e-6
 
 
+def middle_weights(grid: SplineGrid) -> Array:
+    """(controls + 1,) weights of the control points from foot to foot in the mean height of a
+    stitch; those at the feet count half."""
+    weights = np.full(grid.controls + 1, 1.0 / grid.controls)
+    weights[[0, -1]] *= 0.5
+    return weights
+
+
 def foot_weights(grid: SplineGrid) -> Array:
     """(6,) weights of the control points around a foot in the slope there, per unit of t."""
     return np.asarray(quintic_basis(np.array([0.0]), 1)[0] * grid.controls)
@@ -52,17 +60,15 @@ def foot_rows(cell: YarnCell) -> Array:
 
 def plane_rows(cell: YarnCell) -> Array:
     """(k, unknowns): mean height of every stitch over the middle plane, mm."""
-    per_stitch = cell.grid.controls
+    weights = middle_weights(cell.grid)
     rows = []
     for course in range(cell.rows):
         for wale in range(cell.wales):
             row = np.zeros(cell.unknowns)
-            for c in range(wale * per_stitch, (wale + 1) * per_stitch + 1):
-                # the control points at the two feet count half
-                end = c % per_stitch == 0
+            for c, weight in enumerate(weights, wale * cell.grid.controls):
                 next_cell, own = divmod(c, cell.controls_per_course)
                 sign = cell.sign[course, own, _Z] * (cell.mirror[0] if next_cell else 1)
-                row[cell.dof[course, own, _Z]] += sign * (0.5 if end else 1.0) / per_stitch
+                row[cell.dof[course, own, _Z]] += sign * weight
             rows.append(row)
     heights = np.array(rows)
     if cell.mirror == (1, 1):  # no symmetry says where the middle plane lies

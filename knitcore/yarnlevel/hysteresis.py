@@ -34,9 +34,10 @@ _FREE = 1e-6
 _THERE = 1e-9
 """Part of a size by which it may differ and still count as the same."""
 _UNBALANCED = 0.1
-"""Part of the work against friction by which a loop's area may miss it without a note."""
+"""Part of the larger by which a loop's area and the work against friction may differ without a
+note."""
 _SLIGHT = 1e-3
-"""The same as a part of the work of the pull, for loops that lose next to nothing."""
+"""Part of the work of the pull by which they may, for loops that lose next to nothing."""
 
 
 class History(Choice):
@@ -114,11 +115,12 @@ class Hysteresis:
         area, work = self.zero.cell_course_mm * self.zero.cell_wale_mm, self.lost_n_mm[-2:].sum()
         # of a loop that does not close, the yarn keeps a part
         kept = self.legs[-1].energy_n_mm[-1] - self.legs[-2].energy_n_mm[0]
-        missed = abs(area * self.lost_per_cycle_n_per_mm - kept - work)
-        if missed > max(_UNBALANCED * work, _SLIGHT * area * self.legs[-2].work_n_per_mm):
+        loop = area * self.lost_per_cycle_n_per_mm - kept
+        missed, larger = abs(loop - work), max(abs(loop), abs(work))
+        if missed > max(_UNBALANCED * larger, _SLIGHT * area * self.legs[-2].work_n_per_mm):
             found[
                 "The loop's area and the work against friction differ by "
-                f"{100 * missed / work:.0f} %: take more points."
+                f"{100 * missed / larger:.0f} %: take more points, unless the shape jumps."
             ] = None
         return tuple(found)
 

@@ -67,6 +67,8 @@ def turned(
         If the image does not rest in the same shape.
     CancelledError
         If ``cancelled`` says so.
+    ValueError
+        If ``image`` is of another fabric.
     """
     grid = relaxed.cell.grid
     free = free_cell(image, grid)

@@ -155,8 +155,9 @@ def relax(
 
         if starts is not None or not uniform:
             return searched(chart)
-        fixed = [k for k, size in ((COURSE, cell_course_mm), (WALE, cell_wale_mm)) if size]
-        return same_for_images(searched, chart.repeat(), fixed=tuple(fixed), cancelled=cancelled)
+        sizes = {COURSE: cell_course_mm, WALE: cell_wale_mm}
+        fixed = tuple(which for which, size in sizes.items() if size is not None)
+        return same_for_images(searched, chart.repeat(), fixed=fixed, cancelled=cancelled)
     if flat or grid is not None or starts is not None or np.size(loop_length_mm) != 1:
         raise InputError(
             "branch",

@@ -21,7 +21,7 @@ from knitcore.errors import Cancelled, ConvergenceError, InputError, check_cance
 from knitcore.yarnlevel.bending import MAX_STITCHES
 from knitcore.yarnlevel.bent_cell import BentCell, Deformation, settled
 from knitcore.yarnlevel.solver import COURSE, WALE
-from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld
+from knitcore.yarnlevel.splines import RelaxedRepeat
 
 MIN_WALES = 8
 """Fewest wales around: in narrower tubes yarn from one side meets that of the other."""
@@ -103,7 +103,6 @@ def in_the_round(
             f"{wales} is not a multiple of the repeat's {relaxed.chart.columns} columns.",
             "Let the repeat go around a whole number of times.",
         )
-    check_unheld(relaxed)
     flat = settled(relaxed)
     angle = (1.0 if face_outside else -1.0) * 2.0 * math.pi / wales
     here, value = flat, flat.lagrangian(Deformation()).value

@@ -19,7 +19,7 @@ from knitcore.arrays import Array
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.held import FOOT, foot_weights
+from knitcore.yarnlevel.held import FOOT, foot_weights, middle_weights
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.spline import SUPPORT
 
@@ -167,10 +167,8 @@ class WindowEnergy(CellEnergy):
     @cached_property
     def _rules(self) -> tuple[Array, Array]:
         """The rows of ``held``, and what the resting control points add to each."""
-        cell, count = self.cell, self.cell.grid.controls
-        middle = np.full(count + 1, 1.0 / count)
-        middle[[0, -1]] *= 0.5  # the control points at the two feet count half
-        rules = [self._rule(0, middle, 2), self._rule(FOOT, foot_weights(cell.grid), 1)]
+        grid = self.cell.grid
+        rules = [self._rule(0, middle_weights(grid), 2), self._rule(FOOT, foot_weights(grid), 1)]
         return np.concatenate([r for r, _ in rules]), np.concatenate([rest for _, rest in rules])
 
     def _rule(self, first: int, weights: Array, axis: int) -> tuple[Array, Array]:

@@ -58,7 +58,7 @@ def test_a_loop_near_locking_changes_little_with_more_points(stockinette):
 def test_a_loop_of_too_few_points_says_so(stockinette):
     loop = hysteresis(stockinette, "wale", 0.3, 0.25, points=4, cycles=1)
     (note,) = loop.notes
-    assert "differ by 26 %: take more points." in note
+    assert "differ by 26 %: take more points" in note
 
 
 def test_the_last_cycle_is_one_stretch_there_and_back(loop):
