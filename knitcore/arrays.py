@@ -1,4 +1,4 @@
-"""Arrays of numbers: their type, and stretches of equal values in them."""
+"""Arrays of numbers: their type, random ones, and stretches of equal values in them."""
 
 from itertools import pairwise
 
@@ -6,6 +6,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+
+
+def scattered(shape: tuple[int, ...], size: float, seed: int) -> Array:
+    """Random numbers of a root mean square ``size``, spread evenly about zero.
+
+    They come from a counter (Philox) and exact arithmetic, so that they are the same everywhere.
+    """
+    even = np.random.Generator(np.random.Philox(key=seed)).random(shape)
+    return np.asarray(size * np.sqrt(3.0) * (2.0 * even - 1.0))
 
 
 def runs(values: ArrayLike) -> list[tuple[int, int, int]]:

@@ -1,113 +1,26 @@
-"""Compiled elimination and substitution on a tree of fronts.
-
-Dense work is done by LAPACK, called without Python in between: a tree has thousands of small
-fronts, and two threads can work on two of its branches without the interpreter lock.
+"""Compiled elimination and substitution on a tree of fronts, without Python in between: a tree has
+thousands of small fronts, and two threads can work on two of its branches.
 
 Matrices are views [column, row] of Fortran's order; only lower triangles are kept.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from llvmlite import ir
-from numba import njit, types
-from numba.extending import get_cython_function_address, intrinsic
+from numba import njit
 from numpy.typing import NDArray
 
+from knitcore import dense
 from knitcore.arrays import Array
 
 Block = NDArray[np.floating]
 Indices = NDArray[np.int64]
 
 
-ROUTINES = {
-    np.dtype(dtype): np.array(
-        [
-            get_cython_function_address("scipy.linalg.cython_lapack", letter + "potrf"),
-            get_cython_function_address("scipy.linalg.cython_blas", letter + "trsm"),
-            get_cython_function_address("scipy.linalg.cython_blas", letter + "syrk"),
-        ],
-        dtype=np.int64,
-    )
-    for letter, dtype in (("s", np.float32), ("d", np.float64))
-}
-"""Addresses of Cholesky, triangular solution and symmetric update by precision."""
-
-LETTERS = np.frombuffer(b"LRTN", dtype=np.uint8).copy()
-
-
-def _generate_call(_context: Any, address: Any, arguments: Any) -> Any:
-    """Call the routine at an address with a tuple of addresses."""
-
-    def generate(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-        parts = [builder.extract_value(values[1], i) for i in range(len(arguments))]
-        pointer = ir.IntType(8).as_pointer()
-        routine = ir.FunctionType(ir.VoidType(), [pointer] * len(parts)).as_pointer()
-        builder.call(
-            builder.inttoptr(values[0], routine),
-            [builder.inttoptr(part, pointer) for part in parts],
-        )
-        return context.get_dummy_value()
-
-    return types.void(address, arguments), generate
-
-
-call: Any = intrinsic(_generate_call)
-
-
-@njit(cache=True, nogil=True)
-def reduce_front(
-    routines: Indices,
-    letters: NDArray[np.uint8],
-    numbers: NDArray[np.int32],
-    scalars: Block,
-    offset: int,
-    s: int,
-    b: int,
-    place: int,
-    factor: Block,
-    work: Block,
-) -> bool:
-    """Factorise a front in place; False if a pivot is not positive definite.
-
-    Parameters
-    ----------
-    routines, letters, numbers, scalars : see :func:`eliminate`.
-    offset : of the front in ``factor``: s columns to eliminate, then b of their border.
-    place : in ``work``, of the (b, b) remainder that the border's product is taken from.
-    """
-    if s == 0:
-        return True
-    numbers[0], numbers[1], numbers[2] = s, b, 0
-    letter, number, scalar = letters.ctypes.data, numbers.ctypes.data, scalars.ctypes.data
-    lower, right, transposed, plain = letter, letter + 1, letter + 2, letter + 3
-    s_at, b_at, info_at = number, number + 4, number + 8
-    one, minus = scalar, scalar + scalars.itemsize
-    pivot = factor.ctypes.data + offset * factor.itemsize
-    below = pivot + s * s * factor.itemsize
-    schur = work.ctypes.data + place * work.itemsize
-    call(routines[0], (lower, s_at, pivot, s_at, info_at))
-    if numbers[2] != 0:
-        return False
-    if b > 0:
-        call(
-            routines[1],
-            (right, lower, transposed, plain, b_at, s_at, one, pivot, s_at, below, b_at),
-        )
-        call(routines[2], (lower, plain, b_at, s_at, minus, below, b_at, one, schur, b_at))
-    return True
-
-
 @njit(cache=True, nogil=True)
 def eliminate(
     first: int,
     last: int,
-    routines: Indices,
-    letters: NDArray[np.uint8],
-    numbers: NDArray[np.int32],
-    scalars: Block,
     boxes: Indices,
     own: Indices,
     border: Indices,
@@ -124,8 +37,6 @@ def eliminate(
     Parameters
     ----------
     first, last : range of boxes.
-    routines, letters : addresses and the letters "LRTN".
-    numbers, scalars : room for four integers; 1 and -1.
     boxes : (boxes, 8) offset in the factor, eliminated, border, both children (or -1), place in
         ``work``, starts in ``own`` and ``border``.
     own, border : unknowns by box, in the order of elimination.
@@ -143,22 +54,21 @@ def eliminate(
             at[own[e0 + k] // n] = k
         for k in range(0, b, n):
             at[border[b0 + k] // n] = s + k
-        front = factor[offset : offset + s * (s + b)]
+        front = factor[offset : offset + s * (s + b)].reshape((s, s + b))
         front[:] = 0.0
-        pivot = front[: s * s].reshape((s, s))
-        below = front[s * s :].reshape((s, b))
         schur = work[room : room + b * b].reshape((b, b))
         schur[:] = 0.0
-        _assemble(own[e0 : e0 + s : n], rank, at, starts, columns, blocks, pivot, below)
+        _assemble(own[e0 : e0 + s : n], rank, at, starts, columns, blocks, front)
         for side in range(3, 5):
             child = boxes[box, side]
             if child < 0:
                 continue
             size, place, start = boxes[child, 2], boxes[child, 5], boxes[child, 7]
             rest = work[place : place + size * size].reshape((size, size))
-            _extend(rest, places[start : start + size], pivot, below, schur)
-        if not reduce_front(routines, letters, numbers, scalars, offset, s, b, room, factor, work):
+            _extend(rest, places[start : start + size], front, schur)
+        if not dense.eliminate(front):
             return False
+        dense.subtract_product(schur[:, :], front[:, s:], front[:, s:], True)
     return True
 
 
@@ -170,11 +80,10 @@ def _assemble(
     starts: NDArray[np.int32],
     columns: NDArray[np.int32],
     blocks: Array,
-    pivot: Block,
-    below: Block,
+    front: Block,
 ) -> None:
     """Add the matrix between a front's own corners and those that are eliminated later."""
-    s, size = pivot.shape[0], blocks.shape[1]
+    size = blocks.shape[1]
     for unknown in own:
         i = unknown // size
         for k in range(starts[i], starts[i + 1]):
@@ -183,25 +92,19 @@ def _assemble(
                 continue
             for m in range(size):
                 for n in range(m if i == j else 0, size):
-                    to = at[j] + n
-                    if to < s:
-                        pivot[at[i] + m, to] += blocks[k, m, n]
-                    else:
-                        below[at[i] + m, to - s] += blocks[k, m, n]
+                    front[at[i] + m, at[j] + n] += blocks[k, m, n]
 
 
 @njit(cache=True, nogil=True)
-def _extend(rest: Block, places: Indices, pivot: Block, below: Block, schur: Block) -> None:
+def _extend(rest: Block, places: Indices, front: Block, schur: Block) -> None:
     """Add what a child leaves, its lower triangle, to its parent's front."""
-    s = pivot.shape[0]
+    s = front.shape[0]
     for c in range(rest.shape[0]):
         column = places[c]
         for r in range(c, rest.shape[0]):
             row = places[r]
-            if row < s:
-                pivot[column, row] += rest[c, r]
-            elif column < s:
-                below[column, row - s] += rest[c, r]
+            if column < s:
+                front[column, row] += rest[c, r]
             else:
                 schur[column - s, row - s] += rest[c, r]
 
@@ -247,7 +150,7 @@ def add_cells(
             blocks[9 * corner + 4, m, m] = 1.0
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+@njit(cache=True, nogil=True)
 def forward(
     first: int,
     last: int,
@@ -262,26 +165,17 @@ def forward(
     for box in range(first, last):
         offset, s, b = boxes[box, 0], boxes[box, 1], boxes[box, 2]
         e0, b0 = boxes[box, 6], boxes[box, 7]
-        below = offset + s * s
         for i in range(s):
             v[i] = x[eliminated[e0 + i]]
         v[s : s + b] = 0.0
-        for i in range(s):
-            column = factor[offset + i * s : offset + i * s + s]
-            y = v[i] / column[i]
-            v[i] = y
-            for r in range(i + 1, s):
-                v[r] -= column[r] * y
-            column = factor[below + i * b : below + i * b + b]
-            for r in range(b):
-                v[s + r] -= column[r] * y
+        dense.forward(factor[offset : offset + s * (s + b)].reshape((s, s + b)), v[: s + b])
         for i in range(s):
             x[eliminated[e0 + i]] = v[i]
         for r in range(b):
             x[border[b0 + r]] += v[s + r]
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+@njit(cache=True, nogil=True)
 def backward(
     first: int,
     last: int,
@@ -293,25 +187,13 @@ def backward(
     x: Block,
 ) -> None:
     """Backward substitution in place."""
-    zero = x.dtype.type(0.0)
     for box in range(last - 1, first - 1, -1):
         offset, s, b = boxes[box, 0], boxes[box, 1], boxes[box, 2]
         e0, b0 = boxes[box, 6], boxes[box, 7]
-        below = offset + s * s
         for i in range(s):
             v[i] = x[eliminated[e0 + i]]
         for r in range(b):
             v[s + r] = x[border[b0 + r]]
-        for i in range(s - 1, -1, -1):
-            known = v[s : s + b]
-            column = factor[below + i * b : below + i * b + b]
-            y = zero
-            for r in range(b):
-                y += column[r] * known[r]
-            known = v[i + 1 : s]
-            column = factor[offset + i * s + i + 1 : offset + i * s + s]
-            for r in range(s - i - 1):
-                y += column[r] * known[r]
-            v[i] = (v[i] - y) / factor[offset + i * s + i]
+        dense.backward(factor[offset : offset + s * (s + b)].reshape((s, s + b)), v[: s + b])
         for i in range(s):
             x[eliminated[e0 + i]] = v[i]

@@ -1,4 +1,4 @@
-"""Cholesky factors on a tree of dense fronts (multifrontal method), each eliminated by LAPACK.
+"""Cholesky factors on a tree of dense fronts (multifrontal method).
 
 Corners of a grid are eliminated box by box: those that only a box holds, as one dense front with
 the corners around it that are eliminated later. What is left for these is added to the front of the
@@ -85,13 +85,10 @@ class FrontTree:
         matrix : of the pattern; an entry counts where its row is eliminated before its column.
         factor, work : (entries,) and (work,), the factor and room for what waits.
         """
-        scalars = np.array([1.0, -1.0], factor.dtype)
-        routines = elimination.ROUTINES[factor.dtype]
 
         def branch(first: int, last: int) -> bool:
             done: bool = elimination.eliminate(
-                first, last, routines, elimination.LETTERS, np.zeros(4, np.int32), scalars,
-                self._boxes, self._own, self._border, self._places, self._rank,
+                first, last, self._boxes, self._own, self._border, self._places, self._rank,
                 matrix.starts, matrix.columns, matrix.blocks, factor, work,
             )  # fmt: skip
             return done

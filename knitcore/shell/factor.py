@@ -2,7 +2,7 @@
 
 The sheet is halved along its rows or its columns, each half again. Stitches of one half that touch
 those of the other, as neighbours or because the sheet is folded, are cut out: a least vertex cover
-of what crosses. Cuts are eliminated after what they part, each as a dense front by LAPACK. General
+of what crosses. Cuts are eliminated after what they part, each as a dense front. General
 sparse solvers do not know the sheet, and take several times as long where it is rolled up.
 """
 

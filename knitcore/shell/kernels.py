@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.elementary import arctan2, log
 
 Ints = NDArray[np.int64]
 RealOrComplex = NDArray[Any]
@@ -63,9 +64,9 @@ def metric_energy(
     for m in range(3):
         for n in range(m):
             curvature[m, n] = curvature[n, m]
-    stretch = c11 * (q1 - 1.0 - np.log(q1)) + c22 * (q2 - 1.0 - np.log(q2))
+    stretch = c11 * (q1 - 1.0 - log(q1)) + c22 * (q2 - 1.0 - log(q2))
     stretch += c12 * (q1 - 1.0) * (q2 - 1.0)
-    return float(0.25 * stretch - 0.5 * shear * np.log(area / (q1 * q2)))
+    return float(0.25 * stretch - 0.5 * shear * log(area / (q1 * q2)))
 
 
 @numba.njit(cache=True)
@@ -198,14 +199,14 @@ def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
         p, q, a, b, c, d = nodes[k]
         _hinge_points(x, nodes[k], points)
         sine, cosine, left, right = turn_slope(points, slope)
-        energy, moment, _ = bent(np.arctan2(sine, cosine), parameters[k])
+        energy, moment, _ = bent(arctan2(sine, cosine), parameters[k])
         total += energy
         for i in range(4):
             for m in range(3):
                 slope[i, m] *= moment
         for side in range(2, 4):
             if (left if side == 2 else right) < parameters[k, 3]:
-                narrow = np.log(width_slope(points, side, width) / parameters[k, 3])
+                narrow = log(width_slope(points, side, width) / parameters[k, 3])
                 total += 0.5 * parameters[k, 0] * narrow * narrow
                 slope += parameters[k, 0] * narrow * width
         for m in range(3):

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
+from knitcore.arrays import Array, scattered
+from knitcore.dense import dot
 from knitcore.errors import Cancelled, check_cancelled
 from knitcore.shell.factor import SheetFactor
 from knitcore.shell.sheet import StitchSheet
@@ -75,9 +76,9 @@ def shake_mm(shape: tuple[int, ...], size_mm: float = 1e-3) -> Array:
     Parameters
     ----------
     shape : of the result.
-    size_mm : standard deviation of each.
+    size_mm : their root mean square.
     """
-    return np.asarray(size_mm * np.random.default_rng(0).standard_normal(shape))
+    return scattered(shape, size_mm, seed=0)
 
 
 def settle(
@@ -219,7 +220,7 @@ class _Descent:
             return True
         change = gradient - self._gradient
         product = float((moved * change).sum())
-        if product > 1e-9 * float(np.linalg.norm(moved) * np.linalg.norm(change)):
+        if product > 1e-9 * float(np.sqrt((moved**2).sum() * (change**2).sum())):
             self._past.append((moved, change, product))
         self.x, self.energy, self._gradient = self.x + moved, energy, gradient
         self._age += 1
@@ -272,7 +273,7 @@ class _Descent:
             energy -= float((self._load * x).sum())
             gradient -= self._load
         below = np.minimum(x[:, 2] - self._floor, 0.0)
-        energy += 0.5 * self._sheet.touch_n_per_mm * float(below @ below)
+        energy += 0.5 * self._sheet.touch_n_per_mm * dot(below, below)
         gradient[:, 2] += self._sheet.touch_n_per_mm * below
         gradient[~self._free] = 0.0
         return energy, gradient

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import bsr_matrix
 
 from knitcore.arrays import Array
+from knitcore.elementary import arctan2, log
 from knitcore.shell.kernels import (
     NAP,
     bent,
@@ -208,7 +209,7 @@ def _hinges(
             points[2, m] = 0.5 * (x[nodes[k, 2], m] + x[nodes[k, 3], m])
             points[3, m] = 0.5 * (x[nodes[k, 4], m] + x[nodes[k, 5], m])
         sine, cosine, left, right = turn_slope(points, slope)
-        _, moment, stiffness = bent(np.arctan2(sine, cosine), parameters[k])
+        _, moment, stiffness = bent(arctan2(sine, cosine), parameters[k])
         matrix[:] = 0.0
         _add_square(slope, stiffness, matrix)
         if not convex:
@@ -219,7 +220,7 @@ def _hinges(
         for side in range(2, 4):
             if (left if side == 2 else right) >= parameters[k, 3]:
                 continue
-            narrow = np.log(width_slope(points, side, slope) / parameters[k, 3])
+            narrow = log(width_slope(points, side, slope) / parameters[k, 3])
             _add_square(slope, parameters[k, 0], matrix)
             if not convex:
                 for j in range(12):

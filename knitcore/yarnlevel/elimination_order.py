@@ -1,18 +1,19 @@
 """Order of elimination by nested dissection: a sheet is cut in two, each half again, cuts last.
 
 What is left of a half never touches the other, so only the cuts fill up. Where folded fabric
-touches cannot be known from the chart, so the cuts are found in the pattern itself: the Fiedler
-vector halves it, and a least vertex cover of what crosses the halves is the cut (König's theorem).
+touches cannot be known from the chart, so the cuts are found in the pattern itself: its slowest
+wave halves it, and a least vertex cover of what crosses the halves is the cut (König's theorem).
 """
 
 from __future__ import annotations
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.fronts import Front, elimination, work
 
 Ints = NDArray[np.int64]
@@ -20,6 +21,8 @@ Bools = NDArray[np.bool_]
 
 _LEAF = 12
 """Blocks that are not divided any more."""
+_SWEEPS = 60
+"""Averages over the blocks around, which leave the slowest wave of a pattern."""
 _STALE = 1.1
 """An order is found again where its work has grown by this factor."""
 
@@ -55,10 +58,8 @@ def _parts(touching: Bools, of: Ints) -> list[Ints]:
     if len(of) <= _LEAF:
         return [of]
     sub = touching[np.ix_(of, of)]
-    coupling = sub.astype(float)
-    np.fill_diagonal(coupling, 0.0)
-    _, modes = eigh(np.diag(coupling.sum(axis=1)) - coupling, subset_by_index=(0, 1))
-    first = modes[:, 1] < np.median(modes[:, 1])
+    first = np.zeros(len(of), bool)
+    first[np.argsort(_slowest_wave(sub, _SWEEPS), kind="stable")[: len(of) // 2]] = True
     rows, columns = vertex_cover(sub[first][:, ~first])
     one, two = np.flatnonzero(first), np.flatnonzero(~first)
     if rows.all() or columns.all():
@@ -84,3 +85,46 @@ def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:
         new &= ~rows
         rows |= new
     return ~rows, columns
+
+
+@numba.njit(cache=True, nogil=True)
+def _slowest_wave(touching: Bools, sweeps: int) -> Array:
+    """About the Fiedler vector of a pattern (n, n), in arithmetic that is the same everywhere.
+
+    It begins with the steps from the block farthest from the first one.
+    """
+    n = touching.shape[0]
+    degree = np.empty(n)
+    for i in range(n):
+        degree[i] = touching[i].sum()
+    begin = 0
+    queue, steps = np.empty(n, np.int64), np.empty(n)
+    for _ in range(2):
+        steps[:] = -1.0
+        steps[begin] = 0.0
+        queue[0] = begin
+        count = 1
+        for k in range(n):
+            if k == count:
+                break
+            i = queue[k]
+            for j in range(n):
+                if touching[i, j] and steps[j] < 0.0:
+                    steps[j] = steps[i] + 1.0
+                    queue[count] = j
+                    count += 1
+        begin = queue[count - 1]
+    wave, mean = steps, np.empty(n)
+    for _ in range(sweeps):
+        centre = 0.0
+        for i in range(n):
+            centre += degree[i] * wave[i]
+        centre /= degree.sum()
+        for i in range(n):
+            total = 0.0
+            for j in range(n):
+                if touching[i, j]:
+                    total += wave[j] - centre
+            mean[i] = total / degree[i]
+        wave, mean = mean, wave
+    return wave

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.dense import dot, times
 from knitcore.threads import on_halves
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
@@ -94,8 +95,8 @@ class SparseHessian:
         """The product with a vector (unknowns,)."""
         out = np.empty(len(vector))
         out[:-2] = kernels.tiled_product(self.matrix.tiles, self.matrix.where, vector[:-2])
-        out[:-2] += vector[-2:] @ self.sizes[:, :-2]
-        out[-2:] = self.sizes @ vector
+        out[:-2] += vector[-2] * self.sizes[0, :-2] + vector[-1] * self.sizes[1, :-2]
+        out[-2:] = times(self.sizes, vector)
         return out
 
 
@@ -239,7 +240,7 @@ class CellEnergy:
         speed = np.sqrt(np.einsum("im,im->i", curve[:, 1], curve[:, 1]))
         lengths = np.bincount(self.stretch_of, speed) / self.cell.grid.samples
         slid = np.array([slide.value(state) for slide in self.slides])
-        return np.concatenate([lengths - self.prescribed_mm, self.held @ state, slid])
+        return np.concatenate([lengths - self.prescribed_mm, times(self.held, state), slid])
 
     def value(self, state: Array, curve: Array, pairs: Pairs) -> Terms:
         """Parts of the energy."""
@@ -265,8 +266,8 @@ class CellEnergy:
             terms.energy
             + terms.spacing
             + terms.friction
-            + tension @ excess
-            + 0.5 * self.penalty * excess @ excess
+            + dot(tension, excess)
+            + 0.5 * self.penalty * dot(excess, excess)
         )
 
     def derivatives(
@@ -299,7 +300,7 @@ class CellEnergy:
         slides = np.array([slide.gradient(state) for slide in self.slides])
         rules = np.concatenate([self.held, slides.reshape(-1, len(gradient))])
         beside = len(self.prescribed_mm)
-        gradient += tension[beside:] @ rules
+        gradient += times(rules.T, tension[beside:])
         rows = np.concatenate([self.length_gradients(curve), rules]) if lengths else rules[:0]
         if not hessian:
             return Slope(gradient, rows)

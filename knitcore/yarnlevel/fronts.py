@@ -3,7 +3,7 @@
 Stitches far apart do not touch, so the Hessian of a large cell is sparse. Which of them touch is
 not known beforehand, since fabric folds; the fronts are therefore found from the tiles that are
 there, in an order of elimination by nested dissection. Blocks that are eliminated together own a
-dense front, and the dense work is done by BLAS.
+dense front.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import blas, lapack
 
 from knitcore.arrays import Array
+from knitcore.dense import backward, eliminate, forward, subtract_product
 from knitcore.yarnlevel.kernels.tiles import TiledMatrix
 
 _PASSING_ON = 3.0
@@ -100,12 +100,12 @@ class Room:
         self._spare: defaultdict[int, list[Floats]] = defaultdict(list)
         self._lent: dict[int, Floats] = {}
 
-    def zeros(self, rows: int, columns: int) -> Floats:
-        """A lent array of zeros (rows, columns), columns first."""
+    def zeros(self, columns: int, rows: int) -> Floats:
+        """A lent array of zeros (columns, rows)."""
         count = rows * columns
         spare = self._spare[count.bit_length()]
         flat = spare.pop() if spare else np.empty(1 << count.bit_length(), np.float32)
-        array = flat[:count].reshape((rows, columns), order="F")
+        array = flat[:count].reshape((columns, rows))
         array.fill(0.0)
         self._lent[array.ctypes.data] = flat
         return array
@@ -139,7 +139,7 @@ class FrontalFactor:
         size = matrix.tiles.shape[1]
         inside = np.arange(size)
         self._places = [
-            tuple((part[:, None] * size + inside).ravel() for part in (front.own, front.border))
+            (np.concatenate([front.own, front.border])[:, None] * size + inside).ravel()
             for front in fronts
         ]
 
@@ -150,58 +150,74 @@ class FrontalFactor:
         self._scale = _scale(matrix.tiles, matrix.where, matrix.unknowns, damping)
         room = self._room
         room.take_all_back()
-        self._factors: list[tuple[Floats, Floats]] = []
+        self._factors: list[Floats] = []
         remainders: list[Floats | None] = []
         for front in self._fronts:
             own, edge = len(front.own) * size, len(front.border) * size
-            upper = room.zeros(own, own)
-            side = room.zeros(edge, own)
+            columns = room.zeros(own, own + edge)
             rest = room.zeros(edge, edge)
             _assemble(
                 matrix.tiles, matrix.where, self._scale, damping, matrix.unknowns,
-                front.own, front.border, upper, side,
+                front.own, front.border, columns,
             )  # fmt: skip
             for child, places in front.children:
                 remainder = remainders[child]
                 assert remainder is not None  # noqa: S101 - a child has one parent
-                _extend(remainder, places, len(front.own), size, upper, side, rest)
+                _extend(remainder, places, len(front.own), size, columns, rest)
                 room.take_back(remainder)
                 remainders[child] = None
-            upper, info = lapack.spotrf(upper, lower=1, overwrite_a=1, clean=0)
-            if info != 0:
+            if not _reduced(columns, rest):
                 return False
-            if edge:
-                side = blas.strsm(
-                    1.0, upper, side, side=1, lower=1, trans_a=1, overwrite_b=1
-                )  # fmt: skip
-                rest = blas.ssyrk(-1.0, side, beta=1.0, c=rest, lower=1, overwrite_c=1)
-            self._factors.append((upper, side))
+            self._factors.append(columns)
             remainders.append(rest)
         return True
 
     def keep(self) -> None:
         """Leave the room to others, and free what only another factorisation would need."""
-        self._factors = [(upper.copy("F"), side.copy("F")) for upper, side in self._factors]
+        self._factors = [columns.copy() for columns in self._factors]
         del self._matrix, self._room
 
     def solve(self, right: Array) -> Array:
         """The inverse times the columns (unknowns, k)."""
-        scale = self._scale[: len(right), None]
-        x = np.zeros((len(self._scale), right.shape[1]), np.float32)
-        x[: len(right)] = right * scale
-        for (upper, side), (own, edge) in zip(self._factors, self._places, strict=True):
-            part = blas.strsm(1.0, upper, x[own], lower=1)
-            x[own] = part
-            if len(edge):
-                x[edge] -= side @ part
-        for (upper, side), (own, edge) in zip(
-            reversed(self._factors), reversed(self._places), strict=True
-        ):
-            part = x[own]
-            if len(edge):
-                part = part - side.T @ x[edge]
-            x[own] = blas.strsm(1.0, upper, part, lower=1, trans_a=1)
-        return np.asarray(x[: len(right)] * scale, dtype=float)
+        scale = self._scale[: len(right)]
+        x = np.zeros((right.shape[1], len(self._scale)), np.float32)
+        x[:, : len(right)] = right.T * scale
+        fronts = list(zip(self._factors, self._places, strict=True))
+        for columns, places in fronts:
+            _eliminate_from(columns, places, x)
+        for columns, places in reversed(fronts):
+            _substitute_into(columns, places, x)
+        return np.asarray(x[:, : len(right)].T * scale[:, None], dtype=float)
+
+
+@numba.njit(cache=True, nogil=True)
+def _reduced(columns: Floats, rest: Floats) -> bool:
+    """Eliminate a front's own unknowns, and take their share from the rest; False if they are not
+    positive definite."""
+    own = columns.shape[0]
+    if not eliminate(columns):
+        return False
+    subtract_product(rest[:, :], columns[:, own:], columns[:, own:], True)
+    return True
+
+
+@numba.njit(cache=True, nogil=True)
+def _eliminate_from(columns: Floats, places: Ints, x: Floats) -> None:
+    """Forward substitution of a front in every row of ``x``."""
+    for row in x:
+        part = row[places]
+        forward(columns, part)
+        row[places] = part
+
+
+@numba.njit(cache=True, nogil=True)
+def _substitute_into(columns: Floats, places: Ints, x: Floats) -> None:
+    """Backward substitution of a front in every row of ``x``."""
+    for row in x:
+        part = row[places]
+        backward(columns, part)
+        for k in range(columns.shape[0]):
+            row[places[k]] = part[k]
 
 
 @numba.njit(cache=True, nogil=True)
@@ -287,33 +303,31 @@ def _scale(tiles: Array, where: NDArray[np.int32], unknowns: int, damping: float
 @numba.njit(cache=True, nogil=True)
 def _assemble(
     tiles: Array, where: NDArray[np.int32], scale: Array, damping: float, unknowns: int,
-    own: Ints, border: Ints, upper: Floats, side: Floats,
+    own: Ints, border: Ints, columns: Floats,
 ) -> None:  # fmt: skip
     """A front's part of the damped, scaled matrix; filled up with ones on the diagonal."""
     size = tiles.shape[1]
     for q in range(own.shape[0]):
         b = own[q]
         for p in range(q, own.shape[0] + border.shape[0]):
-            inside = p < own.shape[0]
-            a = own[p] if inside else border[p - own.shape[0]]
+            a = own[p] if p < own.shape[0] else border[p - own.shape[0]]
             tile = where[max(a, b), min(a, b)]
             if tile < 0:
                 continue
-            out = upper if inside else side
-            row = (p if inside else p - own.shape[0]) * size
             for n in range(size):
+                column = columns[q * size + n]
                 for m in range(size):
                     value = tiles[tile, m, n] if a >= b else tiles[tile, n, m]
-                    out[row + m, q * size + n] = value * scale[a * size + m] * scale[b * size + n]
+                    column[p * size + m] = value * scale[a * size + m] * scale[b * size + n]
         for n in range(size):
             u = b * size + n
             at = q * size + n
-            upper[at, at] = upper[at, at] + damping * scale[u] ** 2 if u < unknowns else 1.0
+            columns[at, at] = columns[at, at] + damping * scale[u] ** 2 if u < unknowns else 1.0
 
 
 @numba.njit(cache=True, nogil=True)
 def _extend(
-    remainder: Floats, places: Ints, own: int, size: int, upper: Floats, side: Floats, rest: Floats
+    remainder: Floats, places: Ints, own: int, size: int, columns: Floats, rest: Floats
 ) -> None:
     """Add what a child leaves of its border to its parent's front (lower triangles)."""
     count = places.shape[0]
@@ -322,23 +336,15 @@ def _extend(
         last = p == count - 1 or places[p + 1] != places[p] + 1 or places[p + 1] == own
         end[p] = p + 1 if last else end[p + 1]
     for q in range(count):
+        inside = places[q] < own
+        target, column = (columns, places[q]) if inside else (rest, places[q] - own)
         p = q
         while p < count:
-            row, column = places[p], places[q]
-            if row < own:
-                out = upper
-            elif column < own:
-                out = side
-                row -= own
-            else:
-                out = rest
-                row -= own
-                column -= own
+            row = places[p] - (0 if inside else own)
             length = (end[p] - p) * size
             for n in range(size):
-                # columns as views, so that the compiler knows that they are contiguous
-                to = out[row * size : row * size + length, column * size + n]
-                left = remainder[p * size : p * size + length, q * size + n]
+                to = target[column * size + n, row * size : row * size + length]
+                left = remainder[q * size + n, p * size : p * size + length]
                 for m in range(length):
                     to[m] += left[m]
             p = end[p]

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from knitcore.arrays import Array
+from knitcore.arrays import Array, scattered
 from knitcore.errors import Cancelled, ConvergenceError
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import Convention
@@ -128,12 +128,10 @@ def with_stiff_shell(yarn: YarnModel) -> YarnModel:
 
 
 def shaken(cell: YarnCell, state: Array, noise_mm: float, seed: int) -> Array:
-    """The state with its control points displaced at random."""
+    """The state with its control points displaced at random, by ``noise_mm`` in the mean square."""
     if noise_mm == 0.0:
         return state
-    moved = state.copy()
-    moved[:-2] += noise_mm * np.random.default_rng(seed).standard_normal(len(state) - 2)
-    return moved
+    return np.append(state[:-2] + scattered((len(state) - 2,), noise_mm, seed), state[-2:])
 
 
 def core_that_fits(yarn: YarnModel, distance_mm: float, opening: float) -> float:

@@ -20,6 +20,7 @@ from itertools import chain
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.dense import dot, product, solved, times
 from knitcore.errors import Cancelled, check_cancelled
 from knitcore.threads import on_halves
 from knitcore.yarnlevel.elimination_order import dissected
@@ -90,10 +91,8 @@ class _Inverse:
             (_gradient(sheet, state + _PROBE_MM * move, tension) - here) / _PROBE_MM
             for move in self._sizes
         ]
-        stiffness = np.array(slopes) @ self._sizes.T
-        values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
-        values = np.maximum(np.abs(values), _LEAST_STIFFNESS * np.abs(values).max())
-        self._stiffness = (vectors * values) @ vectors.T
+        stiffness = product(np.array(slopes), self._sizes.T)
+        self._stiffness = _definite(0.5 * (stiffness + stiffness.T))
 
     def times(self, gradient: Array, excess: Array) -> Array:
         """The inverse times a gradient (unknowns,), less a step that mends the lengths."""
@@ -102,7 +101,8 @@ class _Inverse:
 
     def resized(self, gradient: Array) -> Array:
         """The inverse times a gradient, among changes of the two sizes that the windows follow."""
-        return np.asarray(np.linalg.solve(self._stiffness, self._sizes @ gradient) @ self._sizes)
+        by_size = solved(self._stiffness, times(self._sizes, gradient))
+        return times(self._sizes.T, by_size)
 
     def relaxed(self, gradient: Array, excess: Array) -> tuple[Array, Array]:
         """Newton steps of all windows at once, and the mean change of the tensions (rows,), N."""
@@ -157,7 +157,7 @@ def polished(
         step = -_two_loops(inverse, past, gradient, terms.excess_mm)
         before = sheet.merit(terms, tension)
         pull = sheet.pulled(path.here.curve, sheet.penalty * terms.excess_mm)
-        downhill = min(float((gradient + pull) @ step), 0.0)
+        downhill = min(dot(gradient + pull, step), 0.0)
         share = 1.0
         for _ in range(_TRIALS):
             found = path.certified(share * step)
@@ -173,7 +173,7 @@ def polished(
         moved = found.to.state - path.here.state
         path.advance(found)
         slope = path.slope(tension, hessian=False, lengths=False)
-        if moved @ (slope.gradient - gradient) > 0.0:
+        if dot(moved, slope.gradient - gradient) > 0.0:
             past.append((moved, slope.gradient - gradient))
         taken += 1
     here = path.here
@@ -241,6 +241,16 @@ def _answers(system: SparseSystem, slope: Slope, longest_mm: float) -> Array | N
     return answers if np.abs(answers).max() < _ANSWER else None
 
 
+def _definite(matrix: Array) -> Array:
+    """A symmetric matrix (2, 2) with the moduli of its eigenvalues, kept away from zero."""
+    mean, half = 0.5 * (matrix[0, 0] + matrix[1, 1]), 0.5 * (matrix[0, 0] - matrix[1, 1])
+    apart = max(np.sqrt(half**2 + matrix[0, 1] ** 2), 1e-300)
+    values = np.abs([mean - apart, mean + apart])
+    values = np.maximum(values, _LEAST_STIFFNESS * values.max())
+    upper = (matrix - (mean - apart) * np.eye(2)) / (2.0 * apart)  # projects on the greater one's
+    return np.asarray(values[0] * np.eye(2) + (values[1] - values[0]) * upper)
+
+
 def _gradient(sheet: CellEnergy, state: Array, tension: Array) -> Array:
     """Of the Lagrangian, at any state."""
     curve = sheet.curve(state)
@@ -258,9 +268,9 @@ def _two_loops(
     found = gradient.copy()
     weights = []
     for moved, turned in reversed(past):
-        weights.append(moved @ found / (moved @ turned))
+        weights.append(dot(moved, found) / dot(moved, turned))
         found -= weights[-1] * turned
     found = inverse.times(found, excess)
     for (moved, turned), weight in zip(past, reversed(weights), strict=True):
-        found += moved * (weight - turned @ found / (moved @ turned))
+        found += moved * (weight - dot(turned, found) / dot(moved, turned))
     return found

@@ -12,6 +12,8 @@ from __future__ import annotations
 
 import numba
 
+from knitcore.elementary import power
+
 CAP = 1e-5
 """ζ below which the capped form holds."""
 
@@ -25,7 +27,7 @@ def potential(distance: float, k: float, p: float, radius: float, core: float) -
         return 0.0
     capped = max(zeta, CAP)
     scale = k * shell * shell / (p * (p - 1.0))
-    value = scale * (capped ** (1.0 - p) - 1.0 - (p - 1.0) * (1.0 - capped))
+    value = scale * (power(capped, 1.0 - p) - 1.0 - (p - 1.0) * (1.0 - capped))
     if zeta < CAP:
         star = 2.0 * core + CAP * shell
         value += 100.0 * ((distance - star) / star) ** 2
@@ -45,6 +47,6 @@ def potential_and_derivatives(
         star = 2.0 * core + CAP * shell
         slope = 200.0 * (distance - star) / (star * star)
         return potential(distance, k, p, radius, core), slope, 200.0 / (star * star)
-    power = zeta ** (-p)
-    value = k * shell * shell / (p * (p - 1.0)) * (power * zeta - 1.0 - (p - 1.0) * (1.0 - zeta))
-    return value, -k * shell / p * (power - 1.0), k * power / zeta
+    steep = power(zeta, -p)
+    value = k * shell * shell / (p * (p - 1.0)) * (steep * zeta - 1.0 - (p - 1.0) * (1.0 - zeta))
+    return value, -k * shell / p * (steep - 1.0), k * steep / zeta

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.dense import dot, product, times
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.held import is_independent
 from knitcore.yarnlevel.kernels import control_of
@@ -44,15 +45,16 @@ class SlideConstraint:
 
     def value(self, state: Array) -> float:
         """Component beyond that at rest, mm."""
-        return float((self.apart @ state) @ (self.along @ state)) - self.rest_mm
+        return dot(times(self.apart, state), times(self.along, state)) - self.rest_mm
 
     def gradient(self, state: Array) -> Array:
         """Its derivative by the unknowns."""
-        return self.apart.T @ (self.along @ state) + self.along.T @ (self.apart @ state)
+        apart, along = times(self.apart, state), times(self.along, state)
+        return times(self.apart.T, along) + times(self.along.T, apart)
 
     def hessian(self) -> Array:
         """Its second derivative."""
-        half: Array = self.apart.T @ self.along
+        half = product(self.apart.T, self.along)
         return half + half.T
 
 

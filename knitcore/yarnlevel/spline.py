@@ -42,9 +42,14 @@ def quintic_basis(offset: NDArray[np.float64], derivative: int) -> NDArray[np.fl
     )
     shifted = distance[..., None] + 3.0 - powers
     degree = DEGREE - derivative
-    truncated = np.where(shifted > 0.0, np.abs(shifted) ** degree, 0.0)
+    truncated = np.where(shifted > 0.0, _power(shifted, degree), 0.0)
     basis: NDArray[np.float64] = (truncated * coefficient).sum(axis=-1) / factorial(degree)
     return basis
+
+
+def _power(base: NDArray[np.float64], exponent: int) -> NDArray[np.float64]:
+    """A power by products, whose last digits are the same on every processor."""
+    return np.prod(np.broadcast_to(base, (exponent, *base.shape)), axis=0)
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ from dataclasses import replace
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import blas, lapack
 
 from knitcore.arrays import Array
+from knitcore.dense import dot, eliminate, norm, product, solved, substitute, times
 from knitcore.yarnlevel.energy import Slope
 from knitcore.yarnlevel.fronts import Front, FrontalFactor, Room
 from knitcore.yarnlevel.kernels import one_tile
@@ -66,11 +66,11 @@ class System(ABC):
         Inverse iteration from ``start`` (free unknowns), or from a shape without symmetry.
         """
         count = np.count_nonzero(self._free)
-        v = np.cos(np.arange(count) ** 2.0) if start is None or len(start) != count else start
+        v = _without_symmetry(count) if start is None or len(start) != count else start
         for _ in range(iterations):
-            v = v / np.linalg.norm(v)
+            v = v / norm(v)
             through = self._through_factor(v[:, None])[:, 0]
-            curvature = 1.0 / float(v @ through) - self._damping
+            curvature = 1.0 / dot(v, through) - self._damping
             v = through
         return curvature, v / np.abs(v).max()
 
@@ -81,17 +81,16 @@ class System(ABC):
         factor meet the lengths just as well.
         """
         lengths = slope.lengths[:, self._free]
-        missing = excess + slope.lengths[:, self._held] @ remaining
+        missing = excess + times(slope.lengths[:, self._held], remaining)
         uphill = self._downhill_gradient(slope, excess, remaining)[:, None]
         if self._by_tension is None:
             both = self._through_factor(np.column_stack([uphill, lengths.T]))
             uphill, self._by_tension = both[:, 0], both[:, 1:]
         else:
             uphill = self._through_factor(uphill)[:, 0]
-        schur, missed = lengths @ self._by_tension, missing - lengths @ uphill
-        change = np.asarray(np.linalg.solve(schur, missed), dtype=float)
+        change = self._against(lengths, missing - times(lengths, uphill))
         step = np.empty(len(self._free))
-        step[self._free] = -uphill - self._by_tension @ change
+        step[self._free] = -uphill - times(self._by_tension, change)
         step[self._held] = remaining
         return step, change
 
@@ -101,14 +100,20 @@ class System(ABC):
         ``solve`` goes first with each factor.
         """
         assert self._by_tension is not None  # noqa: S101 - see above
-        pulls = np.linalg.solve(lengths[:, self._free] @ self._by_tension, excess)
+        pulls = self._against(lengths[:, self._free], excess)
         step = np.zeros(len(self._free))
-        step[self._free] = -self._by_tension @ pulls
+        step[self._free] = -times(self._by_tension, pulls)
         return step
+
+    def _against(self, lengths: Array, excess: Array) -> Array:
+        """Changes of the tensions that take an excess of the lengths away."""
+        assert self._by_tension is not None  # noqa: S101 - see above
+        pulls: Array = solved(product(lengths, self._by_tension), excess)
+        return pulls
 
     def decrease(self, slope: Slope, step: Array, change: Array, excess: Array) -> float:
         """Decrease of the merit, with the changed tensions, that the quadratic model predicts."""
-        bent = float(step @ self._times(step))
+        bent = dot(step, self._times(step))
         return self._downhill(slope, step, change, excess) - 0.5 * bent
 
     def decrease_solved(
@@ -116,11 +121,11 @@ class System(ABC):
     ) -> float:
         """The same for a fraction of what ``solve`` returned, without a product with the matrix."""
         along = self._downhill(slope, step, change, excess)
-        return (1.0 - 0.5 * fraction) * along + 0.5 * self._damping * float(step @ step)
+        return (1.0 - 0.5 * fraction) * along + 0.5 * self._damping * dot(step, step)
 
     def _downhill(self, slope: Slope, step: Array, change: Array, excess: Array) -> float:
-        by_length = (change + self._penalty * excess) @ (slope.lengths @ step)
-        return -float(slope.gradient @ step + by_length)
+        by_length = dot(change + self._penalty * excess, times(slope.lengths, step))
+        return -(dot(slope.gradient, step) + by_length)
 
 
 class DenseSystem(System):
@@ -130,42 +135,31 @@ class DenseSystem(System):
         super().__init__(slope, penalty, free)
         self._single = single
         assert slope.hessian is not None  # noqa: S101 - a system is made of both derivatives
-        # the Hessian of the penalty, added in place (the matrix is symmetric)
-        self._hessian = blas.dgemm(
-            penalty, slope.lengths, slope.lengths, beta=1.0, c=slope.hessian.T,
-            trans_a=True, overwrite_c=True,
-        )  # fmt: skip
+        self._hessian = slope.hessian
+        self._hessian += penalty * product(slope.lengths.T, slope.lengths)
 
     def _factorised(self, damping: float) -> bool:
-        matrix = self._hessian.T
+        matrix = self._hessian
         if len(self._held):
             matrix = matrix[np.ix_(self._free, self._free)]
-        if self._single:
-            self._scale = 1.0 / np.sqrt(np.abs(np.diagonal(matrix)) + damping)
-            lower = _scaled(matrix, self._scale, damping)
-            self._factor, info = lapack.spotrf(lower.T, lower=0, overwrite_a=1, clean=0)
-        else:
-            damped = matrix.copy()
-            damped[np.diag_indices_from(damped)] += damping
-            self._factor, info = lapack.dpotrf(damped.T, lower=0, overwrite_a=1, clean=0)
-        return int(info) == 0
+        self._factor = np.zeros(matrix.shape, np.float32 if self._single else np.float64)
+        self._scale = _scale(matrix, damping, self._factor)
+        return bool(eliminate(self._factor))
 
     def _through_factor(self, right: Array) -> Array:
         """The damped matrix's inverse times the columns given."""
-        if self._single:
-            scaled, _ = lapack.spotrs(self._factor, right * self._scale[:, None], lower=0)
-            return np.asarray(scaled * self._scale[:, None])
-        found, _ = lapack.dpotrs(self._factor, right, lower=0)
-        return np.asarray(found)
+        columns = np.ascontiguousarray((right.T * self._scale).astype(self._factor.dtype))
+        substitute(self._factor, columns)
+        return np.asarray((columns * self._scale).T)
 
     def _times(self, step: Array) -> Array:
-        return np.asarray(self._hessian @ step)
+        return times(self._hessian, step)
 
     def _downhill_gradient(self, slope: Slope, excess: Array, remaining: Array) -> Array:
         gradient = slope.gradient[self._free]
-        gradient = gradient + (self._penalty * excess) @ slope.lengths[:, self._free]
+        gradient = gradient + times(slope.lengths[:, self._free].T, self._penalty * excess)
         if len(self._held):
-            gradient = gradient + self._hessian[np.ix_(self._free, self._held)] @ remaining
+            gradient = gradient + times(self._hessian[np.ix_(self._free, self._held)], remaining)
         return np.asarray(gradient)
 
 
@@ -192,16 +186,17 @@ class SparseSystem(System):
         self._through = self._factor.solve(self._beside)
         corner = self._hessian.sizes[np.ix_(self._sizes, self._sizes - 2)]
         corner = corner + damping * np.eye(len(corner))
-        self._rest = corner - self._beside.T @ self._through
-        return bool(np.all(np.linalg.eigvalsh(self._rest) > 0.0))
+        self._rest = corner - product(self._beside.T, self._through)
+        return bool(eliminate(self._rest.copy()))
 
     def _through_factor(self, right: Array) -> Array:
         local = self._hessian.sizes.shape[1] - 2
         found = self._factor.solve(right[:local])
         if not len(self._sizes):
             return found
-        sizes = np.linalg.solve(self._rest, right[local:] - self._through.T @ right[:local])
-        return np.concatenate([found - self._through @ sizes, sizes])
+        sizes = right[local:] - product(self._through.T, right[:local])
+        sizes = np.stack([solved(self._rest, column) for column in sizes.T], axis=1)
+        return np.concatenate([found - product(self._through, sizes), sizes])
 
     def keep(self) -> None:
         """Leave the room to others, and free what only another factor, or a predicted decrease,
@@ -210,24 +205,33 @@ class SparseSystem(System):
         self._hessian = replace(self._hessian, matrix=one_tile(0))
 
     def _times(self, step: Array) -> Array:
-        by_length = self._penalty * (self._lengths @ step)
-        return self._hessian.times(step) + by_length @ self._lengths
+        by_length = self._penalty * times(self._lengths, step)
+        return self._hessian.times(step) + times(self._lengths.T, by_length)
 
     def _downhill_gradient(self, slope: Slope, excess: Array, remaining: Array) -> Array:
         gradient = slope.gradient[self._free]
         if len(self._held):
             columns = self._hessian.sizes[self._held - len(self._free) + 2][:, self._free]
-            gradient = gradient + remaining @ columns
+            gradient = gradient + times(columns.T, remaining)
         return np.asarray(gradient)
 
 
-@numba.njit(cache=True)
-def _scaled(matrix: Array, scale: Array, damping: float) -> NDArray[np.float32]:
-    """Lower triangle, damped and scaled, in single precision; entries above it are arbitrary."""
+def _without_symmetry(count: int) -> Array:
+    """A direction (count,) that no symmetry of a fabric leaves unchanged, of exact numbers."""
+    squares = np.arange(count, dtype=np.int64) ** 2
+    return np.asarray((squares * 16807 % 2147483647) / 1073741823.5 - 1.0)
+
+
+@numba.njit(cache=True, nogil=True)
+def _scale(matrix: Array, damping: float, out: NDArray[np.floating]) -> Array:
+    """Fill the lower triangle, ``[column, row]``, with the damped matrix scaled to a unit diagonal;
+    returns the scale."""
     n = matrix.shape[0]
-    out = np.empty((n, n), np.float32)
+    scale = np.empty(n)
     for i in range(n):
-        for j in range(i + 1):
-            out[i, j] = matrix[i, j] * scale[i] * scale[j]
-        out[i, i] += damping * scale[i] * scale[i]
-    return out
+        scale[i] = 1.0 / np.sqrt(abs(matrix[i, i]) + damping)
+    for j in range(n):
+        for i in range(j, n):
+            out[j, i] = matrix[j, i] * scale[j] * scale[i]
+        out[j, j] += damping * scale[j] * scale[j]
+    return scale

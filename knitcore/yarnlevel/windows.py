@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.dense import times
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.energy import CellEnergy
@@ -179,7 +180,7 @@ class WindowEnergy(CellEnergy):
         rows = np.zeros((len(row), cell.unknowns))
         free = cell.free[row[:, None], place] * weights
         np.add.at(rows, (np.arange(len(row))[:, None], cell.dof[row[:, None], place, axis]), free)
-        return rows, cell.resting[row[:, None], place, axis] @ weights
+        return rows, (cell.resting[row[:, None], place, axis] * weights).sum(axis=1)
 
     def curve(self, state: Array) -> Array:
         """(rows * S, 4, 3): samples with three derivatives, as the sheet has them."""
@@ -192,7 +193,7 @@ class WindowEnergy(CellEnergy):
     def excess(self, state: Array, curve: Array) -> Array:
         """Lengths of the rows less those prescribed, and what ``held`` keeps at zero, mm."""
         lengths = row_lengths(self.cell, curve)[self.own_rows] - self.length_mm
-        held = self.held @ state + self._rules[1]
+        held = times(self.held, state) + self._rules[1]
         return np.concatenate([lengths, held])
 
     def length_gradients(self, curve: Array) -> Array:
