@@ -1,4 +1,4 @@
-"""Arrays of numbers: their type, random ones, and stretches of equal values in them."""
+"""Arrays of numbers: their type, rounded and random ones, and stretches of equal values in them."""
 
 from itertools import pairwise
 
@@ -6,6 +6,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+
+
+def rounded(values: ArrayLike) -> Array:
+    """Numbers to 36 binary digits, some eleven decimal ones.
+
+    What begins a search is given without its last digits, since these differ between processors.
+
+    Examples
+    --------
+    >>> float(rounded(0.1 + 1e-15)) == float(rounded(0.1))
+    True
+    """
+    part, exponent = np.frexp(np.asarray(values, dtype=float))
+    return np.asarray(np.ldexp(np.rint(np.ldexp(part, 36)), exponent - 36))
 
 
 def scattered(shape: tuple[int, ...], size: float, seed: int) -> Array:

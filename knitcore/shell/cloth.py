@@ -16,7 +16,7 @@ from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 from scipy.ndimage import map_coordinates
 
 from knitcore.answer.choose import choose
-from knitcore.arrays import Array
+from knitcore.arrays import Array, rounded
 from knitcore.bounds import check_linear_density
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
@@ -119,15 +119,15 @@ class EvenCloth:
         return StitchSheet(
             rows=rows,
             columns=columns,
-            flat_mm=flat,
+            flat_mm=rounded(flat),
             quarters=net.quarters,
-            membrane=np.tile([*size_mm, *stiff], (4 * count, 1)),
+            membrane=rounded(np.tile([*size_mm, *stiff], (4 * count, 1))),
             hinges=net.hinges,
-            turning=np.concatenate(lines),
+            turning=rounded(np.concatenate(lines)),
             quads=net.quads,
-            twisting=np.full(count, 4.0 * self.twist_n_mm / area),
-            thickness_mm=self.thickness_mm,
-            touch_n_per_mm=mean * area / self.thickness_mm**2,
+            twisting=rounded(np.full(count, 4.0 * self.twist_n_mm / area)),
+            thickness_mm=float(rounded(self.thickness_mm)),
+            touch_n_per_mm=float(rounded(mean * area / self.thickness_mm**2)),
         )
 
 

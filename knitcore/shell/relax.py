@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array, scattered
+from knitcore.arrays import Array, rounded, scattered
 from knitcore.dense import dot
 from knitcore.errors import Cancelled, check_cancelled
 from knitcore.shell.factor import SheetFactor
@@ -113,7 +113,8 @@ def settle(
         If ``cancelled`` says so.
     """
     clock = time.process_time()
-    descent = _Descent(sheet, x.copy(), held, load_n, floor_mm, cancelled)
+    load = None if load_n is None else rounded(load_n)
+    descent = _Descent(sheet, rounded(x), held, load, floor_mm, cancelled)
     if near:
         descent.settle_near(time_limit_s)
     descent.run(time_limit_s - (time.process_time() - clock), max_steps)

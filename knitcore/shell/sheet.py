@@ -22,7 +22,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
+from knitcore.arrays import Array, rounded
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Fabric
 from knitcore.materials import Material
@@ -273,15 +273,17 @@ def sheet_of(
     return StitchSheet(
         rows=rows,
         columns=columns,
-        flat_mm=flat,
+        flat_mm=rounded(flat),
         quarters=net.quarters,
-        membrane=membrane,
+        membrane=rounded(membrane),
         hinges=net.hinges,
-        turning=np.concatenate([along, across]),
+        turning=rounded(np.concatenate([along, across])),
         quads=net.quads,
-        twisting=twisting,
-        thickness_mm=of.thickness_mm,
-        touch_n_per_mm=float(of.membrane[..., :2].mean() * mean.prod() / of.thickness_mm**2),
+        twisting=rounded(twisting),
+        thickness_mm=float(rounded(of.thickness_mm)),
+        touch_n_per_mm=float(
+            rounded(of.membrane[..., :2].mean() * mean.prod() / of.thickness_mm**2)
+        ),
     )
 
 
