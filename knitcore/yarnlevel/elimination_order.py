@@ -58,14 +58,19 @@ def _parts(touching: Bools, of: Ints) -> list[Ints]:
     if len(of) <= _LEAF:
         return [of]
     sub = touching[np.ix_(of, of)]
-    first = np.zeros(len(of), bool)
-    first[np.argsort(_slowest_wave(sub, _SWEEPS), kind="stable")[: len(of) // 2]] = True
-    rows, columns = vertex_cover(sub[first][:, ~first])
-    one, two = np.flatnonzero(first), np.flatnonzero(~first)
-    if rows.all() or columns.all():
+    halves = [_halved(sub, begin) for begin in (np.arange(len(of), dtype=float), _steps(sub))]
+    one, two, cut = min(halves, key=lambda parts: len(parts[2]))
+    if not (len(one) and len(two)):
         return [of]
-    cut = np.concatenate([one[rows], two[columns]])
-    return [*_parts(touching, of[one[~rows]]), *_parts(touching, of[two[~columns]]), of[cut]]
+    return [*_parts(touching, of[one]), *_parts(touching, of[two]), of[cut]]
+
+
+def _halved(touching: Bools, begin: Array) -> tuple[Ints, Ints, Ints]:
+    """Two parts of a pattern (n, n) that do not touch, and the cut between them."""
+    order = np.argsort(_slowest_wave(touching, begin, _SWEEPS), kind="stable")
+    one, two = np.sort(order[: len(order) // 2]), np.sort(order[len(order) // 2 :])
+    rows, columns = vertex_cover(touching[np.ix_(one, two)])
+    return one[~rows], two[~columns], np.concatenate([one[rows], two[columns]])
 
 
 def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:
@@ -88,19 +93,14 @@ def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:
 
 
 @numba.njit(cache=True, nogil=True)
-def _slowest_wave(touching: Bools, sweeps: int) -> Array:
-    """About the Fiedler vector of a pattern (n, n), in arithmetic that is the same everywhere.
-
-    It begins with the steps from the block farthest from the first one.
-    """
+def _steps(touching: Bools) -> Array:
+    """(n,) steps to each block of a pattern from the one farthest from the first."""
     n = touching.shape[0]
-    degree = np.empty(n)
-    for i in range(n):
-        degree[i] = touching[i].sum()
     begin = 0
     queue, steps = np.empty(n, np.int64), np.empty(n)
     for _ in range(2):
-        steps[:] = -1.0
+        for i in range(n):
+            steps[i] = -1.0
         steps[begin] = 0.0
         queue[0] = begin
         count = 1
@@ -114,12 +114,25 @@ def _slowest_wave(touching: Bools, sweeps: int) -> Array:
                     queue[count] = j
                     count += 1
         begin = queue[count - 1]
-    wave, mean = steps, np.empty(n)
+    return steps
+
+
+@numba.njit(cache=True, nogil=True)
+def _slowest_wave(touching: Bools, begin: Array, sweeps: int) -> Array:
+    """About the Fiedler vector of a pattern (n, n), in arithmetic that is the same everywhere."""
+    n = touching.shape[0]
+    degree = np.empty(n)
+    links = 0.0
+    for i in range(n):
+        degree[i] = 0.0
+        for j in range(n):
+            degree[i] += touching[i, j]
+        links += degree[i]
+    wave, mean = begin.copy(), np.empty(n)
     for _ in range(sweeps):
         centre = 0.0
         for i in range(n):
-            centre += degree[i] * wave[i]
-        centre /= degree.sum()
+            centre += degree[i] * wave[i] / links
         for i in range(n):
             total = 0.0
             for j in range(n):

@@ -14,7 +14,7 @@ from knitcore.threads import on_halves
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
-from knitcore.yarnlevel.held import foot_rows, plane_rows
+from knitcore.yarnlevel.held import foot_rows, plane_rows, posture_rows
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs
 from knitcore.yarnlevel.slides import SlideConstraint
@@ -111,7 +111,8 @@ class CellEnergy:
     loop_length_mm : (rows,) mean length of yarn per stitch of each course, or (rows, wales), that
         of each stitch from foot to foot.
     convention : factors of the terms.
-    flat : the middles of all stitches are held in one plane, and their feet at whole t.
+    flat : the middles of all stitches are held in one plane, their feet at whole t, and stitches in
+        like surroundings tip and lean alike.
     slides : where the yarn may not slide.
     spacing_per_bending : stiffness of the spacing penalty in units of B / L.
     sliding : pairs of samples that rub in this step; None without friction.
@@ -170,7 +171,7 @@ class CellEnergy:
         if self.per_stitch or self.flat:
             rules.append(foot_rows(self.cell))
         if self.flat:
-            rules.append(plane_rows(self.cell))
+            rules += [plane_rows(self.cell), posture_rows(self.cell)]
         return np.concatenate(rules)
 
     @property

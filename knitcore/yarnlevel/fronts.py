@@ -204,17 +204,22 @@ def _reduced(columns: Floats, rest: Floats) -> bool:
 @numba.njit(cache=True, nogil=True)
 def _eliminate_from(columns: Floats, places: Ints, x: Floats) -> None:
     """Forward substitution of a front in every row of ``x``."""
+    part = np.empty(columns.shape[1], np.float32)
     for row in x:
-        part = row[places]
+        for k in range(part.shape[0]):
+            part[k] = row[places[k]]
         forward(columns, part)
-        row[places] = part
+        for k in range(part.shape[0]):
+            row[places[k]] = part[k]
 
 
 @numba.njit(cache=True, nogil=True)
 def _substitute_into(columns: Floats, places: Ints, x: Floats) -> None:
     """Backward substitution of a front in every row of ``x``."""
+    part = np.empty(columns.shape[1], np.float32)
     for row in x:
-        part = row[places]
+        for k in range(part.shape[0]):
+            part[k] = row[places[k]]
         backward(columns, part)
         for k in range(columns.shape[0]):
             row[places[k]] = part[k]

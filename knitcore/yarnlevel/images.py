@@ -21,8 +21,8 @@ from knitcore.yarnlevel.cell import free_cell, mirrored_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
-from knitcore.yarnlevel.solver import Options, minimise
-from knitcore.yarnlevel.splines import FINE_UP_TO, RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.solver import TIGHT, minimise
+from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
 from knitcore.yarnlevel.tiling import tiled_controls
 
 
@@ -86,10 +86,9 @@ def turned(
         points[: cell.rows, : cell.controls_per_course],
         relaxed.cell_course_mm, relaxed.cell_wale_mm,
     )  # fmt: skip
-    options = Options(tolerance=1e-9 if cell.stitches <= FINE_UP_TO else 1e-6)
     found = minimise(
         energy, state, tension=np.append(tension[: cell.rows], np.zeros(len(energy.held))),
-        fixed=fixed, options=options, cancelled=cancelled,
+        fixed=fixed, options=TIGHT, cancelled=cancelled,
     )  # fmt: skip
     part = found.terms.energy / cell.stitches / relaxed.energy_n_mm
     if outcome(energy, found) not in (RELAXED, UNSETTLED) or abs(part - 1.0) > SAME_ENERGY:

@@ -18,7 +18,7 @@ from knitcore.yarnlevel.cell import free_cell, plain_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
-from knitcore.yarnlevel.solver import Minimum, Options, minimise
+from knitcore.yarnlevel.solver import TIGHT, Minimum, minimise
 from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld, relaxed_repeat
 from knitcore.yarnlevel.tiling import tiled_state
 
@@ -66,8 +66,7 @@ def followed(
     ConvergenceError, UnravelledError
         If the descent finds no state of the fabric.
     """
-    small = energy.cell.stitches <= 4
-    options = Options(tolerance=1e-8, damping=_LITTLE) if small else Options(tolerance=1e-6)
+    options = replace(TIGHT, damping=_LITTLE) if energy.cell.stitches <= 4 else TIGHT
     found = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
     became = outcome(energy, found)
     if became not in (RELAXED, UNSETTLED):

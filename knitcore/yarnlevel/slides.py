@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.dense import dot, product, times
 from knitcore.yarnlevel.cell import YarnCell
-from knitcore.yarnlevel.held import is_independent
+from knitcore.yarnlevel.held import beyond
 from knitcore.yarnlevel.kernels import control_of
 from knitcore.yarnlevel.kernels.structures import Pairs
 
@@ -71,7 +71,7 @@ def slides_at(
     """
     near = {tuple(pair[:4]): d for pair, d in zip(pairs.tolist(), distances, strict=True)}
     slides: list[SlideConstraint] = []
-    rows: list[Array] = []
+    base = np.zeros((0, cell.unknowns))
     crossovers = 0
     for pair, distance in sorted(zip(pairs.tolist(), distances, strict=True), key=lambda p: p[1]):
         if distance >= touch_mm or crossovers == 2 * cell.stitches:
@@ -83,9 +83,9 @@ def slides_at(
         for along in (first / loop_mm, second / loop_mm):
             slide = SlideConstraint(apart, along, 0.0)
             slide = SlideConstraint(apart, along, slide.value(state))
-            row = slide.gradient(state)
-            if is_independent(rows, row):  # symmetry makes some contacts images of others
-                rows.append(row)
+            left = beyond(base, slide.gradient(state))
+            if left is not None:  # symmetry makes some contacts images of others
+                base = np.concatenate([base, left[None]])
                 slides.append(slide)
     return tuple(slides)
 

@@ -11,7 +11,8 @@ that a step along the valley leaves it; chord steps, with the factor of the last
 it at a fraction of the cost.
 
 On convergence the Hessian distinguishes a minimum from a saddle, where a state can be trapped by a
-symmetry of the first shape; a saddle is left along its direction of most negative curvature.
+symmetry of the first shape; a saddle is left along its direction of most negative curvature, to a
+side that is fixed.
 """
 
 from __future__ import annotations
@@ -65,6 +66,8 @@ _INDEFINITE_GROWTH = 3.0
 _POWER_STEPS = 2
 _SADDLE_STEPS = 40
 """Inverse iterations for the direction of lowest curvature, on the way and at a saddle."""
+_GREATEST = 0.99
+"""Components of a direction from this part of the greatest on count as equal to it."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +83,7 @@ class Options:
     slack : stop only when the lengths are within this part of a loop length.
     iterations : most Newton steps.
     damping : of the first step, relative to the usual one; little where a minimum is near.
+    side : of the first saddle to which it is left, 1 or -1.
     mended : whether steps of a large cell are mended so that the yarn keeps its length; a
         straight step stretches it, and would have to be short. Small cells do without.
     """
@@ -91,7 +95,12 @@ class Options:
     slack: float = 1e-7
     iterations: int = 400
     damping: float = 1.0
+    side: float = 1.0
     mended: bool = True
+
+
+TIGHT = Options(tolerance=1e-10, slack=1e-9)
+"""Of a final shape: soft sizes are then known to some 1e-6, energies better."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +116,7 @@ class Minimum:
     min_distance_mm : smallest distance of centre lines.
     converged : whether the tolerance was reached.
     stable : whether it is a minimum among the shapes of its cell, not a saddle.
+    saddles : how many saddles were left on the way.
     steps, evaluations : Newton steps taken, energies evaluated.
     """
 
@@ -119,6 +129,7 @@ class Minimum:
     stable: bool
     steps: int
     evaluations: int
+    saddles: int = 0
 
 
 @in_one_blas_thread
@@ -186,7 +197,7 @@ class _Descent:
         self.room = Room()
         self.lowest = 0.0
         self.softest: Array | None = None
-        self.steps, self.evaluations = 0, 1
+        self.steps, self.evaluations, self.saddles = 0, 1, 0
         self.converged = self.stable = False
 
     def step(self) -> bool:
@@ -280,14 +291,16 @@ class _Descent:
         while not system.factorise(self.damping):  # the nearer the shift, the faster the iteration
             self._damp(2.0)
         _, direction = system.softest(None, _SADDLE_STEPS)
+        side = self.options.side if self.saddles == 0 else 1.0
         step = np.zeros(len(self.free))
-        step[self.free] = direction * energy.yarn.radius_mm
+        step[self.free] = side * energy.yarn.radius_mm * signed(direction)
         before = energy.merit(here.terms, self.tension)
         for _ in range(_NUDGES):
             taken = trajectory.certified(step)
             self.evaluations += 1
             if taken.fraction > _NO_STEP and energy.merit(taken.to.terms, self.tension) < before:
                 trajectory.advance(taken)
+                self.saddles += 1
                 return True
             step = 0.25 * step
         return False
@@ -333,4 +346,12 @@ class _Descent:
             stable=self.stable,
             steps=self.steps,
             evaluations=self.evaluations,
+            saddles=self.saddles,
         )
+
+
+def signed(direction: Array) -> Array:
+    """A direction (n,) turned so that the first of its greatest components is positive."""
+    sizes = np.abs(direction)
+    first = np.argmax(sizes > _GREATEST * sizes.max())
+    return direction * np.sign(direction[first])

@@ -49,7 +49,8 @@ def quintic_basis(offset: NDArray[np.float64], derivative: int) -> NDArray[np.fl
 
 def _power(base: NDArray[np.float64], exponent: int) -> NDArray[np.float64]:
     """A power by products, whose last digits are the same on every processor."""
-    return np.prod(np.broadcast_to(base, (exponent, *base.shape)), axis=0)
+    power: NDArray[np.float64] = np.prod(np.broadcast_to(base, (exponent, *base.shape)), axis=0)
+    return power
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from knitcore.yarnlevel.search import (
     outcome,
 )
 from knitcore.yarnlevel.slides import SlideConstraint
-from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
+from knitcore.yarnlevel.solver import COURSE, TIGHT, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.tiling import centre_lines, refined_state
 from knitcore.yarnlevel.yarn import YarnModel
@@ -162,10 +162,9 @@ def relax_splines(
     energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, convention, flat)
     if explored != grid:
         energy = replace(energy, spacing_per_bending=STIFF_SPACING_PER_BENDING)
-    options = Options(tolerance=1e-9 if draft.stitches <= FINE_UP_TO else 1e-6)
     _compile()
     clock = time.process_time()
-    enough = options if explored == grid else replace(options, tolerance=_EXPLORED, slack=_EXPLORED)
+    enough = TIGHT if explored == grid else replace(TIGHT, tolerance=_EXPLORED, slack=_EXPLORED)
     search = Search(energy, enough, cancelled)
     if shakes:
         small = mirrored_cell(repeat, explored)
@@ -183,10 +182,10 @@ def relax_splines(
         energy = replace(
             energy, cell=replace(draft, grid=grid), spacing_per_bending=SPACING_PER_BENDING
         )
-        best = search.refined(energy, options)
+        best = search.refined(energy, TIGHT)
     held = any(size is not None for size in sizes_mm)
     if held:
-        best = _held_at(energy, best, sizes_mm, options, cancelled)
+        best = _held_at(energy, best, sizes_mm, cancelled)
     imposed = held or flat or lengths.ndim > 1
     imposed = imposed or (branch is Branch.MIRRORED and has_mirrors(repeat))
     relaxed = relaxed_repeat(
@@ -224,7 +223,7 @@ def refined(relaxed: RelaxedRepeat, grid: SplineGrid) -> RelaxedRepeat:
     energy = replace(relaxed.energy, cell=replace(relaxed.cell, grid=grid))
     state = refined_state(relaxed.cell, relaxed.state, energy.cell)
     clock = time.process_time()
-    found = minimise(energy, state, tension=relaxed.tension_n, options=Options(tolerance=1e-6))
+    found = minimise(energy, state, tension=relaxed.tension_n, options=TIGHT)
     became = outcome(energy, found)
     if became != RELAXED:
         raise ConvergenceError(f"On a finer grid it does not settle: {became}.")
@@ -303,7 +302,7 @@ def _starts(branch: Branch, cell: YarnCell, starts: Sequence[Start] | None) -> S
 
 def _held_at(
     energy: CellEnergy, found: Minimum, sizes: tuple[float | None, float | None],
-    options: Options, cancelled: Cancelled | None,
+    cancelled: Cancelled | None,
 ) -> Minimum:  # fmt: skip
     """Go from the force-free state to prescribed sizes in steps."""
     places = [place for place, size in zip((COURSE, WALE), sizes, strict=True) if size is not None]
@@ -321,7 +320,7 @@ def _held_at(
         try:
             found = minimise(
                 energy, found.state, tension=found.tension, fixed=tuple(places),
-                target=begin + way * k / count, options=options, cancelled=cancelled,
+                target=begin + way * k / count, options=TIGHT, cancelled=cancelled,
             )  # fmt: skip
         except (ConvergenceError, UnravelledError) as error:
             raise type(error)(f"No equilibrium at this size: {error} {nearer}") from error

@@ -65,7 +65,7 @@ class System(ABC):
 
         Inverse iteration from ``start`` (free unknowns), or from a shape without symmetry.
         """
-        count = np.count_nonzero(self._free)
+        count = int(np.count_nonzero(self._free))
         v = _without_symmetry(count) if start is None or len(start) != count else start
         for _ in range(iterations):
             v = v / norm(v)

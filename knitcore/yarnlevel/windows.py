@@ -20,7 +20,15 @@ from knitcore.dense import times
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.held import FOOT, foot_weights, middle_weights
+from knitcore.yarnlevel.held import (
+    FOOT,
+    Surroundings,
+    foot_weights,
+    independent,
+    lean_weights,
+    middle_weights,
+    tip_weights,
+)
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.spline import SUPPORT
 
@@ -137,7 +145,9 @@ class WindowEnergy(CellEnergy):
     own_rows : rows of the cell that have free stitches.
     length_mm : (k,) length of yarn that each of them is to have in the cell.
 
-    ``flat`` holds the middle of every free stitch at height zero, and its foot.
+    around : surroundings of the free stitches where the sheet lies flat; None where it does not.
+
+    ``flat`` holds the middle of every free stitch at height zero, its foot, and its posture.
     """
 
     cell: WindowCell
@@ -146,6 +156,7 @@ class WindowEnergy(CellEnergy):
     resting_curve: Array
     own_rows: Ints
     length_mm: Array
+    around: Surroundings | None
 
     @cached_property
     def prescribed_mm(self) -> Array:
@@ -161,8 +172,8 @@ class WindowEnergy(CellEnergy):
 
     @cached_property
     def held(self) -> Array:
-        """(h, unknowns): height of the middle and slope at the foot of every free stitch, mm, less
-        what rests of them."""
+        """(h, unknowns): height of the middle and slope at the foot of every free stitch, mm, and
+        differences of posture, less what rests of them."""
         return self._rules[0]
 
     @cached_property
@@ -170,6 +181,12 @@ class WindowEnergy(CellEnergy):
         """The rows of ``held``, and what the resting control points add to each."""
         grid = self.cell.grid
         rules = [self._rule(0, middle_weights(grid), 2), self._rule(FOOT, foot_weights(grid), 1)]
+        if self.around is not None:
+            tips, leans = (
+                np.column_stack(self._rule(0, of(grid), 2)) for of in (tip_weights, lean_weights)
+            )
+            unlike = independent(self.around.alike(tips, leans))
+            rules.append((unlike[:, :-1], unlike[:, -1]))
         return np.concatenate([r for r, _ in rules]), np.concatenate([rest for _, rest in rules])
 
     def _rule(self, first: int, weights: Array, axis: int) -> tuple[Array, Array]:
@@ -251,6 +268,7 @@ def window_energy(
         spacing_per_bending=sheet.spacing_per_bending, cut=(wales.cut, rows.cut), moving=moving,
         resting_curve=curve, own_rows=own_rows,
         length_mm=row_lengths(cell, curve)[own_rows] + share,
+        around=Surroundings.of(sheet.cell).at(rows.own, wales.own) if flat else None,
     )  # fmt: skip
     state = np.concatenate([here[free].ravel(), sizes])
     return energy, state
