@@ -26,7 +26,7 @@ Floats = NDArray[np.floating]
 _BYTES = 64
 """Of a column of a tile: a vector of the widest processors, several of the others."""
 _COLUMNS = 6
-"""Of a tile, which are also eliminated together: its sums fit into sixteen registers of 32 bytes."""
+"""Of a tile, also eliminated together: its sums fit into sixteen registers of 32 bytes."""
 
 
 def _tile(columns: int) -> Callable[..., None]:
@@ -148,6 +148,18 @@ _products: Callable[..., Any] = intrinsic(_lane_sum)
 
 
 @njit(cache=True, nogil=True)
+def _subtract(
+    width: int, to: int, step: int, left: int, down: int, right: int, over: int, terms: int,
+    zero: Any,
+) -> None:  # fmt: skip
+    """Subtract from a tile of ``_COLUMNS`` columns, or of one."""
+    if width == 1:
+        _narrow(to, step, left, down, right, over, terms, zero)
+    else:
+        _wide(to, step, left, down, right, over, terms, zero)
+
+
+@njit(cache=True, nogil=True)
 def subtract_product(target: Floats, left: Floats, right: Floats, lower: bool) -> None:
     """``target[j, i] -= sum_k left[k, i] * right[k, j]``, the terms one by one from k = 0.
 
@@ -165,6 +177,7 @@ def subtract_product(target: Floats, left: Floats, right: Floats, lower: bool) -
     step, down, over = target.strides[0] // size, left.strides[0] // size, right.strides[0] // size
     to, a, b = target.ctypes.data, left.ctypes.data, right.ctypes.data
     zero = target.dtype.type(0.0)
+    # what does not fill a tile is filled up with zeros
     edge = np.zeros((terms if whole < rows else 0, lanes), target.dtype)
     for k in range(edge.shape[0]):
         for i in range(whole, rows):
@@ -176,21 +189,17 @@ def subtract_product(target: Floats, left: Floats, right: Floats, lower: bool) -
         factor = b + j * size
         for i in range(j - j % lanes if lower else 0, whole, lanes):
             place, column = to + (j * step + i) * size, a + i * size
-            if width == 1:
-                _narrow(place, step, column, down, factor, over, terms, zero)
-            else:
-                _wide(place, step, column, down, factor, over, terms, zero)
+            _subtract(width, place, step, column, down, factor, over, terms, zero)
+        for c in range(width if whole < rows else 0):
+            for i in range(whole, rows):
+                end[c, i - whole] = target[j + c, i]
         if whole < rows:
-            for c in range(width):
-                for i in range(whole, rows):
-                    end[c, i - whole] = target[j + c, i]
-            if width == 1:
-                _narrow(end.ctypes.data, lanes, edge.ctypes.data, lanes, factor, over, terms, zero)
-            else:
-                _wide(end.ctypes.data, lanes, edge.ctypes.data, lanes, factor, over, terms, zero)
-            for c in range(width):
-                for i in range(whole, rows):
-                    target[j + c, i] = end[c, i - whole]
+            _subtract(
+                width, end.ctypes.data, lanes, edge.ctypes.data, lanes, factor, over, terms, zero
+            )
+        for c in range(width if whole < rows else 0):
+            for i in range(whole, rows):
+                target[j + c, i] = end[c, i - whole]
         j += width
 
 
@@ -231,7 +240,7 @@ def _dot(one: Floats, other: Floats) -> float:
     total = _products(one.ctypes.data, other.ctypes.data, whole, one.dtype.type(0.0))
     for i in range(whole * lanes, one.shape[0]):
         total += one[i] * other[i]
-    return total
+    return total  # type: ignore[no-any-return] # compiled
 
 
 @njit(cache=True, nogil=True)

@@ -212,7 +212,7 @@ def run_set(name: str, names: list[str], folder: Path) -> dict[str, Any]:
     """The answers under one instruction set, from a process of its own."""
     out = folder / f"{name}.json"
     cache = folder / "kernels" / name
-    subprocess.run(  # noqa: S603 - this script
+    subprocess.run(
         [sys.executable, "-m", "scripts.any_machine", "--answer", str(out), *names],
         env={**os.environ, **INSTRUCTION_SETS[name].environment(cache)}, check=True,
     )  # fmt: skip
@@ -246,10 +246,16 @@ def table(answers: dict[str, dict[str, Any]]) -> tuple[list[str], int]:
 
 def main() -> int:
     """Print the table; the exit code says whether all answers agree."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("names", nargs="*", help="questions (default: all)")
     parser.add_argument("--short", action="store_true", help="a few questions that take least long")
-    parser.add_argument("--sets", type=lambda of: of.split(","), help="with commas between; all that this machine has")
+    parser.add_argument(
+        "--sets",
+        type=lambda of: of.split(","),
+        help="with commas between; all that this machine has",
+    )
     parser.add_argument("--folder", type=Path, help="keep answers and compiled kernels here")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--answer", type=Path, help=argparse.SUPPRESS)

@@ -26,7 +26,7 @@ def follow(task: StoredTask) -> Document:
     """
     energy, state = task.begun(free_cell)
     try:
-        found = followed(energy, state)
+        found, _ = followed(energy, state)
     except (ConvergenceError, UnravelledError) as error:
         return {"failure": str(error)}
     reached = found.terms.energy / energy.cell.stitches

@@ -203,7 +203,9 @@ def _held(
         )
         for state in (begin, end)
     )  # fmt: skip
-    force = after * (sliding.limit / np.maximum(np.sqrt((after**2).sum(axis=1)), sliding.slip))[:, None]
+    force = (
+        after * (sliding.limit / np.maximum(np.sqrt((after**2).sum(axis=1)), sliding.slip))[:, None]
+    )
     first = before * (sliding.limit / sliding.slip)[:, None]
     return force, float(np.sum(0.5 * (first + force) * (after - before)))
 

@@ -23,7 +23,8 @@ _PASSING_ON = 3.0
 """Passing on a tile of a remainder takes as long as this many products of tiles."""
 
 Ints = NDArray[np.int64]
-Floats = NDArray[np.float32]
+Floats = NDArray[np.floating]
+Precision = type[np.float32] | type[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,15 +98,15 @@ class Room:
     the arithmetic."""
 
     def __init__(self) -> None:
-        self._spare: defaultdict[int, list[Floats]] = defaultdict(list)
-        self._lent: dict[int, Floats] = {}
+        self._spare: defaultdict[int, list[NDArray[np.uint8]]] = defaultdict(list)
+        self._lent: dict[int, NDArray[np.uint8]] = {}
 
-    def zeros(self, columns: int, rows: int) -> Floats:
+    def zeros(self, columns: int, rows: int, precision: Precision) -> Floats:
         """A lent array of zeros (columns, rows)."""
-        count = rows * columns
+        count = rows * columns * np.dtype(precision).itemsize
         spare = self._spare[count.bit_length()]
-        flat = spare.pop() if spare else np.empty(1 << count.bit_length(), np.float32)
-        array = flat[:count].reshape((columns, rows))
+        flat = spare.pop() if spare else np.empty(1 << count.bit_length(), np.uint8)
+        array: Floats = flat[:count].view(precision).reshape((columns, rows))
         array.fill(0.0)
         self._lent[array.ctypes.data] = flat
         return array
@@ -123,19 +124,23 @@ class Room:
 
 
 class FrontalFactor:
-    """Factors of one matrix, scaled to a unit diagonal, in single precision.
+    """Factors of one matrix, scaled to a unit diagonal.
 
     Parameters
     ----------
     matrix : the matrix.
     fronts : its order of elimination.
     room : memory; whoever factorises in it overwrites the factor that was there.
+    precision : of the factor.
     """
 
-    def __init__(self, matrix: TiledMatrix, fronts: tuple[Front, ...], room: Room) -> None:
+    def __init__(
+        self, matrix: TiledMatrix, fronts: tuple[Front, ...], room: Room, precision: Precision
+    ) -> None:
         self._matrix = matrix
         self._fronts = fronts
         self._room = room
+        self._precision = precision
         size = matrix.tiles.shape[1]
         inside = np.arange(size)
         self._places = [
@@ -154,8 +159,8 @@ class FrontalFactor:
         remainders: list[Floats | None] = []
         for front in self._fronts:
             own, edge = len(front.own) * size, len(front.border) * size
-            columns = room.zeros(own, own + edge)
-            rest = room.zeros(edge, edge)
+            columns = room.zeros(own, own + edge, self._precision)
+            rest = room.zeros(edge, edge, self._precision)
             _assemble(
                 matrix.tiles, matrix.where, self._scale, damping, matrix.unknowns,
                 front.own, front.border, columns,
@@ -180,7 +185,7 @@ class FrontalFactor:
     def solve(self, right: Array) -> Array:
         """The inverse times the columns (unknowns, k)."""
         scale = self._scale[: len(right)]
-        x = np.zeros((right.shape[1], len(self._scale)), np.float32)
+        x = np.zeros((right.shape[1], len(self._scale)), self._precision)
         x[:, : len(right)] = right.T * scale
         fronts = list(zip(self._factors, self._places, strict=True))
         for columns, places in fronts:
@@ -204,7 +209,7 @@ def _reduced(columns: Floats, rest: Floats) -> bool:
 @numba.njit(cache=True, nogil=True)
 def _eliminate_from(columns: Floats, places: Ints, x: Floats) -> None:
     """Forward substitution of a front in every row of ``x``."""
-    part = np.empty(columns.shape[1], np.float32)
+    part = np.empty(columns.shape[1], columns.dtype)
     for row in x:
         for k in range(part.shape[0]):
             part[k] = row[places[k]]
@@ -216,7 +221,7 @@ def _eliminate_from(columns: Floats, places: Ints, x: Floats) -> None:
 @numba.njit(cache=True, nogil=True)
 def _substitute_into(columns: Floats, places: Ints, x: Floats) -> None:
     """Backward substitution of a front in every row of ``x``."""
-    part = np.empty(columns.shape[1], np.float32)
+    part = np.empty(columns.shape[1], columns.dtype)
     for row in x:
         for k in range(part.shape[0]):
             part[k] = row[places[k]]

@@ -100,7 +100,10 @@ def turned(
         starts=relaxed.starts, notes=relaxed.notes,
     )  # fmt: skip
     mirrored = relaxed.mirrored and turned(relaxed.mirrored, image, cancelled=cancelled)
-    return replace(shown, converged=relaxed.converged, minimum=relaxed.minimum, mirrored=mirrored)
+    return replace(
+        shown, converged=relaxed.converged, minimum=relaxed.minimum, mirrored=mirrored,
+        as_low_mm=relaxed.as_low_mm,
+    )  # fmt: skip
 
 
 def _turned(

@@ -1,7 +1,8 @@
 """Whether a mirrored state is a minimum without its mirrors, and where it goes if it is not.
 
 The state is laid out over the free cell (at least two stitches each way). Where the Hessian there
-has a negative curvature, the solver leaves along its lowest eigenvector and descends.
+has a negative curvature, the solver leaves along its lowest eigenvector, to either side, and
+descends.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_stitches
-from knitcore.errors import Cancelled, ConvergenceError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, KnitcoreError, UnravelledError
 from knitcore.yarnlevel.cell import free_cell, plain_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.results import Branch
-from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
+from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, lowest_of, outcome
 from knitcore.yarnlevel.solver import TIGHT, Minimum, minimise
 from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld, relaxed_repeat
 from knitcore.yarnlevel.tiling import tiled_state
@@ -52,8 +53,11 @@ class Followed:
 def followed(
     energy: CellEnergy, state: Array, *, tension: Array | None = None,
     cancelled: Cancelled | None = None,
-) -> Minimum:  # fmt: skip
-    """The minimum that a state of a free cell leads to, along its instability if it has one.
+) -> tuple[Minimum, list[Minimum]]:  # fmt: skip
+    """The minimum that a state of a free cell leads to, along its instability if it has one, and
+    others that are as low.
+
+    A saddle is left to both sides, and the lower minimum counts (:func:`lowest_of`).
 
     Parameters
     ----------
@@ -67,11 +71,28 @@ def followed(
         If the descent finds no state of the fabric.
     """
     options = replace(TIGHT, damping=_LITTLE) if energy.cell.stitches <= 4 else TIGHT
-    found = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
-    became = outcome(energy, found)
-    if became not in (RELAXED, UNSETTLED):
-        raise ConvergenceError(f"Without its symmetries the repeat does not settle: {became}.")
-    return found
+    found: list[Minimum] = []
+    errors: list[KnitcoreError] = []
+    for side in (1.0, -1.0):
+        try:
+            end = minimise(
+                energy, state, tension=tension, options=replace(options, side=side),
+                cancelled=cancelled,
+            )  # fmt: skip
+        except (ConvergenceError, UnravelledError) as error:
+            errors.append(error)
+            continue
+        became = outcome(energy, end)
+        if became in (RELAXED, UNSETTLED):
+            found.append(end)
+        else:
+            how = f"Without its symmetries the repeat does not settle: {became}."
+            errors.append(ConvergenceError(how))
+        if not end.saddles:
+            break
+    if not found:
+        raise errors[0]
+    return lowest_of(found)
 
 
 def can_be_followed(relaxed: RelaxedRepeat, most_stitches: int = FOLLOWED_UP_TO) -> bool:
@@ -109,16 +130,16 @@ def without_mirrors(
     lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
     energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
     clock = time.process_time()
-    found = followed(
+    found, others = followed(
         energy, tiled_state(relaxed.cell, relaxed.state, cell),
         tension=np.resize(relaxed.tension_n, cell.rows), cancelled=cancelled,
     )  # fmt: skip
     shown = relaxed_repeat(
         StitchChart(cell.purl), energy, Branch.FREE, found,
-        seconds=time.process_time() - clock, evaluations=found.evaluations,
+        seconds=time.process_time() - clock, evaluations=found.evaluations, as_low=others,
     )  # fmt: skip
     lower = 1.0 - shown.energy_n_mm / relaxed.energy_n_mm
-    state = replace(shown, minimum=found.stable, notes=relaxed.notes)
+    state = replace(shown, minimum=found.stable, notes=(*relaxed.notes, *shown.notes))
     return Followed(lower < SAME_ENERGY and found.stable, state, lower)
 
 

@@ -214,7 +214,7 @@ def _part(
     touching = slope.sparse.touching
     free = np.arange(len(here)) < len(here) - 2
     fronts = elimination(touching, dissected(touching))
-    system = SparseSystem(slope, energy.penalty, free, fronts, room)
+    system = SparseSystem(slope, energy.penalty, free, fronts, room, np.float32)
     unit = sheet.unit / sheet.mean_loop_mm**2
     damping, longest = _DAMPING, _LONGEST * sheet.yarn.radius_mm
     while True:

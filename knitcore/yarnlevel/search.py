@@ -20,6 +20,8 @@ from knitcore.yarnlevel.topology import Clearance
 
 SAME_ENERGY = 1e-3
 """Starts whose energies agree within this part of them are the same minimum."""
+SAME_SIZE = 1e-3
+"""Relative difference of sizes up to which states that are as low count as the same."""
 OVERLONG = 1e-4
 """Relative error of the length beyond which a state does not count."""
 _STRAIGHT = 0.9
@@ -32,6 +34,19 @@ _REMEDY = (
 
 RELAXED = "relaxed"
 UNSETTLED = "not converged"
+
+
+def lowest_of(found: Sequence[Minimum]) -> tuple[Minimum, list[Minimum]]:
+    """The lowest of some states, by a rule that rounding cannot turn, and the others that are as
+    low.
+
+    States whose energies agree within ``SAME_ENERGY`` count as equally low: the first of them is
+    taken. Those of the others that differ in size are returned, too.
+    """
+    least = min(m.terms.energy for m in found)
+    level = [m for m in found if m.terms.energy <= least * (1.0 + SAME_ENERGY)]
+    size = level[0].state[-2:]
+    return level[0], [m for m in level[1:] if np.abs(m.state[-2:] / size - 1.0).max() > SAME_SIZE]
 
 
 def overlong(energy: CellEnergy, found: Minimum) -> bool:
@@ -119,8 +134,8 @@ class Search:
         if became in (RELAXED, UNSETTLED):
             self.found.append(found)
 
-    def best(self) -> Minimum:
-        """The lowest state of the fabric.
+    def best(self) -> tuple[Minimum, list[Minimum]]:
+        """The lowest state of the fabric, and others that are as low (:func:`lowest_of`).
 
         Raises
         ------
@@ -137,17 +152,16 @@ class Search:
                 f"No start kept the stitches of this repeat: {reasons}. {_REMEDY}"
             )
         settled = [m for m in self.found if m.converged] or self.found
-        return min(settled, key=lambda m: m.terms.energy)
+        return lowest_of(settled)
 
-    def refined(self, energy: CellEnergy, options: Options) -> Minimum:
-        """The lowest state, on a finer grid.
+    def refined(self, best: Minimum, energy: CellEnergy, options: Options) -> Minimum:
+        """A state on a finer grid.
 
         Raises
         ------
         ConvergenceError
             If it is not a state of the fabric there.
         """
-        best = self.best()
         state = refined_state(self.energy.cell, best.state, energy.cell)
         tension = None if energy.held.size else best.tension
         found = self._minimised(energy, state, tension, options)

@@ -42,14 +42,13 @@ _MIN_DAMPING = 1e-6
 """Least damping, relative to the first."""
 _INDEFINITE_DAMPING = 0.05
 """Least damping that is tried where the Hessian is not positive definite, relative to the first."""
-_SINGLE_FROM = 450
-"""Systems of at least this many unknowns are factored in single precision, in half the time. With
-its diagonal scaled to one the damped matrix has a condition of some 1e5, which leaves steps of two
-digits."""
 SPARSE_FROM = 12
 """Cells of at least this many stitches have a sparse factor."""
 _MIN_DAMPING_SINGLE = 1e-3
-"""Least damping for a factor in single precision, relative to the first."""
+"""The same for a factor in single precision. With its diagonal scaled to one the damped matrix has
+a condition of some 1e5, which leaves steps of two digits: enough on the way, in half the time."""
+_SINGLE_DOWN_TO = 1e-6
+"""Gain of a step, relative to the energy, below which sparse factors are in double precision."""
 _TRIALS = 60
 _WORTH = 0.2
 """A step with an old factor that gains less than this part of the step before is the last."""
@@ -59,7 +58,10 @@ _STABLE = 0.02
 motions of the sheet have no stiffness)."""
 _STABLE_LARGE = 2e-3
 """The same for cells with a sparse factor, whose folds are softer."""
-_NUDGES = 6
+_NUDGES = 4
+_NUDGE = 0.03
+"""First displacement with which a saddle is left, in radii: far above rounding, and small enough to
+follow the direction in which it falls."""
 _BEYOND_LOWEST = 1.3
 """Damping where the lowest curvature is negative, relative to it."""
 _INDEFINITE_GROWTH = 3.0
@@ -192,7 +194,7 @@ class _Descent:
         self.damping = options.damping * self.first_damping
         dense_only = energy.slides or energy.sliding is not None
         self.sparse = energy.cell.stitches >= SPARSE_FROM and not dense_only
-        self.single = self.sparse or energy.cell.unknowns >= _SINGLE_FROM
+        self.single = self.sparse
         self.dissection = Dissection()
         self.room = Room()
         self.lowest = 0.0
@@ -245,12 +247,13 @@ class _Descent:
         if not moving:
             self._take_chord_steps(system, predicted)
         terms = trajectory.here.terms
+        self.single = self.single and predicted > _SINGLE_DOWN_TO * abs(terms.energy)
         # rounding moves the yarn along itself, which lengthens it: further steps bring no gain
         slack = (10.0 if rounding else 1.0) * self.options.slack
         self.converged = bool(
             taken.fraction == 1.0
             and not moving
-            and self.damping <= 0.1 * self.first_damping
+            and (self.damping <= 0.1 * self.first_damping or self.lowest < 0.0)
             and predicted < self.options.tolerance * abs(terms.energy)
             and np.abs(terms.excess_mm).max() < slack * energy.mean_loop_mm
         )
@@ -262,9 +265,10 @@ class _Descent:
 
     def _system(self, slope: Slope) -> System:
         if slope.sparse is None:
-            return DenseSystem(slope, self.energy.penalty, self.free, self.single)
+            return DenseSystem(slope, self.energy.penalty, self.free)
         fronts = self.dissection.fronts(slope.sparse.touching)
-        return SparseSystem(slope, self.energy.penalty, self.free, fronts, self.room)
+        precision = np.float32 if self.single else np.float64
+        return SparseSystem(slope, self.energy.penalty, self.free, fronts, self.room, precision)
 
     def _mending(self, system: System, slope: Slope) -> Callable[[Array], Array] | None:
         """How the yarn is brought back to its length where a step ends, if it is."""
@@ -293,7 +297,7 @@ class _Descent:
         _, direction = system.softest(None, _SADDLE_STEPS)
         side = self.options.side if self.saddles == 0 else 1.0
         step = np.zeros(len(self.free))
-        step[self.free] = side * energy.yarn.radius_mm * signed(direction)
+        step[self.free] = side * _NUDGE * energy.yarn.radius_mm * signed(direction)
         before = energy.merit(here.terms, self.tension)
         for _ in range(_NUDGES):
             taken = trajectory.certified(step)
@@ -354,4 +358,4 @@ def signed(direction: Array) -> Array:
     """A direction (n,) turned so that the first of its greatest components is positive."""
     sizes = np.abs(direction)
     first = np.argmax(sizes > _GREATEST * sizes.max())
-    return direction * np.sign(direction[first])
+    return np.asarray(direction * np.sign(direction[first]))

@@ -53,6 +53,8 @@ FINE_UP_TO = 2
 """Cells of up to this many stitches are solved on the fine grid (energy within 1e-4)."""
 SEVERAL_UP_TO = 9
 """Cells of up to this many stitches get more than one start."""
+ALSO_DIRECT_UP_TO = 36
+"""Cells of up to this many stitches whose shape is explored in rounds get the usual start, too."""
 SECONDS_PER_START = 0.08
 """CPU time of one start: this times the stitches to the power 1.5 (measured, an upper estimate)."""
 _STRIDE = 0.03
@@ -83,6 +85,8 @@ class RelaxedRepeat(RelaxedCell):
     minimum : whether it is a minimum without the symmetries of the chart; None where this was not
         found out, and where more was prescribed than one length for every course.
     mirrored : the state with these symmetries that led to this one; None if none did.
+    as_low_mm : sizes of a stitch, course-wise and wale-wise, in other minima that are as low within
+        ``SAME_ENERGY``; which of them is returned is a rule, not physics.
     """
 
     cell: YarnCell
@@ -91,6 +95,7 @@ class RelaxedRepeat(RelaxedCell):
     slides: tuple[SlideConstraint, ...] = ()
     minimum: bool | None = None
     mirrored: RelaxedRepeat | None = None
+    as_low_mm: tuple[tuple[float, float], ...] = ()
 
     @property
     def held(self) -> bool:
@@ -134,7 +139,7 @@ def relax_splines(
 
     Parameters and errors are those of :func:`knitcore.yarnlevel.relax.relax`; ``sizes_mm`` are the
     sizes of a stitch to hold, course-wise and wale-wise. Large cells take the shape that
-    ``explore`` finds on the grid ``ROUGH`` in place of the usual start.
+    ``explore`` finds on the grid ``ROUGH``, the largest in place of the usual start.
     """
     draft, repeat, lengths = drafted(chart, loop_length_mm, branch)
     for length in lengths.ravel():
@@ -173,16 +178,17 @@ def relax_splines(
             smaller, _starts(Branch.MIRRORED, small, None), shakes,
             follow=draft.stitches <= SEVERAL_UP_TO,
         )  # fmt: skip
-    if explore is not None and explored == ROUGH:
+    rounds = explore is not None and explored == ROUGH
+    if explore is not None and rounds:
         search.run("rounds", lambda: explore(energy, cancelled))
-    else:
+    if not rounds or draft.stitches <= ALSO_DIRECT_UP_TO:
         search.try_starts(chosen)
-    best = search.best()
+    best, others = search.best()
     if explored != grid:
         energy = replace(
             energy, cell=replace(draft, grid=grid), spacing_per_bending=SPACING_PER_BENDING
         )
-        best = search.refined(energy, TIGHT)
+        best = search.refined(best, energy, TIGHT)
     held = any(size is not None for size in sizes_mm)
     if held:
         best = _held_at(energy, best, sizes_mm, cancelled)
@@ -191,6 +197,7 @@ def relax_splines(
     relaxed = relaxed_repeat(
         repeat, energy, branch, best, seconds=time.process_time() - clock,
         evaluations=search.evaluations, starts=tuple(search.reports), notes=search.notes(best),
+        as_low=others,
     )  # fmt: skip
     return relaxed if imposed else replace(relaxed, minimum=best.stable)
 
@@ -254,8 +261,16 @@ def relaxed_repeat(
     chart: StitchChart, energy: CellEnergy, branch: Branch, found: Minimum, *,
     seconds: float, evaluations: int,
     starts: tuple[StartReport, ...] = (), notes: tuple[str, ...] = (),
+    as_low: Sequence[Minimum] = (),
 ) -> RelaxedRepeat:  # fmt: skip
-    """A minimum as a result, per stitch."""
+    """A minimum as a result, per stitch, with the sizes of others that are as low."""
+    sizes = tuple((float(m.state[-2]), float(m.state[-1])) for m in as_low)
+    if sizes:
+        shown = ", ".join(f"{wide:.2f} × {high:.2f} mm" for wide, high in sizes)
+        notes = (
+            *notes,
+            f"Other shapes have the same energy within 0.1 %, with stitches of {shown}.",
+        )
     terms, cell = found.terms, energy.cell
     excess = terms.excess_mm[: len(energy.prescribed_mm)].sum()
     return RelaxedRepeat(
@@ -283,6 +298,7 @@ def relaxed_repeat(
         starts=starts,
         flat=energy.flat,
         slides=energy.slides,
+        as_low_mm=sizes,
     )
 
 

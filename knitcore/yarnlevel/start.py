@@ -42,7 +42,8 @@ def start_state(
     u = np.arange(grid.controls) / grid.controls
     # the last digits of sines differ between processors
     sine, cosine = (
-        np.round(of, 12) for of in (np.sin(4.0 * np.pi * (u - 0.5)), np.cos(2.0 * np.pi * (u - 0.5)))
+        np.round(of, 12)
+        for of in (np.sin(4.0 * np.pi * (u - 0.5)), np.cos(2.0 * np.pi * (u - 0.5)))
     )
     swing_x, swing_y = 0.22 * size[0] * sine, 0.78 * size[1] * cosine
     points = np.zeros((cell.rows, cell.controls_per_course, 3))

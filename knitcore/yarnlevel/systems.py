@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.dense import dot, eliminate, norm, product, solved, substitute, times
 from knitcore.yarnlevel.energy import Slope
-from knitcore.yarnlevel.fronts import Front, FrontalFactor, Room
+from knitcore.yarnlevel.fronts import Front, FrontalFactor, Precision, Room
 from knitcore.yarnlevel.kernels import one_tile
 
 
@@ -129,11 +129,10 @@ class System(ABC):
 
 
 class DenseSystem(System):
-    """With a dense Cholesky factor, in single precision if ``single``."""
+    """With a dense Cholesky factor."""
 
-    def __init__(self, slope: Slope, penalty: float, free: NDArray[np.bool_], single: bool) -> None:
+    def __init__(self, slope: Slope, penalty: float, free: NDArray[np.bool_]) -> None:
         super().__init__(slope, penalty, free)
-        self._single = single
         assert slope.hessian is not None  # noqa: S101 - a system is made of both derivatives
         self._hessian = slope.hessian
         self._hessian += penalty * product(slope.lengths.T, slope.lengths)
@@ -142,13 +141,13 @@ class DenseSystem(System):
         matrix = self._hessian
         if len(self._held):
             matrix = matrix[np.ix_(self._free, self._free)]
-        self._factor = np.zeros(matrix.shape, np.float32 if self._single else np.float64)
+        self._factor = np.zeros(matrix.shape)
         self._scale = _scale(matrix, damping, self._factor)
         return bool(eliminate(self._factor))
 
     def _through_factor(self, right: Array) -> Array:
         """The damped matrix's inverse times the columns given."""
-        columns = np.ascontiguousarray((right.T * self._scale).astype(self._factor.dtype))
+        columns = np.ascontiguousarray(right.T * self._scale)
         substitute(self._factor, columns)
         return np.asarray((columns * self._scale).T)
 
@@ -168,13 +167,13 @@ class SparseSystem(System):
 
     def __init__(
         self, slope: Slope, penalty: float, free: NDArray[np.bool_], fronts: tuple[Front, ...],
-        room: Room,
+        room: Room, precision: Precision,
     ) -> None:  # fmt: skip
         super().__init__(slope, penalty, free)
         assert slope.sparse is not None  # noqa: S101 - see the dense system
         self._hessian = slope.sparse
         self._lengths = slope.lengths
-        self._factor = FrontalFactor(slope.sparse.matrix, fronts, room)
+        self._factor = FrontalFactor(slope.sparse.matrix, fronts, room, precision)
         self._sizes = np.flatnonzero(free[-2:])
         self._beside = slope.sparse.sizes[self._sizes, :-2].T
 
@@ -223,7 +222,7 @@ def _without_symmetry(count: int) -> Array:
 
 
 @numba.njit(cache=True, nogil=True)
-def _scale(matrix: Array, damping: float, out: NDArray[np.floating]) -> Array:
+def _scale(matrix: Array, damping: float, out: Array) -> Array:
     """Fill the lower triangle, ``[column, row]``, with the damped matrix scaled to a unit diagonal;
     returns the scale."""
     n = matrix.shape[0]

@@ -5,6 +5,10 @@ relaxes windows one after the other by Newton steps, each with the yarn around i
 alternating method of Schwarz); where the next round's windows end lies in the middle of this
 one's. Long waves, the sizes of the sheet, and yarn that passes along a course take many passes;
 these come from a descent of all unknowns at once (:mod:`knitcore.yarnlevel.polish`).
+
+Rounds that bring little may have come to a saddle, where a symmetric start stays. Before they end,
+every window is therefore asked for a direction of negative curvature, and leaves along it. A chart
+of up to ``MAX_STITCHES`` stitches ends in Newton's method for the sheet, at a minimum.
 """
 
 from __future__ import annotations
@@ -41,7 +45,7 @@ from knitcore.yarnlevel.growth import (
     does_not_fit,
     with_stiff_shell,
 )  # fmt: skip
-from knitcore.yarnlevel.held import foot_slopes
+from knitcore.yarnlevel.held import foot_slopes, lean_weights, middle_weights, tip_weights
 from knitcore.yarnlevel.images import same_for_images
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.limits import check_loop
@@ -50,7 +54,7 @@ from knitcore.yarnlevel.neighbours import reaches
 from knitcore.yarnlevel.polish import PAIR_CAP, polished
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome, overlong
-from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
+from knitcore.yarnlevel.solver import COURSE, TIGHT, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.splines import (
     COARSE,
     ROUGH,
@@ -82,6 +86,8 @@ _GROWING = Options(tolerance=1e-3, iterations=4, mended=False)
 _PASS = Options(tolerance=1e-6, iterations=3, mended=False)
 _LAST_PASS = Options(tolerance=1e-6, iterations=6)
 """Its steps keep the lengths, which no later pass would mend."""
+_PROBE = Options(tolerance=1e-3, iterations=4, damping=0.1, mended=False)
+"""Of a pass whose windows leave saddles: they count as settled early, and look for one."""
 _DESCENT_STEPS = 20
 _SIZES = 10.0
 """Sizes may still change by this many times the tolerance, as the energy near its minimum hardly
@@ -273,24 +279,47 @@ class _Work:
             sheet = self.settled(self.grown(sheet))
             sheet = self._refined(sheet)
         sheet, found, left_n = self.mended(self.settled(self.grown(sheet)))
-        energy = self.energy(sheet)
+        energy = replace(self.energy(sheet), flat=self.flat)
         became = outcome(energy, found)
         if became not in (RELAXED, UNSETTLED):
             raise UnravelledError(f"The relaxed chart is not a fabric: {became}.")
         rounds = sheet.earlier + len(sheet.rounds)
+        changes = (sheet.energy_change, sheet.size_change, sheet.may_fall)
         note = (
             f"The last of {rounds} rounds changed the energy by {-sheet.energy_change:+.2%} and a "
             f"size by {sheet.size_change:.2%}; more rounds may take up to {sheet.may_fall:.1%} of "
             f"the energy away. Forces of up to {left_n:.1e} N are left on the yarn."
         )
+        exact = self._exact(energy, found)
+        if exact is not None:
+            found, changes, note = exact, (0.0, 0.0, 0.0), ""
+            path = Trajectory(energy, found.state, PAIR_CAP)
+            left_n = float(np.abs(path.slope(found.tension, hessian=False).gradient).max())
         repeat = relaxed_repeat(
-            self.chart, replace(energy, flat=self.flat), Branch.FREE, found,
-            seconds=time.process_time() - clock, evaluations=sheet.evaluations, notes=(note,),
+            self.chart, energy, Branch.FREE, found, seconds=time.process_time() - clock,
+            evaluations=sheet.evaluations + (found.evaluations if exact else 0),
+            notes=(note,) if note else (),
         )  # fmt: skip
+        if exact is not None:
+            repeat = replace(repeat, minimum=found.stable)
         return RelaxedChart(
-            **vars(repeat), rounds=rounds, energy_change=sheet.energy_change,
-            size_change=sheet.size_change, may_fall=sheet.may_fall, largest_force_n=left_n,
+            **vars(repeat), rounds=rounds, energy_change=changes[0], size_change=changes[1],
+            may_fall=changes[2], largest_force_n=left_n,
         )  # fmt: skip
+
+    def _exact(self, energy: CellEnergy, begin: Minimum) -> Minimum | None:
+        """The minimum that Newton's method finds for the sheet; None where it is too large, or
+        finds none."""
+        if energy.cell.stitches > MAX_STITCHES:
+            return None
+        tension = np.append(begin.tension, np.zeros(energy.constraints - len(begin.tension)))
+        try:
+            found = minimise(
+                energy, begin.state, tension=tension, options=TIGHT, cancelled=self.cancelled
+            )  # fmt: skip
+        except (ConvergenceError, UnravelledError):
+            return None
+        return found if outcome(energy, found) == RELAXED else None
 
     def mended(self, sheet: WholeShape) -> tuple[WholeShape, Minimum, float]:
         """The sheet after a last pass that gives every course its length, as a minimum, and the
@@ -383,12 +412,17 @@ class _Work:
         raise ConvergenceError(does_not_fit(self.yarn, sheet.core_radius_mm))
 
     def settled(self, sheet: WholeShape) -> WholeShape:
-        """Rounds until the energy settles."""
+        """Rounds until the energy settles, and no window knows how to lower it."""
         enough = self.tolerance if sheet.fine else max(self.tolerance, _EXPLORED)
-        while sheet.change > enough and len(sheet.rounds) < self.rounds:
+        probed = False
+        while len(sheet.rounds) < self.rounds:
+            settled = sheet.change <= enough
+            if settled and probed:
+                break
+            probed = settled
             number = len(sheet.rounds)
             energy = self.energy(sheet)
-            sheet = self._one_pass(sheet, energy, _PASS, number)
+            sheet = self._one_pass(sheet, energy, _PROBE if probed else _PASS, number)
             path = Trajectory(energy, sheet.state, PAIR_CAP)
             found = polished(
                 energy, path, sheet.tension_n.mean(axis=1),
@@ -474,18 +508,15 @@ class _Work:
         path = Trajectory(energy, sheet.state, PAIR_CAP)
         tension = sheet.tension_n.mean(axis=1)
         slope = path.slope(tension, hessian=False, lengths=False)
-        left = slope.gradient[:-2].reshape(*sheet.controls.shape)
-        if self.flat:  # the plane carries the mean over a stitch, and the feet their slopes
-            heights = left[..., 2].reshape(*self.chart.purl.shape, -1)
-            heights -= heights.mean(axis=2, keepdims=True)
-            feet = foot_slopes(energy.cell.grid, energy.cell.wales)
-            left[..., 1] -= np.linalg.lstsq(feet.T, left[..., 1].T, rcond=None)[0].T @ feet
         found = Minimum(
             state=sheet.state, tension=tension, terms=path.here.terms,
             force=slope.gradient[-2:].copy(), min_distance_mm=path.min_distance_mm,
             converged=sheet.change <= self.tolerance, stable=False, steps=0,
             evaluations=sheet.evaluations,
         )  # fmt: skip
+        left = slope.gradient[:-2].reshape(*sheet.controls.shape)
+        if self.flat:
+            _take_held_forces(energy.cell, left)
         return found, float(np.abs(left).max())
 
     def _tell(self, sheet: WholeShape) -> None:
@@ -499,6 +530,22 @@ class _Work:
             core = self.yarn.core_radius_mm
             grown = sheet.core_radius_mm / core if core else 1.0
             self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)
+
+
+def _take_held_forces(cell: YarnCell, forces: Array) -> None:
+    """Take from the forces (rows, controls, 3) on a sheet laid flat what holds it: the middles,
+    postures and feet of its stitches."""
+    grid = cell.grid
+    held = np.array([of(grid)[:-1] for of in (middle_weights, tip_weights, lean_weights)])
+    heights = forces[..., 2].reshape(-1, grid.controls)
+    heights -= _within(held, heights)
+    along = forces[..., 1]
+    along -= _within(foot_slopes(grid, cell.wales), along)
+
+
+def _within(rows: Array, forces: Array) -> Array:
+    """The part of forces (n, k) that forces along rows (m, k) can balance."""
+    return np.asarray(np.linalg.lstsq(rows.T, forces.T, rcond=None)[0].T @ rows)
 
 
 def _least(repeat: int, whole: int) -> int:

@@ -41,7 +41,7 @@ def test_a_mended_step_does_not_stretch_the_yarn():
     energy = CellEnergy(cell, entry.yarn, np.full(2, entry.loop_length_mm), Convention.PUBLISHED)
     path = Trajectory(energy, start_state(cell, entry.loop_length_mm, 0.6), pair_cap=0.3)
     slope = path.slope(np.zeros(2), hessian=True)
-    system = DenseSystem(slope, energy.penalty, np.ones(cell.unknowns, bool), single=False)
+    system = DenseSystem(slope, energy.penalty, np.ones(cell.unknowns, bool))
     assert system.factorise(1e3)
     before = path.here.terms.excess_mm
     step, _ = system.solve(slope, before, np.zeros(0))
