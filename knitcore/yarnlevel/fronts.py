@@ -106,7 +106,7 @@ class Room:
         count = rows * columns * np.dtype(precision).itemsize
         spare = self._spare[count.bit_length()]
         flat = spare.pop() if spare else np.empty(1 << count.bit_length(), np.uint8)
-        array: Floats = flat[:count].view(precision).reshape((columns, rows))
+        array = np.asarray(flat[:count].view(precision).reshape((columns, rows)))
         array.fill(0.0)
         self._lent[array.ctypes.data] = flat
         return array

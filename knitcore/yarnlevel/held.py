@@ -7,8 +7,8 @@
   nothing held it, its heads and feet in place of the middles.
 - The posture: a fabric laid flat does not crumple. How far a stitch tips (its head over its feet)
   and leans (its right side over its left one) depends on the stitches around it, so stitches in
-  like surroundings do both alike, and a stitch whose neighbours left and right are of one kind does
-  not lean. Without this rule rows of rib tip to the front and to the back in turn.
+  like surroundings do both alike, and those with a mirror axis do not lean. Without this rule rows
+  of rib tip to the front and to the back in turn.
 
 Rules that symmetry already keeps are left out.
 """
@@ -18,6 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
@@ -26,6 +27,8 @@ from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.spline import SUPPORT, SplineGrid, quintic_basis
 
 _Y, _Z = 1, 2
+_AROUND = 2
+"""Stitches each way that count as the surroundings of one."""
 FOOT = -2
 """The first of the control points around a foot, from that at the foot."""
 _SMALL = 1e-9
@@ -63,15 +66,15 @@ def foot_weights(grid: SplineGrid) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """What is around the stitches of a cell.
+    """What is around the stitches of a cell, up to two stitches each way.
 
     Attributes
     ----------
-    kind : (rows, wales) equal where the stitches above, below and to both sides are, but for an
-        exchange of knits and purls or of left and right.
+    kind : (rows, wales) equal where the surroundings are, but for an exchange of knits and purls or
+        of left and right.
     side : (rows, wales) 1 for knits, -1 for purls.
-    hand : (rows, wales) 1 or -1 where left and right differ, after which of them is like the stitch
-        itself; 0 where they do not.
+    hand : (rows, wales) 1 or -1 where the surroundings differ from their mirror image, one for
+        each of the two; 0 where they do not.
     """
 
     kind: NDArray[np.int64]
@@ -82,14 +85,17 @@ class Surroundings:
     def of(cls, cell: YarnCell) -> Surroundings:
         """Of every stitch of a cell."""
         purl = np.array([
-            [cell.purl_at(row, wale) for wale in range(-1, cell.wales + 1)]
-            for row in range(-1, cell.rows + 1)
+            [cell.purl_at(row, wale) for wale in range(-_AROUND, cell.wales + _AROUND)]
+            for row in range(-_AROUND, cell.rows + _AROUND)
         ])  # fmt: skip
-        own = purl[1:-1, 1:-1]
-        above, below = purl[2:, 1:-1] ^ own, purl[:-2, 1:-1] ^ own
-        left, right = purl[1:-1, :-2] ^ own, purl[1:-1, 2:] ^ own
-        kind = 6 * above.astype(np.int64) + 3 * below + left + right
-        return cls(kind, np.where(own, -1.0, 1.0), right.astype(float) - left)
+        width = 2 * _AROUND + 1
+        around = sliding_window_view(purl, (width, width))
+        own = around[..., _AROUND, _AROUND]
+        other = around ^ own[..., None, None]
+        weights = 1 << np.arange(width * width).reshape(width, width)
+        code, mirrored = ((seen * weights).sum(axis=(2, 3)) for seen in (other, other[..., ::-1]))
+        side = np.where(own, -1.0, 1.0)
+        return cls(np.minimum(code, mirrored), side, np.sign(code - mirrored).astype(float))
 
     def at(self, rows: NDArray[np.int64], wales: NDArray[np.int64]) -> Surroundings:
         """Of the stitches at the crossings of some rows and wales."""

@@ -260,7 +260,8 @@ class _Descent:
         if self.converged:
             least = (_STABLE_LARGE if self.sparse else _STABLE) * self.first_damping
             self.stable = damping <= least or system.factorise(least)
-            self.converged = self.stable or not self._leave_saddle(system, least)
+            if not self.stable:
+                self.converged = not self._leave_saddle(system, slope.lengths, least)
         return True
 
     def _system(self, slope: Slope) -> System:
@@ -287,14 +288,18 @@ class _Descent:
         if indefinite or self.lowest < 0.0:
             self.lowest, self.softest = system.softest(self.softest, _POWER_STEPS)
 
-    def _leave_saddle(self, system: System, least: float) -> bool:
-        """Descend along the most negative curvature; False if that does not lower the energy."""
+    def _leave_saddle(self, system: System, lengths: Array, least: float) -> bool:
+        """Descend along the most negative curvature that the constraints allow; False if there is
+        none, as then it is a minimum, or if that does not lower the energy."""
         energy, trajectory = self.energy, self.trajectory
         here = trajectory.here
         self.damping = 2.0 * least
         while not system.factorise(self.damping):  # the nearer the shift, the faster the iteration
             self._damp(2.0)
-        _, direction = system.softest(None, _SADDLE_STEPS)
+        curvature, direction = system.softest(None, _SADDLE_STEPS, lengths)
+        if curvature > -least:
+            self.stable = True
+            return False
         side = self.options.side if self.saddles == 0 else 1.0
         step = np.zeros(len(self.free))
         step[self.free] = side * _NUDGE * energy.yarn.radius_mm * signed(direction)

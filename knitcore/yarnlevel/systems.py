@@ -60,16 +60,24 @@ class System(ABC):
     def _downhill_gradient(self, slope: Slope, excess: Array, remaining: Array) -> Array:
         """Gradient of what the step minimises, by the free unknowns."""
 
-    def softest(self, start: Array | None, iterations: int) -> tuple[float, Array]:
+    def softest(
+        self, start: Array | None, iterations: int, lengths: Array | None = None
+    ) -> tuple[float, Array]:
         """Lowest curvature of the undamped matrix, and its direction with greatest component 1.
 
-        Inverse iteration from ``start`` (free unknowns), or from a shape without symmetry.
+        Inverse iteration from ``start`` (free unknowns), or from a shape without symmetry; with
+        ``lengths`` (constraints, unknowns) among the directions that keep the constraints.
         """
+        rules = None if lengths is None else lengths[:, self._free]
+        if rules is not None and self._by_tension is None:
+            self._by_tension = self._through_factor(rules.T)
         count = int(np.count_nonzero(self._free))
         v = _without_symmetry(count) if start is None or len(start) != count else start
         for _ in range(iterations):
             v = v / norm(v)
             through = self._through_factor(v[:, None])[:, 0]
+            if rules is not None and self._by_tension is not None:
+                through -= times(self._by_tension, self._against(rules, times(rules, through)))
             curvature = 1.0 / dot(v, through) - self._damping
             v = through
         return curvature, v / np.abs(v).max()

@@ -88,6 +88,9 @@ _LAST_PASS = Options(tolerance=1e-6, iterations=6)
 """Its steps keep the lengths, which no later pass would mend."""
 _PROBE = Options(tolerance=1e-3, iterations=4, damping=0.1, mended=False)
 """Of a pass whose windows leave saddles: they count as settled early, and look for one."""
+_EXACT_FLAT = 36
+"""Largest chart laid flat that ends in Newton's method: what holds it is not in the sparse matrix,
+which takes many damped steps."""
 _DESCENT_STEPS = 20
 _SIZES = 10.0
 """Sizes may still change by this many times the tolerance, as the energy near its minimum hardly
@@ -310,7 +313,7 @@ class _Work:
     def _exact(self, energy: CellEnergy, begin: Minimum) -> Minimum | None:
         """The minimum that Newton's method finds for the sheet; None where it is too large, or
         finds none."""
-        if energy.cell.stitches > MAX_STITCHES:
+        if energy.cell.stitches > (_EXACT_FLAT if self.flat else MAX_STITCHES):
             return None
         tension = np.append(begin.tension, np.zeros(energy.constraints - len(begin.tension)))
         try:
