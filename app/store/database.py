@@ -15,7 +15,19 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastapi.concurrency import run_in_threadpool
-from sqlalchemy import Connection, Engine, Insert, Table, create_engine, event, make_url, text
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Engine,
+    Float,
+    Insert,
+    Table,
+    create_engine,
+    event,
+    literal_column,
+    make_url,
+    text,
+)
 from sqlalchemy.dialects.postgresql import insert as postgresql_insert
 from sqlalchemy.dialects.sqlite import insert as sqlite_insert
 from sqlalchemy.exc import DatabaseError, InterfaceError, OperationalError
@@ -35,6 +47,8 @@ FULL = ("disk is full", "No space left on device")
 DAMAGED = ("malformed", "file is not a database")
 BUSY_TIMEOUT_MS = 10_000
 MAX_BATCH = 64
+SQLITE_CLOCK = "(julianday('now') - 2440587.5) * 86400.0"
+POSTGRESQL_CLOCK = "CAST(EXTRACT(EPOCH FROM clock_timestamp()) AS double precision)"
 UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing was changed."
 
 
@@ -96,6 +110,12 @@ class Database:
         """An insertion that leaves existing rows unchanged."""
         kind = sqlite_insert if self.is_sqlite else postgresql_insert
         return kind(table).on_conflict_do_nothing()
+
+    @property
+    def clock(self) -> ColumnElement[float]:
+        """Seconds since 1970 by the clock of the database, which all its processes share."""
+        now = SQLITE_CLOCK if self.is_sqlite else POSTGRESQL_CLOCK
+        return literal_column(now, Float)
 
     @property
     def lock_file(self) -> Path:
