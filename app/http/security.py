@@ -29,7 +29,7 @@ from app.limits.budgets import InUse
 from app.limits.rate import RateLimit
 from app.problems.errors import RefusedError, ServiceError, StoppingError, TooManyError
 from app.settings import Settings
-from app.store.database import StoreError
+from app.store.errors import StoreError
 
 SESSION_COOKIE = "knitcore_session"
 GONE = 499

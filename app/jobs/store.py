@@ -14,7 +14,8 @@ from app.jobs.document import JobPage, JobState, JobStatus
 from app.limits.budgets import BUDGETS, OverBudgetError
 from app.problems.errors import NotFoundError
 from app.problems.problem import Problem
-from app.store.database import Database, StoreError
+from app.store.database import Database
+from app.store.errors import StoreError
 from app.store.pages import one_page
 from app.store.tables import job_requests, jobs, results
 from app.store.values import now

@@ -30,8 +30,8 @@ def migrate(database: Database, target: str = "head") -> None:
     found = check_schema(database, target)
     config = _config()
     head = ScriptDirectory.from_config(config).get_current_head()
-    if database.is_sqlite and found not in (None, head) and target == "head":
-        file = Path(database.url.database or "")
+    if database.file is not None and found not in (None, head) and target == "head":
+        file = database.file.path
         copy = file.with_name(f"{file.name}.before-{head}")
         if not copy.exists():
             database.copy_to(copy)

@@ -17,7 +17,7 @@ class Service:
 
     def __init__(self, folder: Path, **settings: str) -> None:
         self.folder = folder
-        self._environment = os.environ | {
+        self.environment = os.environ | {
             "KNITCORE_DATA_DIR": str(folder / "data"),
             "KNITCORE_WORKERS": "1",
             **{f"KNITCORE_{name.upper()}": value for name, value in settings.items()},
@@ -34,7 +34,7 @@ class Service:
                 stdout=subprocess.PIPE,
                 stderr=log,
                 text=True,
-                env=self._environment,
+                env=self.environment,
             )
         assert self._process.stdout is not None
         line = self._process.stdout.readline()

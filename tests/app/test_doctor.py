@@ -29,7 +29,8 @@ from app.compute.workers import NotBegunError
 from app.http import observing
 from app.main import create_app
 from app.settings import Settings
-from app.store.database import DamagedError, Database
+from app.store.database import Database
+from app.store.errors import DamagedError
 from app.store.lock import held
 from app.store.schema import migrate, revision
 from knitcore.errors import InputError

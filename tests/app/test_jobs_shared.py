@@ -20,7 +20,8 @@ from app.jobs.document import JobState
 from app.jobs.kinds import KINDS
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.store.database import Database, StoreError
+from app.store.database import Database
+from app.store.errors import StoreError
 from app.store.tables import jobs
 from tests.app.jobs import WORK, Task, answers
 
