@@ -8,8 +8,11 @@ from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
+from sqlalchemy import inspect
 
 from app.store.database import Database
+from app.store.errors import DamagedError
+from app.store.tables import metadata
 from knitcore.errors import InputError
 
 MIGRATIONS = Path(__file__).with_name("migrations")
@@ -50,6 +53,8 @@ def check_schema(database: Database, target: str = "head") -> str | None:
     ------
     InputError
         As :func:`migrate`.
+    DamagedError
+        If a table of this program's schema is missing.
     StoreError
         If the database cannot be reached.
     """
@@ -62,6 +67,11 @@ def check_schema(database: Database, target: str = "head") -> str | None:
             f"the designs have schema {strange.pop()}, which this program does not know.",
             "Use the newer program that wrote it, or restore a backup.",
         )
+    if found == scripts.get_current_head():
+        with database.read() as connection:
+            missing = set(metadata.tables) - set(inspect(connection).get_table_names())
+        if missing:
+            raise DamagedError(f"The database lacks {', '.join(sorted(missing))}.")
     return found
 
 
