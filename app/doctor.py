@@ -15,7 +15,8 @@ from pydantic import BaseModel, Field
 
 from app.problems.errors import ServiceError
 from app.settings import Settings
-from app.store.database import Database, check_not_lost
+from app.store.database import Database, sqlite_file
+from app.store.file import check_not_lost, check_reserved
 from app.store.lock import holder
 from app.store.schema import check_schema
 from knitcore.errors import InputError
@@ -50,18 +51,23 @@ class Checks(BaseModel):
 
 def examine(settings: Settings) -> Checks:
     """Look at settings, folder, database, limits and cluster; changes nothing."""
-
-    def cluster() -> None:
-        check_cluster(settings.scheduler or "")
-
-    found = _examine(settings, partial(_check_database, settings), cluster)
+    found = _examine(settings, partial(_check_database, settings), _cluster_check(settings))
     found.checks.append(_checked("service", partial(_holder, settings)))
     return found
+
+
+def examine_start(settings: Settings, database: Database) -> Checks:
+    """The same for a service that starts, with its own database, whose pages it has looked at."""
+    return _examine(settings, database.check, _cluster_check(settings))
 
 
 def examine_running(settings: Settings, database: Database, cluster: Cluster | None) -> Checks:
     """The same while the service runs, without a look at every page of the database."""
     return _examine(settings, database.check, cluster.check if cluster is not None else None)
+
+
+def _cluster_check(settings: Settings) -> Callable[[], None]:
+    return partial(check_cluster, settings.scheduler or "")
 
 
 def _examine(
@@ -150,6 +156,8 @@ def _check_database(settings: Settings) -> None:
     if settings.database_url is None and not settings.database_file.exists():
         check_not_lost(settings.database_file)
         return  # it is made by the first start
+    if (file := sqlite_file(settings.store_url)) is not None:
+        check_reserved(file)
     with closing(Database(settings.store_url)) as database:
         database.check_pages()
         check_schema(database)
@@ -159,8 +167,7 @@ def _holder(settings: Settings) -> str | None:
     """The service that runs on the data now; a second one would be refused."""
     if settings.database_url is None and not settings.database_file.exists():
         return None
-    with closing(Database(settings.store_url)) as database:
-        return holder(database, settings.process_name)
+    return holder(settings.store_url, settings.process_name)
 
 
 def check_handles() -> None:

@@ -43,7 +43,8 @@ from app.operations.predict import PredictRequest, predict
 from app.problems.problem import PROBLEM_RESPONSES
 from app.results.recent import RecentResults
 from app.settings import Settings
-from app.store.database import Database, StoreError
+from app.store.database import Database
+from app.store.errors import StoreError
 from app.store.schema import migrate
 from app.version import VERSION
 from app.viewer import relay
@@ -70,7 +71,8 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
         os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
     asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(THREADS, "service"))
     current_default_thread_limiter().total_tokens = THREADS  # FastAPI's
-    app.state.database = await asyncio.to_thread(_open_database, chosen)
+    given: Database | None = app.state.database
+    app.state.database = given or await asyncio.to_thread(_open_database, chosen)
     app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
     app.state.cluster = _cluster(chosen)
     app.state.compute = Compute(
@@ -100,11 +102,19 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     await app.state.jobs.close()
     app.state.compute.close()
     await asyncio.to_thread(app.state.views.close)
-    await asyncio.to_thread(app.state.database.close)
+    if given is None:
+        await asyncio.to_thread(app.state.database.close)
+    app.state.database = given
 
 
-def create_app(settings: Settings | None = None) -> FastAPI:
+def create_app(settings: Settings | None = None, database: Database | None = None) -> FastAPI:
     """The service, ready for an ASGI server.
+
+    Parameters
+    ----------
+    settings : those of the environment by default.
+    database : of the settings, open and up to date, which the caller closes; opened by the service
+        otherwise.
 
     Raises
     ------
@@ -124,6 +134,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         generate_unique_id_function=lambda route: route.name,
     )
     app.state.settings = chosen
+    app.state.database = database
     app.state.stopping = False
     app.state.in_use = InUse()
     app.state.watched = Watched()

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Request, Response
 from app.designs.parameters import Owner
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
-from app.http.security import SESSION_COOKIE
+from app.http.security import OPENED_BY, SESSION_COOKIE
 from app.http.sessions import Sessions, SignedIn
 from app.http.tokens import Login
 from app.identity import current_session
@@ -54,8 +54,7 @@ def _use(owner: str, state: Any) -> dict[str, Use]:
 @router.delete("/session", status_code=204, summary="Sign out")
 def delete_session(owner: Owner, request: Request, response: Response) -> None:
     """Ends the session of this browser."""
-    login: Login = request.app.state.login
-    login.end(owner, current_session.get())
+    _end(request, owner, current_session.get())
     response.delete_cookie(SESSION_COOKIE, httponly=True, samesite="strict")
 
 
@@ -67,6 +66,13 @@ def delete_session(owner: Owner, request: Request, response: Response) -> None:
 )
 def end_session(session: SessionId, owner: Owner, request: Request) -> None:
     """The session of another of your browsers, for instance one on a lost machine."""
-    login: Login = request.app.state.login
-    if not login.end(owner, session):
+    if not _end(request, owner, session):
         raise NotFoundError(f"There is no session {session} of yours.", field="session")
+
+
+def _end(request: Request, owner: str, session: str) -> bool:
+    """End a session; False if the user has none of that id."""
+    if session == current_session.get():
+        request.scope.pop(OPENED_BY, None)  # this request is answered after its session
+    login: Login = request.app.state.login
+    return login.end(owner, session)

@@ -7,9 +7,8 @@ import sys
 import click
 from pydantic import ValidationError
 
-from app.cli.common import emit, json_option
+from app.cli.common import emit, json_option, user_settings
 from app.models.base import first_fault
-from app.settings import Settings
 from knitcore.errors import InputError
 
 
@@ -20,7 +19,7 @@ def command(as_json: bool) -> None:
     from app.doctor import Check, Checks, examine
 
     try:
-        found = examine(Settings())
+        found = examine(user_settings())
     except (InputError, ValidationError) as error:
         problem = f"{first_fault(error)}." if isinstance(error, ValidationError) else str(error)
         remedy = "Compare the environment and the file of KNITCORE_CONFIG with docs/serving.md."

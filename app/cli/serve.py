@@ -13,12 +13,16 @@ import sys
 from collections.abc import Iterator
 from functools import partial
 from types import FrameType
+from typing import TYPE_CHECKING
 
 import click
 
 from app.cli.common import json_option, user_settings
 from app.settings import Settings
 from knitcore.errors import InputError
+
+if TYPE_CHECKING:
+    from app.store.database import Database
 
 log = logging.getLogger("knitcore.app")
 
@@ -46,22 +50,22 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     try:
         with contextlib.closing(_listen(settings)) as listener:
             address = _address(settings, listener)
-            with _prepared(settings, address):
+            with _prepared(settings, address) as database:
                 click.echo(
                     json.dumps({"url": address})
                     if as_json
                     else f"Knitcore is at {address}  (Ctrl+C stops it)"
                 )
-                serve_on(settings, listener)
+                serve_on(settings, listener, database)
     except ServiceError as error:
         remedy = f" {error.remedy}" if error.remedy else ""
         raise click.ClickException(f"{error.detail}{remedy}") from error
 
 
 @contextlib.contextmanager
-def _prepared(settings: Settings, address: str) -> Iterator[None]:
-    """Lock and migrate the data, and report failed checks."""
-    from app.doctor import check_folder, examine
+def _prepared(settings: Settings, address: str) -> Iterator[Database]:
+    """Lock and migrate the data, and report failed checks; yields the database to serve."""
+    from app.doctor import check_folder, examine_start
     from app.store.database import Database
     from app.store.lock import held
     from app.store.schema import migrate
@@ -73,13 +77,13 @@ def _prepared(settings: Settings, address: str) -> Iterator[None]:
     ):
         database.check_pages()
         migrate(database)
-        for check in examine(settings).failed:
+        for check in examine_start(settings, database).failed:
             log.warning("%s: %s %s", check.name, check.problem, check.remedy)
-        yield
+        yield database
 
 
-def serve_on(settings: Settings, listener: socket.socket) -> None:
-    """Serve on an open socket until a signal ends the service."""
+def serve_on(settings: Settings, listener: socket.socket, database: Database) -> None:
+    """Serve a database on an open socket until a signal ends the service."""
     import uvicorn
 
     from app import memory
@@ -89,7 +93,7 @@ def serve_on(settings: Settings, listener: socket.socket) -> None:
 
     sys.setswitchinterval(SWITCH_S)
     memory.keep_no_large_blocks()
-    app = create_app(settings)
+    app = create_app(settings, database)
     door = Door(
         _raise_handles() - SPARE_HANDLES, settings.connections_per_address, settings.is_proxy
     )

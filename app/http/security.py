@@ -7,8 +7,8 @@ must refuse requests that another site's page makes it send.
 from __future__ import annotations
 
 import asyncio
-import contextlib
-from collections.abc import AsyncIterator, Mapping
+import logging
+from collections.abc import Mapping
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -17,6 +17,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
+from app.http.answer import Answer
 from app.http.bodies import limited
 from app.http.error_responses import answer_to, unexpected
 from app.http.passes import Opener, Passes
@@ -29,7 +30,9 @@ from app.limits.budgets import InUse
 from app.limits.rate import RateLimit
 from app.problems.errors import RefusedError, ServiceError, StoppingError, TooManyError
 from app.settings import Settings
-from app.store.database import StoreError
+from app.store.errors import StoreError
+
+log = logging.getLogger("knitcore.app")
 
 SESSION_COOKIE = "knitcore_session"
 GONE = 499
@@ -156,11 +159,13 @@ class Guard:
         if answer is not None:
             await WebSocketClose(code=1008, reason="refused")(scope, receive, send)
             return
-        async with self._while_open(scope) as open_:
-            await self.app(scope, receive, send)
-        if not open_:
-            with contextlib.suppress(RuntimeError):  # it was closed already
-                await WebSocketClose(code=1008, reason="signed out")(scope, receive, send)
+        answered = Answer(send)
+
+        async def heard() -> Message:
+            return answered.heard(await receive())
+
+        if not await self._run_while_open(scope, heard, answered):
+            await answered.end(WebSocketClose(code=1008, reason="signed out"), scope, receive)
 
     async def _pass_request(
         self,
@@ -170,12 +175,8 @@ class Guard:
         send: Send,
         limits: dict[str, str],
     ) -> None:
-        started = False
-
         async def send_with_headers(message: Message) -> None:
-            nonlocal started
             if message["type"] == "http.response.start":
-                started = True
                 headers = MutableHeaders(scope=message)
                 view = scope["path"].startswith("/view/")
                 headers.setdefault("Content-Security-Policy", VIEW_POLICY if view else PAGE_POLICY)
@@ -192,23 +193,23 @@ class Guard:
                 answer.headers["Connection"] = "close"
             await answer(scope, receive, send_with_headers)
             return
+        answered = Answer(send_with_headers)
         try:
             in_use: InUse = scope["app"].state.in_use
             with in_use.growing("body_bytes", current_user.get()) as count:
                 received = limited(receive, self.settings.max_body_bytes, count)
-                async with self._while_open(scope) as open_:
-                    await self.app(scope, received, send_with_headers)
-            if not open_ and started:
-                await send({"type": "http.response.body", "body": b""})
+                if not await self._run_while_open(scope, received, answered):
+                    await answered.end(answer_to(_signed_out()), scope, receive)
         except asyncio.CancelledError:  # the service stops, and does not wait any longer
-            if started or not scope["app"].state.stopping:
+            if answered.started or not scope["app"].state.stopping:
                 raise
             stopped = answer_to(StoppingError("The service is stopping."))
             await stopped(scope, receive, send_with_headers)
         except ClientDisconnect:  # before its request was complete; only the log says so
-            await Response(status_code=GONE)(scope, receive, send_with_headers)
+            if not answered.started:
+                await Response(status_code=GONE)(scope, receive, send_with_headers)
         except Exception as error:  # answered here, so that its answer has the headers, too
-            if started:
+            if answered.started:
                 raise
             await unexpected(error)(scope, receive, send_with_headers)
 
@@ -329,41 +330,60 @@ class Guard:
         )
         return response
 
-    @contextlib.asynccontextmanager
-    async def _while_open(self, scope: Scope) -> AsyncIterator[list[bool]]:
-        """Run a block as long as the token or session of its request is valid, and count it.
+    async def _run_while_open(self, scope: Scope, receive: Receive, answered: Answer) -> bool:
+        """Run the application as long as the token or session of its request is valid, and count
+        the request.
 
-        Yields a list that is emptied when it is revoked; the block is then cancelled.
+        Returns
+        -------
+        False if the application was stopped, and ``answered`` taken over. It is not stopped once
+        the answer is complete.
         """
-        open_ = [True]
         if OPENED_BY not in scope:
-            yield open_
-            return
-        login: Login = scope["app"].state.login
+            await self.app(scope, receive, answered.send)
+            return True
         in_use: InUse = scope["app"].state.in_use
-        task = asyncio.current_task()
+        with in_use.hold("connections", current_user.get()):
+            working = asyncio.ensure_future(self.app(scope, receive, answered.send))
+            try:
+                while not (await asyncio.wait({working}, timeout=REMEMBERED_S))[0]:
+                    if not await _is_open(scope) and await answered.take_over():
+                        await _stop(working)
+                        return False
+                await working
+                return True
+            finally:
+                if not working.done():  # this task itself is cancelled
+                    await _stop(working)
 
-        async def watch() -> None:
-            while True:
-                await asyncio.sleep(REMEMBERED_S)
-                with contextlib.suppress(StoreError):  # connections outlast a lost database
-                    if not await asyncio.to_thread(login.is_open, *scope[OPENED_BY]):
-                        open_.clear()
-                        if task is not None:
-                            task.cancel()
-                        return
 
-        watching = asyncio.create_task(watch())
-        try:
-            with in_use.hold("connections", current_user.get()):
-                yield open_
-        except asyncio.CancelledError:
-            if open_:
-                raise
-            if task is not None:
-                task.uncancel()
-        finally:
-            watching.cancel()
+async def _is_open(scope: Scope) -> bool:
+    """Whether the token or session of a request is valid; a request that ends its own session is
+    answered nevertheless."""
+    if OPENED_BY not in scope:
+        return True
+    login: Login = scope["app"].state.login
+    try:
+        is_open = await asyncio.to_thread(login.is_open, *scope[OPENED_BY])
+    except StoreError:  # connections outlast a lost database
+        return True
+    return is_open or OPENED_BY not in scope
+
+
+async def _stop(working: asyncio.Future[None]) -> None:
+    """Cancel a task and wait for its end."""
+    working.cancel()
+    (outcome,) = await asyncio.gather(working, return_exceptions=True)
+    if isinstance(outcome, Exception):
+        log.warning("a request failed while it was stopped", exc_info=outcome)
+
+
+def _signed_out() -> UnknownUserError:
+    return UnknownUserError(
+        "The token or session of this request has ended.",
+        field="token",
+        remedy="Sign in again, or send another token.",
+    )
 
 
 def _is_sign_in(scope: Scope) -> bool:

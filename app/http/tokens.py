@@ -158,6 +158,7 @@ class Login:
         self._sessions = sessions
         self._environment = None if environment is None else hash_of(environment)
         self._signer = URLSafeTimedSerializer(tokens.session_key(), salt="knitcore session")
+        self._ended: set[str] = set()
         self._remembered: dict[tuple[str, str], tuple[float, tuple[str, str]]] = {}
 
     def by_token(self, token: str) -> tuple[str, str]:
@@ -181,9 +182,13 @@ class Login:
         return str(self._signer.dumps(self._sessions.begin(self._opened_with(identifier), user)))
 
     def end(self, user: str, session: str) -> bool:
-        """End a session at once; False if the user has none of that id."""
-        self._remembered.pop(("session", session), None)
-        return self._sessions.end(user, session)
+        """End a session at once, whatever is remembered; False if the user has none of that id."""
+        is_ended = self._sessions.end(user, session)
+        if is_ended:
+            if len(self._ended) >= MAX_REMEMBERED:
+                self._ended.clear()
+            self._ended.add(session)
+        return is_ended
 
     def is_open(self, identifier: str, session: str) -> bool:
         """Whether the token or the session that began something still opens the service."""
@@ -208,6 +213,8 @@ class Login:
         return self._tokens.find(identifier=token) if token else ("", "")
 
     def _ask(self, by: str, value: str) -> tuple[str, str]:
+        if value in self._ended:
+            return "", ""
         at = time.monotonic()
         known = self._remembered.get((by, value))
         if known is not None and at - known[0] < REMEMBERED_S:

@@ -20,7 +20,7 @@ from app.jobs.store import JobStore
 from app.limits.budgets import SpentError
 from app.problems.errors import ServiceError
 from app.problems.problem import Problem
-from app.store.database import StoreError
+from app.store.errors import DispossessedError, StoreError
 
 log = logging.getLogger("knitcore.jobs")
 
@@ -174,6 +174,9 @@ class JobRunner:
             except ServiceError as error:
                 log.warning("cannot share the state of the jobs of this process: %s", error)
                 beats = 0  # after an outage, let the other processes report first
+                if isinstance(error, DispossessedError):  # the jobs are another's now
+                    for run in self._runs.values():
+                        run.cancelled = True
 
     def _start(self, job: str, owner: str, kind: str, request: str) -> None:
         task = asyncio.create_task(self._work(job, owner, kind, request), name=f"job {job}")

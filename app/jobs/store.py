@@ -14,7 +14,8 @@ from app.jobs.document import JobPage, JobState, JobStatus
 from app.limits.budgets import BUDGETS, OverBudgetError
 from app.problems.errors import NotFoundError
 from app.problems.problem import Problem
-from app.store.database import Database, StoreError
+from app.store.database import Database
+from app.store.errors import StoreError
 from app.store.pages import one_page
 from app.store.tables import job_requests, jobs, results
 from app.store.values import now
@@ -22,7 +23,8 @@ from app.store.values import now
 WAITING, RUNNING = OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0
 ORPHANED_S = 60.0
-"""A process not seen for this long counts as gone; the others take over its jobs."""
+"""A process not seen for this long, by the clock of the database, counts as gone; the others take
+over its jobs."""
 INTERRUPTED = Problem(
     type="interrupted",
     title="The service stopped in the middle of this job",
@@ -75,7 +77,7 @@ class JobStore:
             "key": key,
             "state": state.value,
             "created_at": at,
-            "seen_at": at,
+            "seen_at": self._database.clock,
             "finished_at": at if state.is_final else None,
         }
 
@@ -147,7 +149,7 @@ class JobStore:
 
     def adopt_orphans(self) -> list[tuple[str, str]]:
         """The same for jobs of processes that are gone."""
-        return self._take(jobs.c.seen_at < now() - ORPHANED_S)
+        return self._take(jobs.c.seen_at < self._database.clock - ORPHANED_S)
 
     def _take(self, which: ColumnElement[bool]) -> list[tuple[str, str]]:
         def action(connection: Connection) -> list[tuple[str, str]]:
@@ -163,7 +165,7 @@ class JobStore:
             waiting = connection.execute(
                 update(jobs)
                 .where(which, jobs.c.state == WAITING)
-                .values(process=self.process, seen_at=now())
+                .values(process=self.process, seen_at=self._database.clock)
                 .returning(jobs.c.id, jobs.c.owner, jobs.c.created_at)
             )
             rows = sorted(waiting, key=lambda row: row.created_at)
@@ -186,7 +188,7 @@ class JobStore:
                     jobs.c.process == self.process,
                     jobs.c.state.in_(OPEN),
                 )
-                .values(progress=bindparam("share"), seen_at=now())
+                .values(progress=bindparam("share"), seen_at=self._database.clock)
                 .returning(jobs.c.id)
             )
             open_ = (

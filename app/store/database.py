@@ -7,7 +7,6 @@ import contextlib
 import logging
 import os
 import queue
-import sqlite3
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -15,15 +14,28 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastapi.concurrency import run_in_threadpool
-from sqlalchemy import Connection, Engine, Insert, Table, create_engine, event, make_url, text
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Engine,
+    Float,
+    Insert,
+    Table,
+    create_engine,
+    event,
+    literal_column,
+    make_url,
+    text,
+)
 from sqlalchemy.dialects.postgresql import insert as postgresql_insert
 from sqlalchemy.dialects.sqlite import insert as sqlite_insert
 from sqlalchemy.exc import DatabaseError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.pool import QueuePool
 
-from app.problems.errors import NoRoomError, UnavailableError
-from knitcore.errors import InputError
+from app.store.errors import DamagedError, StoreError, StoreFullError
+from app.store.file import DatabaseFile
+from app.store.name_lock import NameLock
 
 log = logging.getLogger("knitcore.store")
 T = TypeVar("T")
@@ -35,27 +47,9 @@ FULL = ("disk is full", "No space left on device")
 DAMAGED = ("malformed", "file is not a database")
 BUSY_TIMEOUT_MS = 10_000
 MAX_BATCH = 64
+SQLITE_CLOCK = "(julianday('now') - 2440587.5) * 86400.0"
+POSTGRESQL_CLOCK = "CAST(EXTRACT(EPOCH FROM clock_timestamp()) AS double precision)"
 UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing was changed."
-
-
-class StoreError(UnavailableError):
-    """The database failed to read or write: it is gone, locked, or its disk is full."""
-
-
-class StoreFullError(StoreError, NoRoomError):
-    """The disk of the database is full."""
-
-
-class DamagedError(StoreError):
-    """The database's file is damaged."""
-
-    default_remedy = "Stop the service and restore a backup."
-
-
-class VanishedError(StoreError):
-    """The database's file is gone or was replaced."""
-
-    default_remedy = "Put the file back, or stop the service, restore a backup and start again."
 
 
 class Database:
@@ -74,17 +68,15 @@ class Database:
     Raises
     ------
     InputError
-        If an SQLite file can be neither opened nor made.
+        If an SQLite file can be neither opened nor made, or cannot be used now.
     """
 
     def __init__(self, url: str) -> None:
-        self.url = make_url(url)
-        self.is_sqlite = self.url.get_backend_name() == "sqlite"
-        self.engine = (
-            _sqlite_engine(_File(Path(self.url.database or "")))
-            if self.is_sqlite
-            else _server_engine(url)
-        )
+        path = sqlite_file(url)
+        self.is_sqlite = path is not None
+        self.file = None if path is None else DatabaseFile(path)
+        self.engine = _server_engine(url) if self.file is None else _sqlite_engine(self.file)
+        self.name_lock: NameLock | None = None
         self._damaged = False
         self._waiting: queue.SimpleQueue[tuple[Action, Future[Any]] | None] = queue.SimpleQueue()
         self._writer: threading.Thread | None = None
@@ -98,12 +90,13 @@ class Database:
         return kind(table).on_conflict_do_nothing()
 
     @property
-    def lock_file(self) -> Path:
-        """Beside an SQLite file: held by the service, and there since it was first used."""
-        return _lock_file(Path(self.url.database or ""))
+    def clock(self) -> ColumnElement[float]:
+        """Seconds since 1970 by the clock of the database, which all its processes share."""
+        now = SQLITE_CLOCK if self.is_sqlite else POSTGRESQL_CLOCK
+        return literal_column(now, Float)
 
     def check(self) -> None:
-        """Check that the database answers and has not been found damaged.
+        """Check that the database answers, is still this process's, and was not found damaged.
 
         Raises
         ------
@@ -111,6 +104,9 @@ class Database:
         """
         if self._damaged:
             raise _damaged()
+        if self.name_lock is not None:
+            with self.failures():
+                self.name_lock.keep()
         with self.read() as connection:
             connection.execute(text("SELECT 1 FROM alembic_version"))
 
@@ -133,7 +129,7 @@ class Database:
         ------
         StoreError
         """
-        with self._failures(), contextlib.closing(self.engine.raw_connection()) as connection:
+        with self.failures(), contextlib.closing(self.engine.raw_connection()) as connection:
             os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
             connection.cursor().execute("VACUUM INTO ?", (str(file),))
 
@@ -146,7 +142,7 @@ class Database:
         StoreError
             If the database cannot be reached.
         """
-        with self._failures(), self.engine.connect() as connection:
+        with self.failures(), self.engine.connect() as connection:
             yield connection
 
     @contextlib.contextmanager
@@ -166,9 +162,11 @@ class Database:
             If it could not be made durable; then nothing of it is kept.
         """
         if self._writer is None:
-            with self._failures(), self.engine.begin() as connection:
+            if self.name_lock is not None:
+                self.name_lock.check()
+            with self.failures(), self.engine.begin() as connection:
                 return action(connection)
-        with self._failures():
+        with self.failures():
             return self._hand_in(action).result()
 
     async def written(self, action: Callable[[Connection], T]) -> T:
@@ -181,19 +179,21 @@ class Database:
         """
         if self._writer is None:
             return await run_in_threadpool(self.write, action)
-        with self._failures():
+        with self.failures():
             return await asyncio.wrap_future(self._hand_in(action))
 
     def close(self) -> None:
-        """Write pending changes, then close all connections."""
+        """Write pending changes, then close all connections; doing so again has no effect."""
         if self._writer is not None:
             self._waiting.put(None)
             self._writer.join()
             self._writer = None
         self.engine.dispose()
+        if self.file is not None:
+            self.file.close()
 
     @contextlib.contextmanager
-    def _failures(self) -> Iterator[None]:
+    def failures(self) -> Iterator[None]:
         """Turn errors of the database itself into a StoreError."""
         try:
             yield
@@ -255,6 +255,12 @@ class Database:
                 done.set_exception(refused)
 
 
+def sqlite_file(url: str) -> Path | None:
+    """The file that a URL names; None for a database server."""
+    parts = make_url(url)
+    return Path(parts.database or "") if parts.get_backend_name() == "sqlite" else None
+
+
 def _do(connection: Connection, action: Action) -> tuple[Any, Exception | None]:
     """An action alone in its transaction, which an error ends."""
     return action(connection), None
@@ -284,10 +290,6 @@ def _damaged() -> DamagedError:
     return DamagedError("The file of the designs is damaged.")
 
 
-def _lock_file(database: Path) -> Path:
-    return database.with_name(f"{database.name}.lock")
-
-
 def _public(reason: str) -> str:
     """A reason without internal addresses and machine names."""
     for known in (*FULL, "disk I/O error", "database is locked", "readonly database"):
@@ -296,70 +298,7 @@ def _public(reason: str) -> str:
     return "the database does not answer"
 
 
-class _File:
-    """The one SQLite file of a database, made here if it is not there, and never again.
-
-    SQLite would create an empty database in place of a lost one, and would go on writing into a
-    deleted file.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        check_not_lost(path)
-        try:
-            handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
-        except OSError as error:
-            raise InputError(
-                "database_url",
-                f"{path} cannot be opened ({error.strerror}).",
-                "Name a file that can be written, in a folder that exists.",
-            ) from error
-        facts = os.fstat(handle)
-        os.close(handle)
-        self._identity = facts.st_dev, facts.st_ino
-
-    def check(self) -> None:
-        """Refuse to continue without the file.
-
-        Raises
-        ------
-        VanishedError
-        """
-        try:
-            facts = self.path.stat()
-        except OSError:
-            found = None
-        else:
-            found = facts.st_dev, facts.st_ino
-        if found != self._identity:
-            what = "is gone" if found is None else "was replaced by another"
-            raise VanishedError(f"The file of the designs {what}; nothing was changed.")
-
-    def connect(self) -> sqlite3.Connection:
-        """A connection to the file; a missing one is not created."""
-        self.check()
-        # threads take turns with a connection; the pool sees to that
-        address = f"{self.path.absolute().as_uri()}?mode=rw"
-        return sqlite3.connect(address, uri=True, check_same_thread=False)
-
-
-def check_not_lost(path: Path) -> None:
-    """Refuse to make a database where a service had one before.
-
-    Raises
-    ------
-    InputError
-    """
-    lock = _lock_file(path)
-    if lock.exists() and not path.exists():
-        raise InputError(
-            "data_dir",
-            f"{path} is gone, although a service used it before.",
-            f"Put it back; or remove {lock}, to begin with none or to restore a backup.",
-        )
-
-
-def _sqlite_engine(file: _File) -> Engine:
+def _sqlite_engine(file: DatabaseFile) -> Engine:
     engine = create_engine("sqlite://", creator=file.connect, poolclass=QueuePool)
 
     @event.listens_for(engine, "connect")
@@ -389,5 +328,5 @@ def _server_engine(url: str) -> Engine:
         pool_size=10,
         max_overflow=10,
         pool_timeout=5,
-        connect_args={"connect_timeout": 3},
+        connect_args={"connect_timeout": 3, "tcp_user_timeout": 10_000},  # s, ms
     )

@@ -8,8 +8,11 @@ from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
+from sqlalchemy import inspect
 
 from app.store.database import Database
+from app.store.errors import DamagedError
+from app.store.tables import metadata
 from knitcore.errors import InputError
 
 MIGRATIONS = Path(__file__).with_name("migrations")
@@ -30,8 +33,8 @@ def migrate(database: Database, target: str = "head") -> None:
     found = check_schema(database, target)
     config = _config()
     head = ScriptDirectory.from_config(config).get_current_head()
-    if database.is_sqlite and found not in (None, head) and target == "head":
-        file = Path(database.url.database or "")
+    if database.file is not None and found not in (None, head) and target == "head":
+        file = database.file.path
         copy = file.with_name(f"{file.name}.before-{head}")
         if not copy.exists():
             database.copy_to(copy)
@@ -50,6 +53,8 @@ def check_schema(database: Database, target: str = "head") -> str | None:
     ------
     InputError
         As :func:`migrate`.
+    DamagedError
+        If a table of this program's schema is missing.
     StoreError
         If the database cannot be reached.
     """
@@ -62,6 +67,11 @@ def check_schema(database: Database, target: str = "head") -> str | None:
             f"the designs have schema {strange.pop()}, which this program does not know.",
             "Use the newer program that wrote it, or restore a backup.",
         )
+    if found == scripts.get_current_head():
+        with database.read() as connection:
+            missing = set(metadata.tables) - set(inspect(connection).get_table_names())
+        if missing:
+            raise DamagedError(f"The database lacks {', '.join(sorted(missing))}.")
     return found
 
 

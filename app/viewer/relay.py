@@ -6,10 +6,12 @@ import asyncio
 import contextlib
 import logging
 import time
+from types import NoneType
 
 import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
+from starlette.websockets import WebSocketState
 
 from app.identity import current_user
 from app.limits.budgets import InUse, OverBudgetError
@@ -26,6 +28,8 @@ router = APIRouter(include_in_schema=False)
 OPENING_S = 8.0
 """So long a browser waits for a view: its page is loaded while the first scene is being made."""
 LOOK_AGAIN_S = 0.05
+ENDS = (NoneType, asyncio.CancelledError, WebSocketDisconnect, websockets.ConnectionClosed)
+"""Ends of the two directions of a connection, whichever side left."""
 
 
 @router.get("/view/{design}")
@@ -124,13 +128,15 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
             await asyncio.sleep(0)  # others have their turn between messages that wait already
 
     tasks = [asyncio.create_task(outwards()), asyncio.create_task(inwards())]
-    _, pending = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-    for task in pending:
-        task.cancel()
-    for task in tasks:
-        with contextlib.suppress(
-            asyncio.CancelledError, WebSocketDisconnect, websockets.ConnectionClosed, RuntimeError
-        ):
-            await task
-    with contextlib.suppress(RuntimeError, WebSocketDisconnect):  # the browser closed first
-        await socket.close(code)
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:  # also where this one is cancelled: neither may send after the close
+        for task in tasks:
+            task.cancel()
+        outcomes = await asyncio.gather(*tasks, return_exceptions=True)
+    for outcome in outcomes:
+        if not isinstance(outcome, ENDS):
+            raise outcome
+    if socket.client_state is socket.application_state is WebSocketState.CONNECTED:
+        with contextlib.suppress(WebSocketDisconnect):  # the browser closes just then
+            await socket.close(code)

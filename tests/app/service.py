@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx2 as httpx
+import uvicorn
+from fastapi import FastAPI
 
 
 class Service:
@@ -17,7 +23,7 @@ class Service:
 
     def __init__(self, folder: Path, **settings: str) -> None:
         self.folder = folder
-        self._environment = os.environ | {
+        self.environment = os.environ | {
             "KNITCORE_DATA_DIR": str(folder / "data"),
             "KNITCORE_WORKERS": "1",
             **{f"KNITCORE_{name.upper()}": value for name, value in settings.items()},
@@ -34,7 +40,7 @@ class Service:
                 stdout=subprocess.PIPE,
                 stderr=log,
                 text=True,
-                env=self._environment,
+                env=self.environment,
             )
         assert self._process.stdout is not None
         line = self._process.stdout.readline()
@@ -73,3 +79,21 @@ class Service:
         assert process.stdout is not None
         process.stdout.close()
         return code
+
+
+@contextlib.contextmanager
+def serving(app: FastAPI) -> Iterator[str]:
+    """An application on a real server in a thread; yields its address."""
+    server = uvicorn.Server(uvicorn.Config(app, port=0, log_config=None, lifespan="on"))
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        try:
+            while not server.started:
+                assert thread.is_alive()
+                time.sleep(0.01)
+            yield f"http://127.0.0.1:{listener.getsockname()[1]}"
+        finally:
+            server.should_exit = True
+            thread.join()

@@ -29,7 +29,8 @@ from app.compute.workers import NotBegunError
 from app.http import observing
 from app.main import create_app
 from app.settings import Settings
-from app.store.database import DamagedError, Database
+from app.store.database import Database
+from app.store.errors import DamagedError
 from app.store.lock import held
 from app.store.schema import migrate, revision
 from knitcore.errors import InputError
@@ -93,6 +94,16 @@ def test_a_sound_set_up_passes(tmp_path: Path) -> None:
     assert "ok    database" in text.output
 
 
+def _empty(file: Path) -> None:
+    file.write_bytes(b"")
+
+
+def _drop_a_table(file: Path) -> None:
+    with sqlite3.connect(file) as connection:
+        connection.execute("DROP TABLE sessions")
+    connection.close()
+
+
 @dataclass(frozen=True)
 class Broken:
     """A set-up with one fault.
@@ -125,12 +136,15 @@ BROKEN = {
     "a misspelt setting": _setting("PRT", "2", "KNITCORE_PORT"),
     "a misspelt login": _setting("REQUIRE_LOGGIN", "true", "KNITCORE_REQUIRE_LOGIN"),
     "a port that is no number": _setting("PORT", "many", "port"),
+    "a list that is not JSON": _setting("ALLOWED_HOSTS", "knit.example.org", "JSON"),
     "a network without a login": _setting("HOST", "0.0.0.0", "KNITCORE_TOKEN"),
     "a folder that cannot be": Broken(
         "data folder", "cannot be written", {"KNITCORE_DATA_DIR": "/dev/null/nowhere"}
     ),
     "a damaged database": Broken("database", "damaged", spoil=_damage),
     "a lost database": Broken("database", "is gone", spoil=_lose),
+    "an emptied database": Broken("database", "is empty", spoil=_empty),
+    "a database without a table": Broken("database", "lacks sessions", spoil=_drop_a_table),
     "a newer database": Broken("database", "9999", spoil=_make_newer),
     "files open to all": Broken(
         "file modes", "other users", spoil=_open_to_all, starts=True, ready=True

@@ -11,6 +11,7 @@ import os
 import socket
 import sqlite3
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -138,6 +139,16 @@ def test_a_database_outage_loses_nothing(postgres_url: str, tmp_path: Path) -> N
         away = False
         assert painter.paint().status_code == 200
         painter.check()
+        _until(lambda: client.get("/readyz").status_code == 200)
+        second = subprocess.run(
+            [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
+            capture_output=True,
+            text=True,
+            timeout=150,
+            check=False,
+            env=service.environment,
+        )
+        assert (second.returncode, "KNITCORE_PROCESS_NAME" in second.stderr) == (2, True)
         _until(lambda: client.get(f"{JOBS}/{job}").json()["state"] == "done")
         assert len(client.get(f"{JOBS}/{job}/result").json()["strain"]) == SHORT["steps"]
     finally:

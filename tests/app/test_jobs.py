@@ -26,7 +26,8 @@ from app.limits.budgets import Budgets, OverBudgetError
 from app.main import create_app
 from app.problems.errors import NotFoundError
 from app.settings import Settings
-from app.store.database import Database, StoreError
+from app.store.database import Database
+from app.store.errors import StoreError
 from app.store.schema import migrate
 from knitcore.extensions import Group
 from knitcore.yarnlibrary import fingerprint

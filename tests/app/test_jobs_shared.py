@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import threading
+import time
 from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from sqlalchemy import update
 
 from app.compute.compute import Compute
 from app.compute.processes import processes
@@ -18,7 +20,9 @@ from app.jobs.document import JobState
 from app.jobs.kinds import KINDS
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.store.database import Database, StoreError
+from app.store.database import Database
+from app.store.errors import StoreError
+from app.store.tables import jobs
 from tests.app.jobs import WORK, Task, answers
 
 
@@ -76,18 +80,16 @@ def test_another_process_sees_the_progress_and_cancels(
 
 
 def test_jobs_of_a_process_that_is_gone_are_taken_over(
-    database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
+    database: Database, compute: Compute
 ) -> None:
     async def scenario() -> None:
         gone, alive = JobStore(database, "gone"), JobStore(database, "alive")
-        monkeypatch.setattr(store_module, "now", lambda: 1000.0)
         ran = gone.add("ada", "work", _wish("wait"), "k1", JobState.WAITING)
         assert gone.begin(ran.id)
         waited = gone.add("ada", "work", _wish("answer"), "k2", JobState.WAITING)
-        monkeypatch.setattr(store_module, "now", lambda: 1055.0)
+        database.write(lambda c: c.execute(update(jobs).values(seen_at=jobs.c.seen_at - 70)))
         theirs = alive.add("ada", "work", _wish("wait"), "k1", JobState.WAITING)
         assert alive.begin(theirs.id)
-        monkeypatch.setattr(store_module, "now", lambda: 1070.0)
         runner = _runner(database, compute, "here")
         await runner.resume()
 
@@ -102,6 +104,23 @@ def test_jobs_of_a_process_that_is_gone_are_taken_over(
         await runner.close()
 
     asyncio.run(scenario())
+
+
+@pytest.mark.parametrize("ahead_s", [-120.0, 120.0])
+def test_clocks_of_processes_may_differ(
+    database: Database, monkeypatch: pytest.MonkeyPatch, ahead_s: float
+) -> None:
+    here, there = JobStore(database, "here"), JobStore(database, "there")
+    waits, runs = (
+        here.add("ada", "work", _wish("wait"), key, JobState.WAITING).id for key in ("k1", "k2")
+    )
+    assert here.begin(runs)
+    with monkeypatch.context() as wrong:
+        wrong.setattr(store_module, "now", lambda: time.time() + ahead_s)
+        assert there.adopt_orphans() == []
+        assert there.add("ada", "work", _wish("wait"), "k3", JobState.WAITING)
+    assert here.adopt_orphans() == []
+    assert here.beat({waits: 0.0, runs: 0.5}) == set()
 
 
 def test_a_process_is_not_declared_dead_right_after_an_outage(

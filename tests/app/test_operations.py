@@ -23,6 +23,7 @@ from app.http.observing import JsonLines, TextLines, configure_logging
 from app.http.tokens import Tokens
 from app.main import THREADS, create_app
 from app.settings import Settings
+from app.store.lock import held
 from app.version import VERSION
 from knitcore.errors import InputError
 from tests.app.service import Service
@@ -131,7 +132,8 @@ def test_readyz_checks_database_and_disk(
 ) -> None:
     ready = client.get("/readyz").json()
     assert ready["status"] == "ok"
-    told = doctor.examine(Settings()).checks
+    with held(client.app.state.database, "main"):  # type: ignore[attr-defined]
+        told = doctor.examine(Settings()).checks
     assert ready["checks"] | {"service": True} == {check.name: check.ok for check in told}
     monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=3_000_000))
     full = client.get("/readyz")

@@ -6,7 +6,8 @@ import pytest
 
 from app.designs.document import DesignDocument
 from app.designs.store import DesignStore
-from app.store.database import Database, StoreError
+from app.store.database import Database
+from app.store.errors import StoreError
 from app.store.schema import migrate
 from tests.app.databases import control
 

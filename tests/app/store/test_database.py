@@ -16,7 +16,8 @@ from sqlalchemy.exc import IntegrityError
 
 from app.jobs.document import JobState
 from app.jobs.store import JobStore
-from app.store.database import Database, StoreError
+from app.store.database import Database
+from app.store.errors import StoreError
 from app.store.schema import migrate, revision
 from app.store.tables import metadata
 from knitcore.errors import InputError

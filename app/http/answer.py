@@ -1,0 +1,77 @@
+"""What has been handed to the server of an answer, which begins once and ends once."""
+
+from __future__ import annotations
+
+import asyncio
+
+from starlette.datastructures import Headers
+from starlette.responses import Response
+from starlette.types import Message, Receive, Scope, Send
+from starlette.websockets import WebSocketClose
+
+
+class Answer:
+    """The answer to a request or on a websocket, as far as it has been sent.
+
+    Parameters
+    ----------
+    send : hands a message to the server.
+
+    Attributes
+    ----------
+    started : whether the head of a response was sent.
+    complete : whether the last part was sent, or the websocket was closed from either side.
+    """
+
+    def __init__(self, send: Send) -> None:
+        self.started = self.complete = False
+        self._send = send
+        self._turn = asyncio.Lock()
+        self._is_taken_over = False
+        self._missing_bytes: int | None = None  # of the length in its head; None without one
+
+    async def send(self, message: Message) -> None:
+        """Send what the application says, unless :meth:`take_over` was first."""
+        async with self._turn:
+            if not self._is_taken_over:
+                await self._hand_over(message)
+
+    async def take_over(self) -> bool:
+        """Send nothing of the application any more, from between two messages on.
+
+        Returns
+        -------
+        False if the answer is complete.
+        """
+        async with self._turn:
+            self._is_taken_over = not self.complete
+            return self._is_taken_over
+
+    async def end(self, instead: Response | WebSocketClose, scope: Scope, receive: Receive) -> None:
+        """End an answer that was taken over, so that it cannot be mistaken for a whole one.
+
+        Before its start ``instead`` is sent, and a stream just ends. A part of a response of known
+        length is left as it is: the server then closes the connection.
+        """
+        if not self.started:
+            await instead(scope, receive, self._hand_over)
+        elif not self._missing_bytes:
+            await self._hand_over({"type": "http.response.body", "body": b""})
+
+    def heard(self, message: Message) -> Message:
+        """Note what the client says: it may have closed the websocket."""
+        self.complete |= message["type"] == "websocket.disconnect"
+        return message
+
+    async def _hand_over(self, message: Message) -> None:
+        if message["type"] == "http.response.start":
+            self.started = True
+            length = Headers(scope=message).get("content-length", "")
+            self._missing_bytes = int(length) if length.isdigit() else None
+        elif message["type"] == "http.response.body":
+            self.complete = not message.get("more_body", False)
+            if self._missing_bytes is not None:
+                self._missing_bytes -= len(message.get("body", b""))
+        elif message["type"] in ("websocket.close", "websocket.http.response.start"):
+            self.complete = True  # nothing can be added to either
+        await self._send(message)

@@ -1,0 +1,91 @@
+"""Somebody who paints while things go wrong, and knows what was acknowledged."""
+
+from __future__ import annotations
+
+import random
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import httpx2 as httpx
+
+SIDE = 40
+
+
+@dataclass
+class Painter:
+    """Paints one stitch after the other and notes every state that was acknowledged."""
+
+    design: str
+    rng: random.Random
+    headers: Mapping[str, str] = field(default_factory=dict)
+    states: dict[int, list[str]] = field(default_factory=lambda: {1: ["K" * SIDE] * SIDE})
+    acknowledged: int = 1
+    refused: list[str] = field(default_factory=list)
+
+    @classmethod
+    def with_a_design(cls, client: httpx.Client, seed: int) -> Painter:
+        """One who begins a design of their own."""
+        body = {"name": "x", "material": "acrylic", "chart": "\n".join(["K" * SIDE] * SIDE)}
+        design = client.post("/api/v1/designs", json=body).json()["id"]
+        return cls(design, random.Random(seed), dict(client.headers))  # noqa: S311
+
+    def paint_until(self, url: str, stop: threading.Event) -> None:
+        with httpx.Client(base_url=url, timeout=60.0, headers=self.headers) as client:
+            while not stop.is_set() and not self.refused:
+                row, column = self.rng.randrange(SIDE), self.rng.randrange(SIDE)
+                kind = self.rng.choice("KP")
+                chart = list(self.states[self.acknowledged])
+                line = chart[SIDE - 1 - row]
+                chart[SIDE - 1 - row] = line[:column] + kind + line[column + 1 :]
+                self.states[self.acknowledged + 1] = chart
+                run = {"row": row, "column": column, "stitches": kind}
+                try:
+                    answer = client.post(
+                        f"/api/v1/designs/{self.design}/strokes",
+                        json={"rows": SIDE, "columns": SIDE, "runs": [run]},
+                    )
+                except httpx.TransportError:
+                    return  # killed: this stroke may be kept or not
+                if answer.status_code != 200:
+                    self.refused.append(answer.text)
+                    return
+                self.acknowledged += 1
+                assert answer.json()["revision"] == self.acknowledged
+
+    def check_over_http(self, client: httpx.Client) -> None:
+        """Everything that was acknowledged is served."""
+        found = client.get(f"/api/v1/designs/{self.design}").json()
+        self.check(found["revision"], found["document"]["chart"])
+
+    def check(self, revision: int, chart: str) -> None:
+        """Everything that was acknowledged is in this state of the design."""
+        assert self.refused == []
+        assert revision in (self.acknowledged, self.acknowledged + 1)
+        assert chart.split("\n") == self.states[revision]
+        self.acknowledged = revision
+
+
+@contextmanager
+def painting(url: str, painters: list[Painter]) -> Iterator[None]:
+    """All of them paint while the block runs."""
+    stop = threading.Event()
+    threads = [threading.Thread(target=p.paint_until, args=(url, stop)) for p in painters]
+    for thread in threads:
+        thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        for thread in threads:
+            thread.join()
+
+
+def until_painted(painters: list[Painter], revisions: int) -> None:
+    """Wait until so many revisions of all painters together are acknowledged."""
+    deadline = time.monotonic() + 60
+    while sum(p.acknowledged for p in painters) < revisions:
+        assert time.monotonic() < deadline, [p.refused for p in painters]
+        time.sleep(0.01)
