@@ -126,13 +126,13 @@ def _quarters(
     x: Array, corners: Ints, parameters: Array, places: Ints, convex: bool, data: Array
 ) -> None:
     block = np.empty((2, 2, 3, 3))
-    slope = np.empty(3)
+    slope, u, v = np.empty(3), np.empty(3), np.empty(3)
     curvature = np.empty((3, 3))
     for k in range(corners.shape[0]):
         c, a, b = corners[k]
         l1, l2 = parameters[k, 0], parameters[k, 1]
-        u = (x[a] - x[c]) / l1
-        v = (x[b] - x[c]) / l2
+        for m in range(3):
+            u[m], v[m] = (x[a, m] - x[c, m]) / l1, (x[b, m] - x[c, m]) / l2
         q1 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
         q2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
         g = u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
@@ -164,10 +164,15 @@ def _quarters(
                 block[1, 0, n, m] = block[0, 1, m, n]
         for i in range(2):
             for j in range(2):
-                data[places[k, 1 + i, 1 + j]] += block[i, j]
-                data[places[k, 0, 1 + j]] -= block[i, j]
-                data[places[k, 1 + i, 0]] -= block[i, j]
-                data[places[k, 0, 0]] += block[i, j]
+                both, row = places[k, 1 + i, 1 + j], places[k, 1 + i, 0]
+                column, own = places[k, 0, 1 + j], places[k, 0, 0]
+                for m in range(3):
+                    for n in range(3):
+                        value = block[i, j, m, n]
+                        data[both, m, n] += value
+                        data[column, m, n] -= value
+                        data[row, m, n] -= value
+                        data[own, m, n] += value
 
 
 @numba.njit(cache=True)
@@ -254,22 +259,26 @@ def _touches(
 ) -> tuple[Ints, Array]:
     """Corners (m, 2) and blocks (m, 3, 3) of the pairs in touch."""
     at = points_on(x, points)
-    touching = np.zeros(pairs.shape[0], np.bool_)
     reach = (1.0 + NAP) * thickness_mm
+    apart = np.empty(pairs.shape[0])
+    count = 0
     for k in range(pairs.shape[0]):
-        off = at[pairs[k, 1]] - at[pairs[k, 0]]
-        touching[k] = off[0] ** 2 + off[1] ** 2 + off[2] ** 2 < reach**2
-    count = touching.sum()
+        i, j = pairs[k, 0], pairs[k, 1]
+        dx, dy, dz = at[j, 0] - at[i, 0], at[j, 1] - at[i, 1], at[j, 2] - at[i, 2]
+        apart[k] = np.sqrt(dx * dx + dy * dy + dz * dz)
+        if apart[k] < reach:
+            count += 1
     where = np.empty((64 * count, 2), np.int64)
     blocks = np.empty((64 * count, 3, 3))
-    block = np.empty((3, 3))
+    block, off = np.empty((3, 3)), np.empty(3)
     place = 0
     for k in range(pairs.shape[0]):
-        if not touching[k]:
+        if apart[k] >= reach:
             continue
-        i, j = pairs[k]
-        off = at[j] - at[i]
-        distance = max(np.sqrt(off[0] ** 2 + off[1] ** 2 + off[2] ** 2), 1e-9)
+        i, j = pairs[k, 0], pairs[k, 1]
+        for m in range(3):
+            off[m] = at[j, m] - at[i, m]
+        distance = max(apart[k], 1e-9)
         _, force, along = pressed(reach - distance, thickness_mm, stiffness)
         aside = 0.0 if convex else -force / distance
         for m in range(3):

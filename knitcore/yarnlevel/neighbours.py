@@ -115,12 +115,13 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     bins_y = max(1, int(_BINS * height / reach))
     span_x = int(np.ceil(reach * bins_x / width))
     span_y = int(np.ceil(reach * bins_y / height))
-    x, y, z = np.empty(n), np.empty(n), curve[:, 0, 2].copy()
+    x, y, z = np.empty(n), np.empty(n), np.empty(n)
     image = np.empty((n, 2), np.int64)
     bin_of = np.empty(n, np.int64)
     first = np.zeros(bins_x * bins_y + 1, np.int64)
     moves = np.zeros(bins_x * bins_y, np.bool_)  # whether a sample of the bin does
     for i in range(n):
+        z[i] = curve[i, 0, 2]
         full_x = curve[i, 0, 0] + cell[0] * place[i % samples]
         full_y = curve[i, 0, 1] + cell[1] * (i // samples)
         image[i, 0] = int(np.floor(full_x / width))
@@ -138,7 +139,9 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     # the samples bin by bin, in falling order, side by side in memory
     sample = np.empty(n, np.int64)
     there = np.empty((n, 3))
-    filled = first[:-1].copy()
+    filled = np.empty(bins_x * bins_y, np.int64)
+    for b in range(bins_x * bins_y):
+        filled[b] = first[b]
     for i in range(n - 1, -1, -1):
         k = filled[bin_of[i]]
         filled[bin_of[i]] += 1
