@@ -157,14 +157,16 @@ class FrontalFactor:
             upper = room.zeros(own, own)
             side = room.zeros(edge, own)
             rest = room.zeros(edge, edge)
+            # empty arrays have another layout, for which everything would be compiled again
+            aside, left = (side, rest) if edge else (upper, upper)
             _assemble(
                 matrix.tiles, matrix.where, self._scale, damping, matrix.unknowns,
-                front.own, front.border, upper, side,
+                front.own, front.border, upper, aside,
             )  # fmt: skip
             for child, places in front.children:
                 remainder = remainders[child]
                 assert remainder is not None  # noqa: S101 - a child has one parent
-                _extend(remainder, places, len(front.own), size, upper, side, rest)
+                _extend(remainder, places, len(front.own), size, upper, aside, left)
                 room.take_back(remainder)
                 remainders[child] = None
             upper, info = lapack.spotrf(upper, lower=1, overwrite_a=1, clean=0)
@@ -217,7 +219,8 @@ def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     degree = np.zeros(n, np.int64)
     for i in range(n):
         touching[i, i] = False
-        degree[i] = touching[i].sum()
+        for j in range(n):
+            degree[i] += touching[i, j]
     order = np.empty(n, np.int64)
     first = np.zeros(n + 1, np.int64)
     border_first = np.zeros(n + 1, np.int64)
@@ -264,9 +267,11 @@ def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
                     degree[b] += 1
         if stored + edge > border.shape[0]:
             grown = np.empty(2 * (stored + edge), np.int64)
-            grown[:stored] = border[:stored]
+            for q in range(stored):
+                grown[q] = border[q]
             border = grown
-        border[stored : stored + edge] = around[:edge]
+        for q in range(edge):
+            border[stored + q] = around[q]
         stored += edge
         fronts += 1
         first[fronts] = done

@@ -163,7 +163,8 @@ def friction_hessian(
                     by[u, 0] = sign * layout.basis[0, o, a] * (1.0 if side else -1.0)
                     by[u, 1 + side] = sign * layout.basis[1, o, a]
         i, j = pair[0], pair[1]
-        by[36] = at[j, 3] - at[i, 3] + layout.wales * pair[2], 1.0, 1.0
+        by[36, 0] = at[j, 3] - at[i, 3] + layout.wales * pair[2]
+        by[36, 1] = by[36, 2] = 1.0
         by[37, 0] = at[j, 4] - at[i, 4] + layout.rows * pair[3]
         d = apart(at, sliding.pairs, q, layout, course_mm, wale_mm)
         for u in range(38):

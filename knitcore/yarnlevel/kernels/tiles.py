@@ -105,7 +105,8 @@ def tiled_product(tiles: Array, where: NDArray[np.int32], vector: Array) -> Arra
     size = tiles.shape[1]
     out = np.zeros(where.shape[0] * size)
     padded = np.zeros(where.shape[0] * size)
-    padded[: vector.shape[0]] = vector
+    for u in range(vector.shape[0]):
+        padded[u] = vector[u]
     for a in range(where.shape[0]):
         for b in range(a + 1):
             t = where[a, b]

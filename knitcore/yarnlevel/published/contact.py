@@ -67,9 +67,13 @@ def contact_points(
 def _boxes(points: Array, curves: int) -> Array:
     """Extent of each curve's points in the plane, mm: shape (curves, low or high, x or y)."""
     out = np.empty((curves, 2, 2))
-    for c, own in enumerate(points.reshape(curves, -1, 3)):
+    per = points.shape[0] // curves
+    for c in range(curves):
         for d in range(2):
-            out[c, 0, d], out[c, 1, d] = own[:, d].min(), own[:, d].max()
+            low = high = points[c * per, d]
+            for i in range(c * per + 1, (c + 1) * per):
+                low, high = min(low, points[i, d]), max(high, points[i, d])
+            out[c, 0, d], out[c, 1, d] = low, high
     return out
 
 
