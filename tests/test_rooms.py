@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 
 FLOORS = (
-    {"arrays", "errors", "threads"},
+    {"arrays", "compiled", "errors", "threads"},
     {"bounds", "choice", "batch", "extensions", "showing"},
     {"fabric"},
     {"chart"},
@@ -27,7 +27,7 @@ FLOORS = (
     {"swatch", "shell", "garment"},
     {"geometry"},
     {"piece"},
-    {"formats", "design", "notebook"},
+    {"formats", "design", "notebook", "warm_up"},
 )
 """Rooms of ``knitcore`` from the ground up; one imports from lower floors only."""
 

@@ -17,6 +17,7 @@ from numba.extending import get_cython_function_address, intrinsic
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 
 Block = NDArray[np.floating]
 Indices = NDArray[np.int64]
@@ -57,7 +58,7 @@ def _generate_call(_context: Any, address: Any, arguments: Any) -> Any:
 call: Any = intrinsic(_generate_call)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def reduce_front(
     routines: Indices,
     letters: NDArray[np.uint8],
@@ -100,7 +101,7 @@ def reduce_front(
     return True
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def eliminate(
     first: int,
     last: int,
@@ -162,7 +163,7 @@ def eliminate(
     return True
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _assemble(
     own: Indices,
     rank: Indices,
@@ -190,7 +191,7 @@ def _assemble(
                         below[at[i] + m, to - s] += blocks[k, m, n]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _extend(rest: Block, places: Indices, pivot: Block, below: Block, schur: Block) -> None:
     """Add what a child leaves, its lower triangle, to its parent's front."""
     s = pivot.shape[0]
@@ -206,7 +207,7 @@ def _extend(rest: Block, places: Indices, pivot: Block, below: Block, schur: Blo
                 schur[column - s, row - s] += rest[c, r]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def add_cells(
     cells: Array,
     columns: int,

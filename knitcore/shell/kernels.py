@@ -22,11 +22,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 
 Ints = NDArray[np.int64]
 RealOrComplex = NDArray[Any]
@@ -40,7 +40,7 @@ FIRM = 0.007
 in thicknesses: the usual depth in a scroll."""
 
 
-@numba.njit(cache=True)
+@compiled
 def metric_energy(
     q1: float, q2: float, g: float, parameters: Array, slope: Array, curvature: Array
 ) -> float:
@@ -68,7 +68,7 @@ def metric_energy(
     return float(0.25 * stretch - 0.5 * shear * np.log(area / (q1 * q2)))
 
 
-@numba.njit(cache=True)
+@compiled
 def quarters(x: Array, corners: Ints, parameters: Array, gradient: Array) -> float:
     """Membrane energy; adds to ``gradient`` (n, 3). Infinite where a quarter has no area.
 
@@ -101,12 +101,12 @@ def quarters(x: Array, corners: Ints, parameters: Array, gradient: Array) -> flo
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def _cross(ax: Any, ay: Any, az: Any, bx: Any, by: Any, bz: Any) -> tuple[Any, Any, Any]:
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@numba.njit(cache=True)
+@compiled
 def turn_slope(points: RealOrComplex, slope: RealOrComplex) -> tuple[Any, Any, Any, Any]:
     """Sine and cosine of a hinge's angle, up to a common factor, and the squares of the widths of
     its sides; ``slope`` (4, 3) receives the angle's.
@@ -142,7 +142,7 @@ def turn_slope(points: RealOrComplex, slope: RealOrComplex) -> tuple[Any, Any, A
     return sine, ax * bx + ay * by + az * bz, s1 / square, s2 / square
 
 
-@numba.njit(cache=True)
+@compiled
 def width_slope(points: RealOrComplex, side: int, slope: RealOrComplex) -> Any:
     """Square of the width of a hinge's side (2 or 3), and the slope (4, 3) of its logarithm."""
     px, py, pz = points[0, 0], points[0, 1], points[0, 2]
@@ -161,7 +161,7 @@ def width_slope(points: RealOrComplex, side: int, slope: RealOrComplex) -> Any:
     return nn / ee
 
 
-@numba.njit(cache=True)
+@compiled
 def _hinge_points(x: Array, nodes: Ints, points: Array) -> None:
     p, q, a, b, c, d = nodes
     for m in range(3):
@@ -171,7 +171,7 @@ def _hinge_points(x: Array, nodes: Ints, points: Array) -> None:
         points[3, m] = 0.5 * (x[c, m] + x[d, m])
 
 
-@numba.njit(cache=True)
+@compiled
 def bent(angle: float, parameters: Array) -> tuple[float, float, float]:
     """Energy of a hinge, its moment and its stiffness."""
     stiffness, rest, closed, _ = parameters
@@ -184,7 +184,7 @@ def bent(angle: float, parameters: Array) -> tuple[float, float, float]:
     )
 
 
-@numba.njit(cache=True)
+@compiled
 def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
     """Bending energy; adds to ``gradient``.
 
@@ -221,7 +221,7 @@ def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def twists(x: Array, quads: Ints, stiffness: Array, gradient: Array) -> float:
     """Energy of twisting; ``quads`` (m, 4): x₀₀, x₁₀, x₀₁, x₁₁. Adds to ``gradient``."""
     total = 0.0
@@ -238,14 +238,14 @@ def twists(x: Array, quads: Ints, stiffness: Array, gradient: Array) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def pressed(depth: float, thickness_mm: float, stiffness: float) -> tuple[float, float, float]:
     """Energy of a touch, its force and its stiffness, at a depth in mm below the outer fibres."""
     factor = stiffness * FIRM / ((NAP + FIRM) ** 2 * thickness_mm)
     return factor * depth**3 / 3.0, factor * depth**2, 2.0 * factor * depth
 
 
-@numba.njit(cache=True)
+@compiled
 def touches(
     x: Array, points: Ints, pairs: Ints, thickness_mm: float, stiffness: float, gradient: Array
 ) -> float:
@@ -274,7 +274,7 @@ def touches(
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def points_on(x: Array, points: Ints) -> Array:
     """(k, 3): where the points of the sheet are."""
     at = np.empty((points.shape[0], 3))
@@ -306,7 +306,7 @@ def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
     return pairs[:found]
 
 
-@numba.njit(cache=True)
+@compiled
 def _first_not_below(values: Ints, value: int) -> int:
     """Index of the first of rising values that is not below a value; their number if all are."""
     low, high = 0, values.shape[0]
@@ -319,7 +319,7 @@ def _first_not_below(values: Ints, value: int) -> int:
     return low
 
 
-@numba.njit(cache=True)
+@compiled
 def _listed(
     at: Array,
     home: Array,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bsr_matrix
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.shell.kernels import (
     NAP,
     bent,
@@ -107,7 +107,7 @@ def _pattern(
     )
 
 
-@numba.njit(cache=True)
+@compiled
 def _convex(
     q1: float, q2: float, g: float, parameters: Array, slope: Array, curvature: Array
 ) -> None:
@@ -121,7 +121,7 @@ def _convex(
     curvature[2, 2] = shear / (q1 * q2 - g * g)
 
 
-@numba.njit(cache=True)
+@compiled
 def _quarters(
     x: Array, corners: Ints, parameters: Array, places: Ints, convex: bool, data: Array
 ) -> None:
@@ -175,14 +175,14 @@ def _quarters(
                         data[own, m, n] += value
 
 
-@numba.njit(cache=True)
+@compiled
 def _add_square(slope: Array, factor: float, matrix: Array) -> None:
     for i in range(12):
         for j in range(12):
             matrix[i, j] += factor * slope[i // 3, i % 3] * slope[j // 3, j % 3]
 
 
-@numba.njit(cache=True)
+@compiled
 def _step(points: Array, j: int, stepped: NDArray[np.complex128]) -> None:
     """Points with a complex step in their coordinate j."""
     for i in range(4):
@@ -191,13 +191,13 @@ def _step(points: Array, j: int, stepped: NDArray[np.complex128]) -> None:
     stepped[j // 3, j % 3] += 1j * _TINY
 
 
-@numba.njit(cache=True)
+@compiled
 def _add_column(slope: NDArray[np.complex128], factor: float, j: int, matrix: Array) -> None:
     for i in range(12):
         matrix[i, j] += factor * slope[i // 3, i % 3].imag / _TINY
 
 
-@numba.njit(cache=True)
+@compiled
 def _hinges(
     x: Array, nodes: Ints, parameters: Array, places: Ints, convex: bool, data: Array
 ) -> None:
@@ -243,7 +243,7 @@ def _hinges(
                         data[to, m, n] += wi * wj * matrix[3 * pi + m, 3 * pj + n]
 
 
-@numba.njit(cache=True)
+@compiled
 def _twists(stiffness: Array, places: Ints, data: Array) -> None:
     signs = (1.0, -1.0, -1.0, 1.0)
     for k in range(places.shape[0]):
@@ -253,7 +253,7 @@ def _twists(stiffness: Array, places: Ints, data: Array) -> None:
                     data[places[k, i, j], m, m] += stiffness[k] * signs[i] * signs[j]
 
 
-@numba.njit(cache=True)
+@compiled
 def _touches(
     x: Array, points: Ints, pairs: Ints, thickness_mm: float, stiffness: float, convex: bool
 ) -> tuple[Ints, Array]:

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -27,6 +26,7 @@ from scipy.sparse.linalg import splu
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
+from knitcore.compiled import compiled
 from knitcore.threads import in_one_blas_thread
 from knitcore.yarnlevel.cell import YarnCell, plain_cell
 from knitcore.yarnlevel.spline import SplineGrid
@@ -122,7 +122,7 @@ def crossings(lines: Array, width: float, height: float) -> Array:
     return out[:found]
 
 
-@numba.njit(cache=True)
+@compiled
 def _crossings(  # noqa: PLR0912 - compiled: loops over boxes, then segments
     lines: Array, width: float, height: float, far: Ints, boxes: Array, out: Array
 ) -> int:

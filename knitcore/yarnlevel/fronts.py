@@ -11,12 +11,12 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.tiles import TiledMatrix
 
 _PASSING_ON = 3.0
@@ -206,7 +206,7 @@ class FrontalFactor:
         return np.asarray(x[: len(right)] * scale, dtype=float)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     touching: NDArray[np.bool_], wanted: Ints
 ) -> tuple[Ints, Ints, Ints, Ints]:
@@ -279,7 +279,7 @@ def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     return order, first[: fronts + 1], border[:stored], border_first[: fronts + 1]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _scale(tiles: Array, where: NDArray[np.int32], unknowns: int, damping: float) -> Array:
     blocks, size = where.shape[0], tiles.shape[1]
     scale = np.ones(blocks * size)
@@ -289,7 +289,7 @@ def _scale(tiles: Array, where: NDArray[np.int32], unknowns: int, damping: float
     return scale
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _assemble(
     tiles: Array, where: NDArray[np.int32], scale: Array, damping: float, unknowns: int,
     own: Ints, border: Ints, upper: Floats, side: Floats,
@@ -316,7 +316,7 @@ def _assemble(
             upper[at, at] = upper[at, at] + damping * scale[u] ** 2 if u < unknowns else 1.0
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _extend(
     remainder: Floats, places: Ints, own: int, size: int, upper: Floats, side: Floats, rest: Floats
 ) -> None:

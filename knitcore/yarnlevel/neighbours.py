@@ -7,10 +7,10 @@ size of the cell: the bins of the list are repeated as often as the reach demand
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.compiled import compiled
 from knitcore.threads import on_halves
 from knitcore.yarnlevel.kernels.curve import laid_out
 from knitcore.yarnlevel.kernels.structures import Ints, Pairs
@@ -81,14 +81,14 @@ def neighbour_pairs(
     return pairs, start
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _move(pairs: Pairs, begin: int, to: int, count: int) -> None:
     """Move pairs towards the front."""
     for q in range(count):
         pairs[to + q] = pairs[begin + q]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     curve: NDArray[np.float64],
     place: NDArray[np.float64],
@@ -202,7 +202,7 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     return start
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def pair_distances(
     curve: NDArray[np.float64],
     cell: tuple[float, float],
@@ -221,7 +221,7 @@ def pair_distances(
     return distance
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def extremes(
     curve: NDArray[np.float64],
     cell: tuple[float, float],
@@ -238,7 +238,7 @@ def extremes(
     return np.sqrt(least), np.sqrt(greatest)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def part_apart(
     curves: tuple[NDArray[np.float64], NDArray[np.float64]],
     cells: tuple[tuple[float, float], tuple[float, float]],
@@ -269,7 +269,7 @@ def part_apart(
     return part
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _square(
     at: NDArray[np.float64],
     cell: tuple[float, float],
@@ -285,7 +285,7 @@ def _square(
     return float(x * x + y * y + z * z)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def reaches(pairs: Pairs, samples: int, shape: tuple[int, int]) -> NDArray[np.int64]:
     """(2, rows, wales): how many rows, and wales, beyond itself a stitch has pairs; at least 1.
 

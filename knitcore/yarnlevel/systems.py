@@ -10,12 +10,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import replace
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.energy import Slope
 from knitcore.yarnlevel.fronts import Front, FrontalFactor, Room
 from knitcore.yarnlevel.kernels import one_tile
@@ -221,7 +221,7 @@ class SparseSystem(System):
         return np.asarray(gradient)
 
 
-@numba.njit(cache=True)
+@compiled
 def _scaled(matrix: Array, scale: Array, damping: float) -> NDArray[np.float32]:
     """Lower triangle, damped and scaled, in single precision; entries above it are arbitrary."""
     n = matrix.shape[0]

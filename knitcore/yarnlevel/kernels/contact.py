@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.curve import control_of, laid_out
 from knitcore.yarnlevel.kernels.structures import ContactLaw, Ints, Layout, Pairs
 from knitcore.yarnlevel.potential import potential, potential_and_derivatives
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def apart(
     at: Array, pairs: Pairs, q: int, layout: Layout, course_mm: float, wale_mm: float
 ) -> tuple[float, float, float]:
@@ -24,7 +24,7 @@ def apart(
     )
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def contact_energy(
     curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
 ) -> float:
@@ -41,7 +41,7 @@ def contact_energy(
     return total
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def contact_slopes(
     curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
 ) -> tuple[Array, Array]:
@@ -78,7 +78,7 @@ def contact_slopes(
     return force, by_speed
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _add_transposed(matrix: Array, size: int) -> None:
     """A + A.T of the leading block, in place; tile by tile, as columns are far apart."""
     tile = 32
@@ -91,7 +91,7 @@ def _add_transposed(matrix: Array, size: int) -> None:
                     matrix[j, i] = both
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one sweep
     curve: Array,
     course_mm: float,

@@ -12,14 +12,14 @@ The length, the spacing penalty and the weights w = |d1| dt of the contact sum a
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.structures import RodLaw
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _parts(d: Array) -> tuple[float, ...]:
     """b … f of a sample, powers of a, and the factors of the last three of them."""
     a = d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2
@@ -40,14 +40,14 @@ def _parts(d: Array) -> tuple[float, ...]:
     return b, c, e1, e, f, i1, h3, h5, h7, h9, h11, m7, m9, m11
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def sample_energy(d: Array, bend: float, regular: float) -> float:
     """Bending and regularisation of one sample."""
     b, c, _, _, f, _, h3, h5, h7, h9, h11, m7, m9, m11 = _parts(d)
     return float(bend * (c * h3 - b * b * h5) + regular * (f * h5 + m7 * h7 + m9 * h9 + m11 * h11))
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def sample_slope(d: Array, bend: float, regular: float, slope: Array) -> None:
     """Write the derivatives (6) of :func:`sample_energy` by a … f."""
     b, c, e1, e, f, i1, h3, h5, h7, h9, h11, m7, m9, m11 = _parts(d)
@@ -63,7 +63,7 @@ def sample_slope(d: Array, bend: float, regular: float, slope: Array) -> None:
     slope[5] = regular * h5
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def sample_curvature(d: Array, bend: float, regular: float, curvature: Array) -> None:
     """Write the second derivatives (6, 6) of :func:`sample_energy` by a … f that are not zero."""
     b, c, e1, e, f, i1, _, h5, h7, h9, h11, m7, m9, m11 = _parts(d)
@@ -90,12 +90,12 @@ def sample_curvature(d: Array, bend: float, regular: float, curvature: Array) ->
             curvature[m, n] = curvature[n, m]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _length(d: Array) -> float:
     return float(np.sqrt(d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2))
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def rod_energy(curve: Array, law: RodLaw, lengths: Array) -> tuple[float, float]:
     """Bending with regularisation, and spacing penalty, N·mm.
 
@@ -110,14 +110,14 @@ def rod_energy(curve: Array, law: RodLaw, lengths: Array) -> tuple[float, float]
     return rod, spacing
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _pull(d: Array, law: RodLaw, length: float, tension: float, by_speed: float) -> float:
     """Derivative by |d1| of spacing penalty, tension and contact."""
     stretch = _length(d) / length - 1.0
     return law.step * (tension + law.spacing * stretch / length) + by_speed
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _by_derivatives(d: Array, slope: Array, out: Array) -> None:
     """Slopes by d1, d2, d3 from those by the products a … f."""
     for m in range(3):
@@ -126,7 +126,7 @@ def _by_derivatives(d: Array, slope: Array, out: Array) -> None:
         out[2, m] = slope[3] * d[1, m] + slope[4] * d[2, m] + 2.0 * slope[5] * d[3, m]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def rod_slopes(curve: Array, law: RodLaw, lengths: Array, tension: Array, by_speed: Array) -> Array:
     """Derivatives by d1, d2, d3 at each sample, (n, 3, 3).
 
@@ -143,7 +143,7 @@ def rod_slopes(curve: Array, law: RodLaw, lengths: Array, tension: Array, by_spe
     return gradient
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def rod_hessian(
     curve: Array, law: RodLaw, lengths: Array, tension: Array, by_speed: Array
 ) -> tuple[Array, Array]:

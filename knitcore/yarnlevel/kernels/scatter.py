@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.curve import control_of
 from knitcore.yarnlevel.kernels.structures import Layout, Pairs
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def scatter_gradient(force: Array, gradient: Array, layout: Layout) -> Array:
     """Gradient by the unknowns from dE/dx (n or n + 1, 3) and dE/d(d1, d2, d3) (n, 3, 3)."""
     basis, dof, sign, mirror = layout.basis, layout.dof, layout.sign, layout.mirror
@@ -36,7 +36,7 @@ def scatter_gradient(force: Array, gradient: Array, layout: Layout) -> Array:
     return out
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
     local: Array,
     position: Array,

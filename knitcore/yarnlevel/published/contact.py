@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from functools import cache
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled_as_numpy
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.potential import potential_and_derivatives
 from knitcore.yarnlevel.published.elastic import bernstein
@@ -36,7 +36,7 @@ def midpoint_tables() -> tuple[Array, Array]:
     return bernstein(t), bernstein(t, 1)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def contact_points(
     controls: Array, places: Array, slopes: Array
 ) -> tuple[Array, Array, Array, Array]:
@@ -63,7 +63,7 @@ def contact_points(
     return points, tangents, lengths, arclengths
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def _boxes(points: Array, curves: int) -> Array:
     """Extent of each curve's points in the plane, mm: shape (curves, low or high, x or y)."""
     out = np.empty((curves, 2, 2))
@@ -77,7 +77,7 @@ def _boxes(points: Array, curves: int) -> Array:
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
     """Whether a box and another one, shifted by (x, y), are farther apart than the reach."""
     return bool(
@@ -88,7 +88,7 @@ def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
     )
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def curve_contact_energy(
     controls: Array,
     cell_course: float,
