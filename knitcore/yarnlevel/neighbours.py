@@ -119,7 +119,7 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     image = np.empty((n, 2), np.int64)
     bin_of = np.empty(n, np.int64)
     first = np.zeros(bins_x * bins_y + 1, np.int64)
-    moves = np.zeros(bins_x * bins_y, np.bool_)  # whether a sample of the bin does
+    moves = np.zeros(bins_x * bins_y, np.int64)  # how many samples of the bin do
     for i in range(n):
         z[i] = curve[i, 0, 2]
         full_x = curve[i, 0, 0] + cell[0] * place[i % samples]
@@ -133,7 +133,7 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
         )
         bin_of[i] = b
         first[b + 1] += 1
-        moves[b] |= moving[i]
+        moves[b] += moving[i]
     for b in range(bins_x * bins_y):
         first[b + 1] += first[b]
     # the samples bin by bin, in falling order, side by side in memory
@@ -163,7 +163,7 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
                 across_x = shift * width - x[i]
                 up_y = lift * height - y[i]
                 b = (v - lift * bins_y) * bins_x + (u - shift * bins_x)
-                if not (moving[i] or moves[b]):
+                if not (moving[i] or moves[b] > 0):
                     continue
                 for k in range(first[b], first[b + 1]):
                     j = sample[k]
@@ -184,7 +184,9 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
                     if mirror[1] < 0 and up % 2 != 0:
                         flip = -flip
                     dz = flip * there[k, 2] - z[i]
-                    if dz * dz >= left or (j == i and (across, up) <= (0, 0)):
+                    if dz * dz >= left:
+                        continue
+                    if j == i and (across < 0 or (across == 0 and up <= 0)):
                         continue
                     row_j = j // samples
                     if row_j + up * rows == row_i:
