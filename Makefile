@@ -49,11 +49,11 @@ wheel: page $(VENV)/.installed ## Build wheel and sdist with the page in them, a
 
 install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the product in it, and the page
 
-# numba compiles a kernel when it is first called, which takes up to 20 s: best before somebody waits.
+# numba compiles a kernel when it is first called, which takes up to 10 s: best before somebody waits.
 # What it kept of older sources goes first: it fails to load where a class has another name now.
-$(VENV)/.compiled: $(VENV)/.installed $(shell grep -rl njit --include=*.py knitcore) scripts/compile_kernels.py
+$(VENV)/.compiled: $(VENV)/.installed $(shell grep -rl knitcore.compiled --include=*.py knitcore) knitcore/warm_up.py
 	@find knitcore -name '*.nb[ci]' -delete
-	@$(BIN)/python scripts/compile_kernels.py
+	@$(BIN)/knitcore warm-up 2>/dev/null
 	@touch $@
 
 # --- running ----------------------------------------------------------------------------------

@@ -15,11 +15,12 @@ from typing import Any
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 
 Floats = NDArray[np.floating]
 
@@ -147,7 +148,7 @@ _wide, _narrow = _tile(_COLUMNS), _tile(1)
 _products: Callable[..., Any] = intrinsic(_lane_sum)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _subtract(
     width: int, to: int, step: int, left: int, down: int, right: int, over: int, terms: int,
     zero: Any,
@@ -159,7 +160,7 @@ def _subtract(
         _wide(to, step, left, down, right, over, terms, zero)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def subtract_product(target: Floats, left: Floats, right: Floats, lower: bool) -> None:
     """``target[j, i] -= sum_k left[k, i] * right[k, j]``, the terms one by one from k = 0.
 
@@ -203,7 +204,7 @@ def subtract_product(target: Floats, left: Floats, right: Floats, lower: bool) -
         j += width
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def eliminate(a: Floats) -> bool:
     """Cholesky factor of the first columns of a front, in place; False if not positive definite.
 
@@ -232,7 +233,7 @@ def eliminate(a: Floats) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _dot(one: Floats, other: Floats) -> float:
     """Sum of products of two contiguous vectors."""
     lanes = _BYTES // one.itemsize
@@ -243,7 +244,7 @@ def _dot(one: Floats, other: Floats) -> float:
     return total  # type: ignore[no-any-return] # compiled
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def forward(a: Floats, x: Floats) -> None:
     """Forward substitution with a front's factor, in place.
 
@@ -271,7 +272,7 @@ def forward(a: Floats, x: Floats) -> None:
             x[i] -= column[i] * value
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def backward(a: Floats, x: Floats) -> None:
     """Backward substitution with a front's factor, in place; what lies below is known."""
     for j in range(a.shape[0] - 1, -1, -1):
@@ -279,7 +280,7 @@ def backward(a: Floats, x: Floats) -> None:
         x[j] = (x[j] - _dot(column[j + 1 :], x[j + 1 :])) / column[j]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def substitute(a: Floats, right: Floats) -> None:
     """Solve with a whole factor (n, n) for every row of ``right`` (k, n), in place."""
     for row in right:
@@ -287,7 +288,7 @@ def substitute(a: Floats, right: Floats) -> None:
         backward(a, row)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def solved(matrix: Array, right: Array) -> Array:
     """Solution of a small system by elimination with the largest pivots.
 
@@ -327,7 +328,7 @@ def solved(matrix: Array, right: Array) -> Array:
     return x
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _row_products(matrix: Array, vector: Array) -> Array:
     out = np.empty(matrix.shape[0])
     for i in range(matrix.shape[0]):

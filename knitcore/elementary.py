@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
+
+from knitcore.compiled import compiled
 
 _MANTISSA, _ONE = 0x000FFFFFFFFFFFFF, 0x3FF0000000000000
 _ROOT_2 = 1.4142135623730951
@@ -19,7 +20,7 @@ _HIGHEST = 1 / 3628800 + 0.12 / 479001600, 1 / 39916800 + 0.12 / 6227020800
 _TAN_22_5 = 0.41421356237309503
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _parts(value: float) -> tuple[int, float]:
     """Exponent of two, and the logarithm of what it leaves of a normal number > 0.
 
@@ -39,14 +40,14 @@ def _parts(value: float) -> tuple[int, float]:
     return int(whole), 2.0 * (s + s * (square * other + q * one))
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def log(value: float) -> float:
     """Natural logarithm of a normal number > 0."""
     whole, rest = _parts(value)
     return float(whole * _LN_2 + rest)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def power(base: float, exponent: float) -> float:
     """``base ** exponent`` for a normal base > 0 and a normal result."""
     whole, rest = _parts(base)
@@ -59,7 +60,7 @@ def power(base: float, exponent: float) -> float:
     return float((even + x * odd) * np.int64((np.int64(twos) + 1023) << 52).view(np.float64))
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def arctan2(y: float, x: float) -> float:
     """Angle of the point (x, y) from the x axis, rad."""
     if x == 0.0 and y == 0.0:

@@ -20,7 +20,7 @@ import click
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from app.cli.common import emit, json_option, user_data_dir
+from app.cli.common import emit, json_option, telling_what_is_compiled, user_data_dir
 from app.command_options import resolve_chart
 from app.context import Context
 from app.models.base import UNIT, IntervalResult
@@ -49,7 +49,8 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
         run: Callable[..., Any] = described.run or operation.run
         run = partial(run, **_taken(described.run, given))
         try:
-            found = carried_out(run, options.request(given), context)
+            with telling_what_is_compiled():
+                found = carried_out(run, options.request(given), context)
         except InputError as error:
             raise _of_options(error, made) from error
         result = found.result if isinstance(found, Viewed) else found

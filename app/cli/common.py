@@ -1,8 +1,9 @@
-"""What commands share: the settings, the database and two ways of printing."""
+"""What commands share: the settings, the database, and ways of printing."""
 
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,3 +60,21 @@ def user_data_dir() -> Path:
 def emit(result: BaseModel, text: str, *, as_json: bool) -> None:
     """Print a result as one JSON object, or as text for people."""
     click.echo(result.model_dump_json() if as_json else text)
+
+
+class _OnStderr(logging.Handler):
+    def emit(self, record: logging.LogRecord) -> None:
+        click.echo(record.getMessage(), err=True)
+
+
+@contextlib.contextmanager
+def telling_what_is_compiled() -> Iterator[None]:
+    """Say on stderr that kernels are compiled, if they are: a silent command seems to hang."""
+    log, handler = logging.getLogger("knitcore.compiled"), _OnStderr()
+    log.setLevel(logging.DEBUG)
+    log.addHandler(handler)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
+        log.setLevel(logging.NOTSET)

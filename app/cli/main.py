@@ -68,7 +68,8 @@ class Commands(Operations):
             return Operations(cmd_name, help=GROUPS[cmd_name])
         if cmd_name in _own_commands():
             try:
-                module = importlib.import_module(f"{package.__name__}.{cmd_name}")
+                name = cmd_name.replace("-", "_")
+                module = importlib.import_module(f"{package.__name__}.{name}")
             except ModuleNotFoundError as error:
                 return _not_installed(cmd_name, error)
             found: click.Command = module.command
@@ -105,7 +106,8 @@ def _remedy(error: ModuleNotFoundError) -> str:
 
 
 def _own_commands() -> set[str]:
-    return {module.name for module in pkgutil.iter_modules(package.__path__)} - NO_COMMANDS
+    modules = {module.name for module in pkgutil.iter_modules(package.__path__)} - NO_COMMANDS
+    return {name.replace("_", "-") for name in modules}
 
 
 @click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -7,17 +7,17 @@ Matrices are views [column, row] of Fortran's order; only lower triangles are ke
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from knitcore import dense
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 
 Block = NDArray[np.floating]
 Indices = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def eliminate(
     first: int,
     last: int,
@@ -72,7 +72,7 @@ def eliminate(
     return True
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _assemble(
     own: Indices,
     rank: Indices,
@@ -95,7 +95,7 @@ def _assemble(
                     front[at[i] + m, at[j] + n] += blocks[k, m, n]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _extend(rest: Block, places: Indices, front: Block, schur: Block) -> None:
     """Add what a child leaves, its lower triangle, to its parent's front."""
     s = front.shape[0]
@@ -109,7 +109,7 @@ def _extend(rest: Block, places: Indices, front: Block, schur: Block) -> None:
                 schur[column - s, row - s] += rest[c, r]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def add_cells(
     cells: Array,
     columns: int,
@@ -150,7 +150,7 @@ def add_cells(
             blocks[9 * corner + 4, m, m] = 1.0
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def forward(
     first: int,
     last: int,
@@ -175,7 +175,7 @@ def forward(
             x[border[b0 + r]] += v[s + r]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def backward(
     first: int,
     last: int,

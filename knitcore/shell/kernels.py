@@ -22,11 +22,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.elementary import arctan2, log
 
 Ints = NDArray[np.int64]
@@ -41,7 +41,7 @@ FIRM = 0.007
 in thicknesses: the usual depth in a scroll."""
 
 
-@numba.njit(cache=True)
+@compiled
 def metric_energy(
     q1: float, q2: float, g: float, parameters: Array, slope: Array, curvature: Array
 ) -> float:
@@ -69,7 +69,7 @@ def metric_energy(
     return float(0.25 * stretch - 0.5 * shear * log(area / (q1 * q2)))
 
 
-@numba.njit(cache=True)
+@compiled
 def quarters(x: Array, corners: Ints, parameters: Array, gradient: Array) -> float:
     """Membrane energy; adds to ``gradient`` (n, 3). Infinite where a quarter has no area.
 
@@ -102,12 +102,12 @@ def quarters(x: Array, corners: Ints, parameters: Array, gradient: Array) -> flo
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def _cross(ax: Any, ay: Any, az: Any, bx: Any, by: Any, bz: Any) -> tuple[Any, Any, Any]:
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@numba.njit(cache=True)
+@compiled
 def turn_slope(points: RealOrComplex, slope: RealOrComplex) -> tuple[Any, Any, Any, Any]:
     """Sine and cosine of a hinge's angle, up to a common factor, and the squares of the widths of
     its sides; ``slope`` (4, 3) receives the angle's.
@@ -143,11 +143,12 @@ def turn_slope(points: RealOrComplex, slope: RealOrComplex) -> tuple[Any, Any, A
     return sine, ax * bx + ay * by + az * bz, s1 / square, s2 / square
 
 
-@numba.njit(cache=True)
+@compiled
 def width_slope(points: RealOrComplex, side: int, slope: RealOrComplex) -> Any:
     """Square of the width of a hinge's side (2 or 3), and the slope (4, 3) of its logarithm."""
-    ex, ey, ez = points[1] - points[0]
-    fx, fy, fz = points[side] - points[0]
+    px, py, pz = points[0, 0], points[0, 1], points[0, 2]
+    ex, ey, ez = points[1, 0] - px, points[1, 1] - py, points[1, 2] - pz
+    fx, fy, fz = points[side, 0] - px, points[side, 1] - py, points[side, 2] - pz
     nx, ny, nz = _cross(ex, ey, ez, fx, fy, fz)
     by_far = _cross(nx, ny, nz, ex, ey, ez)
     by_end = _cross(fx, fy, fz, nx, ny, nz)
@@ -161,7 +162,7 @@ def width_slope(points: RealOrComplex, side: int, slope: RealOrComplex) -> Any:
     return nn / ee
 
 
-@numba.njit(cache=True)
+@compiled
 def _hinge_points(x: Array, nodes: Ints, points: Array) -> None:
     p, q, a, b, c, d = nodes
     for m in range(3):
@@ -171,7 +172,7 @@ def _hinge_points(x: Array, nodes: Ints, points: Array) -> None:
         points[3, m] = 0.5 * (x[c, m] + x[d, m])
 
 
-@numba.njit(cache=True)
+@compiled
 def bent(angle: float, parameters: Array) -> tuple[float, float, float]:
     """Energy of a hinge, its moment and its stiffness."""
     stiffness, rest, closed, _ = parameters
@@ -184,7 +185,7 @@ def bent(angle: float, parameters: Array) -> tuple[float, float, float]:
     )
 
 
-@numba.njit(cache=True)
+@compiled
 def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
     """Bending energy; adds to ``gradient``.
 
@@ -208,7 +209,9 @@ def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
             if (left if side == 2 else right) < parameters[k, 3]:
                 narrow = log(width_slope(points, side, width) / parameters[k, 3])
                 total += 0.5 * parameters[k, 0] * narrow * narrow
-                slope += parameters[k, 0] * narrow * width
+                for i in range(4):
+                    for m in range(3):
+                        slope[i, m] += parameters[k, 0] * narrow * width[i, m]
         for m in range(3):
             gradient[p, m] += slope[0, m]
             gradient[q, m] += slope[1, m]
@@ -219,7 +222,7 @@ def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def twists(x: Array, quads: Ints, stiffness: Array, gradient: Array) -> float:
     """Energy of twisting; ``quads`` (m, 4): x₀₀, x₁₀, x₀₁, x₁₁. Adds to ``gradient``."""
     total = 0.0
@@ -236,14 +239,14 @@ def twists(x: Array, quads: Ints, stiffness: Array, gradient: Array) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def pressed(depth: float, thickness_mm: float, stiffness: float) -> tuple[float, float, float]:
     """Energy of a touch, its force and its stiffness, at a depth in mm below the outer fibres."""
     factor = stiffness * FIRM / ((NAP + FIRM) ** 2 * thickness_mm)
     return factor * depth**3 / 3.0, factor * depth**2, 2.0 * factor * depth
 
 
-@numba.njit(cache=True)
+@compiled
 def touches(
     x: Array, points: Ints, pairs: Ints, thickness_mm: float, stiffness: float, gradient: Array
 ) -> float:
@@ -272,7 +275,7 @@ def touches(
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def points_on(x: Array, points: Ints) -> Array:
     """(k, 3): where the points of the sheet are."""
     at = np.empty((points.shape[0], 3))
@@ -283,30 +286,61 @@ def points_on(x: Array, points: Ints) -> Array:
     return at
 
 
-@numba.njit(cache=True)
 def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
     """Pairs of points nearer than ``reach`` that are more than ``apart`` away within the sheet.
 
     A list of boxes of side ``reach`` over the points, sorted by box. ``home`` (k, 2): their places
     in the flat sheet, mm.
     """
-    n = at.shape[0]
-    low = np.array([at[:, m].min() for m in range(3)])
-    high = np.array([at[:, m].max() for m in range(3)])
-    count = np.empty(3, np.int64)
-    for m in range(3):
-        count[m] = int((high[m] - low[m]) / reach) + 1
-    box = np.empty(n, np.int64)
-    for i in range(n):
-        box[i] = 0
-        for m in range(3):
-            box[i] = box[i] * count[m] + min(count[m] - 1, int((at[i, m] - low[m]) / reach))
-    order = np.argsort(box)
-    ordered = box[order]
-    capacity = 16 * n
-    pairs = np.empty((capacity, 2), np.int64)
+    if not len(at):
+        return np.empty((0, 2), np.int64)
+    inside = at - at.min(axis=0)
+    count = (inside.max(axis=0) / reach).astype(np.int64) + 1
+    x, y, z = np.minimum((inside / reach).astype(np.int64), count - 1).T
+    box = (x * count[1] + y) * count[2] + z
+    order = np.argsort(box, kind="stable")
+    pairs = np.empty((16 * len(at), 2), np.int64)
+    while (found := _listed(at, home, reach, apart, count, box, order, box[order], pairs)) > len(
+        pairs
+    ):
+        pairs = np.empty((found, 2), np.int64)
+    return pairs[:found]
+
+
+@compiled
+def _first_not_below(values: Ints, value: int) -> int:
+    """Index of the first of rising values that is not below a value; their number if all are."""
+    low, high = 0, values.shape[0]
+    while low < high:
+        middle = (low + high) // 2
+        if values[middle] < value:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@compiled
+def _listed(
+    at: Array,
+    home: Array,
+    reach: float,
+    apart: float,
+    count: Ints,
+    box: Ints,
+    order: Ints,
+    ordered: Ints,
+    pairs: Ints,
+) -> int:
+    """Fill ``pairs`` and tell their number; those for which there is no room are only counted.
+
+    Parameters
+    ----------
+    count : (3,) boxes along each axis.
+    box, order, ordered : each point's box, the points by rising box, and their boxes.
+    """
     found = 0
-    for place in range(n):
+    for place in range(at.shape[0]):
         i = order[place]
         b = box[i]
         bz = b % count[2]
@@ -315,26 +349,20 @@ def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
         for ax in range(max(0, bx - 1), min(count[0], bx + 2)):
             for ay in range(max(0, by - 1), min(count[1], by + 2)):
                 first = (ax * count[1] + ay) * count[2]
-                start = np.searchsorted(ordered, first + max(0, bz - 1))
-                stop = np.searchsorted(ordered, first + min(count[2] - 1, bz + 1), side="right")
+                start = _first_not_below(ordered, first + max(0, bz - 1))
+                stop = _first_not_below(ordered, first + min(count[2], bz + 2))
                 for other in range(start, stop):
                     j = order[other]
                     if j <= i:
                         continue
-                    square = 0.0
-                    for m in range(3):
-                        square += (at[j, m] - at[i, m]) ** 2
-                    if square >= reach * reach:
+                    dx, dy, dz = at[j, 0] - at[i, 0], at[j, 1] - at[i, 1], at[j, 2] - at[i, 2]
+                    if dx * dx + dy * dy + dz * dz >= reach * reach:
                         continue
-                    flat = (home[j, 0] - home[i, 0]) ** 2 + (home[j, 1] - home[i, 1]) ** 2
-                    if flat < apart * apart:
+                    along, up = home[j, 0] - home[i, 0], home[j, 1] - home[i, 1]
+                    if along * along + up * up < apart * apart:
                         continue
-                    if found == capacity:
-                        capacity *= 2
-                        grown = np.empty((capacity, 2), np.int64)
-                        grown[:found] = pairs[:found]
-                        pairs = grown
-                    pairs[found, 0] = i
-                    pairs[found, 1] = j
+                    if found < pairs.shape[0]:
+                        pairs[found, 0] = i
+                        pairs[found, 1] = j
                     found += 1
-    return pairs[:found]
+    return found

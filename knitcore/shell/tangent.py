@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bsr_matrix
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.elementary import arctan2, log
 from knitcore.shell.kernels import (
     NAP,
@@ -108,7 +108,7 @@ def _pattern(
     )
 
 
-@numba.njit(cache=True)
+@compiled
 def _convex(
     q1: float, q2: float, g: float, parameters: Array, slope: Array, curvature: Array
 ) -> None:
@@ -122,18 +122,18 @@ def _convex(
     curvature[2, 2] = shear / (q1 * q2 - g * g)
 
 
-@numba.njit(cache=True)
+@compiled
 def _quarters(
     x: Array, corners: Ints, parameters: Array, places: Ints, convex: bool, data: Array
 ) -> None:
     block = np.empty((2, 2, 3, 3))
-    slope = np.empty(3)
+    slope, u, v = np.empty(3), np.empty(3), np.empty(3)
     curvature = np.empty((3, 3))
     for k in range(corners.shape[0]):
         c, a, b = corners[k]
         l1, l2 = parameters[k, 0], parameters[k, 1]
-        u = (x[a] - x[c]) / l1
-        v = (x[b] - x[c]) / l2
+        for m in range(3):
+            u[m], v[m] = (x[a, m] - x[c, m]) / l1, (x[b, m] - x[c, m]) / l2
         q1 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
         q2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
         g = u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
@@ -165,20 +165,25 @@ def _quarters(
                 block[1, 0, n, m] = block[0, 1, m, n]
         for i in range(2):
             for j in range(2):
-                data[places[k, 1 + i, 1 + j]] += block[i, j]
-                data[places[k, 0, 1 + j]] -= block[i, j]
-                data[places[k, 1 + i, 0]] -= block[i, j]
-                data[places[k, 0, 0]] += block[i, j]
+                both, row = places[k, 1 + i, 1 + j], places[k, 1 + i, 0]
+                column, own = places[k, 0, 1 + j], places[k, 0, 0]
+                for m in range(3):
+                    for n in range(3):
+                        value = block[i, j, m, n]
+                        data[both, m, n] += value
+                        data[column, m, n] -= value
+                        data[row, m, n] -= value
+                        data[own, m, n] += value
 
 
-@numba.njit(cache=True)
+@compiled
 def _add_square(slope: Array, factor: float, matrix: Array) -> None:
     for i in range(12):
         for j in range(12):
             matrix[i, j] += factor * slope[i // 3, i % 3] * slope[j // 3, j % 3]
 
 
-@numba.njit(cache=True)
+@compiled
 def _step(points: Array, j: int, stepped: NDArray[np.complex128]) -> None:
     """Points with a complex step in their coordinate j."""
     for i in range(4):
@@ -187,13 +192,13 @@ def _step(points: Array, j: int, stepped: NDArray[np.complex128]) -> None:
     stepped[j // 3, j % 3] += 1j * _TINY
 
 
-@numba.njit(cache=True)
+@compiled
 def _add_column(slope: NDArray[np.complex128], factor: float, j: int, matrix: Array) -> None:
     for i in range(12):
         matrix[i, j] += factor * slope[i // 3, i % 3].imag / _TINY
 
 
-@numba.njit(cache=True)
+@compiled
 def _hinges(
     x: Array, nodes: Ints, parameters: Array, places: Ints, convex: bool, data: Array
 ) -> None:
@@ -239,7 +244,7 @@ def _hinges(
                         data[to, m, n] += wi * wj * matrix[3 * pi + m, 3 * pj + n]
 
 
-@numba.njit(cache=True)
+@compiled
 def _twists(stiffness: Array, places: Ints, data: Array) -> None:
     signs = (1.0, -1.0, -1.0, 1.0)
     for k in range(places.shape[0]):
@@ -249,28 +254,32 @@ def _twists(stiffness: Array, places: Ints, data: Array) -> None:
                     data[places[k, i, j], m, m] += stiffness[k] * signs[i] * signs[j]
 
 
-@numba.njit(cache=True)
+@compiled
 def _touches(
     x: Array, points: Ints, pairs: Ints, thickness_mm: float, stiffness: float, convex: bool
 ) -> tuple[Ints, Array]:
     """Corners (m, 2) and blocks (m, 3, 3) of the pairs in touch."""
     at = points_on(x, points)
-    touching = np.zeros(pairs.shape[0], np.bool_)
     reach = (1.0 + NAP) * thickness_mm
+    apart = np.empty(pairs.shape[0])
+    count = 0
     for k in range(pairs.shape[0]):
-        off = at[pairs[k, 1]] - at[pairs[k, 0]]
-        touching[k] = off[0] ** 2 + off[1] ** 2 + off[2] ** 2 < reach**2
-    count = touching.sum()
+        i, j = pairs[k, 0], pairs[k, 1]
+        dx, dy, dz = at[j, 0] - at[i, 0], at[j, 1] - at[i, 1], at[j, 2] - at[i, 2]
+        apart[k] = np.sqrt(dx * dx + dy * dy + dz * dz)
+        if apart[k] < reach:
+            count += 1
     where = np.empty((64 * count, 2), np.int64)
     blocks = np.empty((64 * count, 3, 3))
-    block = np.empty((3, 3))
+    block, off = np.empty((3, 3)), np.empty(3)
     place = 0
     for k in range(pairs.shape[0]):
-        if not touching[k]:
+        if apart[k] >= reach:
             continue
-        i, j = pairs[k]
-        off = at[j] - at[i]
-        distance = max(np.sqrt(off[0] ** 2 + off[1] ** 2 + off[2] ** 2), 1e-9)
+        i, j = pairs[k, 0], pairs[k, 1]
+        for m in range(3):
+            off[m] = at[j, m] - at[i, m]
+        distance = max(apart[k], 1e-9)
         _, force, along = pressed(reach - distance, thickness_mm, stiffness)
         aside = 0.0 if convex else -force / distance
         for m in range(3):

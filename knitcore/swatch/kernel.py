@@ -19,10 +19,10 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.gridsolver.numbering import corners_of
 from knitcore.law import stiffening
 
@@ -49,11 +49,10 @@ Block = tuple[float, float, float, float]
 Point = tuple[float, Pair, Pair, Symmetric, Block, Symmetric]
 """Energy density W(a, b), its derivatives by a and b, second derivatives aa, ab and bb."""
 
-_compiled: Any = njit(cache=True)
-_corners_of: Callable[[int, int], tuple[int, int, int, int]] = _compiled(corners_of)
-_full: Callable[[float], Stiffening] = _compiled(stiffening.full)
-_published: Callable[[float], Stiffening] = _compiled(stiffening.published)
-_shear: Callable[[float, float, float], Stiffening] = _compiled(stiffening.shear_response)
+_corners_of: Callable[[int, int], tuple[int, int, int, int]] = compiled(corners_of)
+_full: Callable[[float], Stiffening] = compiled(stiffening.full)
+_published: Callable[[float], Stiffening] = compiled(stiffening.published)
+_shear: Callable[[float, float, float], Stiffening] = compiled(stiffening.shear_response)
 
 Law = Any
 """A law, as a record of :data:`knitcore.swatch.models.LAW`."""
@@ -109,7 +108,7 @@ class CellTangents(NamedTuple):
     centre_inverse: Array
 
 
-@njit(cache=True)
+@compiled
 def _axial(law: Law, ex: float, ey: float) -> Response:
     """The full law at fibre strains."""
     x = _full(law.alpha_xx * (ex + law.kappa_xx * (ey + 0.5 * ey * ey)))
@@ -117,7 +116,7 @@ def _axial(law: Law, ex: float, ey: float) -> Response:
     return _stiffened(law, (law.kappa_xx, law.kappa_yy), x, y, ex, ey)
 
 
-@njit(cache=True)
+@compiled
 def _stiffened(
     law: Law, kappa: tuple[float, float], x: Stiffening, y: Stiffening, ex: float, ey: float
 ) -> Response:
@@ -142,7 +141,7 @@ def _stiffened(
     )
 
 
-@njit(cache=True)
+@compiled
 def _wrinkled(law: Law, ex: float, ey: float) -> Response:
     """The law relaxed by wrinkling: the least energy over all longer fibres."""
     taut = _axial(law, ex, ey)
@@ -167,7 +166,7 @@ def _wrinkled(law: Law, ex: float, ey: float) -> Response:
     )
 
 
-@njit(cache=True)
+@compiled
 def _free(law: Law, along: float, axis: int) -> float:
     """Strain on an axis at which its stress vanishes, at a strain on the other one (above 0).
 
@@ -183,7 +182,7 @@ def _free(law: Law, along: float, axis: int) -> float:
     return across
 
 
-@njit(cache=True)
+@compiled
 def _published_point(law: Law, a0: float, a1: float, b0: float, b1: float) -> Point:
     """The published model at (a, b)."""
     shear, g = a1 + b0, law.shear_modulus
@@ -200,7 +199,7 @@ def _published_point(law: Law, a0: float, a1: float, b0: float, b1: float) -> Po
     )
 
 
-@njit(cache=True)
+@compiled
 def _full_point(law: Law, tension_field: bool, a0: float, a1: float, b0: float, b1: float) -> Point:
     """The full model at (a, b); the energy is infinite where a fibre has collapsed."""
     la, lb = math.sqrt(a0 * a0 + a1 * a1), math.sqrt(b0 * b0 + b1 * b1)
@@ -245,7 +244,7 @@ def _full_point(law: Law, tension_field: bool, a0: float, a1: float, b0: float, 
     )
 
 
-@njit(cache=True)
+@compiled
 def respond(
     laws: NDArray[Any],
     law_of_point: NDArray[np.uint8],
@@ -277,21 +276,21 @@ def respond(
     return energy
 
 
-@njit(cache=True)
+@compiled
 def _gather(vectors: Array, nodes: tuple[int, int, int, int], out: Array) -> None:
     """Write a cell's corners' share (4, 2) of vectors (corners, 2)."""
     for i in range(4):
         out[i, 0], out[i, 1] = vectors[nodes[i], 0], vectors[nodes[i], 1]
 
 
-@njit(cache=True)
+@compiled
 def _zero(matrix: Array) -> None:
     for i in range(matrix.shape[0]):
         for j in range(matrix.shape[1]):
             matrix[i, j] = 0.0
 
 
-@njit(cache=True)
+@compiled
 def strain_change(cells: Cells, state: Nodes, step: Nodes) -> Array:
     """Change of the mean strains along course and wale of every cell, (2, cells), to first order
     in a step.
@@ -334,7 +333,7 @@ def strain_change(cells: Cells, state: Nodes, step: Nodes) -> Array:
     return out
 
 
-@njit(cache=True)
+@compiled
 def _triangle(
     law: Law,
     published: bool,
@@ -367,7 +366,7 @@ def _triangle(
     )
 
 
-@njit(cache=True)
+@compiled
 def _add_triangle(
     i: int,
     j: int,
@@ -395,7 +394,7 @@ def _add_triangle(
             kc[m, 2 * j + n] += 2.0 * (turned - c)
 
 
-@njit(cache=True)
+@compiled
 def _eliminate_centre(k: Array, kc: Array, kcc: Array, tangent: CellTangents, cell: int) -> None:
     """Write a cell's tangent without its centre, and what recovers the centre."""
     det = kcc[0, 0] * kcc[1, 1] - kcc[1, 0] * kcc[1, 0]
@@ -411,7 +410,7 @@ def _eliminate_centre(k: Array, kc: Array, kcc: Array, tangent: CellTangents, ce
     inverse[cell, 0], inverse[cell, 1], inverse[cell, 2] = i00, i01, i11
 
 
-@njit(cache=True)
+@compiled
 def _clear(tangent: CellTangents, cell: int) -> None:
     """Write the tangent of a cell without cloth."""
     tangent.matrix[cell] = 0.0
@@ -419,7 +418,7 @@ def _clear(tangent: CellTangents, cell: int) -> None:
     tangent.centre_inverse[cell] = 0.0
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def assemble(
     cells: Cells,
     laws: NDArray[Any],
@@ -495,7 +494,7 @@ def assemble(
     return total
 
 
-@njit(cache=True)
+@compiled
 def condense(columns: int, force: Nodes, tangent: CellTangents) -> Array:
     """Gradient on the corners after the centres have been eliminated, shape (corners, 2)."""
     out = force.corners.copy()
@@ -509,7 +508,7 @@ def condense(columns: int, force: Nodes, tangent: CellTangents) -> Array:
     return out
 
 
-@njit(cache=True)
+@compiled
 def centre_step(columns: int, step: Array, force: Nodes, tangent: CellTangents) -> Array:
     """Newton step of the centres (cells, 2) that goes with a step of the corners (corners, 2)."""
     out = np.empty_like(force.centres)
@@ -525,7 +524,7 @@ def centre_step(columns: int, step: Array, force: Nodes, tangent: CellTangents) 
     return out
 
 
-@njit(cache=True)
+@compiled
 def apply(columns: int, tangent: CellTangents, step: Array) -> Array:
     """Condensed tangent times a step of the corners, (corners, 2)."""
     out, v, w = np.zeros_like(step), np.empty(8), np.empty(8)

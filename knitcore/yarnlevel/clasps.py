@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -27,6 +26,7 @@ from scipy.sparse.linalg import splu
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
+from knitcore.compiled import compiled
 from knitcore.threads import in_one_blas_thread
 from knitcore.yarnlevel.cell import YarnCell, plain_cell
 from knitcore.yarnlevel.spline import SplineGrid
@@ -100,10 +100,7 @@ def cell_is_knitted(cell: YarnCell, state: Array) -> bool:
     return is_knitted(StitchChart(np.array(purl)), lines, float(state[-2]), float(state[-1]))
 
 
-@numba.njit(cache=True)
-def crossings(  # noqa: PLR0912, PLR0915 - compiled: loops over boxes, then segments
-    lines: NDArray[np.float64], width: float, height: float
-) -> NDArray[np.float64]:
+def crossings(lines: Array, width: float, height: float) -> Array:
     """All crossings seen from above, each once.
 
     Parameters
@@ -115,30 +112,41 @@ def crossings(  # noqa: PLR0912, PLR0915 - compiled: loops over boxes, then segm
     (n, 7): course and place (in points) of the lower strand, the same of the upper one, the
     repeats (a, b) by which the upper one is moved to get there, sign of the crossing.
     """
+    low, high = lines[:, :, :2].min(axis=1), lines[:, :, :2].max(axis=1)
+    period = np.array([width, height])
+    far = np.ceil((high.max(axis=0) - low.min(axis=0)) / period).astype(np.int64)
+    boxes = np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1)
+    out = np.empty((64 * lines.shape[0] * lines.shape[1], 7))
+    while (found := _crossings(lines, width, height, far, boxes, out)) > len(out):
+        out = np.empty((found, 7))
+    return out[:found]
+
+
+@compiled
+def _crossings(  # noqa: PLR0912 - compiled: loops over boxes, then segments
+    lines: Array, width: float, height: float, far: Ints, boxes: Array, out: Array
+) -> int:
+    """Fill ``out`` and tell the number of crossings; those without room are only counted.
+
+    Parameters
+    ----------
+    far : (2,) repeats beyond which no course reaches, across and up.
+    boxes : (courses, 4) least and greatest x, least and greatest y of each course.
+    """
     courses, count, _ = lines.shape
-    low_x, high_x = lines[:, :, 0].min(), lines[:, :, 0].max()
-    low_y, high_y = lines[:, :, 1].min(), lines[:, :, 1].max()
-    far_x = int(np.ceil((high_x - low_x) / width))
-    far_y = int(np.ceil((high_y - low_y) / height))
-    boxes = np.empty((courses, 4))
-    for j in range(courses):
-        boxes[j, 0], boxes[j, 1] = lines[j, :, 0].min(), lines[j, :, 0].max()
-        boxes[j, 2], boxes[j, 3] = lines[j, :, 1].min(), lines[j, :, 1].max()
-    capacity = 64 * courses * count
-    out = np.empty((capacity, 7))
     n = 0
     for j in range(courses):
         for s in range(count - 1):
-            px, py, pz = lines[j, s]
+            px, py, pz = lines[j, s, 0], lines[j, s, 1], lines[j, s, 2]
             ux = lines[j, s + 1, 0] - px
             uy = lines[j, s + 1, 1] - py
             left, right = min(px, px + ux), max(px, px + ux)
             down, up = min(py, py + uy), max(py, py + uy)
-            for b in range(-far_y, far_y + 1):
+            for b in range(-far[1], far[1] + 1):
                 for k in range(courses):
                     if boxes[k, 2] + b * height > up or boxes[k, 3] + b * height < down:
                         continue
-                    for a in range(-far_x, far_x + 1):
+                    for a in range(-far[0], far[0] + 1):
                         if boxes[k, 0] + a * width > right or boxes[k, 1] + a * width < left:
                             continue
                         for q in range(count - 1):
@@ -162,18 +170,14 @@ def crossings(  # noqa: PLR0912, PLR0915 - compiled: loops over boxes, then segm
                             over = lines[k, q, 2] + g * (lines[k, q + 1, 2] - lines[k, q, 2])
                             if over <= z:
                                 continue  # met again from the other strand
-                            if n == capacity:
-                                capacity *= 2
-                                grown = np.empty((capacity, 7))
-                                grown[:n] = out
-                                out = grown
-                            out[n, 0], out[n, 1] = j, s + f
-                            out[n, 2], out[n, 3] = k, q + g
-                            out[n, 4], out[n, 5] = a, b
-                            # upper strand to lower strand, counter-clockwise: positive
-                            out[n, 6] = 1.0 if turn < 0.0 else -1.0
+                            if n < out.shape[0]:
+                                out[n, 0], out[n, 1] = j, s + f
+                                out[n, 2], out[n, 3] = k, q + g
+                                out[n, 4], out[n, 5] = a, b
+                                # upper strand to lower strand, counter-clockwise: positive
+                                out[n, 6] = 1.0 if turn < 0.0 else -1.0
                             n += 1
-    return out[:n]
+    return n
 
 
 def _determinants(found: Array, courses: int, points: int) -> Array:

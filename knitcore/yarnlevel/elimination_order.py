@@ -7,13 +7,13 @@ wave halves it, and a least vertex cover of what crosses the halves is the cut (
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.fronts import Front, elimination, work
 
 Ints = NDArray[np.int64]
@@ -92,7 +92,7 @@ def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:
     return ~rows, columns
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _steps(touching: Bools) -> Array:
     """(n,) steps to each block of a pattern from the one farthest from the first."""
     n = touching.shape[0]
@@ -117,7 +117,7 @@ def _steps(touching: Bools) -> Array:
     return steps
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _slowest_wave(touching: Bools, begin: Array, sweeps: int) -> Array:
     """About the Fiedler vector of a pattern (n, n), in arithmetic that is the same everywhere."""
     n = touching.shape[0]

@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.dense import backward, eliminate, forward, subtract_product
 from knitcore.yarnlevel.kernels.tiles import TiledMatrix
 
@@ -195,7 +195,7 @@ class FrontalFactor:
         return np.asarray(x[:, : len(right)].T * scale[:, None], dtype=float)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _reduced(columns: Floats, rest: Floats) -> bool:
     """Eliminate a front's own unknowns, and take their share from the rest; False if they are not
     positive definite."""
@@ -206,7 +206,7 @@ def _reduced(columns: Floats, rest: Floats) -> bool:
     return True
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _eliminate_from(columns: Floats, places: Ints, x: Floats) -> None:
     """Forward substitution of a front in every row of ``x``."""
     part = np.empty(columns.shape[1], columns.dtype)
@@ -218,7 +218,7 @@ def _eliminate_from(columns: Floats, places: Ints, x: Floats) -> None:
             row[places[k]] = part[k]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _substitute_into(columns: Floats, places: Ints, x: Floats) -> None:
     """Backward substitution of a front in every row of ``x``."""
     part = np.empty(columns.shape[1], columns.dtype)
@@ -230,7 +230,7 @@ def _substitute_into(columns: Floats, places: Ints, x: Floats) -> None:
             row[places[k]] = part[k]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     touching: NDArray[np.bool_], wanted: Ints
 ) -> tuple[Ints, Ints, Ints, Ints]:
@@ -243,7 +243,8 @@ def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     degree = np.zeros(n, np.int64)
     for i in range(n):
         touching[i, i] = False
-        degree[i] = touching[i].sum()
+        for j in range(n):
+            degree[i] += touching[i, j]
     order = np.empty(n, np.int64)
     first = np.zeros(n + 1, np.int64)
     border_first = np.zeros(n + 1, np.int64)
@@ -290,9 +291,11 @@ def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
                     degree[b] += 1
         if stored + edge > border.shape[0]:
             grown = np.empty(2 * (stored + edge), np.int64)
-            grown[:stored] = border[:stored]
+            for q in range(stored):
+                grown[q] = border[q]
             border = grown
-        border[stored : stored + edge] = around[:edge]
+        for q in range(edge):
+            border[stored + q] = around[q]
         stored += edge
         fronts += 1
         first[fronts] = done
@@ -300,7 +303,7 @@ def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     return order, first[: fronts + 1], border[:stored], border_first[: fronts + 1]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _scale(tiles: Array, where: NDArray[np.int32], unknowns: int, damping: float) -> Array:
     blocks, size = where.shape[0], tiles.shape[1]
     scale = np.ones(blocks * size)
@@ -310,7 +313,7 @@ def _scale(tiles: Array, where: NDArray[np.int32], unknowns: int, damping: float
     return scale
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _assemble(
     tiles: Array, where: NDArray[np.int32], scale: Array, damping: float, unknowns: int,
     own: Ints, border: Ints, columns: Floats,
@@ -335,7 +338,7 @@ def _assemble(
             columns[at, at] = columns[at, at] + damping * scale[u] ** 2 if u < unknowns else 1.0
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _extend(
     remainder: Floats, places: Ints, own: int, size: int, columns: Floats, rest: Floats
 ) -> None:

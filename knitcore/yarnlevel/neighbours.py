@@ -7,10 +7,10 @@ size of the cell: the bins of the list are repeated as often as the reach demand
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.compiled import compiled
 from knitcore.threads import on_halves
 from knitcore.yarnlevel.kernels.curve import laid_out
 from knitcore.yarnlevel.kernels.structures import Ints, Pairs
@@ -81,14 +81,14 @@ def neighbour_pairs(
     return pairs, start
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _move(pairs: Pairs, begin: int, to: int, count: int) -> None:
     """Move pairs towards the front."""
     for q in range(count):
         pairs[to + q] = pairs[begin + q]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     curve: NDArray[np.float64],
     place: NDArray[np.float64],
@@ -115,12 +115,13 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     bins_y = max(1, int(_BINS * height / reach))
     span_x = int(np.ceil(reach * bins_x / width))
     span_y = int(np.ceil(reach * bins_y / height))
-    x, y, z = np.empty(n), np.empty(n), curve[:, 0, 2].copy()
+    x, y, z = np.empty(n), np.empty(n), np.empty(n)
     image = np.empty((n, 2), np.int64)
     bin_of = np.empty(n, np.int64)
     first = np.zeros(bins_x * bins_y + 1, np.int64)
-    moves = np.zeros(bins_x * bins_y, np.bool_)  # whether a sample of the bin does
+    moves = np.zeros(bins_x * bins_y, np.int64)  # how many samples of the bin do
     for i in range(n):
+        z[i] = curve[i, 0, 2]
         full_x = curve[i, 0, 0] + cell[0] * place[i % samples]
         full_y = curve[i, 0, 1] + cell[1] * (i // samples)
         image[i, 0] = int(np.floor(full_x / width))
@@ -132,13 +133,15 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
         )
         bin_of[i] = b
         first[b + 1] += 1
-        moves[b] |= moving[i]
+        moves[b] += moving[i]
     for b in range(bins_x * bins_y):
         first[b + 1] += first[b]
     # the samples bin by bin, in falling order, side by side in memory
     sample = np.empty(n, np.int64)
     there = np.empty((n, 3))
-    filled = first[:-1].copy()
+    filled = np.empty(bins_x * bins_y, np.int64)
+    for b in range(bins_x * bins_y):
+        filled[b] = first[b]
     for i in range(n - 1, -1, -1):
         k = filled[bin_of[i]]
         filled[bin_of[i]] += 1
@@ -160,7 +163,7 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
                 across_x = shift * width - x[i]
                 up_y = lift * height - y[i]
                 b = (v - lift * bins_y) * bins_x + (u - shift * bins_x)
-                if not (moving[i] or moves[b]):
+                if not (moving[i] or moves[b] > 0):
                     continue
                 for k in range(first[b], first[b + 1]):
                     j = sample[k]
@@ -181,7 +184,9 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
                     if mirror[1] < 0 and up % 2 != 0:
                         flip = -flip
                     dz = flip * there[k, 2] - z[i]
-                    if dz * dz >= left or (j == i and (across, up) <= (0, 0)):
+                    if dz * dz >= left:
+                        continue
+                    if j == i and (across < 0 or (across == 0 and up <= 0)):
                         continue
                     row_j = j // samples
                     if row_j + up * rows == row_i:
@@ -199,7 +204,7 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     return start
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def pair_distances(
     curve: NDArray[np.float64],
     cell: tuple[float, float],
@@ -218,7 +223,7 @@ def pair_distances(
     return distance
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def extremes(
     curve: NDArray[np.float64],
     cell: tuple[float, float],
@@ -235,7 +240,7 @@ def extremes(
     return np.sqrt(least), np.sqrt(greatest)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def part_apart(
     curves: tuple[NDArray[np.float64], NDArray[np.float64]],
     cells: tuple[tuple[float, float], tuple[float, float]],
@@ -266,7 +271,7 @@ def part_apart(
     return part
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _square(
     at: NDArray[np.float64],
     cell: tuple[float, float],
@@ -282,7 +287,7 @@ def _square(
     return float(x * x + y * y + z * z)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def reaches(pairs: Pairs, samples: int, shape: tuple[int, int]) -> NDArray[np.int64]:
     """(2, rows, wales): how many rows, and wales, beyond itself a stitch has pairs; at least 1.
 

@@ -10,15 +10,14 @@ continues it by ``V(R*) + 100 ((R - R*) / R*)²``: finite, but with a jump in sl
 
 from __future__ import annotations
 
-import numba
-
+from knitcore.compiled import compiled
 from knitcore.elementary import power
 
 CAP = 1e-5
 """ζ below which the capped form holds."""
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def potential(distance: float, k: float, p: float, radius: float, core: float) -> float:
     """V(R), N/mm², for a distance R of two centre lines (all lengths mm, k N/mm³)."""
     shell = 2.0 * (radius - core)
@@ -34,7 +33,7 @@ def potential(distance: float, k: float, p: float, radius: float, core: float) -
     return float(value)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def potential_and_derivatives(
     distance: float, k: float, p: float, radius: float, core: float
 ) -> tuple[float, float, float]:

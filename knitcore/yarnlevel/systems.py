@@ -10,11 +10,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import replace
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.dense import dot, eliminate, norm, product, solved, substitute, times
 from knitcore.yarnlevel.energy import Slope
 from knitcore.yarnlevel.fronts import Front, FrontalFactor, Precision, Room
@@ -229,7 +229,7 @@ def _without_symmetry(count: int) -> Array:
     return np.asarray((squares * 16807 % 2147483647) / 1073741823.5 - 1.0)
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _scale(matrix: Array, damping: float, out: Array) -> Array:
     """Fill the lower triangle, ``[column, row]``, with the damped matrix scaled to a unit diagonal;
     returns the scale."""

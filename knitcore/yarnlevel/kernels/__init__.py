@@ -11,7 +11,7 @@ from knitcore.yarnlevel.kernels.friction import (
     normal_forces,
     slides,
 )
-from knitcore.yarnlevel.kernels.rod import rod_energy, rod_hessian, rod_sample, rod_slopes
+from knitcore.yarnlevel.kernels.rod import rod_energy, rod_hessian, rod_slopes
 from knitcore.yarnlevel.kernels.scatter import scatter_gradient, scatter_local
 from knitcore.yarnlevel.kernels.structures import ContactLaw, Layout, RodLaw
 from knitcore.yarnlevel.kernels.tiles import (
@@ -42,7 +42,6 @@ __all__ = [
     "one_tile",
     "rod_energy",
     "rod_hessian",
-    "rod_sample",
     "rod_slopes",
     "sample_curve",
     "scatter_gradient",

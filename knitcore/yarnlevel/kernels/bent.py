@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.curve import laid_out
 from knitcore.yarnlevel.kernels.structures import ContactLaw, Layout, Pairs
 from knitcore.yarnlevel.potential import potential_and_derivatives
 
 
-@numba.njit(cache=True)
+@compiled
 def bent_contact(
     curve: Array,
     course_mm: float,
@@ -80,7 +80,7 @@ def bent_contact(
     return total, force, weight_slope
 
 
-@numba.njit(cache=True)
+@compiled
 def squared_distance(
     dx: float, dy: float, zi: float, zj: float, curvature_per_mm: tuple[float, float, float]
 ) -> tuple[float, float, float, float, float]:
@@ -101,7 +101,7 @@ def squared_distance(
     )
 
 
-@numba.njit(cache=True)
+@compiled
 def _chord(turn: float) -> tuple[float, float, float, float]:
     """S² and (1 − S²) / |m|² of ``turn`` = |m|², and their derivatives by it."""
     if turn < 0.01:  # the closed forms cancel

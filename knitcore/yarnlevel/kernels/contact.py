@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.curve import control_of, laid_out
 from knitcore.yarnlevel.kernels.structures import ContactLaw, Ints, Layout, Pairs
 from knitcore.yarnlevel.potential import potential, potential_and_derivatives
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def apart(
     at: Array, pairs: Pairs, q: int, layout: Layout, course_mm: float, wale_mm: float
 ) -> tuple[float, float, float]:
@@ -24,7 +24,7 @@ def apart(
     )
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def contact_energy(
     curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
 ) -> float:
@@ -41,7 +41,7 @@ def contact_energy(
     return total
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def contact_slopes(
     curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
 ) -> tuple[Array, Array]:
@@ -78,7 +78,7 @@ def contact_slopes(
     return force, by_speed
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def _add_transposed(matrix: Array, size: int) -> None:
     """A + A.T of the leading block, in place; tile by tile, as columns are far apart."""
     tile = 32
@@ -91,7 +91,7 @@ def _add_transposed(matrix: Array, size: int) -> None:
                     matrix[j, i] = both
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one sweep
     curve: Array,
     course_mm: float,
@@ -127,14 +127,16 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
     n_controls = rows * count
     at = laid_out(curve, layout.place, course_mm, wale_mm)
     # between the samples of a span and the control points that touch them, which have slots
-    slot = np.full(n_controls, -1, np.int64)
-    touched = np.empty(n_controls, np.int64)
+    slot, touched = np.empty(n_controls, np.int64), np.empty(n_controls, np.int64)
+    for k in range(n_controls):
+        slot[k] = -1
     # rows by the position of a sample, then those by its speed
     by_sample = np.zeros((n_controls, 18))
     by_controls = np.zeros((n_controls, 6, 9))
     cell_position = np.zeros((curve.shape[0], 2, 3))
     cell_speed = np.zeros((curve.shape[0], 2, 3))
-    stiffness = np.zeros((3, 3))
+    # arrays, as the index of a tuple that varies is a branch for each of its entries
+    stiffness, normal, ti, tj = np.zeros((3, 3)), np.empty(3), np.empty(3), np.empty(3)
     row_block, row_in, row_sign = np.empty(18, np.int64), np.empty(18, np.int64), np.empty(18)
     of_position, of_speed = np.zeros(18), np.zeros(18)
     w = law.weight
@@ -144,7 +146,8 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
             for o_i in range(per_span):
                 i = row_i * samples + span_i * per_span + o_i
                 si = at[i, 5]
-                ti = curve[i, 1] / si
+                for m in range(3):
+                    ti[m] = curve[i, 1, m] / si
                 for q in range(start[i], start[i + 1]):
                     j = pairs[q, 1]
                     flip = float(pairs[q, 4])
@@ -156,9 +159,10 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                     across = at[j, 3] - at[i, 3] + right
                     up = at[j, 4] - at[i, 4] + above
                     distance = np.sqrt(square)
-                    normal = (dx / distance, dy / distance, dz / distance)
+                    normal[0], normal[1], normal[2] = dx / distance, dy / distance, dz / distance
                     sj = at[j, 5]
-                    tj = (curve[j, 1, 0] / sj, curve[j, 1, 1] / sj, curve[j, 1, 2] / sj)
+                    for m in range(3):
+                        tj[m] = curve[j, 1, m] / sj
                     v0, v1, v2 = potential_and_derivatives(
                         distance, law.stiffness, law.exponent, law.radius, law.core
                     )

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 
 Ints = NDArray[np.int64]
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def sample_curve(controls: Array, course_mm: float, mirror: int, basis: Array) -> Array:
     """Position and three derivatives at every sample.
 
@@ -54,7 +54,7 @@ def sample_curve(controls: Array, course_mm: float, mirror: int, basis: Array) -
     return out
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def control_of(span: int, a: int, count: int, mirror: int) -> tuple[int, float]:
     """Control point a of a span within its course, and the sign of its z there."""
     c = span - 2 + a
@@ -65,7 +65,7 @@ def control_of(span: int, a: int, count: int, mirror: int) -> tuple[int, float]:
     return c, 1.0
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def laid_out(curve: Array, place: Array, course_mm: float, wale_mm: float) -> Array:
     """(n, 6) of every sample: x, y and z with the drift of the cell, t and row, and |d1|."""
     samples = place.shape[0]

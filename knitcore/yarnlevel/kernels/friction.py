@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.contact import apart
 from knitcore.yarnlevel.kernels.curve import control_of, laid_out
 from knitcore.yarnlevel.kernels.structures import ContactLaw, Layout, Pairs
@@ -40,7 +40,7 @@ class Sliding(NamedTuple):
     slip: Array
 
 
-@numba.njit(cache=True)
+@compiled
 def slides(
     curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, speeds: Array
 ) -> tuple[Array, Array]:
@@ -62,7 +62,7 @@ def slides(
     return out, cosine
 
 
-@numba.njit(cache=True)
+@compiled
 def normal_forces(
     curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
 ) -> Array:
@@ -78,7 +78,7 @@ def normal_forces(
     return out
 
 
-@numba.njit(cache=True)
+@compiled
 def friction_energy(
     curve: Array, course_mm: float, wale_mm: float, sliding: Sliding, layout: Layout, speeds: Array
 ) -> float:
@@ -93,7 +93,7 @@ def friction_energy(
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def friction_slopes(
     curve: Array, course_mm: float, wale_mm: float, sliding: Sliding, layout: Layout, speeds: Array
 ) -> tuple[Array, Array]:
@@ -126,7 +126,7 @@ def friction_slopes(
     return force, by_d1
 
 
-@numba.njit(cache=True)
+@compiled
 def friction_hessian(
     curve: Array, course_mm: float, wale_mm: float, sliding: Sliding, layout: Layout,
     speeds: Array, hessian: Array,
@@ -163,7 +163,8 @@ def friction_hessian(
                     by[u, 0] = sign * layout.basis[0, o, a] * (1.0 if side else -1.0)
                     by[u, 1 + side] = sign * layout.basis[1, o, a]
         i, j = pair[0], pair[1]
-        by[36] = at[j, 3] - at[i, 3] + layout.wales * pair[2], 1.0, 1.0
+        by[36, 0] = at[j, 3] - at[i, 3] + layout.wales * pair[2]
+        by[36, 1] = by[36, 2] = 1.0
         by[37, 0] = at[j, 4] - at[i, 4] + layout.rows * pair[3]
         d = apart(at, sliding.pairs, q, layout, course_mm, wale_mm)
         for u in range(38):

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.curve import control_of
 from knitcore.yarnlevel.kernels.structures import Layout, Pairs
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def scatter_gradient(force: Array, gradient: Array, layout: Layout) -> Array:
     """Gradient by the unknowns from dE/dx (n or n + 1, 3) and dE/d(d1, d2, d3) (n, 3, 3)."""
     basis, dof, sign, mirror = layout.basis, layout.dof, layout.sign, layout.mirror
@@ -36,7 +36,7 @@ def scatter_gradient(force: Array, gradient: Array, layout: Layout) -> Array:
     return out
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
     local: Array,
     position: Array,
@@ -73,17 +73,24 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
                     factor[3 * a + m] = sign[j, c, m] * (z_sign if m == 2 else 1.0)
             first = j * samples + span * per_span
             # course size enters d1 of every sample (its effect on x is in the contact)
-            sizes[0, size - 2] += local[first : first + per_span, 0, 0].sum()
-            if not np.any(factor):  # none of its control points moves
+            total = 0.0
+            for i in range(first, first + per_span):
+                total += local[i, 0, 0]
+            sizes[0, size - 2] += total
+            moves = False
+            for u in range(18):
+                moves = moves or factor[u] != 0.0
+            if not moves:  # none of its control points does
                 continue
             for o in range(per_span):
                 i = first + o
-                block[3:, 3:] = local[i]
-                block[:3, :3] = position[i]
-                block[:3, 3:6] = position_speed[i]
+                for m in range(9):
+                    for n in range(9):
+                        block[3 + m, 3 + n] = local[i, m, n]
                 for m in range(3):
                     for n in range(3):
-                        block[3 + n, m] = position_speed[i, m, n]
+                        block[m, n] = position[i, m, n]
+                        block[m, 3 + n] = block[3 + n, m] = position_speed[i, m, n]
                 for a in range(6):
                     for m in range(3):
                         for col in range(12):

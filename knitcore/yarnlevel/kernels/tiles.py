@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled
 from knitcore.yarnlevel.kernels.curve import control_of
 from knitcore.yarnlevel.kernels.structures import Layout, Pairs
 
@@ -29,7 +29,7 @@ class TiledMatrix(NamedTuple):
     unknowns: int
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def touching_blocks(  # noqa: PLR0912 - compiled: spans, then pairs
     at: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, size: int,
     reach: float,
@@ -99,13 +99,14 @@ def one_tile(unknowns: int) -> TiledMatrix:
     )  # fmt: skip
 
 
-@numba.njit(cache=True, nogil=True)
+@compiled
 def tiled_product(tiles: Array, where: NDArray[np.int32], vector: Array) -> Array:
     """Matrix times vector."""
     size = tiles.shape[1]
     out = np.zeros(where.shape[0] * size)
     padded = np.zeros(where.shape[0] * size)
-    padded[: vector.shape[0]] = vector
+    for u in range(vector.shape[0]):
+        padded[u] = vector[u]
     for a in range(where.shape[0]):
         for b in range(a + 1):
             t = where[a, b]

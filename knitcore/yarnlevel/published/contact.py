@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from functools import cache
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled_as_numpy
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.potential import potential_and_derivatives
 from knitcore.yarnlevel.published.elastic import bernstein
@@ -36,7 +36,7 @@ def midpoint_tables() -> tuple[Array, Array]:
     return bernstein(t), bernstein(t, 1)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def contact_points(
     controls: Array, places: Array, slopes: Array
 ) -> tuple[Array, Array, Array, Array]:
@@ -63,17 +63,21 @@ def contact_points(
     return points, tangents, lengths, arclengths
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def _boxes(points: Array, curves: int) -> Array:
     """Extent of each curve's points in the plane, mm: shape (curves, low or high, x or y)."""
     out = np.empty((curves, 2, 2))
-    for c, own in enumerate(points.reshape(curves, -1, 3)):
+    per = points.shape[0] // curves
+    for c in range(curves):
         for d in range(2):
-            out[c, 0, d], out[c, 1, d] = own[:, d].min(), own[:, d].max()
+            low = high = points[c * per, d]
+            for i in range(c * per + 1, (c + 1) * per):
+                low, high = min(low, points[i, d]), max(high, points[i, d])
+            out[c, 0, d], out[c, 1, d] = low, high
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
     """Whether a box and another one, shifted by (x, y), are farther apart than the reach."""
     return bool(
@@ -84,7 +88,7 @@ def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
     )
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def curve_contact_energy(
     controls: Array,
     cell_course: float,

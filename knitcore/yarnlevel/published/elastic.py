@@ -9,10 +9,10 @@ from __future__ import annotations
 from functools import cache
 from math import comb
 
-import numba
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled_as_numpy
 
 ORDER = 5
 QUADRATURE_POINTS = 24
@@ -39,7 +39,7 @@ def gauss_tables() -> tuple[Array, Array]:
     return weights / 2.0, np.stack([bernstein(t, derivative) for derivative in (1, 2, 3)])
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def elastic_energy(  # noqa: PLR0915 - one derivation, forward and back
     controls: Array,
     bending: float,

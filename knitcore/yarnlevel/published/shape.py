@@ -16,11 +16,11 @@ and reaches its other end likewise. The 34 parameters of this description are li
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from knitcore.arrays import Array
+from knitcore.compiled import compiled_as_numpy
 from knitcore.fabric import Fabric
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -83,80 +83,88 @@ def unknown_names(fabric: Fabric) -> tuple[str, ...]:
     )
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _cross(a: ComplexArray, b: ComplexArray) -> ComplexArray:
-    out = np.empty(3, dtype=np.complex128)
+@compiled_as_numpy
+def _cross(a: ComplexArray, b: ComplexArray, out: ComplexArray) -> None:
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         out[i] = a[j] * b[k] - a[k] * b[j]
-    return out
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _frame(angles: ComplexArray) -> ComplexArray:
-    """Rows e1, e2, e3 of a crossover: R y, R z, R x with R = Rx Ry Rz."""
-    (sx, sy, sz), (cx, cy, cz) = np.sin(angles), np.cos(angles)
-    axes = np.empty((3, 3), dtype=np.complex128)
+@compiled_as_numpy
+def _frame(p: ComplexArray, axes: ComplexArray) -> None:
+    """Write the rows e1, e2, e3 of a crossover: R y, R z, R x with R = Rx Ry Rz."""
+    sx, sy, sz = np.sin(p[2]), np.sin(p[3]), np.sin(p[4])
+    cx, cy, cz = np.cos(p[2]), np.cos(p[3]), np.cos(p[4])
     axes[0, 0], axes[0, 1], axes[0, 2] = -cy * sz, cx * cz + sx * sy * sz, sx * cz - cx * sy * sz
     axes[1, 0], axes[1, 1], axes[1, 2] = -sy, -sx * cy, cx * cy
     axes[2, 0], axes[2, 1], axes[2, 2] = cy * cz, cx * sz - sx * sy * cz, sx * sz + cx * sy * cz
-    return axes
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def _direct(
-    end: ComplexArray, numbers: ComplexArray, axes: ComplexArray, strand: float, last: float
+    end: ComplexArray, p: ComplexArray, at: int, axes: ComplexArray, strand: float, last: float
 ) -> None:
     """Write tangent and curvature vector of a strand's end into rows 1 and 2 of ``end``.
 
     ``strand`` is 1 for A and -1 for B, ``last`` -1 where the strand ends and 1 where it starts;
-    ``axes`` holds E1, E2, e3 of that end as rows, ``numbers`` its six parameters.
+    ``axes`` holds E1, E2, e3 of that end as rows, ``p[at : at + 6]`` its six parameters.
     """
-    polar, azimuth, kappa, normal = numbers[0], numbers[1], numbers[3], numbers[4]
+    polar, azimuth, kappa, normal = p[at], p[at + 1], p[at + 3], p[at + 4]
     sine = np.sin(polar)
-    end[1] = (
-        strand * last * np.cos(polar) * axes[0]
-        + strand * sine * np.sin(azimuth) * axes[1]
-        + sine * np.cos(azimuth) * axes[2]
-    )
-    binormal = _cross(axes[0], end[1])
-    end[2] = kappa / sine * (np.cos(normal) * binormal + np.sin(normal) * _cross(end[1], binormal))
+    along, across = strand * last * np.cos(polar), strand * sine * np.sin(azimuth)
+    up = sine * np.cos(azimuth)
+    for m in range(3):
+        end[1, m] = along * axes[0, m] + across * axes[1, m] + up * axes[2, m]
+    binormal, turned = np.empty(3, np.complex128), np.empty(3, np.complex128)
+    _cross(axes[0], end[1], binormal)
+    _cross(end[1], binormal, turned)
+    bend, cosine, sine = kappa / sine, np.cos(normal), np.sin(normal)
+    for m in range(3):
+        end[2, m] = bend * (cosine * binormal[m] + sine * turned[m])
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def _crossover(p: ComplexArray) -> ComplexArray:
     """Ends A0, A1, B0, B1 of crossover 1: position, tangent, curvature vector, shape (4, 3, 3)."""
-    last_axes = _frame(p[2:5])
-    first_axes = last_axes.copy()
+    last_axes, first_axes = np.empty((3, 3), np.complex128), np.empty((3, 3), np.complex128)
+    _frame(p, last_axes)
     sine, cosine = np.sin(p[25]), np.cos(p[25])
-    first_axes[0] = cosine * last_axes[0] + sine * last_axes[1]
-    first_axes[1] = cosine * last_axes[1] - sine * last_axes[0]
-    along = p[5] * np.cos(p[6]) * last_axes[2]
-    across = p[5] * np.sin(p[6])
-    ends = np.empty((4, 3, 3), dtype=np.complex128)
+    for m in range(3):
+        first_axes[0, m] = cosine * last_axes[0, m] + sine * last_axes[1, m]
+        first_axes[1, m] = cosine * last_axes[1, m] - sine * last_axes[0, m]
+        first_axes[2, m] = last_axes[2, m]
+    along, across = p[5] * np.cos(p[6]), p[5] * np.sin(p[6])
+    ends = np.empty((4, 3, 3), np.complex128)
     for strand in range(2):
         sign = 1.0 - 2.0 * strand
         first, last = ends[2 * strand], ends[2 * strand + 1]
-        first[0] = -along - sign * across * first_axes[1]
-        last[0] = along + sign * across * last_axes[1]
-        for end in (first, last):
-            end[0, 0] -= p[0] / 2.0
-            end[0, 2] -= p[1] / 2.0
-        _direct(first, p[7:13] if strand == 0 else p[19:25], first_axes, sign, 1.0)
-        _direct(last, p[13:19] if strand == 0 else p[7:13], last_axes, sign, -1.0)
+        for m in range(3):
+            centre = 0.5 * p[0] if m == 0 else 0.5 * p[1] if m == 2 else 0.0 * p[0]
+            first[0, m] = -along * last_axes[2, m] - sign * across * first_axes[1, m] - centre
+            last[0, m] = along * last_axes[2, m] + sign * across * last_axes[1, m] - centre
+        _direct(first, p, 7 if strand == 0 else 19, first_axes, sign, 1.0)
+        _direct(last, p, 13 if strand == 0 else 7, last_axes, sign, -1.0)
     return ends
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _mirrored(ends: ComplexArray) -> ComplexArray:
-    """Mirror images x -> -x, run through in the other sense."""
-    out = ends.copy()
-    out[:, :, 0] *= -1.0
-    out[:, 1] *= -1.0
+@compiled_as_numpy
+def _moved(
+    ends: ComplexArray, mirror_x: float, mirror_z: float, x: complex, y: complex
+) -> ComplexArray:
+    """Ends mirrored in x (-1: run through in the other sense) and z, and shifted."""
+    out = np.empty(ends.shape, np.complex128)
+    for k in range(ends.shape[0]):
+        for i in range(3):
+            sense = mirror_x if i == 1 else 1.0
+            out[k, i, 0] = mirror_x * sense * ends[k, i, 0]
+            out[k, i, 1] = sense * ends[k, i, 1]
+            out[k, i, 2] = mirror_z * sense * ends[k, i, 2]
+        out[k, 0, 0] += x
+        out[k, 0, 1] += y
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def _bezier(
     start: ComplexArray,
     alpha0: complex,
@@ -166,30 +174,26 @@ def _bezier(
     beta1: complex,
     out: ComplexArray,
 ) -> None:
-    out[0] = start[0]
-    out[1] = start[0] + alpha0 * start[1] / 5.0
-    out[2] = out[1] + alpha0 * alpha0 * start[2] / 20.0 + beta0 * start[1]
-    out[5] = end[0]
-    out[4] = end[0] - alpha1 * end[1] / 5.0
-    out[3] = out[4] + alpha1 * alpha1 * end[2] / 20.0 - beta1 * end[1]
+    for m in range(3):
+        out[0, m] = start[0, m]
+        out[1, m] = start[0, m] + alpha0 * start[1, m] / 5.0
+        out[2, m] = out[1, m] + alpha0 * alpha0 * start[2, m] / 20.0 + beta0 * start[1, m]
+        out[5, m] = end[0, m]
+        out[4, m] = end[0, m] - alpha1 * end[1, m] / 5.0
+        out[3, m] = out[4, m] + alpha1 * alpha1 * end[2, m] / 20.0 - beta1 * end[1, m]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def control_points(p: ComplexArray, course_odd: bool, wale_odd: bool) -> ComplexArray:
     """Control points, mm, shape (8 curves, 6 points, 3), from the 34 parameters.
 
     Everything is complex so that an imaginary step gives exact derivatives.
     """
+    none = 0.0 * p[33]
     lower = _crossover(p)
-    upper = lower.copy()
-    following = lower[2].copy()
-    if wale_odd:
-        upper[:, :, 2] *= -1.0
-    if course_odd:
-        following[:, 2] *= -1.0
-    upper[:, 0, 1] += p[33]
-    following[0, 0] += p[32]
-    right, upper_right = _mirrored(lower), _mirrored(upper)
+    upper = _moved(lower, 1.0, -1.0 if wale_odd else 1.0, none, p[33])
+    following = _moved(lower, 1.0, -1.0 if course_odd else 1.0, p[32], none)[2]
+    right, upper_right = _moved(lower, -1.0, 1.0, none, none), _moved(upper, -1.0, 1.0, none, none)
     shared, a1, b0 = (p[9], p[12]), (p[15], p[18]), (p[21], p[24])
     c12, c21, c11 = (p[26], p[27]), (p[28], p[29]), (p[30], p[31])
 
@@ -205,17 +209,24 @@ def control_points(p: ComplexArray, course_odd: bool, wale_odd: bool) -> Complex
     return out
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled_as_numpy
 def control_points_and_jacobian(
     parameters: Array, course_odd: bool, wale_odd: bool
 ) -> tuple[Array, Array]:
     """Control points (8, 6, 3) and their derivatives (34, 8, 6, 3) by the complex step."""
-    count = parameters.size
-    p = parameters.astype(np.complex128)
-    jacobian = np.empty((count, 8, 6, 3))
+    count = parameters.shape[0]
+    p = np.empty(count, np.complex128)
+    for i in range(count):
+        p[i] = parameters[i]
+    controls, jacobian = np.empty((8, 6, 3)), np.empty((count, 8, 6, 3))
     step = 1e-30
     for i in range(count):
         p[i] += step * 1j
-        jacobian[i] = control_points(p, course_odd, wale_odd).imag / step
+        points = control_points(p, course_odd, wale_odd)
+        for curve in range(8):
+            for k in range(6):
+                for m in range(3):
+                    jacobian[i, curve, k, m] = points[curve, k, m].imag / step
+                    controls[curve, k, m] = points[curve, k, m].real
         p[i] -= step * 1j
-    return control_points(p, course_odd, wale_odd).real, jacobian
+    return controls, jacobian

@@ -1,0 +1,76 @@
+"""Functions that numba compiles when they are first called.
+
+The machine code is kept, beside the sources or in the folder ``NUMBA_CACHE_DIR``, so that a machine
+compiles each function once. Until then the first call of a study takes seconds. After one of them
+the logger of this module says so, as a detail (``DEBUG``), for programs that have somebody waiting.
+"""
+
+from __future__ import annotations
+
+import gc
+import logging
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numba
+from numba.core import event
+
+log = logging.getLogger(__name__)
+
+COMPILING = "Compiling kernels for this processor (once, about 10 s) …"
+TELL_AFTER_S = 1.0
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def compiled(function: Function) -> Function:
+    """The function, compiled by numba when it is first called; it runs without the interpreter's
+    lock.
+    """
+    made: Function = numba.njit(function, cache=True, nogil=True)
+    return made
+
+
+def compiled_as_numpy(function: Function) -> Function:
+    """The function, :func:`compiled`; a division by zero gives infinity, as in numpy, no error."""
+    made: Function = numba.njit(function, cache=True, nogil=True, error_model="numpy")
+    return made
+
+
+class _Watch(event.Listener):
+    """Follows what is compiled: tells once that it takes time, and keeps the collector of garbage
+    away, which would search all that numba holds again and again, a sixth of the time.
+    """
+
+    def __init__(self) -> None:
+        self._depth = 0  # functions compile those that they call
+        self._begun = self._spent_s = 0.0
+        self._collects = self._told = False
+
+    def on_start(self, event: Any) -> None:
+        """A function is about to be compiled; numba lets one thread at a time."""
+        if self._depth == 0:
+            self._begun = time.perf_counter()
+            self._collects = gc.isenabled()
+            gc.disable()
+        self._depth += 1
+        self._tell()
+
+    def on_end(self, event: Any) -> None:
+        """A function has been compiled, or could not be."""
+        self._tell()
+        self._depth -= 1
+        if self._depth == 0:
+            self._spent_s += time.perf_counter() - self._begun
+            if self._collects:
+                gc.enable()
+
+    def _tell(self) -> None:
+        spent_s = self._spent_s + time.perf_counter() - self._begun
+        if spent_s > TELL_AFTER_S and not self._told:
+            self._told = True
+            log.debug(COMPILING)
+
+
+event.register("numba:compile", _Watch())  # type: ignore[no-untyped-call]

@@ -1,0 +1,76 @@
+"""Kernels are compiled once on a machine, and a command says so."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from app.cli.main import main
+from knitcore import warm_up
+from knitcore.compiled import COMPILING
+
+KERNEL = """
+from knitcore.compiled import compiled
+
+@compiled
+def twice(x):
+    return 2 * x
+"""
+CALL = """
+import contextlib, gc, sys
+import kernel
+import knitcore.compiled
+from app.cli.common import telling_what_is_compiled
+
+knitcore.compiled.TELL_AFTER_S = 0.0
+told = telling_what_is_compiled() if sys.argv[1] == "command" else contextlib.nullcontext()
+with told:
+    assert kernel.twice(21) == 42
+assert gc.isenabled()
+"""
+
+
+def stderr(folder: Path, program: str) -> str:
+    """What the first call of a kernel in a program says."""
+    (folder / "kernel.py").write_text(KERNEL)
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache")}
+    told = subprocess.run(
+        [sys.executable, "-c", CALL, program],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return told.stderr
+
+
+def test_a_command_says_once_that_it_compiles_and_is_silent_when_that_is_done(
+    tmp_path: Path,
+) -> None:
+    assert stderr(tmp_path, "command") == f"{COMPILING}\n"
+    assert stderr(tmp_path, "command") == ""
+
+
+def test_the_library_prints_nothing(tmp_path: Path) -> None:
+    assert stderr(tmp_path, "library") == ""
+
+
+def nothing() -> None:
+    """Compile nothing."""
+
+
+def test_warm_up_names_the_parts_that_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(warm_up, "TASKS", (nothing,))
+    told = CliRunner().invoke(main, ["warm-up"])
+    assert told.exit_code == 0
+    assert told.stdout == ""
+    assert told.stderr.splitlines() == [
+        "Compiling kernels for this processor in 1 parts …",
+        "1 of 1: nothing",
+    ]
