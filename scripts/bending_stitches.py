@@ -11,8 +11,8 @@ from knitcore.chart import StitchChart
 from knitcore.yarnlevel.bending import repeat_bending
 from knitcore.yarnlevel.cell import mirrored_cell
 from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlevel.solver import Options, minimise
-from knitcore.yarnlevel.splines import FINE_UP_TO, relaxed_repeat
+from knitcore.yarnlevel.solver import TIGHT, minimise
+from knitcore.yarnlevel.splines import relaxed_repeat
 from knitcore.yarnlibrary.bending_table import document_of
 from knitcore.yarnlibrary.characterise import Document
 from scripts.from_store import FromStore, StoredTask
@@ -25,8 +25,7 @@ def bend(task: StoredTask) -> Document:
     leaves out.
     """
     energy, state = task.begun(mirrored_cell)
-    tolerance = 1e-9 if energy.cell.stitches <= FINE_UP_TO else 1e-6
-    found = minimise(energy, state, options=Options(tolerance=tolerance))
+    found = minimise(energy, state, options=TIGHT)
     relaxed = relaxed_repeat(
         StitchChart.parse(task.chart), energy, Branch.MIRRORED, found, seconds=0.0,
         evaluations=found.evaluations,
