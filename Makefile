@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help install page wheel serve test test-slow ten-runs coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site gallery mutation examples types stitches lock clean
+.PHONY: help install page wheel serve test test-slow ten-runs any-machine coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site gallery mutation examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -74,6 +74,9 @@ test-slow: $(VENV)/.installed-dev $(VENV)/.compiled page ## Run the tests that t
 
 ten-runs: ## Run the default suite ten times, two at a time, in fresh clones; log in build
 	scripts/ten-runs
+
+any-machine: $(VENV)/.installed-dev ## Compare answers under several instruction sets of this machine; OPTIONS="--short"
+	$(BIN)/python -m scripts.any_machine $(OPTIONS)
 
 coverage: $(VENV)/.installed-dev page ## Tell which lines the default suite runs, workers included
 	$(BIN)/pip install --quiet --disable-pip-version-check coverage==7.17.3

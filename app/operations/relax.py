@@ -14,12 +14,12 @@ from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
 from app.models.gauge import FoundGauge
-from app.models.yarn_level import YarnResult, kept_or_made, relax_requested, size_log_sd
+from app.models.yarn_level import YarnResult, kept_or_made, relax_requested, size_intervals
 from app.operations.registry import Command, Operation
 from knitcore.answer.relaxation import size_from_relaxation
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
-from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS, log_interval
+from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS
 from knitcore.phases import pure_fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.hysteresis import History, rest_sizes
@@ -156,6 +156,11 @@ class RelaxResult(IntervalResult):
         description="In the mirrored branch: the lower shape that it leads to without its "
         "symmetries, if it is not a minimum.",
     )
+    as_low_mm: list[tuple[float, float]] = Field(
+        default_factory=list,
+        description="Width and height of a stitch in other shapes that were found, whose energy is "
+        "the same within 0.1 %. Which one is shown is a rule; the intervals cover all.",
+    )
     gauge: FoundGauge | None = Field(
         None,
         description="For the `gauge` of other requests about this chart and material, which makes "
@@ -190,10 +195,9 @@ def _relaxed(
         cell, rests = _after_history(on_splines(cell), request.friction, request, context)
     elif request.branch is Branch.MIRRORED and sizes == (None, None):
         cell, unmirrored = _unmirrored(cell, context)
-    log_sd = size_log_sd(cell)
     free = [
-        log_interval(size, log_sd) if held is None else None
-        for size, held in zip((cell.cell_course_mm, cell.cell_wale_mm), sizes, strict=True)
+        interval if held is None else None
+        for interval, held in zip(size_intervals(cell), sizes, strict=True)
     ]
     return RelaxResult.of(
         cell,

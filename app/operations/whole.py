@@ -11,10 +11,10 @@ from pydantic import BaseModel, Field
 from app.context import Context
 from app.models.base import Ends, IntervalResult
 from app.models.charts import ChartInput, to_chart
-from app.models.yarn_level import StitchRequest, YarnResult, size_log_sd
+from app.models.yarn_level import StitchRequest, YarnResult, size_intervals
 from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words
-from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS, log_interval
+from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.whole import MAX_ROUNDS, WholeShape, relax_whole
 
@@ -119,13 +119,14 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
     )  # fmt: skip
     after = 0 if before is None else before.earlier + len(before.rounds)
     resumed = f"Continued after {after} round{'' if after == 1 else 's'} of an earlier run."
+    course, wale = size_intervals(found)
     return WholeResult.of(
         found,
         notes=[*found.notes, resumed] if after else [*found.notes],
         rows=chart.rows,
         columns=chart.columns,
-        cell_course_interval_mm=log_interval(found.cell_course_mm, size_log_sd(found)),
-        cell_wale_interval_mm=log_interval(found.cell_wale_mm, size_log_sd(found)),
+        cell_course_interval_mm=course,
+        cell_wale_interval_mm=wale,
         interval_source=YARN_LEVEL_ERRORS,
         yarn=YarnResult.of(used, used.yarn),
         centre_lines_mm=[line.tolist() for line in found.centre_lines]

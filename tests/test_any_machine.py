@@ -1,0 +1,97 @@
+"""The same answers under several instruction sets of this machine."""
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from scripts.any_machine import SHORT, cases, difference, playable, relative
+
+ROOT = Path(__file__).parent.parent
+
+
+@pytest.mark.slow
+def test_answers_are_the_same_under_other_instruction_sets(tmp_path):
+    """The first set is that of most laptops; the others lack what came later, or have more."""
+    sets = [name for name in playable() if name in ("haswell", "nehalem", "skylake-avx512")]
+    if len(sets) < 2:
+        pytest.skip("this processor has one instruction set only")
+    asked = ["--short", "--sets", ",".join(sets), "--folder", str(tmp_path)]
+    found = subprocess.run(
+        [sys.executable, "-m", "scripts.any_machine", *asked], cwd=ROOT, env=os.environ.copy(),
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert found.returncode == 0, found.stdout + found.stderr
+    assert f"{len(SHORT)} answers under {len(sets)} instruction sets, 0 beyond" in found.stdout
+
+
+def test_the_short_form_asks_what_the_long_one_asks():
+    assert set(SHORT) <= cases().keys()
+
+
+def test_energies_and_sizes_are_held_to_more_digits():
+    one = {"energy_n_mm": 1.0, "cell_course_mm": 2.0, "moment_n": 1.0, "seconds": 3.0}
+    other = {"energy_n_mm": 1.0 + 2e-6, "cell_course_mm": 2.0, "moment_n": 1.00005, "seconds": 9.0}
+    sizes, others, worst = difference(one, other)
+    assert sizes == pytest.approx(2e-6, rel=1e-3)
+    assert others == pytest.approx(5e-5, rel=1e-3)
+    assert worst == ".energy_n_mm"
+
+
+def test_other_words_and_other_shapes_differ_beyond_measure():
+    assert difference({"minimum": True}, {"minimum": False})[1] == float("inf")
+    assert relative([1.0, 2.0], [1.0]) == float("inf")
+    assert relative([1.0, 1e-12], [1.0, 2e-12]) == pytest.approx(1e-12)
+    assert relative(1e-15, -1e-12) == 0.0
+
+
+SAME_EVERYWHERE = sorted(
+    path
+    for folder in ("yarnlevel", "shell", "gridsolver")
+    for path in (ROOT / "knitcore" / folder).rglob("*.py")
+)
+LINEAR = {
+    "yarnlevel/bent_cell.py": "a linear response, which hangs on no last digit",
+    "yarnlevel/tube.py": "the same",
+    "yarnlevel/clasps.py": "logarithms of determinants, compared with a margin",
+    "yarnlevel/jumps.py": "a measure of what was found",
+    "yarnlevel/rs_geometry.py": "the same",
+    "yarnlevel/whole.py": "the force that is left",
+    "shell/curl.py": "turns what was found",
+    "shell/surface.py": "draws what was found",
+    "gridsolver/factor.py": "a solver to compare with",
+}
+"""Files of these rooms that use BLAS, and why they may."""
+
+
+def _uses_blas(path: Path) -> bool:
+    """Whether a file has a product of matrices, or a function of a library's linear algebra; the
+    lengths of many vectors are sums."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
+            return True
+        if isinstance(node, ast.ImportFrom) and node.module in (
+            "scipy.linalg",
+            "scipy.sparse.linalg",
+        ):
+            return True
+        if isinstance(node, ast.Call):
+            called = ast.unparse(node.func)
+            lengths = called == "np.linalg.norm" and any(k.arg == "axis" for k in node.keywords)
+            raised = called == "np.linalg.LinAlgError"
+            if "linalg." in called and "(" not in called and not (lengths or raised):
+                return True
+    return False
+
+
+def test_shapes_are_found_without_blas():
+    """Its sums differ between processors, and a shape that leaves a saddle hangs on them."""
+    found = {
+        str(path.relative_to(ROOT / "knitcore"))
+        for path in SAME_EVERYWHERE
+        if _uses_blas(path) and "published" not in path.parts
+    }
+    assert found == LINEAR.keys()
