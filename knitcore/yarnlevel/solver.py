@@ -64,6 +64,8 @@ _NUDGE = 0.03
 follow the direction in which it falls."""
 _BEYOND_LOWEST = 1.3
 """Damping where the lowest curvature is negative, relative to it."""
+_BESIDE_LOWEST = 1.02
+"""The same where the direction of the lowest curvature is wanted, and not that of the next."""
 _INDEFINITE_GROWTH = 3.0
 _POWER_STEPS = 2
 _SADDLE_STEPS = 40
@@ -300,6 +302,9 @@ class _Descent:
         if curvature > -least:
             self.stable = True
             return False
+        near = -_BESIDE_LOWEST * curvature
+        if near < self.damping and system.factorise(near):  # apart from the next lowest
+            _, direction = system.softest(direction, _SADDLE_STEPS, lengths)
         side = self.options.side if self.saddles == 0 else 1.0
         step = np.zeros(len(self.free))
         step[self.free] = side * _NUDGE * energy.yarn.radius_mm * signed(direction)
