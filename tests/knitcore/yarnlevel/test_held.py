@@ -6,8 +6,9 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.yarnlevel.cell import mirrored_cell, plain_cell
-from knitcore.yarnlevel.held import foot_rows, independent, plane_rows
+from knitcore.yarnlevel.held import Surroundings, foot_rows, independent, plane_rows
 from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.whole import relax_whole
@@ -79,6 +80,37 @@ def test_yarn_does_not_slide_out_of_a_plane():
     assert flat.energy_n_mm > 1.2 * folded.energy_n_mm
     assert free.energy_n_mm == pytest.approx(flat.energy_n_mm, rel=0.02)
     assert whole.energy_n_mm == pytest.approx(flat.energy_n_mm, rel=0.02)
+
+
+@pytest.mark.parametrize("rows", [4, pytest.param(8, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
+def test_rib_of_any_height_stays_as_flat_as_its_repeat(yarn, rows):
+    """Its rows do not tip to the front and to the back in turn."""
+    entry, rib = sample(yarn, "rib"), StitchChart.parse("KP")
+    flat = relax(rib, entry.yarn, entry.loop_length_mm, flat=True)
+    whole = relax_whole(rib.tile(rows, 2), entry.yarn, entry.loop_length_mm, flat=True)
+    assert whole.minimum
+    assert whole.energy_n_mm == pytest.approx(flat.energy_n_mm, rel=0.02)
+    assert np.ptp(whole.centre_lines[..., 2]) < 1.15 * np.ptp(flat.centre_lines[..., 2])
+
+
+def test_like_surroundings_are_those_of_an_exchanged_or_mirrored_chart():
+    around = Surroundings.of(plain_cell(StitchChart.parse("KKPP"), SplineGrid(16, 3)))
+    assert len(np.unique(around.kind)) == 1
+    assert around.side.tolist() == [[1.0, 1.0, -1.0, -1.0]]
+    assert around.hand[0, 0] == -around.hand[0, 1] != 0.0
+    one = Surroundings.of(plain_cell(StitchChart.parse("KKKKKKKP"), SplineGrid(16, 3)))
+    assert len(np.unique(one.kind)) == 4  # the purl, those beside it, the next ones, the rest
+    assert one.hand[0, 7] == one.hand[0, 3] == 0.0
+
+
+def test_what_stitches_do_alike_is_no_difference_of_posture():
+    cell = plain_cell(StitchChart.parse("KP\nKP"), SplineGrid(16, 3))
+    around = Surroundings.of(cell)
+    tips = np.array([[0.3], [-0.3], [0.3], [-0.3]])
+    assert not around.alike(tips, np.zeros((4, 1))).any()
+    assert around.alike(tips[::-1] * [[1.0], [1.0], [-1.0], [-1.0]], np.zeros((4, 1))).any()
+    assert around.alike(tips, np.ones((4, 1))).any()
 
 
 def test_rules_that_symmetry_keeps_are_left_out():

@@ -1,18 +1,32 @@
 """Mirrored states without their mirrors."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from knitcore.arrays import scattered
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel import lowest as lowest_module
-from knitcore.yarnlevel.lowest import Followed, can_be_followed, lowest, without_mirrors
+from knitcore.yarnlevel import solver
+from knitcore.yarnlevel.cell import free_cell
+from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.lowest import (
+    Followed,
+    can_be_followed,
+    followed,
+    lowest,
+    without_mirrors,
+)
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.samples import sample
+from knitcore.yarnlevel.search import SAME_ENERGY, lowest_of
 from knitcore.yarnlevel.splines import COARSE
+from knitcore.yarnlevel.tiling import tiled_state
 
 
 def mirrored(yarn, fabric):
@@ -37,6 +51,38 @@ def test_an_instability_is_followed_to_a_lower_minimum():
     again = without_mirrors(found.state)
     assert again.minimum
     assert again.state.energy_n_mm == pytest.approx(found.state.energy_n_mm, rel=1e-4)
+
+
+@pytest.mark.parametrize("text", ["KP", "KKP"])
+def test_where_a_saddle_leads_does_not_hang_on_the_last_digits(text, monkeypatch):
+    """Nor on how far it is left: the start is shaken by a billionth of the radius."""
+    entry = sample("cotton", "rib")
+    chart = StitchChart.parse(text)
+    relaxed = relax(chart, entry.yarn, entry.loop_length_mm, branch="mirrored")
+    cell = free_cell(chart, relaxed.cell.grid)
+    lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
+    energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
+    state = tiled_state(relaxed.cell, relaxed.state, cell)
+    tension = np.resize(relaxed.tension_n, cell.rows)
+    first, _ = followed(energy, state, tension=tension)
+    assert first.saddles > 0
+    noise = scattered((len(state),), 1e-9 * entry.yarn.radius_mm, seed=3)
+    again, _ = followed(energy, state + noise, tension=tension)
+    monkeypatch.setattr(solver, "_NUDGE", 0.1)
+    farther, _ = followed(energy, state, tension=tension)
+    for other in (again, farther):
+        assert other.terms.energy == pytest.approx(first.terms.energy, rel=SAME_ENERGY)
+
+
+def test_of_states_as_low_the_first_counts_and_those_of_other_sizes_are_told():
+    states = [
+        SimpleNamespace(terms=SimpleNamespace(energy=e), state=np.array([0.0, wide, 1.0]))
+        for e, wide in ((1.0004, 2.0), (1.0, 2.1), (1.0, 2.0001), (1.2, 3.0))
+    ]
+    found, others = lowest_of(states)
+    assert found is states[0]
+    assert others == [states[1]]
+    assert lowest_of(states[::-1])[0] is states[2]
 
 
 @pytest.mark.parametrize("lower", [1e-5, 0.1])
