@@ -2837,6 +2837,9 @@ class RelaxResult(BaseModel):
     unmirrored: OtherShapeResult | None = None
     """In the mirrored branch: the lower shape that it leads to without its symmetries, if it is
     not a minimum."""
+    as_low_mm: list[tuple[float, float]] | None = None
+    """Width and height of a stitch in other shapes that were found, whose energy is the same
+    within 0.1 %. Which one is shown is a rule; the intervals cover all."""
     gauge: FoundGauge | None = None
     """For the `gauge` of other requests about this chart and material, which makes their answers
     more certain. Null unless the material is simulated, and for pure fabrics, other branches,
