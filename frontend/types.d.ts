@@ -2281,7 +2281,7 @@ export interface RelaxResult {
   /** In the mirrored branch: the lower shape that it leads to without its symmetries, if it is not a minimum. */
   unmirrored: OtherShapeResult | null;
   /** Width and height of a stitch in other shapes that were found, whose energy is the same within 0.1 %. Which one is shown is a rule; the intervals cover all. */
-  as_low_mm: [number, number][];
+  other_minima_mm: [number, number][];
   /** For the `gauge` of other requests about this chart and material, which makes their answers more certain. Null unless the material is simulated, and for pure fabrics, other branches, shapes that are held, other loop lengths than the material's, and friction. */
   gauge: FoundGauge | null;
   notes: string[];

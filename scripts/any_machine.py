@@ -54,12 +54,12 @@ class InstructionSet:
     without: str
     tunables: str = ""
 
-    def environment(self, cache: Path) -> dict[str, str]:
-        """The variables that make it so, with kernels compiled into ``cache``."""
+    @property
+    def environment(self) -> dict[str, str]:
+        """The variables that make it so."""
         return {
             "NUMBA_CPU_NAME": self.numba,
             "NUMBA_CPU_FEATURES": "",
-            "NUMBA_CACHE_DIR": str(cache),
             "OPENBLAS_CORETYPE": self.blas,
             "OPENBLAS_NUM_THREADS": "1",
             "NPY_DISABLE_CPU_FEATURES": self.without,
@@ -215,10 +215,10 @@ def playable() -> list[str]:
 def run_set(name: str, names: list[str], folder: Path) -> dict[str, Any]:
     """The answers under one instruction set, from a process of its own."""
     out = folder / f"{name}.json"
-    cache = folder / "kernels" / name
+    cache = {"NUMBA_CACHE_DIR": str(folder / "kernels" / name)}
     subprocess.run(
         [sys.executable, "-m", "scripts.any_machine", "--answer", str(out), *names],
-        env={**os.environ, **INSTRUCTION_SETS[name].environment(cache)}, check=True,
+        env=os.environ | INSTRUCTION_SETS[name].environment | cache, check=True,
     )  # fmt: skip
     found: dict[str, Any] = json.loads(out.read_text(encoding="utf-8"))
     return found
@@ -262,9 +262,13 @@ def main() -> int:
     )
     parser.add_argument("--folder", type=Path, help="keep answers and compiled kernels here")
     parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--environment", choices=INSTRUCTION_SETS, help="print one's variables")
     parser.add_argument("--answer", type=Path, help=argparse.SUPPRESS)
     given = parser.parse_args()
     names = given.names or [*(SHORT if given.short else cases())]
+    if given.environment:
+        print(*(f"{k}={v}" for k, v in INSTRUCTION_SETS[given.environment].environment.items()))
+        return 0
     if given.answer:
         given.answer.write_text(json.dumps(dict(answered(names))), encoding="utf-8")
         return 0

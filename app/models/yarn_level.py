@@ -173,7 +173,7 @@ def size_intervals(cell: RelaxedCell) -> tuple[Interval, Interval]:
 
     They cover those of other shapes that are as low, for which of them is shown is a rule.
     """
-    others = cell.as_low_mm if isinstance(cell, RelaxedRepeat) else ()
+    others = cell.other_minima_mm if isinstance(cell, RelaxedRepeat) else ()
     log_sd = size_log_sd(cell)
     each = zip((cell.cell_course_mm, cell.cell_wale_mm), *others, strict=True)
     course, wale = (

@@ -156,7 +156,7 @@ class RelaxResult(IntervalResult):
         description="In the mirrored branch: the lower shape that it leads to without its "
         "symmetries, if it is not a minimum.",
     )
-    as_low_mm: list[tuple[float, float]] = Field(
+    other_minima_mm: list[tuple[float, float]] = Field(
         default_factory=list,
         description="Width and height of a stitch in other shapes that were found, whose energy is "
         "the same within 0.1 %. Which one is shown is a rule; the intervals cover all.",

@@ -2837,7 +2837,7 @@ class RelaxResult(BaseModel):
     unmirrored: OtherShapeResult | None = None
     """In the mirrored branch: the lower shape that it leads to without its symmetries, if it is
     not a minimum."""
-    as_low_mm: list[tuple[float, float]] | None = None
+    other_minima_mm: list[tuple[float, float]] | None = None
     """Width and height of a stitch in other shapes that were found, whose energy is the same
     within 0.1 %. Which one is shown is a rule; the intervals cover all."""
     gauge: FoundGauge | None = None

@@ -102,7 +102,7 @@ def turned(
     mirrored = relaxed.mirrored and turned(relaxed.mirrored, image, cancelled=cancelled)
     return replace(
         shown, converged=relaxed.converged, minimum=relaxed.minimum, mirrored=mirrored,
-        as_low_mm=relaxed.as_low_mm,
+        other_minima_mm=relaxed.other_minima_mm,
     )  # fmt: skip
 
 

@@ -136,7 +136,7 @@ def without_mirrors(
     )  # fmt: skip
     shown = relaxed_repeat(
         StitchChart(cell.purl), energy, Branch.FREE, found,
-        seconds=time.process_time() - clock, evaluations=found.evaluations, as_low=others,
+        seconds=time.process_time() - clock, evaluations=found.evaluations, others=others,
     )  # fmt: skip
     lower = 1.0 - shown.energy_n_mm / relaxed.energy_n_mm
     state = replace(shown, minimum=found.stable, notes=(*relaxed.notes, *shown.notes))

@@ -85,8 +85,8 @@ class RelaxedRepeat(RelaxedCell):
     minimum : whether it is a minimum without the symmetries of the chart; None where this was not
         found out, and where more was prescribed than one length for every course.
     mirrored : the state with these symmetries that led to this one; None if none did.
-    as_low_mm : sizes of a stitch, course-wise and wale-wise, in other minima that are as low within
-        ``SAME_ENERGY``; which of them is returned is a rule, not physics.
+    other_minima_mm : sizes of a stitch, course-wise and wale-wise, in other minima that are as low
+        within ``SAME_ENERGY``; which of them is returned is a rule, not physics.
     """
 
     cell: YarnCell
@@ -95,7 +95,7 @@ class RelaxedRepeat(RelaxedCell):
     slides: tuple[SlideConstraint, ...] = ()
     minimum: bool | None = None
     mirrored: RelaxedRepeat | None = None
-    as_low_mm: tuple[tuple[float, float], ...] = ()
+    other_minima_mm: tuple[tuple[float, float], ...] = ()
 
     @property
     def held(self) -> bool:
@@ -197,7 +197,7 @@ def relax_splines(
     relaxed = relaxed_repeat(
         repeat, energy, branch, best, seconds=time.process_time() - clock,
         evaluations=search.evaluations, starts=tuple(search.reports), notes=search.notes(best),
-        as_low=others,
+        others=others,
     )  # fmt: skip
     return relaxed if imposed else replace(relaxed, minimum=best.stable)
 
@@ -261,10 +261,10 @@ def relaxed_repeat(
     chart: StitchChart, energy: CellEnergy, branch: Branch, found: Minimum, *,
     seconds: float, evaluations: int,
     starts: tuple[StartReport, ...] = (), notes: tuple[str, ...] = (),
-    as_low: Sequence[Minimum] = (),
+    others: Sequence[Minimum] = (),
 ) -> RelaxedRepeat:  # fmt: skip
     """A minimum as a result, per stitch, with the sizes of others that are as low."""
-    sizes = tuple((float(m.state[-2]), float(m.state[-1])) for m in as_low)
+    sizes = tuple((float(m.state[-2]), float(m.state[-1])) for m in others)
     if sizes:
         shown = ", ".join(f"{wide:.2f} × {high:.2f} mm" for wide, high in sizes)
         notes = (
@@ -298,7 +298,7 @@ def relaxed_repeat(
         starts=starts,
         flat=energy.flat,
         slides=energy.slides,
-        as_low_mm=sizes,
+        other_minima_mm=sizes,
     )
 
 

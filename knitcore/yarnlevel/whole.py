@@ -295,13 +295,15 @@ class _Work:
         )
         exact = self._exact(energy, found)
         if exact is not None:
-            found, changes, note = exact, (0.0, 0.0, 0.0), ""
+            found, changes = exact, (0.0, 0.0, 0.0)
+            where = "a minimum, though perhaps not the lowest" if exact.stable else "rest"
+            note = f"After {rounds} rounds, Newton's method brought the chart to {where}."
             path = Trajectory(energy, found.state, PAIR_CAP)
             left_n = float(np.abs(path.slope(found.tension, hessian=False).gradient).max())
         repeat = relaxed_repeat(
             self.chart, energy, Branch.FREE, found, seconds=time.process_time() - clock,
             evaluations=sheet.evaluations + (found.evaluations if exact else 0),
-            notes=(note,) if note else (),
+            notes=(note,),
         )  # fmt: skip
         if exact is not None:
             repeat = replace(repeat, minimum=found.stable)

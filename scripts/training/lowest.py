@@ -79,7 +79,7 @@ def lowest(task: LowestTask) -> Document:
         states += [
             (start.energy_n_mm, start.cell_course_mm, start.cell_wale_mm)
             for start in free.starts
-            if start.outcome == RELAXED and start.energy_n_mm > free.energy_n_mm
+            if start.outcome == RELAXED and start.energy_n_mm != free.energy_n_mm
         ]
     except KnitcoreError as error:
         failure = failure or str(error)

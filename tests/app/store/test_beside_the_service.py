@@ -57,6 +57,7 @@ def arguments_of(folder: Path, token: str) -> dict[str, list[str]]:
         PREDICT: ["seed", "--size", "4x4", "--material", "acrylic"],
         "restore": [str(folder / "backup.gz")],
         "serve": ["--port", "0"],
+        "warm-up": ["--help"],  # does not touch the data, and takes a minute
     }
 
 

@@ -122,7 +122,7 @@ def test_even_stretch_has_the_energy_of_the_law() -> None:
     assert energy == pytest.approx(density * width * height, rel=1e-9)
     inner = np.abs(stretched[:, 0]) < 0.4 * 1.1 * width
     inner &= np.abs(stretched[:, 1]) < 0.4 * height
-    assert np.abs(gradient[inner]).max() < 1e-12
+    assert np.abs(gradient[inner]).max() < 1e-10  # sizes have eleven digits
 
 
 def test_a_free_strip_turns_as_its_stitches_want() -> None:

@@ -227,7 +227,7 @@ LARGE = StitchChart(np.random.default_rng(1).random((4, 4)) < 0.5)
 
 
 @pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
-def test_large_cells_also_begin_with_rounds_and_end_as_low_as_either_start(yarn):
+def test_large_cells_also_begin_with_rounds_and_end_other_minima_as_either_start(yarn):
     entry = sample(yarn, "stockinette")
     direct = relax(LARGE, entry.yarn, entry.loop_length_mm, starts=[Start("usual")])
     rounds = relax(LARGE, entry.yarn, entry.loop_length_mm)
