@@ -70,9 +70,9 @@ class InstructionSet:
 _NO_FMA = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX2_Usable,-FMA_Usable"
 INSTRUCTION_SETS = {
     "haswell": InstructionSet("avx2", "haswell", "Haswell", _V4),
-    "generic": InstructionSet("sse2", "generic", "Prescott", f"{_V3},{_V4}", _NO_FMA),
     "nehalem": InstructionSet("sse4_2", "nehalem", "Nehalem", f"{_V3},{_V4}", _NO_FMA),
     "skylake-avx512": InstructionSet("avx512f", "skylake-avx512", "SkylakeX", ""),
+    "generic": InstructionSet("sse2", "generic", "Prescott", f"{_V3},{_V4}", _NO_FMA),
     "znver4": InstructionSet("avx512f", "znver4", "Zen", ""),
 }
 
