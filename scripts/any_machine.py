@@ -17,6 +17,7 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -31,8 +32,14 @@ NOT_COMPARED = ("seconds", "evaluations", "iterations", "steps", "rounds", "star
 LEFT_OVER = ("energy_change", "size_change", "may_fall", "largest_force_n")
 """What an iteration leaves; it is bounded, not the same."""
 
-_V3 = "AVX2,FMA3,AVX,F16C,X86_V3"
-_V4 = "AVX512F,AVX512CD,AVX512_SKX,AVX512_ICL,X86_V4"
+_V3 = ("X86_V3",)
+_V4 = ("X86_V4", "AVX512_ICL", "AVX512_SPR")
+_NUMPY = {
+    "X86_V3": "avx2", "X86_V4": "avx512f", "AVX512_ICL": "avx512_vbmi2",
+    "AVX512_SPR": "avx512_fp16",
+}  # fmt: skip
+"""Parts of NumPy's dispatch, and the flag of a processor that has them; it refuses to switch off
+others."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +58,7 @@ class InstructionSet:
     needs: str
     numba: str
     blas: str
-    without: str
+    without: tuple[str, ...]
     tunables: str = ""
 
     @property
@@ -62,7 +69,9 @@ class InstructionSet:
             "NUMBA_CPU_FEATURES": "",
             "OPENBLAS_CORETYPE": self.blas,
             "OPENBLAS_NUM_THREADS": "1",
-            "NPY_DISABLE_CPU_FEATURES": self.without,
+            "NPY_DISABLE_CPU_FEATURES": ",".join(
+                part for part in self.without if _NUMPY[part] in _flags()
+            ),
             "GLIBC_TUNABLES": self.tunables,
         }
 
@@ -70,10 +79,10 @@ class InstructionSet:
 _NO_FMA = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX2_Usable,-FMA_Usable"
 INSTRUCTION_SETS = {
     "haswell": InstructionSet("avx2", "haswell", "Haswell", _V4),
-    "nehalem": InstructionSet("sse4_2", "nehalem", "Nehalem", f"{_V3},{_V4}", _NO_FMA),
-    "skylake-avx512": InstructionSet("avx512f", "skylake-avx512", "SkylakeX", ""),
-    "generic": InstructionSet("sse2", "generic", "Prescott", f"{_V3},{_V4}", _NO_FMA),
-    "znver4": InstructionSet("avx512f", "znver4", "Zen", ""),
+    "nehalem": InstructionSet("sse4_2", "nehalem", "Nehalem", _V3 + _V4, _NO_FMA),
+    "skylake-avx512": InstructionSet("avx512f", "skylake-avx512", "SkylakeX", ()),
+    "generic": InstructionSet("sse2", "generic", "Prescott", _V3 + _V4, _NO_FMA),
+    "znver4": InstructionSet("avx512f", "znver4", "Zen", ()),
 }
 
 
@@ -208,8 +217,13 @@ def relative(a: Any, b: Any, nothing: float = NOTHING) -> float:
 
 def playable() -> list[str]:
     """The instruction sets that this machine has."""
-    flags = Path("/proc/cpuinfo").read_text(encoding="ascii").split()
-    return [name for name, of in INSTRUCTION_SETS.items() if of.needs in flags]
+    return [name for name, of in INSTRUCTION_SETS.items() if of.needs in _flags()]
+
+
+@cache
+def _flags() -> set[str]:
+    """Words of this machine's description of its processors."""
+    return set(Path("/proc/cpuinfo").read_text(encoding="ascii").split())
 
 
 def run_set(name: str, names: list[str], folder: Path) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,10 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from app.models.yarn_level import size_intervals
+from knitcore import StitchChart, relax
+from knitcore.yarnlevel.samples import sample
+from knitcore.yarnlevel.splines import RelaxedRepeat
 from tests.app.command_line import run
 
 FIELDS = {
@@ -57,6 +62,17 @@ def test_a_shape_that_needs_no_mirrors_says_so() -> None:
         assert told["mirrored"] is told["unmirrored"] is None
     held = run(*asked, "--cell-course-mm", "3")
     assert held["minimum"] is None
+
+
+def test_intervals_cover_other_minima_that_are_as_low() -> None:
+    entry = sample("acrylic", "stockinette")
+    cell = relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm)
+    assert isinstance(cell, RelaxedRepeat)
+    course, wale = size_intervals(cell)
+    other = replace(cell, other_minima_mm=((2.0 * cell.cell_course_mm, cell.cell_wale_mm),))
+    wider, same = size_intervals(other)
+    assert (wider.low, wider.high) == pytest.approx((course.low, 2.0 * course.high))
+    assert same == wale
 
 
 def test_relax_in_the_published_branch() -> None:
