@@ -336,6 +336,16 @@ def _row_products(matrix: Array, vector: Array) -> Array:
     return out
 
 
+@compiled
+def _matrix_products(one: Array, other: Array) -> Array:
+    out = np.zeros((one.shape[0], other.shape[1]))
+    for i in range(one.shape[0]):
+        for k in range(one.shape[1]):
+            for j in range(other.shape[1]):
+                out[i, j] += one[i, k] * other[k, j]
+    return out
+
+
 def dot(one: Array, other: Array) -> float:
     """Sum of the products of two vectors (n,)."""
     return float(_dot(np.ascontiguousarray(one), np.ascontiguousarray(other)))
@@ -354,7 +364,5 @@ def times(matrix: Array, vector: Array) -> Array:
 
 def product(one: Array, other: Array) -> Array:
     """Product of two matrices (m, n) and (n, k), ``[row, column]``."""
-    out = np.zeros((one.shape[0], other.shape[1]))
-    left, right = np.ascontiguousarray(other), np.ascontiguousarray(-one.T)
-    subtract_product(out, left, right, False)
-    return out
+    found: Array = _matrix_products(np.ascontiguousarray(one), np.ascontiguousarray(other))
+    return found
