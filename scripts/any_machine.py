@@ -193,9 +193,10 @@ def difference(one: Any, other: Any) -> tuple[float, float, str]:
     worst, where = 0.0, ""
     for place in first.keys() | second.keys():
         a, b = first.get(place), second.get(place)
-        agreed = SIZES if place.endswith("_mm") or "energy" in place else OTHERS
-        is_force = place.rpartition(".")[2].startswith("force_")
-        by = relative(a, b, NO_FORCE_N if is_force else NOTHING)
+        name = place.rpartition(".")[2]
+        is_size = name.endswith("_mm") and not name.endswith(("_n_mm", "_per_mm"))
+        agreed = SIZES if is_size or "energy" in name else OTHERS
+        by = relative(a, b, NO_FORCE_N if name.startswith("force_") else NOTHING)
         largest[agreed] = max(largest[agreed], by)
         if by / agreed > worst:
             worst, where = by / agreed, place

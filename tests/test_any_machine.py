@@ -39,6 +39,8 @@ def test_energies_and_sizes_are_held_to_more_digits():
     assert sizes == pytest.approx(2e-6, rel=1e-3)
     assert others == pytest.approx(5e-5, rel=1e-3)
     assert worst == ".energy_n_mm"
+    moduli = {"shear_modulus_n_per_mm": 1.0}, {"shear_modulus_n_per_mm": 1.00002}
+    assert difference(*moduli)[:2] == (0.0, pytest.approx(2e-5, rel=1e-3))
 
 
 def test_other_words_and_other_shapes_differ_beyond_measure():
