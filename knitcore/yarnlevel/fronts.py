@@ -189,9 +189,9 @@ class FrontalFactor:
         x[:, : len(right)] = right.T * scale
         fronts = list(zip(self._factors, self._places, strict=True))
         for columns, places in fronts:
-            _eliminate_from(columns, places, x)
+            _substituted(columns, places, x, False)
         for columns, places in reversed(fronts):
-            _substitute_into(columns, places, x)
+            _substituted(columns, places, x, True)
         return np.asarray(x[:, : len(right)].T * scale[:, None], dtype=float)
 
 
@@ -207,26 +207,17 @@ def _reduced(columns: Floats, rest: Floats) -> bool:
 
 
 @compiled
-def _eliminate_from(columns: Floats, places: Ints, x: Floats) -> None:
-    """Forward substitution of a front in every row of ``x``."""
+def _substituted(columns: Floats, places: Ints, x: Floats, back: bool) -> None:
+    """Forward or backward substitution of a front in every row of ``x``, in place."""
     part = np.empty(columns.shape[1], columns.dtype)
     for row in x:
         for k in range(part.shape[0]):
             part[k] = row[places[k]]
-        forward(columns, part)
+        if back:
+            backward(columns, part)
+        else:
+            forward(columns, part)
         for k in range(part.shape[0]):
-            row[places[k]] = part[k]
-
-
-@compiled
-def _substitute_into(columns: Floats, places: Ints, x: Floats) -> None:
-    """Backward substitution of a front in every row of ``x``."""
-    part = np.empty(columns.shape[1], columns.dtype)
-    for row in x:
-        for k in range(part.shape[0]):
-            part[k] = row[places[k]]
-        backward(columns, part)
-        for k in range(columns.shape[0]):
             row[places[k]] = part[k]
 
 

@@ -100,7 +100,7 @@ def relax(
     convention : factors of the energy.
     cell_course_mm, cell_wale_mm : size of a stitch to hold, mm; None leaves it free of force.
     flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds;
-        no yarn passes from stitch to stitch.
+        no yarn passes from stitch to stitch, and those in like surroundings tip and lean alike.
     grid : resolution; by default finer for small cells.
     starts : by default two, and five in the free branch (fewer for large cells). Cells of 100 and
         more stitches without symmetry, nothing else prescribed, are relaxed by

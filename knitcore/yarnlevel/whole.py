@@ -171,7 +171,8 @@ class RelaxedChart(RelaxedRepeat):
     Attributes
     ----------
     rounds : on both grids.
-    energy_change : part of the energy that the last round took away.
+    energy_change : part of the energy that the last round took away; 0 where Newton's method
+        followed, as are the next two.
     size_change : larger relative change of width and height in it.
     may_fall : part of the energy that further rounds may take away.
     largest_force_n : that is left on the yarn.
@@ -200,9 +201,10 @@ def relax_whole(
 ) -> RelaxedChart:
     """Shape of least energy of a chart of up to ``MAX_STITCHES_WHOLE`` stitches, free of force.
 
-    The chart repeats; no symmetry is imposed. ``converged`` says whether the last round changed the
-    energy, and the sizes, by less than the tolerance allows; the result also says how much they
-    changed and how far the energy may still fall.
+    The chart repeats; no symmetry is imposed. A chart of up to ``MAX_STITCHES`` stitches (fewer if
+    it lies flat) ends in Newton's method, at a minimum. For a larger one ``converged`` says whether
+    the last round changed the energy, and the sizes, by less than the tolerance allows; the result
+    also says how much they changed and how far the energy may still fall.
 
     Parameters
     ----------
@@ -212,7 +214,7 @@ def relax_whole(
         its repeat, bottom first.
     convention : factors of the energy.
     flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds;
-        no yarn passes from stitch to stitch.
+        no yarn passes from stitch to stitch, and those in like surroundings tip and lean alike.
     tolerance : relative change of the energy in a round at which to stop; the sizes may then change
         by ten times as much.
     rounds : most rounds on each of the two grids, at least two.
