@@ -2,7 +2,8 @@
 
 The machine code is kept, beside the sources or in the folder ``NUMBA_CACHE_DIR``, so that a machine
 compiles each function once. Until then the first call of a study takes seconds. After one of them
-the logger of this module says so, as a detail (``DEBUG``), for programs that have somebody waiting.
+the logger of this module says so, as a detail (``DEBUG``), for programs that have somebody waiting;
+the record's attribute ``compiling`` is the module of the function.
 """
 
 from __future__ import annotations
@@ -55,22 +56,22 @@ class _Watch(event.Listener):
             self._collects = gc.isenabled()
             gc.disable()
         self._depth += 1
-        self._tell()
+        self._tell(event)
 
     def on_end(self, event: Any) -> None:
         """A function has been compiled, or could not be."""
-        self._tell()
+        self._tell(event)
         self._depth -= 1
         if self._depth == 0:
             self._spent_s += time.perf_counter() - self._begun
             if self._collects:
                 gc.enable()
 
-    def _tell(self) -> None:
+    def _tell(self, event: Any) -> None:
         spent_s = self._spent_s + time.perf_counter() - self._begun
         if spent_s > TELL_AFTER_S and not self._told:
             self._told = True
-            log.debug(COMPILING)
+            log.debug(COMPILING, extra={"compiling": event.data["dispatcher"].py_func.__module__})
 
 
 event.register("numba:compile", _Watch())  # type: ignore[no-untyped-call]

@@ -5,13 +5,26 @@ Each calculation is small; numba keeps the machine code that it needs.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 
+import numpy as np
+from scipy.sparse import bsr_matrix
+
 from knitcore import StitchChart, curve, material, relax, strip_test
+from knitcore.dense import eliminate, product, solved, substitute, times
 from knitcore.shell.curl import curl
+from knitcore.shell.factor import SheetFactor
+from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.bending import repeat_bending
+from knitcore.yarnlevel.cell import plain_cell
+from knitcore.yarnlevel.clasps import knitted_code
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.hysteresis import hysteresis
+from knitcore.yarnlevel.splines import COARSE
+from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.whole import relax_whole
 from knitcore.yarnlibrary.yarns import yarn_for
 
@@ -48,6 +61,45 @@ def shape() -> None:
 TASKS: tuple[Callable[[], None], ...] = (yarn, published, shape, cloth)
 
 
+def latter_half(module: str) -> None:
+    """Compile what a study needs last whose first functions, of ``module``, another process is
+    compiling: numba compiles on one core."""
+    for room, functions in (
+        ("knitcore.yarnlevel", _last_of_yarn),
+        ("knitcore.shell", _last_of_shape),
+    ):
+        if module.startswith(room):
+            functions()
+
+
+def _last_of_shape() -> None:
+    SheetFactor(bsr_matrix(np.eye(12), blocksize=(3, 3)), columns=2).solve(np.ones(12))
+
+
+def _last_of_yarn() -> None:
+    used = yarn_for(ACRYLIC, CHART)
+    cell = plain_cell(CHART, COARSE)
+    lengths = np.full(cell.rows, used.loop_length_mm)
+    energy = CellEnergy(cell, used.yarn, lengths, Convention.PUBLISHED)
+    state = start_state(cell, used.loop_length_mm, used.yarn.radius_mm)
+    curve = energy.curve(state)
+    still, tension = np.zeros(len(curve)), np.zeros(len(lengths))
+    along = curve, energy.rod_law, energy.speeds, tension[energy.stretch_of], still
+    slopes, local = kernels.rod_hessian(*along)
+    energy.gathered(np.zeros((len(curve), 3)), slopes)
+    matrix, sizes = kernels.one_tile(cell.unknowns), np.zeros((2, cell.unknowns))
+    nothing = np.zeros((len(curve), 3, 3))
+    kernels.scatter_local(local, nothing, nothing, cell.layout, matrix.tiles, matrix.where, sizes)
+    factor = np.eye(2)
+    eliminate(factor)
+    substitute(factor, np.eye(2))
+    solved(np.eye(2), np.ones(2))
+    product(factor, factor)
+    times(factor, np.ones(2))
+    knitted_code(CHART)
+    energy.along_yarn(curve, tension, still)
+
+
 def warm_up() -> Iterator[str]:
     """Run the tasks, as many at a time as there are processors; their names as they end."""
     with ProcessPoolExecutor() as pool:
@@ -55,3 +107,7 @@ def warm_up() -> Iterator[str]:
         for ended in as_completed(running):
             ended.result()
             yield running[ended]
+
+
+if __name__ == "__main__":
+    latter_half(sys.argv[1])

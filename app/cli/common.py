@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -62,15 +65,25 @@ def emit(result: BaseModel, text: str, *, as_json: bool) -> None:
     click.echo(result.model_dump_json() if as_json else text)
 
 
-class _OnStderr(logging.Handler):
+class _Compiling(logging.Handler):
+    """Says on stderr that kernels are compiled, and has a second process compile some of them."""
+
+    second: subprocess.Popen[bytes] | None = None
+
     def emit(self, record: logging.LogRecord) -> None:
         click.echo(record.getMessage(), err=True)
+        if (os.cpu_count() or 1) > 1:
+            self.second = subprocess.Popen(  # noqa: S603 - a module of our own
+                [sys.executable, "-m", "knitcore.warm_up", record.__dict__["compiling"]],
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
 
 
 @contextlib.contextmanager
 def telling_what_is_compiled() -> Iterator[None]:
-    """Say on stderr that kernels are compiled, if they are: a silent command seems to hang."""
-    log, handler = logging.getLogger("knitcore.compiled"), _OnStderr()
+    """Say so if kernels are compiled, since a silent command seems to hang, and do it faster."""
+    log, handler = logging.getLogger("knitcore.compiled"), _Compiling()
     log.setLevel(logging.DEBUG)
     log.addHandler(handler)
     try:
@@ -78,3 +91,6 @@ def telling_what_is_compiled() -> Iterator[None]:
     finally:
         log.removeHandler(handler)
         log.setLevel(logging.NOTSET)
+        if handler.second is not None:
+            handler.second.kill()
+            handler.second.wait()

@@ -115,7 +115,7 @@ class EvenCloth:
         flat = np.zeros(((rows + 1) * (columns + 1), 3))
         flat[:, 0] = np.tile(size_mm[0] * (np.arange(columns + 1) - 0.5 * columns), rows + 1)
         flat[:, 1] = np.repeat(size_mm[1] * (np.arange(rows + 1) - 0.5 * rows), columns + 1)
-        mean = sum(self.membrane_n_per_mm[:2]) / 2.0
+        mean = (self.membrane_n_per_mm[0] + self.membrane_n_per_mm[1]) / 2.0
         return StitchSheet(
             rows=rows,
             columns=columns,

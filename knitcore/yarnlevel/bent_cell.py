@@ -53,8 +53,9 @@ from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.splines import RelaxedRepeat, check_unheld, refined
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 
-_STEP = 1e-3
-"""Curvature times loop length of the central differences."""
+_STEP = 2e-3
+"""Curvature times loop length of the central differences: half of it leaves the coupling of some
+ribs, 2e-4 of their rigidity, at the mercy of rounding (1e-4 of itself)."""
 _SKEW_STEP = 1e-5
 """Skew of the central differences, small because hard cores leave the yarn little room."""
 _REACH = 1.05

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
+from knitcore.arrays import Array, sum_in_order
 from knitcore.dense import dot, times
 from knitcore.threads import on_halves
 from knitcore.yarnlevel import kernels
@@ -246,7 +246,7 @@ class CellEnergy:
     def value(self, state: Array, curve: Array, pairs: Pairs) -> Terms:
         """Parts of the energy."""
         layout, law = self.cell.layout, self.contact_law
-        contact = sum(
+        contact = sum_in_order(
             on_halves(
                 lambda of: kernels.contact_energy(curve, state[-2], state[-1], of, layout, law),
                 pairs, PAIRS_TO_SHARE,
@@ -285,7 +285,7 @@ class CellEnergy:
             lambda of: kernels.contact_slopes(curve, state[-2], state[-1], of, layout, law),
             pairs, PAIRS_TO_SHARE,
         )  # fmt: skip
-        force, by_speed = (sum(parts) for parts in zip(*pressed, strict=True))
+        force, by_speed = (sum_in_order(parts) for parts in zip(*pressed, strict=True))
         along = curve, self.rod_law, self.speeds, tension[self.stretch_of], by_speed
         if hessian:
             slopes, local = kernels.rod_hessian(*along)

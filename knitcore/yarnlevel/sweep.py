@@ -16,7 +16,7 @@ from typing import Protocol
 
 import numpy as np
 
-from knitcore.arrays import Array
+from knitcore.arrays import Array, sum_in_order
 from knitcore.errors import (
     Cancelled,
     ConvergenceError,
@@ -177,7 +177,7 @@ def _off_work(cells: list[RelaxedCell], along: Direction) -> set[int]:
     scale = max((c.energy_n_mm for c in cells), default=0.0)
     for i in range(1, len(cells)):
         before, after = cells[i - 1], cells[i]
-        work = sum(
+        work = sum_in_order(
             0.5
             * (before.force_n[way.axis] + after.force_n[way.axis])
             * (after.cell_mm(way) - before.cell_mm(way))

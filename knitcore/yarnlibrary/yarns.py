@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from knitcore.arrays import sum_in_order
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Fabric
@@ -78,9 +79,11 @@ def phase_shares(chart: StitchChart) -> dict[Fabric, float]:
 
 def _mean(parts: list[tuple[float, YarnModel, float]]) -> tuple[YarnModel, float]:
     def mean(name: str) -> float:
-        return sum(share * float(getattr(yarn, name)) for share, yarn, _ in parts)
+        return sum_in_order(share * float(getattr(yarn, name)) for share, yarn, _ in parts)
 
-    logarithm = sum(share * math.log(yarn.contact_stiffness_n_per_mm3) for share, yarn, _ in parts)
+    logarithm = sum_in_order(
+        share * math.log(yarn.contact_stiffness_n_per_mm3) for share, yarn, _ in parts
+    )
     model = YarnModel(
         bending_modulus_n_mm2=mean("bending_modulus_n_mm2"),
         contact_stiffness_n_per_mm3=math.exp(logarithm),
@@ -88,7 +91,7 @@ def _mean(parts: list[tuple[float, YarnModel, float]]) -> tuple[YarnModel, float
         radius_mm=mean("radius_mm"),
         core_radius_mm=mean("core_radius_mm"),
     )
-    return model, sum(share * length for share, _, length in parts)
+    return model, sum_in_order(share * length for share, _, length in parts)
 
 
 def _estimate(
@@ -122,7 +125,11 @@ def _estimate(
     by_loop = _geometric_mean([s.yarn.radius_mm / s.loop_length_mm for s in models]) * loop
     by_area = _geometric_mean([s.yarn.radius_mm / _side(s) for s in models]) * side
     radius = math.sqrt(by_loop * by_area)
-    core = radius * sum(s.yarn.core_radius_mm / s.yarn.radius_mm for s in models) / len(models)
+    core = (
+        radius
+        * sum_in_order(s.yarn.core_radius_mm / s.yarn.radius_mm for s in models)
+        / len(models)
+    )
     stiffness = of.yarn.compression_stiffness_n_per_mm3
     if stiffness is None:
         stiffness = (
@@ -130,7 +137,7 @@ def _estimate(
         )
     exponent = of.yarn.compression_exponent
     if exponent is None:
-        exponent = sum(s.yarn.contact_exponent for s in models) / len(models)
+        exponent = sum_in_order(s.yarn.contact_exponent for s in models) / len(models)
     return YarnModel(bending, stiffness, exponent, radius, core), loop
 
 
@@ -152,4 +159,4 @@ def _side(sample: Sample) -> float:
 
 
 def _geometric_mean(values: list[float]) -> float:
-    return math.exp(sum(math.log(v) for v in values) / len(values))
+    return math.exp(sum_in_order(math.log(v) for v in values) / len(values))

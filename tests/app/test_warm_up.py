@@ -74,3 +74,73 @@ def test_warm_up_names_the_parts_that_are_done(monkeypatch: pytest.MonkeyPatch) 
         "Compiling kernels for this processor in 1 parts …",
         "1 of 1: nothing",
     ]
+
+
+COMPILED = """
+import sys
+from numba.core import event
+
+compiled = set()
+
+
+class Names(event.Listener):
+    def on_start(self, event):
+        function = event.data["dispatcher"].py_func
+        compiled.add(f"{function.__module__}.{function.__name__}")
+
+    def on_end(self, event):
+        pass
+
+
+event.register("numba:compile", Names())
+import knitcore
+from knitcore.shell.curl import curl
+from knitcore.yarnlibrary.yarns import yarn_for
+
+chart, acrylic = knitcore.StitchChart.parse("K/P"), knitcore.material("acrylic")
+if sys.argv[1] == "yarn":
+    used = yarn_for(acrylic, chart)
+    knitcore.relax(chart, used.yarn, used.loop_length_mm)
+else:
+    curl(chart.tile(2, 4), acrylic)
+print(*compiled)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("study", "module", "spared"),
+    [
+        (
+            "yarn",
+            "knitcore.yarnlevel.kernels.curve",
+            {"yarnlevel.kernels.rod.rod_hessian", "yarnlevel.kernels.scatter.scatter_local",
+             "dense.eliminate", "dense.substitute", "dense.solved", "yarnlevel.clasps._crossings"},
+        ),
+        (
+            "shape",
+            "knitcore.shell.kernels",
+            {f"gridsolver.elimination.{name}" for name in ("eliminate", "forward", "backward")},
+        ),
+    ],
+)  # fmt: skip
+def test_a_second_process_compiles_what_is_needed_last(
+    tmp_path: Path, study: str, module: str, spared: set[str]
+) -> None:
+    def compiled(cache: str) -> set[str]:
+        told = subprocess.run(
+            [sys.executable, "-c", COMPILED, study],
+            env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / cache)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return {name.removeprefix("knitcore.") for name in told.stdout.split()}
+
+    subprocess.run(
+        [sys.executable, "-m", "knitcore.warm_up", module],
+        env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kept")},
+        check=True,
+    )
+    assert spared <= compiled("new")
+    assert not spared & compiled("kept")
