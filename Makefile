@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help install page wheel serve test test-slow ten-runs any-machine coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site gallery mutation examples types stitches lock clean
+.PHONY: help install page wheel serve test test-slow ten-runs any-machine coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site mutation examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -138,9 +138,6 @@ docs: $(VENV)/.installed-dev ## Run every example of the documentation
 site: $(VENV)/.installed-dev ## Build the documentation as a site in build/site; no network needed
 	PYTHONPATH=. NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 	@echo "build/site/index.html; with its search: python -m http.server --directory build/site"
-
-gallery: $(VENV)/.installed-dev ## Make the gallery of the documentation again
-	$(BIN)/python scripts/gallery.py
 
 mutation: $(VENV)/.installed-dev ## Would the tests notice? Changes the code in 1,000 ways (half an hour)
 	$(BIN)/pip install --quiet --disable-pip-version-check mutmut==3.8.1

@@ -1,25 +1,18 @@
-"""Make the gallery: ten designs with their pictures, numbers and files (docs/gallery).
-
-Everything comes from the library, and the same every time: python scripts/gallery.py
-"""
+"""The gallery of the documentation site: ten designs with their pictures, numbers and files."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from knitcore import StitchChart, material, predict, showing
 from knitcore.answer.answer import Answer
 from knitcore.fabric import Direction
 from knitcore.formats.export import ExportKind, ExportOptions, export_chart
 from knitcore.patterns import PATTERNS
 
-DOCS = Path(__file__).resolve().parent.parent / "docs"
 SIDE = 24
 STRESS_N_PER_MM = np.linspace(0.0, 0.2, 31)
 KINDS = {
@@ -33,7 +26,7 @@ Ten designs, each of 24 × 24 stitches, with their mechanics and files to work w
 the left; beside it is a rectangle as wide as its extensibility along the rows and as high as that
 along the columns (the scale differs between designs); on the right are its stress–strain curves
 with their 90 % intervals. The design opens in [the studio](studio.md); the knitout program has been
-knitted on a virtual machine. Made by `make gallery`.
+knitted on a virtual machine.
 """
 
 
@@ -137,10 +130,15 @@ def section(design: Design, answer: Answer, files: dict[ExportKind, str]) -> str
     )
 
 
-def main() -> None:
-    folder = DOCS / "gallery"
-    folder.mkdir(exist_ok=True)
-    parts = [HEAD]
+def gallery() -> dict[str, str | bytes]:
+    """Make the page and the files beside it; the same every time.
+
+    Returns
+    -------
+    Contents by path below docs/.
+    """
+    made: dict[str, str | bytes] = {}
+    sections = [HEAD]
     for design in designs():
         yarn = material(design.material)
         answer = predict(design.chart, yarn)
@@ -148,11 +146,7 @@ def main() -> None:
         for kind in KINDS:
             file = export_chart(design.chart, kind, yarn, ExportOptions(name=design.name))
             files[kind] = f"{design.identifier}{file.suffix}"
-            (folder / files[kind]).write_bytes(file.content)
-        (folder / f"{design.identifier}.svg").write_text(picture(design, answer) + "\n")
-        parts.append(section(design, answer, files))
-    (DOCS / "gallery.md").write_text("\n".join(parts))
-
-
-if __name__ == "__main__":
-    main()
+            made[f"gallery/{files[kind]}"] = file.content
+        made[f"gallery/{design.identifier}.svg"] = picture(design, answer)
+        sections.append(section(design, answer, files))
+    return made | {"gallery.md": "\n".join(sections)}

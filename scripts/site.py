@@ -1,7 +1,7 @@
 """Hooks of the documentation site (mkdocs.yml): pages made from code, formulas, run notebooks.
 
 - The command, REST and library references are made from the parsers, the OpenAPI document and the
-  docstrings; CONTRIBUTING.md and CHANGELOG.md become pages.
+  docstrings, the gallery from the library; CONTRIBUTING.md and CHANGELOG.md become pages.
 - Formulas between dollars become MathML, so that no script has to draw them.
 - Notebooks (docs/notebooks) are run, and what their cells show is put below them.
 """
@@ -44,6 +44,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that are not in docs/."""
     from mkdocs.structure.files import File
 
+    from scripts.gallery import gallery
+
     made = {
         name: LIST_AFTER_TEXT.sub(r"\1\n", (ROOT / source).read_text())
         for name, source in ROOT_PAGES.items()
@@ -54,6 +56,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for name, text in (made | modules).items():
         meta = LATER_IN_SEARCH if name.startswith("reference/") else ""
         files.append(File.generated(config, name, content=meta + text))
+    for name, content in gallery().items():
+        files.append(File.generated(config, name, content=content))
     return files
 
 

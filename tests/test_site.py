@@ -93,6 +93,9 @@ def test_the_site_builds_in_strict_mode_and_loads_nothing_from_elsewhere(tmp_pat
     pages = list(tmp_path.rglob("*.html"))
     assert len(pages) > 50
     assert [page for page in pages if foreign.search(page.read_text())] == []
+    shown = re.findall(r'(?:href|src)="(gallery/[^"]+)"', (tmp_path / "gallery.html").read_text())
+    assert len(set(shown)) == 40
+    assert [name for name in shown if not (tmp_path / name).is_file()] == []
     theory = (tmp_path / "theory.html").read_text()
     assert theory.count("<math") > 40
     assert "arithmatex" not in theory
