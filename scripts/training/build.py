@@ -1,7 +1,7 @@
 """Relax and stretch the training charts: ``python -m scripts.training.build``.
 
 Every finished task is kept in a folder, so an interrupted build can be resumed. ``--pack`` adds
-the tasks finished so far to ``training.json``; the next build leaves those out.
+the tasks finished so far to ``library.json.xz``; the next build leaves those out.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from knitcore.yarnlibrary.store import stored_charts
 from knitcore.yarnlibrary.yarns import yarn_for
 from scripts.training.charts import YARN_POINTS, anchor_charts, drawn_charts, training_charts
 from scripts.training.command import resumable
-from scripts.training.entries import FILE
+from scripts.training.entries import FILE, read_library, update_library
 
 MAX_RELAXED = 36
 """Cells with more stitches are left out."""
@@ -76,7 +76,7 @@ def characterise(task: TrainingTask) -> Document:
 
 def tasks(packed: Path | None = None) -> dict[str, TrainingTask]:
     """All tasks by key, the most informative first, without those in a packed file."""
-    entries = [] if packed is None else _entries(packed)
+    entries = [] if packed is None else read_library(packed)["entries"]
     done = {(*_name(e), stretched) for e in entries for stretched in {False, _tried(e)}}
     return {
         key: task
@@ -135,19 +135,12 @@ def pack(keep: Path, file: Path) -> int:
 
     The order does not depend on the order in which tasks end. Returns the number of entries.
     """
-    found = {_name(entry): entry for entry in _entries(file)}
+    found = {_name(entry): entry for entry in read_library(file)["entries"]}
     for path in keep.glob("*.json"):
         entry = _packed(json.loads(path.read_text(encoding="utf-8")))
         found[_name(entry)] = entry
-    lines = ",\n".join(json.dumps(found[name]) for name in sorted(found))
-    file.write_text(f'{{"entries": [\n{lines}\n]}}\n', encoding="utf-8")
+    update_library(file, entries=[found[name] for name in sorted(found)])
     return len(found)
-
-
-def _entries(file: Path) -> list[Document]:
-    if not file.exists():
-        return []
-    return list(json.loads(file.read_text(encoding="utf-8"))["entries"])
 
 
 def _name(entry: Document) -> tuple[str, str]:

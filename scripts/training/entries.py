@@ -1,12 +1,14 @@
-"""The training library: ``training.json`` has relaxed sizes, raw curves and failures, and
-``lowest.json`` what the same repeats relax to without mirrors.
+"""The training library: relaxed sizes, raw curves and failures of repeats (``entries``), and what
+the same repeats relax to without mirrors (``lowest``).
 
-``scripts/training/build.py`` writes the first, ``scripts/training/lowest.py`` the second.
+``scripts/training/build.py`` packs the first into ``library.json.xz``,
+``scripts/training/lowest.py`` the second.
 """
 
 from __future__ import annotations
 
 import json
+import lzma
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -21,8 +23,7 @@ from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.yarn import YarnModel
 
-FILE = Path(__file__).parent / "training.json"
-LOWEST = Path(__file__).parent / "lowest.json"
+FILE = Path(__file__).parent / "library.json.xz"
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,11 +82,25 @@ class TrainingEntry:
 @cache
 def training_entries() -> tuple[TrainingEntry, ...]:
     """All entries, in the order of the build."""
-    lowest = json.loads(LOWEST.read_text("utf-8")) if LOWEST.exists() else {}
+    library = read_library()
     return tuple(
-        _entry(document, lowest.get(f"{document['yarn_name']}/{document['chart']}", {}))
-        for document in json.loads(FILE.read_text("utf-8"))["entries"]
+        _entry(document, library["lowest"].get(f"{document['yarn_name']}/{document['chart']}", {}))
+        for document in library["entries"]
     )
+
+
+def read_library(file: Path = FILE) -> dict[str, Any]:
+    """The documents in a file, ``entries`` and ``lowest``; both empty where there is no file."""
+    if not file.exists():
+        return {"entries": [], "lowest": {}}
+    library: dict[str, Any] = json.loads(lzma.decompress(file.read_bytes()))
+    return library
+
+
+def update_library(file: Path, **parts: Any) -> None:
+    """Replace ``entries`` or ``lowest`` in a file."""
+    library = json.dumps(read_library(file) | parts, separators=(",", ":"))
+    file.write_bytes(lzma.compress(library.encode()))
 
 
 def _entry(document: Mapping[str, Any], lowest: Mapping[str, Any]) -> TrainingEntry:

@@ -4,7 +4,7 @@ The packaged sizes are those of the mirrored branch. Here every chart of the tra
 several times without its symmetries, and the lowest state is kept beside the others that were
 found. Charts are taken in a mixed order, so that any first part of them is a fair sample. Finished
 ones are kept in a folder, so an interrupted run can be resumed; ``--pack`` writes those finished so
-far to ``lowest.json``.
+far to ``library.json.xz``.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.characterise import Document
 from knitcore.yarnlibrary.fingerprint import content_key
 from scripts.training.command import resumable
-from scripts.training.entries import LOWEST, training_entries
+from scripts.training.entries import FILE, training_entries, update_library
 
 SOLVERS = ("knitcore.yarnlevel.relax", "knitcore.yarnlevel.lowest")
 """The modules that relax."""
@@ -102,8 +102,7 @@ def pack(keep: Path, file: Path) -> int:
     for path in keep.glob("*.json"):
         document = json.loads(path.read_text(encoding="utf-8"))
         found[document.pop("name")] = document
-    lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(found[name])}" for name in sorted(found))
-    file.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+    update_library(file, lowest={name: found[name] for name in sorted(found)})
     return len(found)
 
 
@@ -111,7 +110,7 @@ def main() -> None:
     """Run ``python -m scripts.training.lowest``."""
     resumable(
         "python -m scripts.training.lowest", "build/training-lowest", lowest,
-        named_tasks, lambda keep: pack(keep, LOWEST),
+        named_tasks, lambda keep: pack(keep, FILE),
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from knitcore import StitchChart
 from knitcore.fabric import Direction
 from scripts.training.build import characterise, pack, tasks
 from scripts.training.charts import YARN_POINTS, training_charts
-from scripts.training.entries import LOWEST, RawCurve, training_entries
+from scripts.training.entries import RawCurve, read_library, training_entries
 from scripts.training.lowest import LowestTask, lowest
 from scripts.training.lowest import pack as pack_lowest
 
@@ -41,7 +41,7 @@ def test_tasks_name_yarn_and_chart() -> None:
 
 
 def test_packing_adds_entries_and_later_builds_skip_them(tmp_path: Path) -> None:
-    keep, packed = tmp_path / "keep", tmp_path / "packed.json"
+    keep, packed = tmp_path / "keep", tmp_path / "packed"
     keep.mkdir()
     task = next(t for t in tasks().values() if not t.stretched and len(t.repeat.chart) < 12)
     kept = keep / f"{task.key}.json"
@@ -54,7 +54,7 @@ def test_packing_adds_entries_and_later_builds_skip_them(tmp_path: Path) -> None
     again["cell_course_mm"] = 9.0
     kept.write_text(json.dumps(again), encoding="utf-8")
     assert pack(keep, packed) == 1  # in the place of the earlier one
-    assert json.loads(packed.read_text(encoding="utf-8"))["entries"][0]["cell_course_mm"] == 9.0
+    assert read_library(packed)["entries"][0]["cell_course_mm"] == 9.0
 
 
 def test_every_packaged_entry_has_a_size_or_a_reason() -> None:
@@ -81,11 +81,11 @@ def test_without_mirrors_several_starts_are_kept_the_lowest_first(tmp_path: Path
     assert found["states"][0][1:] == pytest.approx(entry.cell_mm, rel=0.01)
     (tmp_path / f"{task.key}.json").write_text(json.dumps(found), encoding="utf-8")
     assert pack_lowest(tmp_path, tmp_path / "packed") == 1
-    assert list(json.loads((tmp_path / "packed").read_text(encoding="utf-8"))) == ["middle/K"]
+    assert list(read_library(tmp_path / "packed")["lowest"]) == ["middle/K"]
 
 
 def test_every_relaxed_entry_was_also_relaxed_without_mirrors() -> None:
-    packed = json.loads(LOWEST.read_text(encoding="utf-8"))
+    packed = read_library()["lowest"]
     for entry in training_entries():
         if entry.cell_mm is not None:
             found = packed[f"{entry.yarn_name}/{entry.chart.key}"]
