@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help install page wheel serve test test-slow ten-runs any-machine coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site mutation examples types stitches lock clean
+.PHONY: help install page client wheel serve test test-slow ten-runs any-machine coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site mutation examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -44,8 +44,11 @@ frontend/dist/index.html: $(PAGE_SOURCES)
 
 page: frontend/dist/index.html ## Bundle the page
 
-wheel: page $(VENV)/.installed ## Build wheel and sdist with the page in them, and the client's, into dist
-	$(BIN)/uv build --quiet --out-dir dist . && $(BIN)/uv build --quiet --wheel --out-dir dist client
+client: $(VENV)/.installed ## Make the Python client from the service, in build/client
+	@PYTHONPATH=. $(BIN)/python scripts/client_code.py
+
+wheel: page client ## Build wheel and sdist with the page in them, and the client's, into dist
+	$(BIN)/uv build --quiet --out-dir dist . && $(BIN)/uv build --quiet --wheel --out-dir dist build/client
 
 install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the product in it, and the page
 
@@ -103,7 +106,7 @@ fuzz: $(VENV)/.installed-dev ## Send 10,000 requests with hostile fields to ever
 frontend-check: frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test
 
-lint: $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, mypy --strict; tsc, eslint, prettier
+lint: client $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, mypy --strict; tsc, eslint, prettier
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -147,9 +150,8 @@ mutation: $(VENV)/.installed-dev ## Would the tests notice? Changes the code in 
 examples: $(VENV)/.installed-dev ## Ask the service for the answers that the API shows as examples
 	PYTHONPATH=. $(BIN)/python scripts/api_examples.py
 
-types: $(VENV)/.installed-dev ## Make the page's types and the client from the service's models again
+types: $(VENV)/.installed-dev ## Make the page's types from the service's models again
 	PYTHONPATH=. $(BIN)/python scripts/page_types.py
-	PYTHONPATH=. $(BIN)/python scripts/client_code.py
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
 	$(BIN)/python -m scripts.stored_stitches $(OPTIONS)

@@ -1,14 +1,13 @@
-"""Write the parts of the Python client that are made from the service (``make types``).
+"""Write the Python client (``make client``): what ``client/`` has and what the service determines.
 
-``models.py`` from the models of requests and answers, ``operations.py`` from the registry, and
-``sync.py`` from ``aio.py``. A test compares the files with what they are made from.
+``models.py`` is made from the models of requests and answers, ``operations.py`` from the registry,
+and ``sync.py`` from ``aio.py``.
 """
 
 from __future__ import annotations
 
 import keyword
-import subprocess
-import sys
+import shutil
 import textwrap
 import tomllib
 from collections.abc import Iterator
@@ -21,7 +20,7 @@ from app.operations.registry import Operation, operations
 from scripts.page_types import ANSWERED, ASKED, Schema, shapes
 
 ROOT = Path(__file__).resolve().parent.parent
-FOLDER = ROOT / "client" / "knitcore_client"
+SOURCES = ROOT / "client"
 HEAD = '"""{} (made by scripts/client_code.py)."""\n\nfrom __future__ import annotations\n\n'
 SIMPLE = {
     "integer": "int",
@@ -51,28 +50,18 @@ TO_SYNC = {
 }
 
 
-def code() -> dict[str, str]:
-    """The content of every file, by name."""
+def write(folder: Path) -> None:
+    """Write the client, from which a wheel can be built, into a folder."""
+    ignored = shutil.ignore_patterns("__pycache__", "build", "*.egg-info")
+    shutil.copytree(SOURCES, folder, ignore=ignored, dirs_exist_ok=True)
+    package = folder / "knitcore_client"
     made = {
         "models.py": _models(),
         "operations.py": _operations(),
-        "sync.py": _sync((FOLDER / "aio.py").read_text(encoding="utf-8")),
+        "sync.py": _sync((package / "aio.py").read_text(encoding="utf-8")),
     }
-    return {name: _formatted(name, text) for name, text in made.items()}
-
-
-def _formatted(name: str, text: str) -> str:
-    """With ruff's fixes and in its format."""
-    for step in (["check", "--fix", "--quiet", "--exit-zero"], ["format"]):
-        told = subprocess.run(
-            [sys.executable, "-m", "ruff", *step, "--stdin-filename", FOLDER / name, "-"],
-            input=text,
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        text = told.stdout
-    return text
+    for name, text in made.items():
+        (package / name).write_text(text, encoding="utf-8")
 
 
 def _sync(text: str) -> str:
@@ -240,11 +229,5 @@ def _synchronous(text: str) -> str:
     return text
 
 
-def main() -> None:
-    """Write the files."""
-    for name, text in code().items():
-        (FOLDER / name).write_text(text, encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    write(ROOT / "build" / "client")

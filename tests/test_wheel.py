@@ -14,6 +14,7 @@ import httpx2 as httpx
 import pytest
 
 from app.version import VERSION
+from scripts.client_code import write
 
 ROOT = Path(__file__).resolve().parents[1]
 UV = Path(sys.executable).with_name("uv")
@@ -39,7 +40,8 @@ def wheels(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert page.is_file(), "make page"
     folder = tmp_path_factory.mktemp("dist")
     run(UV, "build", "--quiet", "--out-dir", folder, ROOT, cwd=folder)
-    run(UV, "build", "--quiet", "--wheel", "--out-dir", folder, ROOT / "client", cwd=folder)
+    write(folder / "client")
+    run(UV, "build", "--quiet", "--wheel", "--out-dir", folder, folder / "client", cwd=folder)
     return folder
 
 

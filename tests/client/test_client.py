@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx2 as httpx
+import knitcore_client
 import pytest
 from knitcore_client import AsyncClient, Client, ProblemError
 from knitcore_client.aio import AsyncClient as Awaited
@@ -19,9 +20,9 @@ from knitcore_client.models import JobStatus
 
 from app.main import create_app
 from app.operations.registry import operations
-from scripts.client_code import FOLDER, code
 from tests.app.service import Service
 
+FOLDER = Path(knitcore_client.__file__).parent
 TOKEN = "a-token-of-this-test"
 
 
@@ -221,11 +222,6 @@ def test_it_needs_neither_numpy_nor_the_service() -> None:
     loaded = {name.partition(".")[0] for name in told.stdout.split()}
     assert "knitcore_client" in loaded
     assert not loaded & {"numpy", "scipy", "fastapi", "starlette", "app", "knitcore"}
-
-
-def test_it_is_made_from_this_service() -> None:
-    for name, text in code().items():
-        assert (FOLDER / name).read_text(encoding="utf-8") == text, f"make types: {name}"
 
 
 class Unsteady(httpx.HTTPTransport):
