@@ -1,6 +1,6 @@
 """Call every operation of the service once and keep the answers as API examples (`make examples`).
 
-The requests are those of the schema.
+The requests are those of the schema, which shows the answers where they have been made.
 """
 
 from __future__ import annotations
@@ -104,8 +104,8 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
         elif name == "POST /api/v1/designs/{design}/shares":
             place |= {"share": content["id"], "token": content["token"]}
         if content is not None:
-            answers[name] = short(content)
-    return {"parameters": place, "answers": answers}
+            answers[name] = content
+    return answers
 
 
 def patient_client(folder: Path) -> TestClient:
@@ -117,8 +117,8 @@ def patient_client(folder: Path) -> TestClient:
 def main() -> None:
     """Write the file."""
     with tempfile.TemporaryDirectory() as folder, patient_client(Path(folder)) as client:
-        found = ask_everything(client)
-    text = json.dumps(found, indent=1, ensure_ascii=False, sort_keys=True)
+        answers = short(ask_everything(client))
+    text = json.dumps(answers, indent=1, ensure_ascii=False, sort_keys=True)
     (EXAMPLES / "answers.json").write_text(text + "\n", encoding="utf-8")
 
 

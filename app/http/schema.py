@@ -75,6 +75,17 @@ WAYS_TO_SIGN_IN = {
         "description": "Of a browser that was opened with `/?token=…`.",
     },
 }
+PARAMETERS = {
+    "design": "LV39s7v8rGNtEW5HW9Xl9Q",
+    "identifier": "acrylic",
+    "job": "dwEAZDjPZb1SKhS9vjtaxQ",
+    "material": "acrylic",
+    "number": 1,
+    "session": "3b1AieUVX6zNqeUh",
+    "share": "3b1AieUVX6zNqeUh",
+    "token": "LV39s7v8rGNtEW5HW9Xl9Q",
+}
+"""Examples of what stands in addresses."""
 HAVE_STATES = frozenset({"Design", "Painted"})
 ARE_MADE = frozenset({"Design", "JobStatus"})
 OPEN = frozenset({"GET /healthz", "GET /readyz"})
@@ -90,17 +101,17 @@ def install_schema(app: FastAPI) -> None:
 
     def complete() -> dict[str, Any]:
         schema = made()
-        asked, found = _read("requests.json"), _read("answers.json")
+        requests, answers = _read("requests.json"), _read("answers.json")
         for name, operation in documented_operations(schema):
             _mark_problems(operation["responses"])
             for status, response in operation["responses"].items():
                 _add_headers(int(status), response)
             if name in OPEN:
                 operation["security"] = []
-            _show(operation, asked.get(name), found["answers"].get(name))
+            _show(operation, requests.get(name), answers.get(name))
             for parameter in operation.get("parameters", []):
                 if parameter["in"] == "path":
-                    parameter["example"] = found["parameters"].get(parameter["name"])
+                    parameter["example"] = PARAMETERS.get(parameter["name"])
         schema["components"]["schemas"]["Problem"]["examples"] = [EXAMPLE]
         schema["info"]["description"] = CONVENTIONS
         schema["tags"] = [{"name": n, "description": text} for n, text in TAGS.items()]
@@ -132,15 +143,18 @@ def documented_operations(schema: dict[str, Any]) -> Iterator[tuple[str, dict[st
 
 
 def _read(name: str) -> dict[str, Any]:
-    read: dict[str, Any] = json.loads((EXAMPLES / name).read_text(encoding="utf-8"))
-    return read
+    """Read examples by operation; those of answers are there after ``make examples``."""
+    file = EXAMPLES / name
+    examples: dict[str, Any] = json.loads(file.read_text("utf-8")) if file.is_file() else {}
+    return examples
 
 
 def _show(operation: dict[str, Any], request: Any, answer: Any) -> None:
     if request is not None:
         operation["requestBody"]["content"]["application/json"]["example"] = request
     for status, response in operation["responses"].items():
-        if int(status) < FIRST_PROBLEM and "application/json" in response.get("content", {}):
+        shown = "application/json" in response.get("content", {}) and answer is not None
+        if int(status) < FIRST_PROBLEM and shown:
             response["content"]["application/json"]["example"] = answer
 
 
