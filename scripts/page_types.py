@@ -1,7 +1,7 @@
 """Write the page's types from the service's models (``make types``): ``frontend/types.d.ts``.
 
 Request types have optional fields; the types of answers have every field (except problems, which
-the page also makes). A test compares the file with the models.
+the page also makes). TypeScript compares them with how the page uses them (``make lint``).
 """
 
 from __future__ import annotations
@@ -25,9 +25,7 @@ from app.viewer.shared import SharedViewRequest
 from knitcore.formats.layout import DesignLayout
 
 FILE = Path(__file__).resolve().parent.parent / "frontend" / "types.d.ts"
-HEAD = (
-    "// Made from the service's models by scripts/page_types.py: change those, then `make types`."
-)
+HEAD = "// Made from the service's models by scripts/page_types.py (`make types`)."
 
 Schema = dict[str, Any]
 

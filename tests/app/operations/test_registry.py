@@ -25,7 +25,6 @@ from app.operations.registry import Command, Operation, commands, operations
 from app.operations.stretch import StretchResult
 from knitcore.fabric import Direction
 from knitcore.materials import Interval
-from scripts.page_types import FILE, page_types
 
 MACHINERY = {"__init__", "perform", "registry"}
 
@@ -54,10 +53,6 @@ def test_every_command_says_what_it_does(name: str) -> None:
     told = CliRunner().invoke(main, [name, "--help"])
     assert told.exit_code == 0, told.output
     assert "--json" in told.output
-
-
-def test_the_pages_types_are_those_of_the_models() -> None:
-    assert FILE.read_text(encoding="utf-8") == page_types(), "run `make types`"
 
 
 class Asked(RequestModel):
