@@ -17,7 +17,8 @@ RUN apt-get update \
 WORKDIR /src
 COPY requirements.lock .
 RUN python3 -m venv /opt/knitcore \
- && /opt/knitcore/bin/pip install --require-hashes -r requirements.lock
+ && sed '/^# --- installer/,$d' requirements.lock >product.txt \
+ && /opt/knitcore/bin/pip install --require-hashes -r product.txt
 COPY . .
 COPY --from=page /page/dist frontend/dist
 RUN /opt/knitcore/bin/pip install --no-deps . \

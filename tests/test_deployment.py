@@ -121,6 +121,14 @@ def test_the_image_is_small_and_made_of_known_packages() -> None:
     assert last == '["knitcore", "serve"]'
 
 
+def test_the_image_has_what_the_product_needs_and_no_more() -> None:
+    (step,) = re.findall(r"(sed .*) >product.txt", DOCKERFILE)
+    product = subprocess.check_output(["sh", "-c", step], cwd=ROOT, text=True)
+    names = set(re.findall(r"^([\w-]+)==", product, re.MULTILINE))
+    assert {"fastapi", "numpy", "distributed"} <= names
+    assert not {"uv", "pytest", "mypy"} & names
+
+
 def test_the_image_runs_as_a_plain_user() -> None:
     names = [name for name, _ in _instructions()]
     assert _all("USER") == ["knit"]
