@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help install page client wheel serve test test-slow ten-runs any-machine coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site mutation examples types stitches lock clean
+.PHONY: help install page client types wheel serve test test-slow test-hard frontend-check lint format coverage mutation audit sbom bench docs examples stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -21,13 +21,13 @@ $(VENV)/.installed: requirements.lock pyproject.toml
 	@echo "Making $(VENV) …"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@echo "Installing Knitcore's packages …"
-	@scripts/install --require-hashes -r requirements.lock
+	@scripts/install product
 	@scripts/install --no-deps --editable .
 	@touch $@
 
-$(VENV)/.installed-dev: requirements-dev.lock $(VENV)/.installed
+$(VENV)/.installed-tests: $(VENV)/.installed
 	@echo "Installing what the tests need …"
-	@scripts/install --require-hashes -r requirements-dev.lock
+	@scripts/install tests
 	@touch $@
 
 frontend/node_modules/.installed: frontend/package.json frontend/package-lock.json
@@ -36,13 +36,17 @@ frontend/node_modules/.installed: frontend/package.json frontend/package-lock.js
 	@touch $@
 
 # The page also runs as its sources: without Node, or without a way to its packages, it gets those.
-PAGE_SOURCES := $(shell find frontend \( -name node_modules -o -name dist -o -name tests \) -prune -o -type f -print)
+PAGE_SOURCES := $(shell find frontend \( -name node_modules -o -name dist -o -name tests -o -name types.d.ts \) \
+	-prune -o -type f -print)
 frontend/dist/index.html: $(PAGE_SOURCES)
 	@( $(MAKE) --no-print-directory frontend/node_modules/.installed \
 		&& echo "Bundling the page …" && node frontend/build.mjs ) \
 		|| echo "The page could not be bundled (it needs Node 18 or newer): its sources are served instead."
 
 page: frontend/dist/index.html ## Bundle the page
+
+types: $(VENV)/.installed ## Make the page's types from the service
+	@PYTHONPATH=. $(BIN)/python scripts/page_types.py
 
 client: $(VENV)/.installed ## Make the Python client from the service, in build/client
 	@PYTHONPATH=. $(BIN)/python scripts/client_code.py
@@ -66,47 +70,32 @@ serve:           ## Run the tool and print its address
 	@nice -n 19 $(MAKE) --no-print-directory --silent $(VENV)/.compiled & exec $(BIN)/knitcore serve $(OPTIONS)
 
 # --- checking ---------------------------------------------------------------------------------
-test: $(VENV)/.installed-dev frontend/node_modules/.installed ## Run the default suite (browser tests install Chromium if missing)
+test: $(VENV)/.installed-tests frontend/node_modules/.installed ## Run the default suite (browser tests install Chromium if missing)
 	scripts/ensure-browsers chromium
 	@$(MAKE) --no-print-directory -j 3 $(VENV)/.compiled frontend-check page
 	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
 
-test-slow: $(VENV)/.installed-dev $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
+test-slow: $(VENV)/.installed-tests $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
 	scripts/ensure-browsers chromium firefox-esr
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
-ten-runs: ## Run the default suite ten times, two at a time, in fresh clones; log in build
-	scripts/ten-runs
-
-any-machine: $(VENV)/.installed-dev ## Compare answers under several instruction sets of this machine; OPTIONS="--short"
-	$(BIN)/python -m scripts.any_machine $(OPTIONS)
-
-coverage: $(VENV)/.installed-dev page ## Tell which lines the default suite runs, workers included
+coverage: $(VENV)/.installed-tests page ## Tell which lines the default suite runs, workers included
 	$(BIN)/pip install --quiet --disable-pip-version-check coverage==7.17.3
 	$(BIN)/coverage erase
 	$(BIN)/coverage run -m pytest -n 2 --dist loadgroup -m "not slow"; $(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 
-study: $(VENV)/.installed-dev ## Compare with the study's raw data in the folder KNITCORE_STUDY_DATA
-	$(BIN)/pytest benchmarks/study
-
-test-postgres: $(VENV)/.installed-dev ## Run the tests of the designs on a real PostgreSQL
+test-hard: $(VENV)/.installed-tests ## Kill the service 50 times, send 10,000 hostile requests, take disk, database and workers away
 	dpkg -s postgresql >/dev/null 2>&1 || apt-get install -y --no-install-recommends postgresql
 	$(BIN)/pytest -m postgres tests/app
+	KNITCORE_KILLS=50 KNITCORE_FUZZ_REQUESTS=10000 KNITCORE_OUTAGE_S=30 $(BIN)/pytest -s \
+		tests/app/designs/test_durability.py tests/app/http/test_fuzz.py tests/app/test_faults.py \
+		tests/app/test_job_kinds.py tests/app/compute/test_cluster.py
 
-test-kill: $(VENV)/.installed-dev ## Kill the service 50 times while designs are edited
-	KNITCORE_KILLS=50 $(BIN)/pytest -s tests/app/designs/test_durability.py
-
-test-faults: $(VENV)/.installed-dev ## Full disk, database away for 30 s, clients that vanish, workers that die
-	KNITCORE_OUTAGE_S=30 $(BIN)/pytest tests/app/test_faults.py tests/app/test_job_kinds.py tests/app/compute/test_cluster.py
-
-fuzz: $(VENV)/.installed-dev ## Send 10,000 requests with hostile fields to every operation
-	KNITCORE_FUZZ_REQUESTS=10000 $(BIN)/pytest -s tests/app/http/test_fuzz.py
-
-frontend-check: frontend/node_modules/.installed
+frontend-check: types frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test
 
-lint: client $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, mypy --strict; tsc, eslint, prettier
+lint: types client $(VENV)/.installed-tests frontend/node_modules/.installed ## ruff, mypy --strict; tsc, eslint, prettier
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -117,41 +106,35 @@ lint: client $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, my
 	.audit/bin/pip install --quiet --disable-pip-version-check pip-audit bandit cyclonedx-bom
 	touch $@
 
-audit: .audit/.installed ## Risky code (bandit) and known holes in pinned packages (pip-audit, asks PyPI)
+build/product.txt: requirements.lock
+	@mkdir -p build && sed '/^# --- installer/,$$d' $< >$@
+
+audit: .audit/.installed build/product.txt ## Risky code (bandit) and known holes in pinned packages (pip-audit, asks PyPI)
 	.audit/bin/bandit --quiet -c pyproject.toml -r app knitcore
-	.audit/bin/pip-audit --strict --disable-pip --require-hashes -r requirements.lock
+	.audit/bin/pip-audit --strict --disable-pip --require-hashes -r build/product.txt
 
-sbom: .audit/.installed ## List the packages of the service in sbom.json (CycloneDX)
-	.audit/bin/cyclonedx-py requirements --output-reproducible --of JSON -o sbom.json requirements.lock
+sbom: .audit/.installed build/product.txt ## List the packages of the service in sbom.json (CycloneDX)
+	.audit/bin/cyclonedx-py requirements --output-reproducible --of JSON -o sbom.json build/product.txt
 
-format: $(VENV)/.installed-dev frontend/node_modules/.installed ## Format the code
+format: $(VENV)/.installed-tests frontend/node_modules/.installed ## Format the code
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 	cd frontend && npm run --silent format
 
-bench: $(VENV)/.installed-dev ## Print the benchmarks (CPU time and ratios)
+bench: $(VENV)/.installed-tests ## Print the benchmarks (CPU time and ratios)
 	for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
-bench-service: $(VENV)/.installed-dev ## Fifty people paint beside computations; SECONDS=600 for ten minutes
-	$(BIN)/python benchmarks/service.py
-
-docs: $(VENV)/.installed-dev ## Run every example of the documentation
-	$(BIN)/pytest -q tests/test_docs.py
-
-site: $(VENV)/.installed-dev ## Build the documentation as a site in build/site; no network needed
+docs: $(VENV)/.installed-tests ## Build the documentation as a site in build/site; no network needed
 	PYTHONPATH=. NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 	@echo "build/site/index.html; with its search: python -m http.server --directory build/site"
 
-mutation: $(VENV)/.installed-dev ## Would the tests notice? Changes the code in 1,000 ways (half an hour)
+mutation: $(VENV)/.installed-tests ## Would the tests notice? Changes the code in 1,000 ways (half an hour)
 	$(BIN)/pip install --quiet --disable-pip-version-check mutmut==3.8.1
 	$(BIN)/mutmut run --max-children 2
 	$(BIN)/mutmut results
 
-examples: $(VENV)/.installed-dev ## Ask the service for the answers that the API shows as examples
+examples: $(VENV)/.installed ## Ask the service for the answers that the reference of the API shows
 	PYTHONPATH=. $(BIN)/python scripts/api_examples.py
-
-types: $(VENV)/.installed-dev ## Make the page's types from the service's models again
-	PYTHONPATH=. $(BIN)/python scripts/page_types.py
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
 	$(BIN)/python -m scripts.stored_stitches $(OPTIONS)
@@ -159,13 +142,8 @@ stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--schedu
 	$(BIN)/python -m scripts.bending_stitches
 
 # --- upkeep -----------------------------------------------------------------------------------
-lock: $(VENV)/.installed-dev ## Pin the dependencies again
-	echo uv | $(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --no-header \
-		--python-version 3.11 - -o requirements-uv.lock
-	$(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
-		--extra service --extra cluster pyproject.toml -o requirements.lock
-	$(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
-		--extra service --extra cluster --extra dev pyproject.toml -c requirements.lock -o requirements-dev.lock
+lock: $(VENV)/.installed-tests ## Pin the dependencies again
+	scripts/lock
 
 clean:           ## Remove what was installed and built
 	rm -rf $(VENV) .audit frontend/node_modules frontend/dist build *.egg-info

@@ -8,7 +8,7 @@ user may have are opened and dropped ten times. Every figure is printed with its
 code is 1 if one is missed. Each slice is printed with the time the disk alone takes to keep 4 kB:
 the pauses of a shared disk are in every stroke's time.
 
-    make bench-service                     (SECONDS=600 for ten minutes of painting,
+    python benchmarks/service.py           (SECONDS=600 for ten minutes of painting,
                                             FOLDER=/dev/shm to leave the disk out,
                                             P95_MS=25 for the target on a quiet machine)
 """

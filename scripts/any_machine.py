@@ -1,4 +1,4 @@
-"""Compare answers under several instruction sets of one machine: ``make any-machine``.
+"""Compare answers under several instruction sets of one machine: ``python -m scripts.any_machine``.
 
 Every set is a process of its own, with its own cache of compiled kernels, that asks the same
 questions as a client would. The table gives, for every question and set, the largest relative

@@ -43,7 +43,7 @@ def postgres_url() -> Iterator[str]:
 
 @pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.postgres)])
 def database(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Database]:
-    """The same tests on both databases; ``make test-postgres`` runs those on PostgreSQL."""
+    """The same tests on both databases; ``make test-hard`` runs those on PostgreSQL."""
     if request.param == "sqlite":
         url = f"sqlite:///{tmp_path / 'knit.sqlite3'}"
     else:

@@ -1,6 +1,6 @@
 """What fails around the service: its disk, its database, its clients. Nothing is lost by it.
 
-KNITCORE_OUTAGE_S sets how long the database is away (``make test-faults``: 30 s).
+KNITCORE_OUTAGE_S sets how long the database is away (``make test-hard``: 30 s).
 """
 
 from __future__ import annotations

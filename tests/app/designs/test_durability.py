@@ -1,6 +1,6 @@
 """Kill -9 while designs are edited and commands run: what was acknowledged is there afterwards.
 
-KNITCORE_KILLS=50 makes it fifty kills instead of a few (``make test-kill``).
+KNITCORE_KILLS=50 makes it fifty kills instead of a few (``make test-hard``).
 """
 
 from __future__ import annotations
@@ -50,4 +50,4 @@ def test_no_acknowledged_edit_is_lost(tmp_path: Path) -> None:
         client.close()
         service.kill()
     assert strokes >= PAINTERS * KILLS
-    print(f"{KILLS} kills, {strokes} strokes kept, none lost")  # noqa: T201 - for make test-kill
+    print(f"{KILLS} kills, {strokes} strokes kept, none lost")  # noqa: T201 - for make test-hard

@@ -1,7 +1,7 @@
 """Every operation of the real service, one field at a time: whatever comes is answered in words.
 
 Requests start from a valid one, of which a field is left out, or replaced by an extreme value of
-its schema or by something of another kind. `make fuzz` sends 10,000 (KNITCORE_FUZZ_REQUESTS).
+its schema or by something of another kind. `make test-hard` sends 10,000 (KNITCORE_FUZZ_REQUESTS).
 """
 
 from __future__ import annotations
