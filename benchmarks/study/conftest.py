@@ -1,4 +1,4 @@
-"""Comparisons with the study's raw data, which are no part of the product: `pytest benchmarks/study`.
+"""Comparisons with the study's raw data, which are no part of the product (KNITCORE_STUDY_DATA).
 
 They are tests, but not of the suite, which needs nothing that a clone lacks.
 """
