@@ -24,7 +24,7 @@ SERVICE = {
     "restore": "app.cli.backups:restore",
 }
 """Commands that are no operations, and where each is."""
-SECTIONS = {
+SECTIONS: dict[str, tuple[str, ...]] = {
     "Design": ("find", "fill", "shape", "atlas"),
     "Fabric": (
         *("predict", "curve", "stretch", "bias", "biaxial", "trellis", "piece"),

@@ -23,6 +23,7 @@ from app.models.charts import PureFabricChart, to_chart, to_repeat
 from app.operations.registry import operations
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.fabric import Fabric
 from tests.app.command_line import run
 
 EXAMPLE_OF_EACH = ("chart.txt", "KKP/PPK", "- for standard input", "rib with --size 31x20")
@@ -167,6 +168,6 @@ def test_a_chart_that_is_wrong_is_refused_in_a_line(words: list[str], says: str)
 
 
 def test_a_fabric_alone_stands_for_its_repeat_at_the_yarn_level() -> None:
-    fabric = StitchChart.of_fabric("rib")  # type: ignore[arg-type]
+    fabric = StitchChart.of_fabric(Fabric.RIB)
     assert to_repeat(chart_fields("relax", "rib")["chart"]) == fabric.repeat()
     assert to_chart(chart_fields("relax", "KKP/KPP")["chart"]) == StitchChart.parse("KKP/KPP")
