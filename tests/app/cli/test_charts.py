@@ -60,16 +60,14 @@ def meant(name: str, chart: str, size: str | None = None) -> StitchChart:
     return to_chart(sent if isinstance(sent, str) else PureFabricChart.model_validate(sent))
 
 
-@st.composite
-def repeats(draw: st.DrawFn) -> list[str]:
+def rows_of(columns: int) -> st.SearchStrategy[list[str]]:
     """Rows of a small repeat, the top row first."""
-    columns = draw(st.integers(1, 6))
     row = st.text("KP", min_size=columns, max_size=columns)
-    return draw(st.lists(row, min_size=1, max_size=6))
+    return st.lists(row, min_size=1, max_size=6)
 
 
 @pytest.mark.parametrize("name", sorted(COMMANDS))
-@given(rows=repeats())
+@given(rows=st.integers(1, 6).flatmap(rows_of))
 @settings(max_examples=10, deadline=None)
 def test_a_line_a_file_and_standard_input_are_one_chart(
     name: str, rows: list[str], tmp_path_factory: pytest.TempPathFactory
