@@ -80,7 +80,7 @@ def commands_page() -> str:
         named = [row for row in rows if row is not None]
         if named:
             parts += ["| option | |", "|---|---|"]
-            parts += [f"| `{_cell(name)}` | {_cell(text)} |" for name, text in named]
+            parts += [f"| <code>{_cell(name)}</code> | {_cell(text)} |" for name, text in named]
     return "\n".join(parts)
 
 
@@ -98,7 +98,8 @@ def _commands(
 
 
 def _cell(text: str) -> str:
-    return re.sub(r"\s+", " ", text).replace("|", "\\|")
+    """Escape a text for a cell; Markdown shows the backslash of an escaped bar inside code."""
+    return escape(re.sub(r"\s+", " ", text), quote=False).replace("|", "&#124;")
 
 
 def rest_page() -> str:

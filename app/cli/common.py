@@ -1,4 +1,4 @@
-"""What commands share: the settings, the database, and ways of printing."""
+"""Things that commands share: the settings, the database, and ways of printing."""
 
 from __future__ import annotations
 

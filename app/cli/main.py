@@ -3,21 +3,44 @@
 from __future__ import annotations
 
 import importlib
-import pkgutil
 from typing import Any
 
 import click
 from pydantic import ValidationError
 
-import app.cli as package
+from app.cli.options import CHART_HELP
 from app.models.base import first_fault
 from app.operations.registry import commands, operation_of_command
 from knitcore.errors import KnitcoreError
 
-GROUPS = {"measure": "Measure a yarn: its bending modulus and its compressibility."}
+GROUPS = {"measure": "Measure a yarn's bending and its compression."}
 """Groups of commands, which are operations."""
-NO_COMMANDS = {"main", "common", "commands", "options"}
-"""Modules of this package that hold no command."""
+SERVICE = {
+    "serve": "app.cli.serve:command",
+    "doctor": "app.cli.machine:doctor",
+    "warm-up": "app.cli.machine:warm_up",
+    "token": "app.cli.token:command",
+    "backup": "app.cli.backups:backup",
+    "restore": "app.cli.backups:restore",
+}
+"""Commands that are no operations, and where each is."""
+SECTIONS: dict[str, tuple[str, ...]] = {
+    "Design": ("find", "fill", "shape", "atlas"),
+    "Fabric": (
+        *("predict", "curve", "stretch", "bias", "biaxial", "trellis", "piece"),
+        *("curl", "border", "hang", "drape", "overhang", "rs"),
+    ),
+    "Yarn": (
+        *("materials", "estimate", "characterise"),
+        *("relax", "whole", "tube", "sweep", "hysteresis", "bend"),
+    ),
+    "Measure": ("fit", "measure", "calibrate", "compare"),
+    "Garment": ("garment", "glove", "limb", "pressure"),
+    "Files": ("import", "export"),
+    "Serve": (*SERVICE, "extensions"),
+}
+"""Sections of the help; a command that is in none is listed last."""
+LAST_SECTION = "More"
 
 
 class Failure(click.ClickException):
@@ -34,11 +57,11 @@ class Operations(click.Group):
     """Commands made of the operations of a group, each loaded when it is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names of all commands."""
+        """List the names of all commands."""
         return sorted(commands(self.operations_of))
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command of that name."""
+        """Load the command of that name."""
         try:
             operation = operation_of_command(cmd_name, self.operations_of)
         except ModuleNotFoundError as error:
@@ -56,33 +79,55 @@ class Operations(click.Group):
 
 
 class Commands(Operations):
-    """All commands: operations, and those that run the service, each a module of this package."""
+    """All commands: operations, their groups, and those that run the service."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names of all commands."""
-        return sorted({*super().list_commands(ctx), *_own_commands(), *GROUPS})
+        """List the names of all commands, section by section."""
+        return [name for names in self.sections(ctx).values() for name in names]
+
+    def sections(self, ctx: click.Context) -> dict[str, list[str]]:
+        """Sort the names of all commands into sections."""
+        every = {*super().list_commands(ctx), *SERVICE, *GROUPS}
+        sections = {
+            title: [name for name in names if name in every] for title, names in SECTIONS.items()
+        }
+        rest = every.difference(*SECTIONS.values())
+        return sections | ({LAST_SECTION: sorted(rest)} if rest else {})
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command of that name."""
+        """Load the command of that name."""
         if cmd_name in GROUPS:
             return Operations(cmd_name, help=GROUPS[cmd_name])
-        if cmd_name in _own_commands():
+        if cmd_name in SERVICE:
+            module, _, name = SERVICE[cmd_name].partition(":")
             try:
-                name = cmd_name.replace("-", "_")
-                module = importlib.import_module(f"{package.__name__}.{name}")
+                command: click.Command = getattr(importlib.import_module(module), name)
             except ModuleNotFoundError as error:
                 return _not_installed(cmd_name, error)
-            found: click.Command = module.command
-            return found
+            return command
         return super().get_command(ctx, cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write each section with one line for each of its commands."""
+        sections = self.sections(ctx)
+        width = max(len(name) for names in sections.values() for name in names)
+        for title, names in sections.items():
+            made = [(name, self.get_command(ctx, name)) for name in names]
+            rows = [
+                (name.ljust(width), command.get_short_help_str(formatter.width - 6 - width))
+                for name, command in made
+                if command is not None
+            ]
+            with formatter.section(title):
+                formatter.write_dl(rows)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; expected errors are printed in one line each."""
         try:
             return super().invoke(ctx)
         except KnitcoreError as error:
-            found = (error, *getattr(error, "others", ()))
-            raise Failure("\n".join(map(str, found))) from error
+            faults = (error, *getattr(error, "others", ()))
+            raise Failure("\n".join(map(str, faults))) from error
         except ModuleNotFoundError as error:
             raise Failure(_remedy(error)) from error
         except ValidationError as error:
@@ -105,12 +150,12 @@ def _remedy(error: ModuleNotFoundError) -> str:
     return f"{error.name} is not installed. Run: pip install 'knitcore[service]'"
 
 
-def _own_commands() -> set[str]:
-    modules = {module.name for module in pkgutil.iter_modules(package.__path__)} - NO_COMMANDS
-    return {name.replace("_", "-") for name in modules}
-
-
-@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(
+    cls=Commands,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=f"{CHART_HELP} `knitcore COMMAND --help` lists the options of a command; each of them "
+    "has --json.",
+)
 @click.version_option(package_name="knitcore")
 def main() -> None:
     """Design the mechanics of knitted fabric, stitch by stitch."""

@@ -143,7 +143,7 @@ def _raise_handles() -> int:
 
 
 def _address(settings: Settings, listener: socket.socket) -> str:
-    """What to type into a browser on this machine."""
+    """Return the address for a browser on this machine."""
     shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104
     name = f"[{shown}]" if ":" in shown else shown
     return f"http://{name}:{listener.getsockname()[1]}/"

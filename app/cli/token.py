@@ -24,7 +24,7 @@ def _tokens() -> Iterator[Tokens]:
 
 @click.group("token")
 def command() -> None:
-    """Who may use a service that asks for a login."""
+    """Create, list and revoke access tokens."""
 
 
 @command.command("create")
@@ -48,18 +48,22 @@ def create(user: str, label: str, days: float | None, as_json: bool) -> None:
 def list_(as_json: bool) -> None:
     """List all tokens, without their secrets."""
     with _tokens() as tokens:
-        found = tokens.all()
+        listed = tokens.all()
     lines = [
         f"{t.id}  {t.user:20} {t.created_at:%Y-%m-%d}  "
         f"{'revoked' if t.revoked_at else 'open'}  {t.label}"
-        for t in found.tokens
+        for t in listed.tokens
     ]
-    emit(found, "\n".join(lines), as_json=as_json)
+    emit(listed, "\n".join(lines), as_json=as_json)
 
 
 @command.command("revoke")
 @click.argument("identifier", metavar="ID")
-def revoke(identifier: str) -> None:
+@json_option
+def revoke(identifier: str, as_json: bool) -> None:
     """Close the token ID; it stops working within seconds."""
     with _tokens() as tokens:
         tokens.revoke(identifier)
+        closed = next(token for token in tokens.all().tokens if token.id == identifier)
+    if as_json:
+        emit(closed, "", as_json=True)

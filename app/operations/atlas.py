@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, get_args
 import click
 from pydantic import BeforeValidator, Field
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import IntervalResult
 from app.models.charts import MaterialName, RepeatText
@@ -153,7 +153,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Predict all repeats of a material; a stopped run continues where it left off.",
+        help="Predict every repeat of a material, for `knitcore find`. A stopped run continues "
+        "where it left off.",
         names={"repeats": None},
         run=_command,
     ),

@@ -214,6 +214,8 @@ OPERATION = Operation(
     example={"chart": "K", "material": "acrylic"},
     job=True,
     command=Command(
-        _lines, help="Bending rigidity, curl and shear of the repeat CHART, without friction."
+        _lines,
+        help="Compute bending rigidity and curl of the repeat CHART. Its shear modulus comes with "
+        "them; all are without friction.",
     ),
 )

@@ -87,6 +87,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         group="measure",
-        help="Bending modulus from IMAGES of yarn hanging from a horizontal clamp.",
+        help="Measure a yarn's bending modulus from IMAGES. The yarn hangs from a horizontal "
+        "clamp.",
     ),
 )

@@ -72,6 +72,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Pull a strip of CHART cut at an angle to its rows, on the bias by default.",
+        help="Pull a strip cut from CHART at an angle to its rows. It is cut on the bias by "
+        "default.",
     ),
 )

@@ -103,5 +103,5 @@ OPERATION = Operation(
     summary="How wide a border keeps a piece flat",
     example={"chart": "K", "material": "acrylic", "linear_density_g_per_m": 0.5, "border": "rib"},
     job=True,
-    command=Command(_lines, help="How wide a border keeps a piece of CHART flat on a table."),
+    command=Command(_lines, help="Compute how wide a border keeps a piece of CHART flat."),
 )

@@ -8,7 +8,7 @@ from typing import Literal
 import click
 from pydantic import Field
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import Floats
 from app.models.charts import MaterialName
@@ -152,7 +152,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Fit shear modulus and couplings to the measured displacement FIELD (.npz).",
+        help="Fit shear and couplings to a measured displacement field. FIELD is a .npz file.",
         names={"frames": "--frame"},
         run=_command,
     ),

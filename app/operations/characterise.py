@@ -9,7 +9,7 @@ from typing import Any, Literal, Self
 import click
 from pydantic import Field, RootModel, model_validator
 
-from app.command_options import write_table
+from app.cli.options import write_table
 from app.context import Context
 from app.models.base import Positive, RequestModel, ResultModel
 from app.models.charts import MaterialName
@@ -347,8 +347,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Characterise yarns at the yarn level: laws, sizes and energies of their pure "
-        "fabrics.\n\nEvery fabric is relaxed at every loop length and stretched both ways. A "
+        help="Simulate the pure fabrics of yarns and fit their laws.\n\nEvery fabric is relaxed "
+        "at every loop length and stretched both ways. A "
         "stopped command continues where it left off. FOLDER holds table.csv, curves.csv, and "
         "material files that every other command takes for --material.",
         names={

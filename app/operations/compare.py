@@ -95,7 +95,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Compare a law with the measured displacement FIELD (.npz).",
+        help="Compare a law with a measured displacement field. FIELD is a .npz file.",
         names={"frames": "--frame"},
     ),
 )

@@ -129,7 +129,8 @@ OPERATION = Operation(
     command=Command(
         _lines,
         group="measure",
-        help="Constants k and p of the contact law from compression tests (XLS, XLSX or CSV).",
+        help="Fit the contact law of a yarn to compression tests. Each FILE is an XLS, XLSX or "
+        "CSV.",
         run=_command,
     ),
 )

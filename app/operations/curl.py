@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import Known, RequestModel, ResultModel
 from app.models.charts import OutlineInput
@@ -165,7 +165,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help=f"How the whole piece CHART (up to {MAX_STITCHES} stitches) curls and folds.",
+        help=f"Compute how the whole piece CHART curls and folds. It has up to {MAX_STITCHES:,} "
+        "stitches.",
         names={"after": None, "corners": None},
         run=_and_write,
     ),

@@ -8,7 +8,7 @@ from typing import Any
 import click
 from pydantic import Field, ValidationError
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
 from app.models.laws import LawResult
@@ -275,7 +275,7 @@ OPERATION = Operation(
     example={"bending_modulus_n_mm2": 0.04, "loop_length_mm": 14.0},
     command=Command(
         _lines,
-        help="Estimate the four fabrics of a yarn that is not in the library.",
+        help="Estimate the fabrics of a yarn that is not in the library.",
         run=_command,
         request=YarnFacts,
     ),

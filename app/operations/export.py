@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pydantic import ConfigDict, Field
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
@@ -140,7 +140,9 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         _lines,
-        help="Write CHART to a file: knitout is checked on a virtual machine before it is written.",
+        help="Write CHART for machines, knitters or other programs. Knitout is first run on a "
+        "virtual "
+        "machine that checks it.",
         names={
             "linear_density_tex": "--tex",
             "photo": None,

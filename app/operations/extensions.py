@@ -67,5 +67,5 @@ OPERATION = Operation(
     method="GET",
     tag="materials",
     summary="What installed packages add",
-    command=Command(_lines),
+    command=Command(_lines, help="List what installed packages add to Knitcore."),
 )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.command_options import atlas_option, design_option, resolve_chart, write_design_of
+from app.cli.options import atlas_option, design_option, resolve_chart, write_design_of
 from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, RequestModel, ResultModel
 from app.models.charts import (
@@ -208,7 +208,9 @@ def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float
 
 
 @click.argument("target", type=click.Path(path_type=Path))
-@click.option("--chart", "kept", help="Stitches without a target keep what they are in this file.")
+@click.option(
+    "--chart", "kept", help="Chart in which stitches without a target keep what they are."
+)
 @atlas_option
 @design_option
 def _command(
@@ -248,8 +250,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Make a chart for TARGET: a CSV of row, column and target moduli, such as "
-        "`export --to csv` writes.",
+        help="Design a chart with given moduli at each stitch. TARGET is a CSV of row, column and "
+        "target moduli, such as `export --to csv` writes.",
         names=dict.fromkeys((*MAPS, "rows", "columns", "wishes", "chart")),
         run=_command,
     ),

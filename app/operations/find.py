@@ -288,7 +288,9 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Rank the repeats of atlases (or of materials, up to 3x3) by how surely they fit.",
+        help="Find repeats that meet targets, the surest first. They come from atlases, or, up "
+        "to 3x3, "
+        "from materials.",
         names=dict.fromkeys(("materials", "targets", "repeats", "elsewhere"))
         | {
             "transfers_per_stitch": "--most-transfers",

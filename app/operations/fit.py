@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from app.command_options import out_option, write_table
+from app.cli.options import out_option, write_table
 from app.context import Context
 from app.models.base import Floats, RequestModel, ResultModel
 from app.models.checks import CheckedBy
@@ -175,7 +175,9 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Fit a law to a course-wise and a wale-wise stretch test (HDF5, CSV or XLSX).",
+        help="Fit a law to a course-wise and a wale-wise stretch test. Each is an HDF5, CSV or "
+        "XLSX "
+        "file.",
         names={"residuals": None},
         run=_command,
     ),

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import CellLines, ChartLines, MaterialName, RepeatText

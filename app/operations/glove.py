@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import IntervalResult
 from app.models.posed import Body, PosedView
@@ -138,7 +138,7 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         _lines,
-        help="How the glove for a hand fits and presses on it.",
+        help="Compute how a glove fits a hand and presses on it.",
         names={"garment": None, "gauge": None},
         fields=_hand,
         run=_and_write,

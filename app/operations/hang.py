@@ -94,7 +94,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="How the whole piece CHART hangs under its weight.",
+        help="Compute how the whole piece CHART hangs under its weight.",
         names={"corners": None},
     ),
 )

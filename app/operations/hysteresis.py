@@ -181,7 +181,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _text,
-        help="Load and unload the repeat CHART, with friction between its yarns: loop, lost energy "
-        "and rest sizes.",
+        help="Load and unload the repeat CHART, with friction in its yarn. The result has the "
+        "loop, "
+        "the energy lost and the sizes at rest.",
     ),
 )

@@ -85,6 +85,8 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         lambda r: [r.chart],
-        help="Read the chart in FILE: K/P text, written rows, PNG, knitout or a design.",
+        help="Read the chart in FILE. It holds K/P text, written rows, KnitSpeak, PNG, knitout "
+        "or a "
+        "design.",
     ),
 )

@@ -10,7 +10,7 @@ import click
 import numpy as np
 from pydantic import Field
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import to_chart
@@ -276,7 +276,9 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         _lines,
-        help="How a tube of CHART fits a limb: ease, pressure, nearness to lock-up along it.",
+        help="Compute how a tube of CHART fits a limb and presses on it. The result has ease, "
+        "pressure "
+        "and nearness to lock-up along the limb.",
         names={"girths": None},
         fields=_girths,
         run=_and_write,

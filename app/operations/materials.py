@@ -76,6 +76,8 @@ OPERATION = Operation(
     tag="materials",
     summary="The library of materials",
     command=Command(
-        _lines, help="List the library, or explain one MATERIAL (an id or a file).", run=_command
+        _lines,
+        help="List the library's materials, or explain one. MATERIAL is an id or a file.",
+        run=_command,
     ),
 )

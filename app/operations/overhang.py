@@ -104,7 +104,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Bend a strip of CHART over the edge of a table (Peirce's bending length).",
+        help="Bend a strip of CHART over the edge of a table. The result is Peirce's bending "
+        "length.",
         names={"corners": None},
     ),
 )

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field, ValidationError
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import EndsOfList, Floats, ResultModel, first_fault
 from app.models.charts import to_repeat
@@ -189,7 +189,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Load a piece of any outline, cut from cloth of CHART, at its edges.",
+        help="Load a piece of any outline that is cut from CHART. Loads act at its edges.",
         names={"piece": None},
         fields=_piece_file,
         run=_command,

@@ -152,7 +152,7 @@ OPERATION = Operation(
     example={"chart": "KKPP", "material": "acrylic"},
     command=Command(
         _lines,
-        help="Moduli, Poisson's ratios and extensibility of CHART.",
+        help="Predict moduli, Poisson's ratios and size at rest of CHART.",
         names={"measures": "--measure"},
     ),
 )

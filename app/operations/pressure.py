@@ -214,7 +214,8 @@ OPERATION = Operation(
     },
     command=Command(
         _lines,
-        help="Pressure of a knitted tube on a limb, as an interval; never a medical class.",
+        help="Compute the pressure of a knitted tube on a limb. It is an interval, never a medical "
+        "class.",
         names={"law": None, "chart": None},
         run=_command,
     ),

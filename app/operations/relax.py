@@ -9,7 +9,7 @@ from typing import Literal, Self
 
 from pydantic import Field
 
-from app.command_options import loop_lengths
+from app.cli.options import loop_lengths
 from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
@@ -329,8 +329,9 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Relax the repeat CHART at the yarn level: free of force, without friction unless "
-        "--friction or --history asks for it.",
+        help="Compute the yarn's shape at rest in the repeat CHART. It is free of force, and "
+        "has no "
+        "friction unless --friction or --history asks for it.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,
     ),

@@ -93,5 +93,5 @@ OPERATION = Operation(
     path="/rs/{material}",
     tag="mechanics",
     summary="Moduli from the shape of the yarn",
-    command=Command(_lines, help="The reduced-symmetry model of the four fabrics."),
+    command=Command(_lines, help="Compute the four pure fabrics by the reduced-symmetry model."),
 )

@@ -10,7 +10,7 @@ import click
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from app.command_options import atlas_option, design_option, write_design_of
+from app.cli.options import atlas_option, design_option, write_design_of
 from app.context import Context
 from app.models.base import Known, ResultModel
 from app.models.charts import ChartLines, MaterialName, RepeatText
@@ -147,8 +147,9 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Make a chart that, stretched, has the widths of PROFILE: a CSV with a column "
-        "`width`, stretched width over width at rest, one line across the pull after the other "
+        help="Design a chart that takes given widths when it is stretched. PROFILE is a CSV with a "
+        "column `width`, stretched width over width at rest, one line across the pull after the "
+        "other "
         "from the bottom (or the left); empty where any width will do.",
         names={"width": None},
         fields=_widths,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 from scipy.ndimage import distance_transform_edt
 
-from app.command_options import out_option
+from app.cli.options import out_option
 from app.context import Context
 from app.models.base import EndsOfList, Floats, IntervalResult, ResultModel
 from app.models.charts import Column, OutlineInput, Row, to_chart
@@ -379,7 +379,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Pull CHART between two clamps: a simulated strip test, not a certified one.",
+        help="Pull CHART between two clamps, as in a strip test. It is simulated, not certified.",
         run=_command,
     ),
 )

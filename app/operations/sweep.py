@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.command_options import loop_lengths
+from app.cli.options import loop_lengths
 from app.context import Context
 from app.models.base import EndsOfList, Floats, IntervalResult
 from app.models.friction import RubbedRequest, on_splines
@@ -268,7 +268,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Stretch the repeat CHART at the yarn level, free across, and fit its law: without "
+        help="Stretch the yarn of the repeat CHART and fit a law to it. It is free across, and "
+        "has no "
         "friction unless --friction or --there-and-back asks for it.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,

@@ -70,6 +70,6 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Shear a square of CHART in a hinged frame (picture frame).",
+        help="Shear a square of CHART in a hinged frame. The test is called picture frame.",
     ),
 )

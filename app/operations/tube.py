@@ -124,6 +124,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Relax the repeat CHART as a long tube of --wales stitches around, without friction.",
+        help="Compute the yarn's shape at rest in a tube knitted of CHART. The tube is long, has "
+        "--wales stitches around, and no friction.",
     ),
 )

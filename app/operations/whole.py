@@ -156,7 +156,9 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Relax the whole CHART at the yarn level, up to 4,000 stitches: free of force, "
-        "without friction. A stopped command continues where it left off.",
+        help="Compute the yarn's shape at rest in a whole CHART. Its edges are free. It has up "
+        "to 4,000 "
+        "stitches, free of force and without friction. A stopped command continues where it "
+        "left off.",
     ),
 )

@@ -183,7 +183,11 @@ def test_remarks_do_not_mix_with_the_result() -> None:
 @pytest.mark.parametrize(
     ("source", "told"),
     [
-        ("Ten swatches.", "90 % intervals: Ten swatches.\n"),
+        ("Ten swatches.", "90 % intervals rest on\n  Ten swatches.\n"),
+        (
+            "Stretch: ten tests. Size: one swatch of 1.5 m.",
+            "90 % intervals rest on\n  Stretch – ten tests.\n  Size – one swatch of 1.5 m.\n",
+        ),
         ("No intervals: nothing is known.", "No intervals: nothing is known.\n"),
     ],
 )
