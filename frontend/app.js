@@ -15,7 +15,6 @@ import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/sto
 import { byId, firstPaint, isTyping, nextTask } from "./dom.js";
 import { openAddressed } from "./keeping/address.js";
 import { Keeper } from "./keeping/keeper.js";
-import { sharePlaces } from "./keeping/places.js";
 import { sharedBanner } from "./panels/sharedbanner.js";
 import { fabricview } from "./panels/fabricview.js";
 import { panelOpener } from "./panels/registry.js";
@@ -49,7 +48,6 @@ const view = new ChartView(byId("chart-host"), byId("chart"), byId("chart-top"),
 await nextTask();
 
 const keeper = new Keeper(studio, kept?.remote ?? null);
-sharePlaces(view, studio, keeper.windows);
 const open = panelOpener(studio);
 /** @type {(() => void)[]} */
 const themed = [];

@@ -1,8 +1,5 @@
 /**
- * Other windows that show the same design: how many there are, where the pointers and selections of those of
- * this browser are, and when the design has changed.
- *
- * @import {Presence} from "../chart/view.js"
+ * Other windows that show the same design: how many there are, and when the design has changed.
  */
 
 import { Signal } from "../core/signal.js";
@@ -12,22 +9,17 @@ import { Follower } from "./follower.js";
 /** How often the others are asked whether they are still there, and how long they have to answer. */
 const ASK_MS = 4000;
 const ANSWER_MS = 1000;
-/** @type {Presence} */
-const NOWHERE = { cell: null, box: null };
 
 /**
  * @typedef {{kind: "here" | "gone" | "who", window: string, design: string | null}
  *   | {kind: "named", window: string, design: string, before: string}
  *   | {kind: "changed", window: string, design: string, revision: number}
- *   | {kind: "elsewhere", window: string, design: string, others: number}
- *   | {kind: "at", window: string, design: string, place: Presence}} Word
+ *   | {kind: "elsewhere", window: string, design: string, others: number}} Word
  */
 
 export class Windows {
   /** Number of other windows with the design. */
   others = new Signal(0);
-  /** Where they are, by window. */
-  places = new Signal(/** @type {ReadonlyMap<string, Presence>} */ (new Map()));
   /** Called when there is a new revision of the design, perhaps this window's own. @type {(revision: number) => void} */
   onChanged = () => {};
   /** Called when another window has the service's name of a design that had none. @type {(before: string, design: string) => void} */
@@ -35,7 +27,6 @@ export class Windows {
   #channel = new BroadcastChannel("knitcore-windows");
   #name = newIdentifier();
   /** @type {string | null} */ #design = null;
-  #place = NOWHERE;
   /** @type {(name: string) => void} */ #answered = () => {};
   /** Design of each other window. @type {Map<string, string | null>} */ #seen = new Map();
   /** Number of other browsers with the design, and whether this window is the one that knows. */
@@ -83,12 +74,6 @@ export class Windows {
     if (this.#design) this.#say({ kind: "changed", window: this.#name, design: this.#design, revision });
   }
 
-  /** This window's pointer and selection are there. @param {Presence} place */
-  at(place) {
-    this.#place = place;
-    if (this.#design && this.others.value) this.#say({ kind: "at", window: this.#name, design: this.#design, place });
-  }
-
   #tellElsewhere() {
     if (this.#design && this.#follows) {
       this.#say({ kind: "elsewhere", window: this.#name, design: this.#design, others: this.#elsewhere });
@@ -123,9 +108,6 @@ export class Windows {
       this.#elsewhere = word.others;
       this.#follows = false;
     }
-    if (word.kind === "at" && word.design === this.#design) {
-      this.places.value = new Map([...this.places.value, [word.window, word.place]]);
-    }
     if (word.kind === "named") this.onNamed(word.before, word.design);
     if (word.kind === "changed" && word.design === this.#design) this.onChanged(word.revision);
     this.#count();
@@ -133,11 +115,7 @@ export class Windows {
 
   #count() {
     const design = this.#design;
-    const here = [...this.#seen].filter(([, one]) => design && one === design).map(([name]) => name);
-    const before = this.others.value;
+    const here = [...this.#seen.values()].filter((shown) => design && shown === design);
     this.others.value = here.length + this.#elsewhere;
-    if (this.others.value > before) this.at(this.#place); // for whoever has come
-    const known = [...this.places.value].filter(([name]) => here.includes(name));
-    if (known.length < this.places.value.size) this.places.value = new Map(known);
   }
 }
