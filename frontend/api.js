@@ -158,7 +158,7 @@ export const api = {
    * Outline stitches in the 3D view, or none.
    *
    * @param {string} design
-   * @param {import("./core/grid.js").Box | null} box
+   * @param {import("./grid/grid.js").Box | null} box
    * @returns {Promise<void>}
    */
   mark: (design, box) => call(`/views/${encodeURIComponent(design)}/mark`, { method: "PUT", body: { box } }),

@@ -2,18 +2,18 @@
  * The chart on its canvas. Two canvases lie over each other: the chart itself, of which only what
  * changed is drawn anew, and what follows the pointer.
  *
- * @import {Box} from "../core/grid.js"
- * @import {Cell} from "../core/raster.js"
- * @import {Colouring} from "../studio/overlays.js"
- * @import {Studio} from "../studio.js"
+ * @import {Box} from "../grid/grid.js"
+ * @import {Cell} from "../grid/raster.js"
+ * @import {Colouring} from "../state/overlays.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 import { Signal } from "../core/signal.js";
-import { h } from "../dom.js";
+import { h } from "../elements/dom.js";
 import { ColourLayer } from "./layer.js";
 import { drawGrid, drawSegments, drawSymbols } from "./marks.js";
-import { OVERLAYS } from "../studio/overlays.js";
-import { pixel, readPalette } from "../studio/palette.js";
+import { OVERLAYS } from "../state/overlays.js";
+import { pixel, readPalette } from "../state/palette.js";
 import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
 import { drawCrosses } from "./crosses.js";
 import { drawRectangles } from "./rectangles.js";
@@ -173,7 +173,6 @@ export class ChartView {
     if (this.#topDirty) {
       this.#drawTop();
       this.#placeCursor();
-      this.#placeOthers();
     }
     this.#topDirty = false;
   }
@@ -366,7 +365,7 @@ export class ChartView {
   }
 }
 
-/** All stitches of the colour of a knit: the symbols say it all. @param {import("../studio/palette.js").Palette} palette */
+/** All stitches of the colour of a knit: the symbols say it all. @param {import("../state/palette.js").Palette} palette */
 function paper({ knit }) {
   return { table: new Uint32Array(128).fill(pixel(knit)) };
 }

@@ -3,7 +3,7 @@
  * chart (or its part) with the interval that the service knows, and the stretch test with the step
  * on show.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {CurveResult, StretchResult} from "../types.js"
  * @import {Plotly, Trace} from "./plotly.js"
  */
@@ -11,7 +11,7 @@
 import { ApiError, api, isAbort } from "../api.js";
 import { Latest } from "../core/latest.js";
 import { paced } from "../core/paced.js";
-import { FABRICS } from "../core/segments.js";
+import { FABRICS } from "../grid/segments.js";
 import { scopeOf } from "../services/scope.js";
 import { drawPlot, loadPlotly, movePoint } from "./plotly.js";
 

@@ -3,16 +3,16 @@
  * a moment after each change, then the shape at rest, both given up when the next change comes. Until
  * the first shape is there, the old one is shown, if the piece has kept its size.
  *
- * @import {Posed} from "../studio/seeing.js"
- * @import {Studio} from "../studio.js"
+ * @import {Posed} from "../state/seeing.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 import { ApiError, api, isAbort } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "../core/latest.js";
 import { figure, percent } from "../core/format.js";
-import { outlineText } from "../core/snapshot.js";
-import { REST } from "../studio.js";
+import { outlineText } from "../design/snapshot.js";
+import { REST } from "../state/studio.js";
 
 const DELAY_MS = 25;
 /** CPU time of the first shape, and that after which the second is shown as a preview, too. */

@@ -1,7 +1,7 @@
 /**
  * Asks the service for the mechanics of the chart, or of the selection, a moment after each change.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 import { ApiError, api, isAbort } from "../api.js";

@@ -8,8 +8,8 @@
 
 import { paste } from "../../actions/selection.js";
 import { ApiError, api } from "../../api.js";
-import { DesignError, readDesign } from "../../core/design.js";
-import { Grid, MAX_SIDE, isChartText } from "../../core/grid.js";
+import { DesignError, readDesign } from "../../design/design.js";
+import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
 import { refusal } from "../../services/refusal.js";
 
 const MAX_FILE_BYTES = 12_000_000;

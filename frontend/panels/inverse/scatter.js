@@ -7,9 +7,9 @@
  * @typedef {{key: string, index: number, x: number, y: number}} Point a repeat
  */
 
-import { readPalette } from "../../studio/palette.js";
+import { readPalette } from "../../state/palette.js";
 import { figure } from "../../core/format.js";
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 
 const PAD = { left: 54, right: 14, top: 10, bottom: 40 };
 const NEAR_PX = 16;
@@ -122,7 +122,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     }
   };
 
-  /** @param {CanvasRenderingContext2D} context @param {number} index @param {import("../../studio/palette.js").Palette} palette */
+  /** @param {CanvasRenderingContext2D} context @param {number} index @param {import("../../state/palette.js").Palette} palette */
   const interval = (context, index, palette) => {
     if (!table) return;
     const { x, y } = points[index];
@@ -223,7 +223,7 @@ export function inWords({ index }, table) {
  * @param {string} source
  * @param {number} x
  * @param {number} y
- * @param {import("../../studio/palette.js").Palette} palette
+ * @param {import("../../state/palette.js").Palette} palette
  */
 function mark(context, source, x, y, palette) {
   context.beginPath();
@@ -240,7 +240,7 @@ function mark(context, source, x, y, palette) {
   }
 }
 
-/** @param {CanvasRenderingContext2D} context @param {string} text @param {number} x @param {number} y @param {number} width @param {import("../../studio/palette.js").Palette} palette */
+/** @param {CanvasRenderingContext2D} context @param {string} text @param {number} x @param {number} y @param {number} width @param {import("../../state/palette.js").Palette} palette */
 function label(context, text, x, y, width, palette) {
   const half = context.measureText(text).width / 2 + 2;
   const at = Math.min(width - PAD.right - half, Math.max(PAD.left + half, x));
