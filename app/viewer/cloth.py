@@ -21,7 +21,7 @@ a camera that sees a cloth half a metre wide stands a metre away."""
 RESIZE = np.array([0.06, 0.06, 0.06, 0.02])
 """Logarithms of the changes of :func:`tube_sizes` up to which a tube is scaled, not drawn anew."""
 FINEST = 256
-"""Steps to a millimetre in which places and sizes are sent; frontend/viser/yarn.js knows it, too."""
+"""Steps to a millimetre in which places and sizes are sent, as in frontend/viser/yarn.js."""
 BRIGHTEST = 63 / 64
 """Full light is no whole step."""
 
