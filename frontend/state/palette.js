@@ -43,11 +43,20 @@ export function onTheme(listener) {
   new MutationObserver(listener).observe(document.documentElement, { attributeFilter: ["data-theme"] });
 }
 
+/** A reader of the style sheet's colours in the theme on show, by the name of their custom property. */
+export function themedReader() {
+  const style = getComputedStyle(document.documentElement);
+  const dark = isDark();
+  return (/** @type {string} */ name) => {
+    const token = style.getPropertyValue(name).trim();
+    const pair = /^light-dark\((.+?),\s*(.+)\)$/.exec(token);
+    return pair ? pair[dark ? 2 : 1] : token;
+  };
+}
+
 /** @param {boolean} dark @returns {Palette} */
 function palette(dark) {
-  const style = getComputedStyle(document.documentElement);
-  /** @param {string} name */
-  const read = (name) => style.getPropertyValue(name).trim();
+  const read = themedReader();
   const written = /** @type {Record<Fabric, string>} */ (
     Object.fromEntries(FABRICS.map((fabric) => [fabric, read(`--${fabric}`)]))
   );

@@ -7,7 +7,7 @@
  * @typedef {{key: string, index: number, x: number, y: number}} Point a repeat
  */
 
-import { readPalette } from "../../state/palette.js";
+import { readPalette, themedReader } from "../../state/palette.js";
 import { figure } from "../../core/format.js";
 import { h } from "../../elements/dom.js";
 
@@ -60,7 +60,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     }
     const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     const palette = readPalette();
-    const line = getComputedStyle(canvas).getPropertyValue("--line");
+    const line = themedReader()("--line");
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     if (!table) return;
@@ -246,7 +246,7 @@ function label(context, text, x, y, width, palette) {
   const at = Math.min(width - PAD.right - half, Math.max(PAD.left + half, x));
   context.textAlign = "center";
   context.lineWidth = 4;
-  context.strokeStyle = getComputedStyle(context.canvas).getPropertyValue("--panel");
+  context.strokeStyle = themedReader()("--panel");
   context.strokeText(text, at, y);
   context.fillStyle = palette.text;
   context.fillText(text, at, y);
