@@ -3025,3 +3025,41 @@ export interface YarnResult {
   provenance: string;
   estimated: boolean;
 }
+
+/** Operations by their address. */
+export interface Operations {
+  "atlas": { request: AtlasRequest; result: AtlasResult };
+  "bend": { request: BendRequest; result: BendResult };
+  "bias": { request: BiasRequest; result: BiasResult };
+  "biaxial": { request: BiaxialRequest; result: BiaxialResult };
+  "border": { request: BorderRequest; result: BorderResult };
+  "calibrate": { request: CalibrateRequest; result: CalibrateResult };
+  "charts/parse": { request: ParseRequest; result: ParsedChart };
+  "compare": { request: CompareRequest; result: CompareResult };
+  "curl": { request: CurlRequest; result: CurlResult };
+  "curve": { request: CurveRequest; result: CurveResult };
+  "drape": { request: DrapeRequest; result: DrapeResult };
+  "estimate": { request: EstimateRequest; result: EstimateResult };
+  "export": { request: ExportRequest; result: ExportResult };
+  "fill": { request: FillRequest; result: FillResult };
+  "find": { request: FindRequest; result: FindResult };
+  "fit": { request: FitRequest; result: FitResult };
+  "garment": { request: GarmentRequest; result: GarmentResult };
+  "glove": { request: GloveRequest; result: GloveResult };
+  "hang": { request: HangRequest; result: HangResult };
+  "hysteresis": { request: HysteresisRequest; result: HysteresisResult };
+  "import": { request: ImportRequest; result: ImportResult };
+  "limb": { request: LimbRequest; result: LimbResult };
+  "measure/bending": { request: BendingRequest; result: BendingResult };
+  "measure/compression": { request: CompressionRequest; result: CompressionResult };
+  "overhang": { request: OverhangRequest; result: OverhangResult };
+  "piece": { request: PieceRequest; result: PieceResult };
+  "predict": { request: PredictRequest; result: PredictResult };
+  "pressure": { request: PressureRequest; result: PressureResult };
+  "relax": { request: RelaxRequest; result: RelaxResult };
+  "shape": { request: ShapeRequest; result: ShapeResult };
+  "stretch": { request: StretchRequest; result: StretchResult };
+  "sweep": { request: SweepRequest; result: SweepResult };
+  "trellis": { request: TrellisRequest; result: TrellisResult };
+  "tube": { request: TubeRequest; result: TubeResult };
+}

@@ -131,7 +131,7 @@ export class Stretcher {
     const { studio } = this;
     if (!this.#request || id === null || studio.currentStretch()?.id !== id) return;
     try {
-      await api.stretch(this.#request);
+      await api.run("stretch", this.#request);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       studio.tellProblem(error.problem);

@@ -95,9 +95,9 @@ function opened(design) {
 export async function answers({ grid, shaped }, material, signal) {
   const body = { chart: grid.text, material };
   const [predicted, course, wale] = await Promise.all([
-    api.predict({ ...body, ...shaped }, signal),
-    api.curve({ ...body, direction: "course" }, signal),
-    api.curve({ ...body, direction: "wale" }, signal),
+    api.run("predict", { ...body, ...shaped }, signal),
+    api.run("curve", { ...body, direction: "course" }, signal),
+    api.run("curve", { ...body, direction: "wale" }, signal),
   ]);
   return { predicted, curves: { course, wale } };
 }

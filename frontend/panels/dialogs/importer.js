@@ -29,7 +29,7 @@ export async function importText(context, text, name = "Pasted.txt") {
   if (isKnitting(name, text)) return importKnitting(context, name, text);
   const { studio } = context;
   try {
-    const { rows, columns, text: chart } = await api.parse(text);
+    const { rows, columns, text: chart } = await api.run("charts/parse", { text });
     if (!isChartText(chart)) {
       return refusal(
         `${columns} stitches × ${rows} rows is more than this page paints.`,

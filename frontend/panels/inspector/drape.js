@@ -35,7 +35,7 @@ const TESTS = [
     hint: "A strip that hangs over the edge of a table: Peirce's bending length",
     tell: async (asked, signal) => {
       const ways = /** @type {const} */ (["course", "wale"]);
-      const found = await Promise.all(ways.map((direction) => api.overhang({ ...asked, direction }, signal)));
+      const found = await Promise.all(ways.map((direction) => api.run("overhang", { ...asked, direction }, signal)));
       const [rows, columns] = found.map(({ bending_length_mm: mm }) => figure(mm / 10, 2));
       return {
         words: [`Bending length ${rows} cm along the rows, ${columns} cm along the columns.`],
@@ -50,7 +50,7 @@ const TESTS = [
     label: "Over a disc",
     hint: "A round piece of 30 cm over a disc of 18 cm: the drape coefficient",
     tell: async (asked, signal) => {
-      const found = await api.drape(asked, signal);
+      const found = await api.run("drape", asked, signal);
       const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, converged, piece } = found;
       const states = ends.map((end) => percent(end)).join(" to ");
       return {
@@ -69,7 +69,7 @@ const TESTS = [
     label: "Border",
     hint: "How wide a border of garter, seed or rib holds it flat by its weight",
     tell: async (asked, signal) => {
-      const found = await Promise.all(BORDERS.map((border) => api.border({ ...asked, border }, signal)));
+      const found = await Promise.all(BORDERS.map((border) => api.run("border", { ...asked, border }, signal)));
       const words = found.map(({ sides, ends }, i) => {
         const [wide, high] = [sides, ends].map(({ width_mm: mm }) => figure(mm / 10, 2));
         const lies = sides.holds && ends.holds ? "" : ", and wider would roll up, too";

@@ -40,7 +40,7 @@ export function limb(host, studio) {
     const chart = rest_mm || kind !== "chart" ? grid.text : studio.request.chart;
     latest.run(async (signal) => {
       try {
-        show(await api.limb({ ...studio.request, chart, direction, girths: sized }, signal));
+        show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal));
       } catch (error) {
         if (isAbort(error)) return;
         if (!(error instanceof ApiError)) throw error;

@@ -80,7 +80,7 @@ export function fromStiffness(studio) {
     if (!inside || size !== sizeNow()) return;
     const body = { chart: grid.region(inside).text, material: studio.materialId.value };
     try {
-      const found = await api.predict(body);
+      const found = await api.run("predict", body);
       part.now = { course: found.modulus_course_n_per_mm, wale: found.modulus_wale_n_per_mm };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

@@ -42,7 +42,7 @@ function shown(page, count) {
 /** A service that answers so often that a shape is not at rest. @param {number} previews */
 function answering(previews) {
   let asked = 0;
-  /** @type {any} */ (api).curl = () =>
+  /** @type {any} */ (api).run = () =>
     Promise.resolve({ id: `shape ${asked}`, rows: 1, columns: 2, converged: asked++ >= previews, notes: [] });
 }
 
@@ -81,7 +81,7 @@ test("after a stroke the old shape is a preview at once", async () => {
 test("the first shape begins at the old one, and the last one at nothing", async () => {
   /** @type {any[]} */
   const begun = [];
-  /** @type {any} */ (api).curl = (/** @type {any} */ { after, time_limit_s }) => {
+  /** @type {any} */ (api).run = (/** @type {any} */ { after, time_limit_s }) => {
     begun.push(after);
     const id = `shape ${begun.length}`;
     return Promise.resolve({ id, rows: 1, columns: 2, converged: time_limit_s > 1 || after, notes: [] });
