@@ -2,8 +2,9 @@
  * The service's REST API, typed. Every failure is an {@link ApiError} that says what, why and what
  * to do, or the browser's own AbortError if the call was given up.
  *
- * @import {MaterialDetail, ParsedChart, PredictResult, Problem, StretchResult, StretchRequest, ViewResult,
- *   ViewRequest} from "./types.js"
+ * @import {Box} from "./grid/grid.js"
+ * @import {CameraSide, JobStatus, MaterialDetail, MaterialSummary, Operations, PatternResult, Problem, SignedIn,
+ *   VersionResult, ViewRequest, ViewResult} from "./types.js"
  */
 
 /** A refused or failed call. */
@@ -102,7 +103,18 @@ export async function fetched(path, { method = "GET", body, signal, headers = {}
 }
 
 export const api = {
-  /** @type {() => Promise<import("./types.js").SignedIn>} */
+  /**
+   * Run an operation of the service: its request and result are those of its address.
+   *
+   * @template {keyof Operations} T
+   * @param {T} operation address of the operation, without the first slash
+   * @param {Operations[T]["request"]} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<Operations[T]["result"]>}
+   */
+  run: (operation, body, signal) => call(`/${operation}`, { method: "POST", body, signal }),
+
+  /** @type {() => Promise<SignedIn>} */
   session: () => call("/session"),
 
   /** @type {() => Promise<void>} */
@@ -111,143 +123,31 @@ export const api = {
   /** @type {(id: string) => Promise<void>} */
   endSession: (id) => call(`/sessions/${encodeURIComponent(id)}`, { method: "DELETE" }),
 
-  /** @type {() => Promise<import("./types.js").VersionResult>} */
+  /** @type {() => Promise<VersionResult>} */
   version: () => call("/version"),
 
-  /** @type {() => Promise<{materials: import("./types.js").MaterialSummary[]}>} */
+  /** @type {() => Promise<{materials: MaterialSummary[]}>} */
   materials: () => call("/materials"),
 
-  /**
-   * @param {string} id
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<MaterialDetail>}
-   */
+  /** @type {(id: string, signal?: AbortSignal) => Promise<MaterialDetail>} */
   material: (id, signal) => call(`/materials/${encodeURIComponent(id)}`, { signal }),
 
-  /** @type {() => Promise<{patterns: import("./types.js").PatternResult[]}>} */
+  /** @type {() => Promise<{patterns: PatternResult[]}>} */
   patterns: () => call("/patterns"),
 
-  /**
-   * @param {string} text
-   * @returns {Promise<ParsedChart>}
-   */
-  parse: (text) => call("/charts/parse", { method: "POST", body: { text } }),
-
-  /**
-   * @param {import("./types.js").PredictRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<PredictResult>}
-   */
-  predict: (body, signal) => call("/predict", { method: "POST", body, signal }),
-
-  /**
-   * @param {StretchRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<StretchResult>}
-   */
-  stretch: (body, signal) => call("/stretch", { method: "POST", body, signal }),
-
-  /**
-   * @param {string} design
-   * @param {ViewRequest} body
-   * @returns {Promise<ViewResult>}
-   */
+  /** @type {(design: string, body: ViewRequest) => Promise<ViewResult>} */
   view: (design, body) => call(`/views/${encodeURIComponent(design)}`, { method: "PUT", body }),
 
-  /**
-   * Outline stitches in the 3D view, or none.
-   *
-   * @param {string} design
-   * @param {import("./core/grid.js").Box | null} box
-   * @returns {Promise<void>}
-   */
+  /** Outline stitches in the 3D view, or none. @type {(design: string, box: Box | null) => Promise<void>} */
   mark: (design, box) => call(`/views/${encodeURIComponent(design)}/mark`, { method: "PUT", body: { box } }),
 
-  /**
-   * @param {string} design
-   * @param {import("./types.js").CameraSide} side
-   * @returns {Promise<void>}
-   */
+  /** @type {(design: string, side: CameraSide) => Promise<void>} */
   look: (design, side) => call(`/views/${encodeURIComponent(design)}/camera`, { method: "PUT", body: { side } }),
 
-  /**
-   * @param {import("./types.js").CurveRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").CurveResult>}
-   */
-  curve: (body, signal) => call("/curve", { method: "POST", body, signal }),
-
-  /**
-   * @param {import("./types.js").PressureRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").PressureResult>}
-   */
-  pressure: (body, signal) => call("/pressure", { method: "POST", body, signal }),
-
-  /**
-   * @param {import("./types.js").CurlRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").CurlResult>}
-   */
-  curl: (body, signal) => call("/curl", { method: "POST", body, signal }),
-
-  /**
-   * @param {import("./types.js").LimbRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").LimbResult>}
-   */
-  limb: (body, signal) => call("/limb", { method: "POST", body, signal }),
-
-  /**
-   * @param {import("./types.js").GloveRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").GloveResult>}
-   */
-  glove: (body, signal) => call("/glove", { method: "POST", body, signal }),
-
-  /**
-   * @param {import("./types.js").HangRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").HangResult>}
-   */
-  hang: (body, signal) => call("/hang", { method: "POST", body, signal }),
-
-  /**
-   * @param {import("./types.js").OverhangRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").OverhangResult>}
-   */
-  overhang: (body, signal) => call("/overhang", { method: "POST", body, signal }),
-
-  /**
-   * @param {import("./types.js").DrapeRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").DrapeResult>}
-   */
-  drape: (body, signal) => call("/drape", { method: "POST", body, signal }),
-
-  /**
-   * @param {import("./types.js").BorderRequest} body
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").BorderResult>}
-   */
-  border: (body, signal) => call("/border", { method: "POST", body, signal }),
-
-  /**
-   * Run something in the background.
-   *
-   * @param {string} kind
-   * @param {unknown} request
-   * @returns {Promise<import("./types.js").JobStatus>}
-   */
+  /** Run something in the background. @type {(kind: string, request: unknown) => Promise<JobStatus>} */
   startJob: (kind, request) => call("/jobs", { method: "POST", body: { kind, request } }),
 
-  /**
-   * @template T
-   * @param {string} id
-   * @param {AbortSignal} [signal]
-   * @returns {Promise<T>}
-   */
+  /** @type {<T>(id: string, signal?: AbortSignal) => Promise<T>} */
   jobResult: (id, signal) => call(`/jobs/${id}/result`, { signal }),
 
   /** @type {(id: string) => Promise<void>} */

@@ -3,29 +3,28 @@
 import { listenToKeys } from "./actions/registry.js";
 import { ApiError, api, isAbort } from "./api.js";
 import { Painter } from "./chart/painter.js";
-import { isDark, onTheme } from "./studio/palette.js";
+import { isDark, onTheme } from "./state/palette.js";
 import { ChartView } from "./chart/view.js";
-import { ChartDocument } from "./core/document.js";
-import { exampleGrid } from "./core/example.js";
-import { isChartText } from "./core/grid.js";
-import { Ink } from "./core/ink.js";
+import { ChartDocument } from "./design/document.js";
+import { exampleGrid } from "./grid/example.js";
+import { isChartText } from "./grid/grid.js";
+import { Ink } from "./design/ink.js";
 import { Latest } from "./core/latest.js";
-import { motifGrid } from "./core/motif.js";
-import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/store.js";
-import { byId, firstPaint, isTyping, nextTask } from "./dom.js";
-import { openAddressed } from "./keeping/address.js";
-import { Keeper } from "./keeping/keeper.js";
-import { sharePlaces } from "./keeping/places.js";
+import { motifGrid } from "./grid/motif.js";
+import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./design/store.js";
+import { byId, firstPaint, isTyping, nextTask } from "./elements/dom.js";
+import { openAddressed } from "./sync/address.js";
+import { Keeper } from "./sync/keeper.js";
 import { sharedBanner } from "./panels/sharedbanner.js";
-import { fabricview } from "./panels/fabricview.js";
+import { fabricview } from "./panels/fabric/fabricview.js";
 import { panelOpener } from "./panels/registry.js";
-import { chartstrip } from "./panels/chartstrip.js";
+import { chartstrip } from "./panels/chart/chartstrip.js";
 import { messages } from "./widgets/messages.js";
 import { tips } from "./widgets/tips.js";
-import { overlaybar } from "./panels/overlaybar.js";
-import { rail } from "./panels/rail.js";
-import { selectionbar } from "./panels/selectionbar.js";
-import { shelf } from "./panels/shelf.js";
+import { overlaybar } from "./panels/chart/overlaybar.js";
+import { rail } from "./panels/chart/rail.js";
+import { selectionbar } from "./panels/chart/selectionbar.js";
+import { shelf } from "./panels/chart/shelf.js";
 import { split } from "./widgets/split.js";
 import { stretchdrawer } from "./panels/stretchdrawer.js";
 import { offerTour, topbar } from "./panels/topbar.js";
@@ -35,7 +34,7 @@ import { startPredictor } from "./services/predictor.js";
 import { startRelaxer } from "./services/relaxer.js";
 import { startPoser } from "./services/poser.js";
 import { Stretcher } from "./services/stretcher.js";
-import { Studio } from "./studio.js";
+import { Studio } from "./state/studio.js";
 
 const FIRST_MATERIAL = "acrylic";
 /** How far the example is stretched on a first visit. */
@@ -49,7 +48,6 @@ const view = new ChartView(byId("chart-host"), byId("chart"), byId("chart-top"),
 await nextTask();
 
 const keeper = new Keeper(studio, kept?.remote ?? null);
-sharePlaces(view, studio, keeper.windows);
 const open = panelOpener(studio);
 /** @type {(() => void)[]} */
 const themed = [];
@@ -115,7 +113,7 @@ await nextTask();
 void firstPaint().then(async () => {
   performance.mark("studio");
   void keeper.catchUp();
-  const { inspector } = await import("./panels/inspector.js");
+  const { inspector } = await import("./panels/inspector/inspector.js");
   themed.push(inspector(byId("inspector"), studio));
 });
 

@@ -106,7 +106,8 @@ const PLOTLY = "plotly.js-basic-dist-min/plotly-basic.min.js";
 // and compiled by another thread while it is read: on the page's own that is nine tenths of starting it
 const COMPILED_AT_ONCE = "//# allFunctionsCalledOnLoad\n";
 await put("plotly.min.js", COMPILED_AT_ONCE + (await readFile(join(ROOT, "node_modules", PLOTLY), "utf8")));
-const inFrame = ["notices.js", "aside.js", "frame.js", "yarn.js"];
+const inFrame = ["notices", "aside", "frame", "yarn"].map((name) => `viser/${name}.js`);
+await mkdir(join(DIST, "viser"), { recursive: true });
 for (const name of inFrame) {
   const { code } = await transform(await readFile(join(ROOT, name), "utf8"), { minify: true, target: "es2022" });
   await put(name, code);

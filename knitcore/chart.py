@@ -243,20 +243,19 @@ class StitchChart:
         return showing.captioned(showing.stitches(self.purl), size + cut)
 
 
-def check_stitches(stitches: int, most: int, what: str = "it", instead: str = "") -> None:
+def check_stitches(stitches: int, most: int, what: str = "it") -> None:
     """Refuse more stitches than a computation takes.
 
     Parameters
     ----------
     what : has the stitches, such as "its repeat".
-    instead : another way, which ends the remedy.
 
     Raises
     ------
     InputError
     """
     if stitches > most:
-        remedy = f"Use at most {most}{instead}."
+        remedy = f"Use at most {most}."
         raise InputError("chart", f"{what} has {stitches} stitches.", remedy, most=most)
 
 

@@ -74,7 +74,25 @@ def page_types() -> str:
         required = shape.get("required") if name == "Problem" else list(shape.get("properties", ()))
         found[name] = shape | {"required": required}
     parts = [_declared(name, shape) for name, shape in sorted(found.items())]
-    return "\n\n".join([HEAD, *parts]) + "\n"
+    return "\n\n".join([HEAD, *parts, _addresses()]) + "\n"
+
+
+def _addresses() -> str:
+    """Models of request and result of each operation that is posted, by its address."""
+    lines = [
+        f'  "{operation.address.removeprefix("/")}":'
+        f" {{ request: {operation.request.__name__}; result: {operation.result.__name__} }};"
+        for operation in operations().values()
+        if operation.method == "POST" and operation.path is not None
+    ]
+    return "\n".join(
+        [
+            "/** Operations by their address. */",
+            "export interface Operations {",
+            *sorted(lines),
+            "}",
+        ]
+    )
 
 
 def shapes(

@@ -11,7 +11,7 @@ import viser
 from app.http.page import script_tag
 
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
-SCRIPTS = ("notices.js", "yarn.js", "aside.js", "frame.js")
+SCRIPTS = ("viser/notices.js", "viser/yarn.js", "viser/aside.js", "viser/frame.js")
 STYLE = """<style>
   /* viser's notes are about the computer, not about the fabric. */
   .mantine-Notifications-root { display: none !important; }

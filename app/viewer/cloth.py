@@ -21,7 +21,7 @@ a camera that sees a cloth half a metre wide stands a metre away."""
 RESIZE = np.array([0.06, 0.06, 0.06, 0.02])
 """Logarithms of the changes of :func:`tube_sizes` up to which a tube is scaled, not drawn anew."""
 FINEST = 256
-"""Steps to a millimetre in which places and sizes are sent; frontend/yarn.js knows it, too."""
+"""Steps to a millimetre in which places and sizes are sent, as in frontend/viser/yarn.js."""
 BRIGHTEST = 63 / 64
 """Full light is no whole step."""
 
@@ -42,7 +42,7 @@ class ShownStitches:
 
     A shape keeps its node: a stretch, a colour or a stroke moves stitches from node to node, and
     browsers build what is new. They go on showing what is not wanted any more until they have
-    built the rest (frontend/frame.js).
+    built the rest (frontend/viser/frame.js).
     """
 
     def __init__(self, server: viser.ViserServer) -> None:

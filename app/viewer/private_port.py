@@ -23,6 +23,12 @@ import viser.infra._infra as viser_infra
 import websockets.asyncio.server
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
+TESTED_VISER = "1.1"
+"""The minor version that this module and ``frontend/viser/`` were tested with.
+
+``pyproject.toml`` allows no other, since all of them rely on what viser does not promise.
+"""
+
 HEADER = "X-Knitcore-Relay"
 RELAY_HEADERS = {HEADER: secrets.token_urlsafe(32)}
 """Secret that the relay sends along; new in every process."""

@@ -2,9 +2,9 @@
  * What an action is. Shortcuts, the command palette and help read the registry.
  *
  * @import {ChartView} from "../chart/view.js"
- * @import {Keeper} from "../keeping/keeper.js"
- * @import {Studio} from "../studio.js"
- * @import {IconName} from "../icons.js"
+ * @import {Keeper} from "../sync/keeper.js"
+ * @import {Studio} from "../state/studio.js"
+ * @import {IconName} from "../elements/icons.js"
  *
  * @typedef {"account" | "atlas" | "compare" | "conflict" | "designs" | "exports" | "fill" | "find" | "gallery"
  *   | "garments" | "help" | "import" | "palette" | "regions" | "repeats" | "resize" | "share" | "tour"

@@ -2,7 +2,7 @@
  * Designs: beginning, opening, keeping and sharing them.
  *
  * @import {Action, ActionContext} from "./action.js"
- * @import {IconName} from "../icons.js"
+ * @import {IconName} from "../elements/icons.js"
  */
 
 /**

@@ -2,7 +2,7 @@
  * From a target to a fabric: the atlas, the search, and filling.
  *
  * @import {Action} from "./action.js"
- * @import {IconName} from "../icons.js"
+ * @import {IconName} from "../elements/icons.js"
  */
 
 /**

@@ -2,13 +2,13 @@
  * How the chart is seen and painted.
  *
  * @import {Action} from "./action.js"
- * @import {Symmetry} from "../core/ink.js"
+ * @import {Symmetry} from "../design/ink.js"
  */
 
 /** @type {Symmetry[]} */
 const SYMMETRIES = ["none", "across", "up", "both"];
 export const SIZES = [1, 2, 3, 5, 8];
-/** @type {import("../studio/editing.js").Look[]} */
+/** @type {import("../state/editing.js").Look[]} */
 const LOOKS = ["both", "colours", "symbols", "loops"];
 
 /**

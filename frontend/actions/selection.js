@@ -2,18 +2,18 @@
  * What to do with the selection: clipboard, patterns, repeats, regions.
  *
  * @import {Action} from "./action.js"
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
-import { Clip, Floating } from "../core/floating.js";
-import { MAX_ITEMS, MAX_MOTIF } from "../core/design.js";
-import { motifText } from "../core/motif.js";
-import { ownInk } from "../core/shelf.js";
-import { selectedCells, selectionOf } from "../core/selection.js";
+import { Clip, Floating } from "../design/floating.js";
+import { MAX_ITEMS, MAX_MOTIF } from "../design/design.js";
+import { motifText } from "../grid/motif.js";
+import { ownInk } from "../design/shelf.js";
+import { selectedCells, selectionOf } from "../design/selection.js";
 import { move } from "../tools/move.js";
 import { repeat as placeTool } from "../tools/repeat.js";
 import { stamp } from "../tools/stamp.js";
-import { nextRegionColour } from "../studio/palette.js";
+import { nextRegionColour } from "../state/palette.js";
 
 const group = "Selection";
 

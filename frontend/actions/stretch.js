@@ -4,8 +4,8 @@
  * @import {Action} from "./action.js"
  */
 
-import { byId } from "../dom.js";
-import { REST } from "../studio.js";
+import { byId } from "../elements/dom.js";
+import { REST } from "../state/studio.js";
 
 /** @type {Action[]} */
 export const STRETCH = [

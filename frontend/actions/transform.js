@@ -3,13 +3,13 @@
  * rows and columns.
  *
  * @import {Action, ActionContext} from "./action.js"
- * @import {IconName} from "../icons.js"
+ * @import {IconName} from "../elements/icons.js"
  */
 
-import { changed } from "../core/floating.js";
-import { MAX_SIDE } from "../core/grid.js";
-import { deleted, inserted, turned } from "../core/reshape.js";
-import { selectedCells } from "../core/selection.js";
+import { changed } from "../design/floating.js";
+import { MAX_SIDE } from "../grid/grid.js";
+import { deleted, inserted, turned } from "../design/reshape.js";
+import { selectedCells } from "../design/selection.js";
 
 /**
  * @param {string} id

@@ -2,8 +2,8 @@
  * Strain crosses: how far the cloth is stretched along its rows and its columns at the step on show, in
  * each block of stitches. Arms are as long as the strain; those of cloth that narrows are drawn in red.
  *
- * @import {Box} from "../core/grid.js"
- * @import {Studio} from "../studio.js"
+ * @import {Box} from "../grid/grid.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {Viewport} from "./viewport.js"
  */
 

@@ -1,7 +1,7 @@
 /**
  * Edges of sets of stitches: found once for each set, then drawn at any zoom.
  *
- * @import {Box, Grid} from "../core/grid.js"
+ * @import {Box, Grid} from "../grid/grid.js"
  * @import {Viewport} from "./viewport.js"
  *
  * @typedef {Int16Array} Edges six numbers a piece: 0 for level or 1 for upright, the line it lies on,

@@ -2,8 +2,8 @@
  * The chart's colours as a picture of 2 × 2 pixels a stitch (its quarters), kept up to date where
  * the chart changed and drawn enlarged: painting costs the same at any zoom.
  *
- * @import {Box, Grid} from "../core/grid.js"
- * @import {Colouring} from "../studio/overlays.js"
+ * @import {Box, Grid} from "../grid/grid.js"
+ * @import {Colouring} from "../state/overlays.js"
  */
 
 export class ColourLayer {

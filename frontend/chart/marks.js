@@ -2,13 +2,13 @@
  * What is drawn over the cells' colours: symbols, the grid, segments. All
  * of it in face coordinates: the view exchanges left and right for the back.
  *
- * @import {Box, Grid} from "../core/grid.js"
+ * @import {Box, Grid} from "../grid/grid.js"
  * @import {Viewport} from "./viewport.js"
  * @import {ColourLayer} from "./layer.js"
- * @import {Palette} from "../studio/palette.js"
+ * @import {Palette} from "../state/palette.js"
  */
 
-import { lightness } from "../studio/palette.js";
+import { lightness } from "../state/palette.js";
 
 /** Symbols are left out on cells narrower than this. */
 const MIN_SYMBOL = 7;

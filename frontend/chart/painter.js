@@ -1,19 +1,19 @@
 /**
  * Pointer and keys on the chart: turns gestures into strokes of the chosen tool.
  *
- * @import {Cell} from "../core/raster.js"
- * @import {Combination, Selection} from "../core/selection.js"
+ * @import {Cell} from "../grid/raster.js"
+ * @import {Combination, Selection} from "../design/selection.js"
  * @import {Gesture} from "../tools/tool.js"
  * @import {ChartView} from "./view.js"
  * @import {Placed} from "./placing.js"
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
-import { Floating } from "../core/floating.js";
-import { inked } from "../core/ink.js";
-import { withPlace } from "../core/repeats.js";
-import { combined, selects } from "../core/selection.js";
-import { Brush } from "../core/stroke.js";
+import { Floating } from "../design/floating.js";
+import { inked } from "../design/ink.js";
+import { withPlace } from "../design/repeats.js";
+import { combined, selects } from "../design/selection.js";
+import { Brush } from "../grid/stroke.js";
 import { listenToPinches } from "./pinch.js";
 import { boxAt, placedAt, placedBox, shifted } from "./placing.js";
 

@@ -2,11 +2,11 @@
  * The parts of a chart: what lies outside its outline, the edges of regions, and linked repeats. All
  * in face coordinates but the labels.
  *
- * @import {ChartDocument} from "../core/document.js"
- * @import {Box, Grid} from "../core/grid.js"
+ * @import {ChartDocument} from "../design/document.js"
+ * @import {Box, Grid} from "../grid/grid.js"
  * @import {Edges} from "./edges.js"
  * @import {Viewport} from "./viewport.js"
- * @import {Palette} from "../studio/palette.js"
+ * @import {Palette} from "../state/palette.js"
  */
 
 import { edgePath, edgesOf } from "./edges.js";

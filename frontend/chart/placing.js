@@ -2,17 +2,17 @@
  * Boxes of the chart that belong together: where a dragged repeat comes to lie, and what is under the
  * pointer.
  *
- * @import {ChartDocument} from "../core/document.js"
- * @import {Box, Grid} from "../core/grid.js"
- * @import {Cell} from "../core/raster.js"
- * @import {Repeat} from "../core/repeats.js"
- * @import {Selection} from "../core/selection.js"
+ * @import {ChartDocument} from "../design/document.js"
+ * @import {Box, Grid} from "../grid/grid.js"
+ * @import {Cell} from "../grid/raster.js"
+ * @import {Repeat} from "../design/repeats.js"
+ * @import {Selection} from "../design/selection.js"
  * @import {Gesture} from "../tools/tool.js"
  *
  * @typedef {{repeat: Repeat, at: number, box: Box}} Placed a copy of a repeat: its number and place
  */
 
-import { selectionOf } from "../core/selection.js";
+import { selectionOf } from "../design/selection.js";
 
 /**
  * The box of whole motifs nearest to the one dragged out.
@@ -54,7 +54,7 @@ export function filledBox({ motif, edgeRows, edgeColumns }, { row0, column0, row
   return { row0, column0, row1: row0 + rows, column1: column0 + columns };
 }
 
-/** @param {import("../core/design.js").PlacementItem} place @returns {Box} */
+/** @param {import("../design/design.js").PlacementItem} place @returns {Box} */
 export function boxOf({ row, column, rows, columns }) {
   return { row0: row, column0: column, row1: row + rows, column1: column + columns };
 }

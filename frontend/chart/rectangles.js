@@ -2,8 +2,8 @@
  * Extensibility rectangles: as wide as the fabric yields along the course, as high as along the wale
  * (its principal directions), all on one scale. For single stitches, blocks of them, or regions.
  *
- * @import {Box} from "../core/grid.js"
- * @import {Studio} from "../studio.js"
+ * @import {Box} from "../grid/grid.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {StitchKind} from "../types.js"
  * @import {Viewport} from "./viewport.js"
  *
@@ -124,7 +124,7 @@ function blockGroup({ document: { grid } }, row0, column0, size) {
 
 /**
  * @param {Studio} studio
- * @param {import("../core/regions.js").Region} region
+ * @param {import("../design/regions.js").Region} region
  * @returns {Group}
  */
 function regionGroup({ document: { grid } }, region) {

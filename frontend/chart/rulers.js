@@ -2,9 +2,9 @@
  * Row numbers at the side where the row is begun, with the reading direction, and stitch numbers
  * counted from the right, as a knitter reads a right-side row.
  *
- * @import {Grid} from "../core/grid.js"
+ * @import {Grid} from "../grid/grid.js"
  * @import {Viewport} from "./viewport.js"
- * @import {Palette} from "../studio/palette.js"
+ * @import {Palette} from "../state/palette.js"
  */
 
 import { MARGIN } from "./viewport.js";

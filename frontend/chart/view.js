@@ -2,21 +2,18 @@
  * The chart on its canvas. Two canvases lie over each other: the chart itself, of which only what
  * changed is drawn anew, and what follows the pointer.
  *
- * @import {Box} from "../core/grid.js"
- * @import {Cell} from "../core/raster.js"
- * @import {Colouring} from "../studio/overlays.js"
- * @import {Studio} from "../studio.js"
- *
- * @typedef {{cell: Cell | null, box: Box | null}} Presence of another window: stitch under its pointer, box of
- *   its selection
+ * @import {Box} from "../grid/grid.js"
+ * @import {Cell} from "../grid/raster.js"
+ * @import {Colouring} from "../state/overlays.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 import { Signal } from "../core/signal.js";
-import { h } from "../dom.js";
+import { h } from "../elements/dom.js";
 import { ColourLayer } from "./layer.js";
 import { drawGrid, drawSegments, drawSymbols } from "./marks.js";
-import { OVERLAYS } from "../studio/overlays.js";
-import { pixel, readPalette } from "../studio/palette.js";
+import { OVERLAYS } from "../state/overlays.js";
+import { pixel, readPalette } from "../state/palette.js";
 import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
 import { drawCrosses } from "./crosses.js";
 import { drawRectangles } from "./rectangles.js";
@@ -37,15 +34,12 @@ export class ChartView {
   hover = new Signal(/** @type {Cell | null} */ (null));
   /** Where something being dragged would come to lie. */
   preview = new Signal(/** @type {Box | null} */ (null));
-  /** Where others are in the chart, by name. */
-  others = new Signal(/** @type {ReadonlyMap<string, Presence>} */ (new Map()));
   #layer = new ColourLayer();
   /** @type {Colouring | null} */ #colouring = null;
   /** Stitches to draw anew: all, some, none. @type {Box | "all" | null} */ #dirty = "all";
   #topDirty = true;
   #frame = 0;
   /** @type {HTMLElement} */ #cursor;
-  /** @type {HTMLElement} */ #others;
 
   /**
    * @param {HTMLElement} host
@@ -87,9 +81,7 @@ export class ChartView {
     }
     // The cursor is an element of its own: moving it paints nothing.
     this.#cursor = h("div", { class: "chart-cursor", hidden: true });
-    this.#others = h("div", {});
-    top.after(h("div", { class: "chart-cursors", "aria-hidden": "true" }, this.#others, this.#cursor));
-    this.others.listen(() => this.#placeOthers());
+    top.after(h("div", { class: "chart-cursors", "aria-hidden": "true" }, this.#cursor));
     for (const signal of [studio.size, studio.tool, studio.ink, this.hover]) {
       signal.listen(() => this.#placeCursor());
     }
@@ -181,7 +173,6 @@ export class ChartView {
     if (this.#topDirty) {
       this.#drawTop();
       this.#placeCursor();
-      this.#placeOthers();
     }
     this.#topDirty = false;
   }
@@ -201,23 +192,6 @@ export class ChartView {
     const [row0, column0] = [cell[0] - before, cell[1] - before];
     const box = { row0, column0, row1: row0 + (stamp?.rows ?? size), column1: column0 + (stamp?.columns ?? size) };
     this.#around(this.#cursor, box);
-  }
-
-  /** Each in a colour of its own: the stitch under the pointer, and the selection. */
-  #placeOthers() {
-    const { grid } = this.studio.document;
-    const shown = [...this.others.value].flatMap(([name, { cell, box }]) => [
-      ...(cell && grid.has(...cell) ? [{ name, kind: "pointer", box: only(cell) }] : []),
-      ...(box && box.row1 <= grid.rows && box.column1 <= grid.columns ? [{ name, kind: "selection", box }] : []),
-    ]);
-    this.#others.replaceChildren(
-      ...shown.map(({ name, kind, box }) => {
-        const element = h("div", { class: `chart-other ${kind}` });
-        element.style.setProperty("--hue", HUES[Number.parseInt(name.slice(0, 6), 16) % HUES.length]);
-        this.#around(element, box);
-        return element;
-      }),
-    );
   }
 
   /** @param {HTMLElement} element @param {Box} box */
@@ -391,16 +365,10 @@ export class ChartView {
   }
 }
 
-/** All stitches of the colour of a knit: the symbols say it all. @param {import("../studio/palette.js").Palette} palette */
+/** All stitches of the colour of a knit: the symbols say it all. @param {import("../state/palette.js").Palette} palette */
 function paper({ knit }) {
   return { table: new Uint32Array(128).fill(pixel(knit)) };
 }
-
-/** Of other people's pointers: none is a fabric's. */
-const HUES = ["325", "185", "60"];
-
-/** @param {Cell} cell @returns {Box} */
-const only = ([row0, column0]) => ({ row0, column0, row1: row0 + 1, column1: column0 + 1 });
 
 /** Shown where the chosen overlay has no values (yet). */
 const FALLBACK = OVERLAYS[1];

@@ -2,8 +2,8 @@
  * Where the chart lies on its canvas, in CSS pixels, and which stitch is where. Cells have the
  * proportions of real stitches.
  *
- * @import {Box, Grid} from "../core/grid.js"
- * @import {Cell} from "../core/raster.js"
+ * @import {Box, Grid} from "../grid/grid.js"
+ * @import {Cell} from "../grid/raster.js"
  */
 
 /** Room for the rulers. */

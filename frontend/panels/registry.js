@@ -3,7 +3,7 @@
  * exports `create`, which makes the panel once and returns the function that shows it.
  *
  * @import {ActionContext, PanelName} from "../actions/action.js"
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  *
  * @typedef {{create: (studio: Studio, context: ActionContext) => () => void}} PanelModule
  */
@@ -23,8 +23,8 @@ const PANELS = {
   help: () => import("./dialogs/help.js"),
   import: () => import("./dialogs/import.js"),
   palette: () => import("./dialogs/palette.js"),
-  regions: () => import("./regions.js"),
-  repeats: () => import("./repeats.js"),
+  regions: () => import("./parts/regions.js"),
+  repeats: () => import("./parts/repeats.js"),
   resize: () => import("./dialogs/resize.js"),
   share: () => import("./designs/share.js"),
   tour: () => import("./tour.js"),

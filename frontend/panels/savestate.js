@@ -2,12 +2,12 @@
  * Says whether the design is kept, and leads to what is to be done if it is not.
  *
  * @import {ActionContext} from "../actions/action.js"
- * @import {KeepState} from "../keeping/keeper.js"
- * @import {IconName} from "../icons.js"
+ * @import {KeepState} from "../sync/keeper.js"
+ * @import {IconName} from "../elements/icons.js"
  */
 
-import { h } from "../dom.js";
-import { icon } from "../icons.js";
+import { h } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
 
 /** @type {Record<KeepState["kind"], {label: string, icon: IconName, title: string}>} */
 const LOOKS = {

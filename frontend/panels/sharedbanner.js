@@ -5,9 +5,9 @@
  */
 
 import { ApiError } from "../api.js";
-import { h } from "../dom.js";
-import { icon } from "../icons.js";
-import { designs } from "../keeping/designs.js";
+import { h } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
+import { designs } from "../sync/designs.js";
 import { textButton } from "../widgets/buttons.js";
 
 /**

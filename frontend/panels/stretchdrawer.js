@@ -1,7 +1,7 @@
 /**
  * The stretch test: pull the chart between two clamps, then go through the steps.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {Stretcher} from "../services/stretcher.js"
  * @import {Direction, Problem, StretchResult} from "../types.js"
  */
@@ -9,9 +9,9 @@
 import { along } from "../core/directions.js";
 import { figure, percent, percentRange, range } from "../core/format.js";
 import { firstLock, most } from "../core/striptest.js";
-import { h } from "../dom.js";
-import { REST } from "../studio.js";
-import { icon } from "../icons.js";
+import { h } from "../elements/dom.js";
+import { REST } from "../state/studio.js";
+import { icon } from "../elements/icons.js";
 import { iconButton } from "../widgets/buttons.js";
 import { numberField } from "../widgets/fields.js";
 

@@ -2,13 +2,13 @@
  * The design's name, undo and redo, size, material, import, export, theme, help.
  *
  * @import {ActionContext} from "../actions/action.js"
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {MaterialSummary} from "../types.js"
  */
 
 import { action, shown } from "../actions/registry.js";
-import { h } from "../dom.js";
-import { icon } from "../icons.js";
+import { h } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
 import { iconButton } from "../widgets/buttons.js";
 import { saveState } from "./savestate.js";
 import { menu } from "../widgets/menu.js";

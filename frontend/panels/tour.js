@@ -3,8 +3,8 @@
  * Escape ends it.
  */
 
-import { saveSettings } from "../core/store.js";
-import { h } from "../dom.js";
+import { saveSettings } from "../design/store.js";
+import { h } from "../elements/dom.js";
 
 /** @type {{at: string, title: string, text: string}[]} */
 const STOPS = [

@@ -3,7 +3,7 @@
  * chart (or its part) with the interval that the service knows, and the stretch test with the step
  * on show.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {CurveResult, StretchResult} from "../types.js"
  * @import {Plotly, Trace} from "./plotly.js"
  */
@@ -11,8 +11,9 @@
 import { ApiError, api, isAbort } from "../api.js";
 import { Latest } from "../core/latest.js";
 import { paced } from "../core/paced.js";
-import { FABRICS } from "../core/segments.js";
+import { FABRICS } from "../grid/segments.js";
 import { scopeOf } from "../services/scope.js";
+import { themedReader } from "../state/palette.js";
 import { drawPlot, loadPlotly, movePoint } from "./plotly.js";
 
 /** Number of the trace that shows the step. */
@@ -63,7 +64,7 @@ export function curvePlot(host, studio) {
       const key = JSON.stringify(body);
       if (answer?.key === key) return;
       try {
-        answer = { key, curve: await api.curve(body, signal) };
+        answer = { key, curve: await api.run("curve", body, signal) };
         void draw();
       } catch (error) {
         if (isAbort(error)) return;
@@ -107,9 +108,9 @@ function shownStretch(studio) {
  * @returns {Trace[]}
  */
 function traces(studio, own) {
-  const style = getComputedStyle(document.documentElement);
+  const read = themedReader();
   /** @param {string} name */
-  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  const colour = (name) => read(`--${name}`);
   const stretch = shownStretch(studio);
   const { stale } = studio.stretch.value;
   const { kind } = scopeOf(studio);
@@ -215,9 +216,9 @@ function stressBand(stretch) {
  * @param {number} height
  */
 export function stressStrainLayout(width, height) {
-  const style = getComputedStyle(document.documentElement);
-  const text = style.getPropertyValue("--text").trim();
-  const line = style.getPropertyValue("--line").trim();
+  const read = themedReader();
+  const text = read("--text");
+  const line = read("--line");
   const axis = {
     gridcolor: line,
     zerolinecolor: line,

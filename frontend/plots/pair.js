@@ -6,6 +6,7 @@
  */
 
 import { stressStrainLayout } from "./curve.js";
+import { themedReader } from "../state/palette.js";
 import { drawPlot } from "./plotly.js";
 
 /**
@@ -13,10 +14,10 @@ import { drawPlot } from "./plotly.js";
  * @param {{name: string, colour: string, curve: CurveResult}[]} curves colour: name of a custom property
  */
 export async function drawPair(host, curves) {
-  const style = getComputedStyle(document.documentElement);
+  const read = themedReader();
   const end = Math.max(...curves.map(({ curve }) => 100 * Math.max(...curve.strain)));
   const traces = curves.flatMap(({ name, colour: property, curve }, k) => {
-    const colour = style.getPropertyValue(`--${property}`).trim();
+    const colour = read(`--${property}`);
     const percent = (/** @type {number[]} */ strain) => strain.map((value) => Math.min(100 * value, 1.15 * end));
     const stress = curve.stress_n_per_mm;
     return /** @type {Trace[]} */ ([

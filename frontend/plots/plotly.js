@@ -7,7 +7,7 @@
  * @property {(host: HTMLElement, frame: object, how: object) => Promise<void>} animate
  */
 
-import { idle, nextTask } from "../dom.js";
+import { idle, nextTask } from "../elements/dom.js";
 
 /** @type {Promise<Plotly> | null} */
 let loading = null;

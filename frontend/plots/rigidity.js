@@ -2,12 +2,12 @@
  * Stiffness along the course against stiffness along the wale, of all fabrics of all materials, and
  * where this chart lies among them (as in the paper's Fig. 2c).
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 import { figure } from "../core/format.js";
 import { paced } from "../core/paced.js";
-import { FABRICS } from "../core/segments.js";
+import { FABRICS } from "../grid/segments.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const PAD = { left: 50, right: 10, top: 8, bottom: 40 };

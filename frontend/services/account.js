@@ -1,7 +1,7 @@
 /**
  * Who is signed in with this browser.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {SignedIn} from "../types.js"
  */
 

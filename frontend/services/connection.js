@@ -1,7 +1,7 @@
 /**
  * Notices when the service is back, and has everything requested again.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 const RETRY_MS = 3000;

@@ -1,11 +1,11 @@
 /**
  * The design as a file that the page makes by itself.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 import { table } from "../core/striptest.js";
-import { h } from "../dom.js";
+import { h } from "../elements/dom.js";
 
 /** @param {Studio} studio */
 export function exportProject(studio) {

@@ -3,16 +3,16 @@
  * a moment after each change, then the shape at rest, both given up when the next change comes. Until
  * the first shape is there, the old one is shown, if the piece has kept its size.
  *
- * @import {Posed} from "../studio/seeing.js"
- * @import {Studio} from "../studio.js"
+ * @import {Posed} from "../state/seeing.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 import { ApiError, api, isAbort } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "../core/latest.js";
 import { figure, percent } from "../core/format.js";
-import { outlineText } from "../core/snapshot.js";
-import { REST } from "../studio.js";
+import { outlineText } from "../design/snapshot.js";
+import { REST } from "../state/studio.js";
 
 const DELAY_MS = 25;
 /** CPU time of the first shape, and that after which the second is shown as a preview, too. */
@@ -92,7 +92,7 @@ async function* hung(studio, signal) {
   const { rows, columns } = studio.document.grid;
   const asked = { ...studio.request, outline: outlineOf(studio), linear_density_g_per_m: studio.weight.value };
   for (const time_limit_s of PATIENCE_S) {
-    const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.hang({ ...asked, time_limit_s }, signal);
+    const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.run("hang", { ...asked, time_limit_s }, signal);
     const length = `reaches ${figure(drop_mm / 10, 3)} cm down, stitches ${percent(lengthening, 1)} longer`;
     const words = `Hanging: ${figure(weight_g, 2)} g, ${length}`;
     yield { pose: "hung", id, rows, columns, converged, words, note: notes[0] };
@@ -109,7 +109,7 @@ async function* curled(studio, signal, pull) {
   /** The first shape begins at the old one; the last one depends on the chart only. */
   let after = studio.seeing.posed.value?.id ?? null;
   for (const time_limit_s of PATIENCE_S) {
-    const { id, rows, columns, converged, notes } = await api.curl({ ...asked, after, time_limit_s }, signal);
+    const { id, rows, columns, converged, notes } = await api.run("curl", { ...asked, after, time_limit_s }, signal);
     yield { id, rows, columns, converged: converged && !after, note: notes[0] };
     after = null;
   }
@@ -120,11 +120,11 @@ async function* worn(studio, signal) {
   const { rows, columns } = studio.document.grid;
   const hand = gloveOf(studio);
   if (hand) {
-    const { id, parts, notes } = await api.glove(hand, signal);
+    const { id, parts, notes } = await api.run("glove", hand, signal);
     yield { pose: "worn", id, rows, columns, converged: true, words: pressed(parts, "On the hand"), note: notes[1] };
     return;
   }
-  const { id, places, notes } = await api.limb({ ...studio.request, ...studio.limb }, signal);
+  const { id, places, notes } = await api.run("limb", { ...studio.request, ...studio.limb }, signal);
   if (!id) return;
   yield { pose: "worn", id, rows, columns, converged: true, words: pressed(places, "On the body"), note: notes[0] };
 }

@@ -1,7 +1,7 @@
 /**
  * Asks the service for the mechanics of the chart, or of the selection, a moment after each change.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
 import { ApiError, api, isAbort } from "../api.js";
@@ -23,7 +23,7 @@ export function startPredictor(studio) {
       const { kind: scope, grid, shaped } = scopeOf(studio);
       try {
         const cloth = { chart: grid.text, material: studio.materialId.value };
-        const value = await api.predict({ ...cloth, ...shaped, gauge: studio.gauges.of(cloth) }, signal);
+        const value = await api.run("predict", { ...cloth, ...shaped, gauge: studio.gauges.of(cloth) }, signal);
         if (signal.aborted) return;
         prediction.value = { value, busy: false, problem: null, scope };
         studio.online.value = true;

@@ -2,7 +2,7 @@
  * Relaxes the repeat on show at the yarn level while painting pauses, if the service says that its
  * numbers would be more certain by it. The gauge that comes of it is kept beside the counted ones.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {RelaxResult} from "../types.js"
  */
 

@@ -1,10 +1,10 @@
 /**
  * What the numbers are of: the whole chart, the selection, or a region.
  *
- * @import {Grid} from "../core/grid.js"
- * @import {ChartState} from "../core/state.js"
- * @import {Selection} from "../core/selection.js"
- * @import {Studio} from "../studio.js"
+ * @import {Grid} from "../grid/grid.js"
+ * @import {ChartState} from "../design/state.js"
+ * @import {Selection} from "../design/selection.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {Direction, PredictResult} from "../types.js"
  *
  * @typedef {object} Scope
@@ -17,9 +17,9 @@
  * @property {string} note how the grid represents stitches that do not form a rectangle; "" if they do
  */
 
-import { largestRectangle } from "../core/inscribed.js";
-import { selectionOf } from "../core/selection.js";
-import { outlineText } from "../core/snapshot.js";
+import { largestRectangle } from "../grid/inscribed.js";
+import { selectionOf } from "../design/selection.js";
+import { outlineText } from "../design/snapshot.js";
 
 /**
  * @param {Studio} studio

@@ -1,7 +1,7 @@
 /**
  * Runs stretch tests and plays them.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {Direction, StretchResult, StretchRequest} from "../types.js"
  *
  * @typedef {Pick<StretchRequest, "strain" | "force_n">} Pull how far, or how hard
@@ -9,9 +9,9 @@
  */
 
 import { ApiError, api, isAbort } from "../api.js";
-import { OVERLAYS } from "../studio/overlays.js";
+import { OVERLAYS } from "../state/overlays.js";
 import { Signal } from "../core/signal.js";
-import { outlineText } from "../core/snapshot.js";
+import { outlineText } from "../design/snapshot.js";
 import { runJob } from "./jobs.js";
 
 const STEPS = 20;
@@ -131,7 +131,7 @@ export class Stretcher {
     const { studio } = this;
     if (!this.#request || id === null || studio.currentStretch()?.id !== id) return;
     try {
-      await api.stretch(this.#request);
+      await api.run("stretch", this.#request);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       studio.tellProblem(error.problem);

@@ -1,7 +1,7 @@
 /**
  * Yarns of one's own: kept at the service from a file, or made of what was measured.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  * @import {EstimateResult, Fabric, FabricDocument, FitResult, MaterialDocument, MaterialSummary, YarnDocument} from "../types.js"
  *
  * @typedef {{stitches: number, rows: number}} Gauge per 10 cm

@@ -1,4 +1,4 @@
-import { Grid } from "../core/grid.js";
+import { Grid } from "../grid/grid.js";
 
 /**
  * A repeatable random chart.

@@ -7,13 +7,15 @@ import { test } from "node:test";
 
 const ROOT = join(import.meta.dirname, "..");
 const FLOORS = [
-  ["types", "aside", "frame", "notices", "theme"],
+  ["types", "theme", "viser"],
   ["core"],
-  ["api", "dom", "icons"],
-  ["tools", "yarn"],
-  ["studio"],
+  ["grid"],
+  ["design"],
+  ["api", "elements"],
+  ["tools"],
+  ["state"],
   ["services", "chart"],
-  ["keeping", "plots"],
+  ["sync", "plots"],
   ["actions"],
   ["widgets"],
   ["panels"],

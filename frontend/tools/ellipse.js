@@ -1,4 +1,4 @@
-import { ellipse as filled } from "../core/raster.js";
+import { ellipse as filled } from "../grid/raster.js";
 
 /** @type {import("./tool.js").Tool} */
 export const ellipse = {

@@ -1,4 +1,4 @@
-import { flood } from "../core/raster.js";
+import { flood } from "../grid/raster.js";
 import { looks } from "./wand.js";
 
 /** @type {import("./tool.js").Tool} */

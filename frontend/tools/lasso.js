@@ -1,4 +1,4 @@
-import { enclosed } from "../core/raster.js";
+import { enclosed } from "../grid/raster.js";
 
 /** @type {import("./tool.js").Tool} */
 export const lasso = {

@@ -1,4 +1,4 @@
-import { line as straight, thick } from "../core/raster.js";
+import { line as straight, thick } from "../grid/raster.js";
 
 /** @type {import("./tool.js").Tool} */
 export const line = {
@@ -14,9 +14,9 @@ export const line = {
 };
 
 /**
- * @param {import("../core/raster.js").Cell} start
- * @param {import("../core/raster.js").Cell} current
- * @returns {import("../core/raster.js").Cell}
+ * @param {import("../grid/raster.js").Cell} start
+ * @param {import("../grid/raster.js").Cell} current
+ * @returns {import("../grid/raster.js").Cell}
  */
 function constrained(start, current) {
   const up = current[0] - start[0];

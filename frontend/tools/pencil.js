@@ -1,4 +1,4 @@
-import { line, thick } from "../core/raster.js";
+import { line, thick } from "../grid/raster.js";
 
 /** @type {import("./tool.js").Tool} */
 export const pencil = {

@@ -1,4 +1,4 @@
-import { rectangle as filled } from "../core/raster.js";
+import { rectangle as filled } from "../grid/raster.js";
 
 /** @type {import("./tool.js").Tool} */
 export const rectangle = {

@@ -1,4 +1,4 @@
-import { rectangle } from "../core/raster.js";
+import { rectangle } from "../grid/raster.js";
 
 /** @type {import("./tool.js").Tool} */
 export const select = {

@@ -2,10 +2,10 @@
  * What a tool is. A tool says which stitches a gesture covers; ink, symmetry, live drawing and undo
  * are the same for all and live in the painter.
  *
- * @import {Grid} from "../core/grid.js"
- * @import {Cell, Span} from "../core/raster.js"
- * @import {Ink} from "../core/ink.js"
- * @import {IconName} from "../icons.js"
+ * @import {Grid} from "../grid/grid.js"
+ * @import {Cell, Span} from "../grid/raster.js"
+ * @import {Ink} from "../design/ink.js"
+ * @import {IconName} from "../elements/icons.js"
  *
  * @typedef {object} Gesture
  * @property {Cell} start stitch where the pointer went down

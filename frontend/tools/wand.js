@@ -1,4 +1,4 @@
-import { flood } from "../core/raster.js";
+import { flood } from "../grid/raster.js";
 
 /** @type {import("./tool.js").Tool} */
 export const wand = {

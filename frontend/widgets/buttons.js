@@ -2,12 +2,12 @@
  * Buttons with a sign, with words or in place of them.
  *
  * @import {Action, ActionContext} from "../actions/action.js"
- * @import {IconName} from "../icons.js"
+ * @import {IconName} from "../elements/icons.js"
  */
 
 import { shown } from "../actions/registry.js";
-import { h } from "../dom.js";
-import { icon } from "../icons.js";
+import { h } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
 
 /**
  * A button that shows only a sign; its label is for screen readers and, as a title, for the pointer.

@@ -1,7 +1,7 @@
 /** The frame that all dialogs share: a heading, a way to close it, and a click beside it closes it, too. */
 
-import { h } from "../dom.js";
-import { icon } from "../icons.js";
+import { h } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
 import { iconButton } from "./buttons.js";
 import { problemText } from "./problem.js";
 
@@ -11,7 +11,7 @@ const PRESSED = ["button", "checkbox", "file", "radio"];
 /**
  * @param {string} id
  * @param {string} title
- * @param {...import("../dom.js").Child} content
+ * @param {...import("../elements/dom.js").Child} content
  */
 export function dialog(id, title, ...content) {
   const element = h(

@@ -2,11 +2,11 @@
  * The place beside the chart where one panel at a time is open. A panel is made when it is opened
  * first (see panels/registry.js) and puts itself here.
  *
- * @import {Child} from "../dom.js"
- * @import {Studio} from "../studio.js"
+ * @import {Child} from "../elements/dom.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
-import { byId, h } from "../dom.js";
+import { byId, h } from "../elements/dom.js";
 import { iconButton } from "./buttons.js";
 
 /**

@@ -1,6 +1,6 @@
 /** Fields for numbers, names, choices, and lengths, which are kept in mm and shown in mm or inches. */
 
-import { h } from "../dom.js";
+import { h } from "../elements/dom.js";
 
 const MM_PER_INCH = 25.4;
 

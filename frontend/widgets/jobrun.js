@@ -5,8 +5,8 @@
  */
 
 import { ApiError, isAbort } from "../api.js";
-import { h } from "../dom.js";
-import { icon } from "../icons.js";
+import { h } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
 import { runJob } from "../services/jobs.js";
 import { problemText } from "./problem.js";
 import { textButton } from "./buttons.js";

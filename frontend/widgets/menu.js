@@ -1,13 +1,13 @@
 /**
  * A button that opens a list of choices; arrow keys, Enter and Escape as in any menu.
  *
- * @import {Child} from "../dom.js"
+ * @import {Child} from "../elements/dom.js"
  *
  * @typedef {{id: string, content: Child, checked?: boolean, disabled?: boolean, perform: () => void}} Item
  */
 
-import { h } from "../dom.js";
-import { icon } from "../icons.js";
+import { h } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
 
 /**
  * @param {{id: string, label: string, content: Child[], class: string}} options

@@ -1,11 +1,11 @@
 /**
  * Messages at the foot of the page, and the banner while the service is away.
  *
- * @import {Studio} from "../studio.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
-import { h } from "../dom.js";
-import { icon } from "../icons.js";
+import { h } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
 import { iconButton } from "./buttons.js";
 import { problemText } from "./problem.js";
 

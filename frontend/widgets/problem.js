@@ -1,10 +1,10 @@
 /** What went wrong, why, and what to do. */
 
-import { h } from "../dom.js";
+import { h } from "../elements/dom.js";
 
 /**
  * @param {{title: string, detail?: string, remedy?: string | null}} problem
- * @param {...import("../dom.js").Child} more
+ * @param {...import("../elements/dom.js").Child} more
  */
 export function problemText({ title, detail, remedy }, ...more) {
   return h(

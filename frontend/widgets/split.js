@@ -2,7 +2,7 @@
  * Borders between panels that can be dragged, or moved with the arrow keys.
  */
 
-import { loadSettings, saveSettings } from "../core/store.js";
+import { loadSettings, saveSettings } from "../design/store.js";
 
 /**
  * @param {HTMLElement} handle

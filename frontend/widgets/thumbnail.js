@@ -1,13 +1,13 @@
 /**
  * A chart as a small picture: every quarter of a stitch in the colour of its fabric, purls darker.
  *
- * @import {Palette} from "../studio/palette.js"
+ * @import {Palette} from "../state/palette.js"
  */
 
-import { pixel, readPalette } from "../studio/palette.js";
-import { Grid } from "../core/grid.js";
-import { QUARTERS, surroundings } from "../core/segments.js";
-import { h } from "../dom.js";
+import { pixel, readPalette } from "../state/palette.js";
+import { Grid } from "../grid/grid.js";
+import { QUARTERS, surroundings } from "../grid/segments.js";
+import { h } from "../elements/dom.js";
 
 const PURL_SHADE = 0.78;
 /** Stitches are wider than high. */

@@ -3,7 +3,7 @@
  * after a second and never on touch screens.
  */
 
-import { h } from "../dom.js";
+import { h } from "../elements/dom.js";
 
 /** A finger that rests so long on a button wants to know what it is. */
 const TOUCH_MS = 450;

@@ -1,6 +1,6 @@
-"""For notebooks: interactive figures, a view in space, and an editor for charts.
+"""For notebooks: interactive figures and a view in space.
 
-Needs the extra ``knitcore[notebook]`` (plotly, anywidget). Charts, materials, answers, curves,
+Needs the extra ``knitcore[notebook]`` (plotly). Charts, materials, answers, curves,
 relaxed cells, swatches and curled pieces display without it.
 """
 
@@ -8,13 +8,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from knitcore.notebook.editor import ChartEditor
     from knitcore.notebook.figures import figure
     from knitcore.notebook.space import view
 
-__all__ = ["ChartEditor", "figure", "view"]
+__all__ = ["figure", "view"]
 
-_HOMES = {"ChartEditor": "editor", "figure": "figures", "view": "space"}
+_HOMES = {"figure": "figures", "view": "space"}
 
 
 def __getattr__(name: str) -> Any:

@@ -4,7 +4,7 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Answer} from "../../core/difference.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {Direction, PredictResult} from "../../types.js"
  * @import {Answers, Choice, Piece} from "./pieces.js"
  */
@@ -14,7 +14,7 @@ import { difference, interpolated } from "../../core/difference.js";
 import { LINES, along } from "../../core/directions.js";
 import { figure, range } from "../../core/format.js";
 import { Latest } from "../../core/latest.js";
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 import { drawPair } from "../../plots/pair.js";
 import { dialog, problemBox } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";

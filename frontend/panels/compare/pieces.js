@@ -3,7 +3,7 @@
  * in its own yarn or in another one.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {CurveResult, DesignDocument, Direction, PredictResult} from "../../types.js"
  * @import {Scope} from "../../services/scope.js"
  *
@@ -14,10 +14,10 @@
 
 import { api } from "../../api.js";
 import { ago } from "../../core/ago.js";
-import { ChartDocument } from "../../core/document.js";
-import { Grid } from "../../core/grid.js";
-import { outlineText } from "../../core/snapshot.js";
-import { designs } from "../../keeping/designs.js";
+import { ChartDocument } from "../../design/document.js";
+import { Grid } from "../../grid/grid.js";
+import { outlineText } from "../../design/snapshot.js";
+import { designs } from "../../sync/designs.js";
 import { scopeIn } from "../../services/scope.js";
 
 /** The design in hand, as it is now. */
@@ -95,9 +95,9 @@ function opened(design) {
 export async function answers({ grid, shaped }, material, signal) {
   const body = { chart: grid.text, material };
   const [predicted, course, wale] = await Promise.all([
-    api.predict({ ...body, ...shaped }, signal),
-    api.curve({ ...body, direction: "course" }, signal),
-    api.curve({ ...body, direction: "wale" }, signal),
+    api.run("predict", { ...body, ...shaped }, signal),
+    api.run("curve", { ...body, direction: "course" }, signal),
+    api.run("curve", { ...body, direction: "wale" }, signal),
   ]);
   return { predicted, curves: { course, wale } };
 }

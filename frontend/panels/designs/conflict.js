@@ -2,10 +2,10 @@
  * The same parts of a design were changed here and elsewhere: which one stays?
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { attempt } from "../../widgets/attempt.js";

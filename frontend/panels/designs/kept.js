@@ -1,11 +1,11 @@
 /**
  * The service's name for the design in hand.
  *
- * @import {Keeper} from "../../keeping/keeper.js"
+ * @import {Keeper} from "../../sync/keeper.js"
  */
 
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 
 /**
  * The name; the service gets the design now if it has not.

@@ -2,13 +2,13 @@
  * All designs that the service keeps: open, rename, duplicate, delete, and bring back.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Summary} from "../../keeping/designs.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Summary} from "../../sync/designs.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
-import { designs } from "../../keeping/designs.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
+import { designs } from "../../sync/designs.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
@@ -161,7 +161,7 @@ export function create(studio, context) {
       name,
       facts,
     );
-    /** @param {import("../../icons.js").IconName} sign @param {string} label @param {() => void} perform */
+    /** @param {import("../../elements/icons.js").IconName} sign @param {string} label @param {() => void} perform */
     const tool = (sign, label, perform) => iconButton(sign, `${label}: ${design.name}`, perform, { title: label });
     item.append(
       h(

@@ -2,14 +2,14 @@
  * Links to the design for others: to look at it, or to copy it.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Share, ShareMode} from "../../keeping/designs.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Share, ShareMode} from "../../sync/designs.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
-import { linkTo } from "../../keeping/address.js";
-import { designs } from "../../keeping/designs.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
+import { linkTo } from "../../sync/address.js";
+import { designs } from "../../sync/designs.js";
 import { dialog } from "../../widgets/dialog.js";
 import { keptName } from "./kept.js";
 import { attempt } from "../../widgets/attempt.js";

@@ -2,13 +2,13 @@
  * States of the design that were kept under a name: keep another one, look at them, go back.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Version} from "../../keeping/designs.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Version} from "../../sync/designs.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
-import { designs } from "../../keeping/designs.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
+import { designs } from "../../sync/designs.js";
 import { textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";

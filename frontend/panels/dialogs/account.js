@@ -3,12 +3,12 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {SessionSummary, SignedIn} from "../../types.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
 import { api } from "../../api.js";
 import { ago } from "../../core/ago.js";
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 import { nameOf } from "../../services/account.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";

@@ -2,7 +2,7 @@
 
 import { ACTIONS, shown } from "../../actions/registry.js";
 import { api } from "../../api.js";
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 import { TOOLS } from "../../tools/registry.js";
 import { dialog } from "../../widgets/dialog.js";
 

@@ -2,11 +2,11 @@
  * A chart from outside.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 import { importFile, importText } from "./importer.js";
 import { problemText } from "../../widgets/problem.js";
 import { dialog } from "../../widgets/dialog.js";

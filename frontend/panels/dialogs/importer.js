@@ -8,8 +8,8 @@
 
 import { paste } from "../../actions/selection.js";
 import { ApiError, api } from "../../api.js";
-import { DesignError, readDesign } from "../../core/design.js";
-import { Grid, MAX_SIDE, isChartText } from "../../core/grid.js";
+import { DesignError, readDesign } from "../../design/design.js";
+import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
 import { refusal } from "../../services/refusal.js";
 
 const MAX_FILE_BYTES = 12_000_000;
@@ -29,7 +29,7 @@ export async function importText(context, text, name = "Pasted.txt") {
   if (isKnitting(name, text)) return importKnitting(context, name, text);
   const { studio } = context;
   try {
-    const { rows, columns, text: chart } = await api.parse(text);
+    const { rows, columns, text: chart } = await api.run("charts/parse", { text });
     if (!isChartText(chart)) {
       return refusal(
         `${columns} stitches × ${rows} rows is more than this page paints.`,

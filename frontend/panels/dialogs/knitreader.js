@@ -7,7 +7,7 @@
  */
 
 import { ApiError, call } from "../../api.js";
-import { readDesign } from "../../core/design.js";
+import { readDesign } from "../../design/design.js";
 
 const WRITTEN = /^\s*(cast on|rows?|rounds?|rnds?)\s+\d/i;
 

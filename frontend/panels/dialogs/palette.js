@@ -2,18 +2,18 @@
  * Every tool and command, yarn, pattern, colouring, plot and pose, found by its name.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
- * @import {IconName} from "../../icons.js"
- * @import {Pose} from "../../studio/seeing.js"
+ * @import {Studio} from "../../state/studio.js"
+ * @import {IconName} from "../../elements/icons.js"
+ * @import {Pose} from "../../state/seeing.js"
  *
  * @typedef {{label: string, words: string, icon?: IconName, key?: string, perform: () => void}} Entry
  */
 
 import { ACTIONS, shown } from "../../actions/registry.js";
-import { OVERLAYS } from "../../studio/overlays.js";
-import { POSES } from "../../studio/seeing.js";
-import { byId, h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { OVERLAYS } from "../../state/overlays.js";
+import { POSES } from "../../state/seeing.js";
+import { byId, h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 import { dialog } from "../../widgets/dialog.js";
 
 /** Search words that an action's name does not contain. @type {Record<string, string>} */

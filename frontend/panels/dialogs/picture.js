@@ -1,16 +1,16 @@
 /**
  * A picture becomes a chart: how its cells lie, what is dark, and how that looks, before it is taken.
  *
- * @import {Grid} from "../../core/grid.js"
+ * @import {Grid} from "../../grid/grid.js"
  * @import {Problem} from "../../types.js"
  * @import {ActionContext} from "../../actions/action.js"
  */
 
-import { pixel, readPalette } from "../../studio/palette.js";
-import { plainDesign } from "../../core/design.js";
-import { MAX_SIDE } from "../../core/grid.js";
-import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../core/picture.js";
-import { h } from "../../dom.js";
+import { pixel, readPalette } from "../../state/palette.js";
+import { plainDesign } from "../../design/design.js";
+import { MAX_SIDE } from "../../grid/grid.js";
+import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../grid/picture.js";
+import { h } from "../../elements/dom.js";
 import { refusal } from "../../services/refusal.js";
 import { dialog } from "../../widgets/dialog.js";
 import { numberField } from "../../widgets/fields.js";

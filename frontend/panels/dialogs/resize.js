@@ -1,12 +1,12 @@
 /**
  * The chart's size: cut or add at chosen sides, repeat what there is, or begin anew.
  *
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
-import { Grid, MAX_SIDE } from "../../core/grid.js";
-import { resized } from "../../core/reshape.js";
-import { h } from "../../dom.js";
+import { Grid, MAX_SIDE } from "../../grid/grid.js";
+import { resized } from "../../design/reshape.js";
+import { h } from "../../elements/dom.js";
 import { dialog } from "../../widgets/dialog.js";
 import { numberField } from "../../widgets/fields.js";
 

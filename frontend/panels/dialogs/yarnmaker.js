@@ -2,13 +2,13 @@
  * The form in which a yarn is made of what is known of it, or changed: photos and a squeeze of the yarn,
  * the gauge of its fabrics, stretch tests of some. What was not tested is estimated.
  *
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {BendingResult, CompressionResult, Fabric, FitResult, MaterialDocument, YarnDocument} from "../../types.js"
  * @import {Gauge, Tests} from "../../services/yarns.js"
  */
 
-import { FABRICS } from "../../core/segments.js";
-import { h } from "../../dom.js";
+import { FABRICS } from "../../grid/segments.js";
+import { h } from "../../elements/dom.js";
 import {
   adopt,
   bendingRequest,

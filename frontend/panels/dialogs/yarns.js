@@ -1,11 +1,11 @@
 /**
  * Yarns of one's own: a list of them, a file of one, or what is known of one, from which it is made.
  *
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {MaterialSummary} from "../../types.js"
  */
 
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 import { download } from "../../services/exporter.js";
 import { OWN, adopt, evidenceOf, isYarnFile, refresh, yarns } from "../../services/yarns.js";
 import { attempt } from "../../widgets/attempt.js";

@@ -2,7 +2,7 @@
  * The export panel: all formats with their options, and what was checked of the file that came out.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {Extensions} from "../../types.js"
  * @import {ExportKind, Option} from "./kinds.js"
  *
@@ -11,15 +11,15 @@
  */
 
 import { ApiError, call, fetched } from "../../api.js";
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 import { download } from "../../services/exporter.js";
 import { scopeIn } from "../../services/scope.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
-import { viewRequest } from "../fabricview.js";
+import { viewRequest } from "../fabric/fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
 import { textButton } from "../../widgets/buttons.js";
 

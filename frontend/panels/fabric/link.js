@@ -3,8 +3,8 @@
  * on the fabric, and a stitch that is clicked on the fabric is shown in the chart.
  *
  * @import {ChartView} from "../../chart/view.js"
- * @import {Box} from "../../core/grid.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Box} from "../../grid/grid.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
 import { ApiError, api } from "../../api.js";
@@ -96,7 +96,7 @@ export class ViewLink {
   #find(row, column) {
     const { studio, view } = this;
     if (!studio.document.grid.has(row, column)) return;
-    /** @type {import("../../core/raster.js").Cell} */
+    /** @type {import("../../grid/raster.js").Cell} */
     const cell = [row, column];
     studio.seeing.found.value = cell;
     this.#reveal(row, column);

@@ -1,7 +1,7 @@
 /**
  * Files of the 3D view, made by the service.
  *
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {ViewRequest} from "../../types.js"
  *
  * @typedef {() => ViewRequest} RequestOfView what the view shows
@@ -9,7 +9,7 @@
  */
 
 import { ApiError, fetched } from "../../api.js";
-import { isDark } from "../../studio/palette.js";
+import { isDark } from "../../state/palette.js";
 import { download, fileName } from "../../services/exporter.js";
 
 /** @type {Record<Kind, string>} */

@@ -6,7 +6,7 @@
  */
 
 import { ApiError, fetched } from "../../api.js";
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 
 /** Pixels that the service draws at most. */
 const WIDEST = 1600;

@@ -1,13 +1,13 @@
 /**
  * What can be done with the fabric in 3D: look from another side, colour its yarn, give it away.
  *
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {CameraSide} from "../../types.js"
  */
 
-import { POSES } from "../../studio/seeing.js";
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { POSES } from "../../state/seeing.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 import { menu } from "../../widgets/menu.js";
 
 /** @type {{side: CameraSide, label: string, hint: string}[]} */
@@ -18,14 +18,14 @@ const SIDES = [
   { side: "angle", label: "Angle", hint: "Look from below right" },
 ];
 
-/** @type {[import("../../studio/seeing.js").Pose, string][]} */
+/** @type {[import("../../state/seeing.js").Pose, string][]} */
 const HINTS = [
   ["flat", "The fabric held flat"],
   ["lying", "Curled and folded, as it lies on its own"],
   ["worn", 'Closed to a tube on a limb, its girths under "Limb"; a glove that was planned here on its hand'],
 ];
 
-/** @type {[import("../../studio/seeing.js").YarnColours, string][]} */
+/** @type {[import("../../state/seeing.js").YarnColours, string][]} */
 const COLOURS = [
   ["chart", "Colours of the chart"],
   ["yarn", "The yarn's own colour"],

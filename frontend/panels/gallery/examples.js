@@ -18,9 +18,9 @@
  * @property {object} garment what the service is asked for
  */
 
-import { plainDesign } from "../../core/design.js";
-import { exampleGrid } from "../../core/example.js";
-import { Grid } from "../../core/grid.js";
+import { plainDesign } from "../../design/design.js";
+import { exampleGrid } from "../../grid/example.js";
+import { Grid } from "../../grid/grid.js";
 
 /** @param {string} motif rows from the top, separated by / @param {number} rows @param {number} columns */
 const tiled = (motif, rows, columns) => () => Grid.fromText(motif.replaceAll("/", "\n")).tiled(rows, columns).text;

@@ -3,14 +3,14 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {DesignDocument} from "../../types.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
 import { call } from "../../api.js";
-import { plainDesign } from "../../core/design.js";
-import { Grid } from "../../core/grid.js";
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { plainDesign } from "../../design/design.js";
+import { Grid } from "../../grid/grid.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";

@@ -5,8 +5,8 @@
  */
 
 import { figure, percent } from "../../core/format.js";
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 
 const MAX_PLACES = 9;
 

@@ -3,7 +3,7 @@
  * they are typed. What it makes is a design like any other.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {DesignDocument} from "../../types.js"
  *
  * @typedef {[low: number, high: number]} Span
@@ -20,7 +20,7 @@
 
 import { ApiError, call, isAbort } from "../../api.js";
 import { Latest } from "../../core/latest.js";
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog, problemBox } from "../../widgets/dialog.js";
 import { LengthField, choice, labelled, numberField } from "../../widgets/fields.js";

@@ -4,6 +4,8 @@
  * @import {DesignDocument} from "../../types.js"
  */
 
+import { themedReader } from "../../state/palette.js";
+
 const MAX_WIDTH = 520;
 const MAX_HEIGHT = 330;
 
@@ -25,8 +27,8 @@ export function drawGarment(canvas, design, aspect) {
   canvas.style.height = `${high}px`;
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   context.scale(ratio, ratio);
-  const style = getComputedStyle(document.documentElement);
-  const colours = lines.map((line) => Array.from(line, () => style.getPropertyValue("--knit")));
+  const knit = themedReader()("--knit");
+  const colours = lines.map((line) => Array.from(line, () => knit));
   for (const { runs, colour } of design.regions) {
     for (const [row, column, length] of runs) {
       colours[rows - 1 - row].fill(colour, column, column + length);

@@ -2,14 +2,14 @@
  * Putting a repeat into the chart: where it goes, and in which words that is said.
  *
  * @import {ChartView} from "../../chart/view.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  *
  * @typedef {{cells: number[], name: string}} Place
  */
 
-import { motifGrid } from "../../core/motif.js";
-import { selectedCells, selects } from "../../core/selection.js";
-import { byId, h } from "../../dom.js";
+import { motifGrid } from "../../grid/motif.js";
+import { selectedCells, selects } from "../../design/selection.js";
+import { byId, h } from "../../elements/dom.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 
 /** @type {Record<string, string>} */

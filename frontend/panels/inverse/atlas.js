@@ -2,15 +2,15 @@
  * The atlas browser: the scatter, and what a chosen repeat will do and ask.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {AtlasResult} from "../../types.js"
  * @import {Point} from "./scatter.js"
  */
 
 import { figure, percent, range } from "../../core/format.js";
-import { Ink } from "../../core/ink.js";
-import { motifGrid } from "../../core/motif.js";
-import { h } from "../../dom.js";
+import { Ink } from "../../design/ink.js";
+import { motifGrid } from "../../grid/motif.js";
+import { h } from "../../elements/dom.js";
 import { pencil } from "../../tools/pencil.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { Run } from "../../widgets/jobrun.js";

@@ -1,7 +1,7 @@
 /**
  * Stitches from stiffness: parts of the chart, and how stiff each should be.
  *
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {FillResult} from "../../types.js"
  *
  * @typedef {{course: number, wale: number}} Stiffness moduli in N/mm
@@ -12,13 +12,13 @@
 
 import { ApiError, api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
-import { Grid } from "../../core/grid.js";
-import { largestRectangle } from "../../core/inscribed.js";
-import { FABRICS } from "../../core/segments.js";
-import { selectedCells } from "../../core/selection.js";
-import { outlineText } from "../../core/snapshot.js";
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { Grid } from "../../grid/grid.js";
+import { largestRectangle } from "../../grid/inscribed.js";
+import { FABRICS } from "../../grid/segments.js";
+import { selectedCells } from "../../design/selection.js";
+import { outlineText } from "../../design/snapshot.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { nameOf, repeatPicture } from "./apply.js";
 import { field } from "./find.js";
@@ -80,7 +80,7 @@ export function fromStiffness(studio) {
     if (!inside || size !== sizeNow()) return;
     const body = { chart: grid.region(inside).text, material: studio.materialId.value };
     try {
-      const found = await api.predict(body);
+      const found = await api.run("predict", body);
       part.now = { course: found.modulus_course_n_per_mm, wale: found.modulus_wale_n_per_mm };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

@@ -1,10 +1,10 @@
 /**
  * Fill from a target, beside the chart: fabric and numbers stay in sight while stitches change.
  *
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
-import { byId, h } from "../../dom.js";
+import { byId, h } from "../../elements/dom.js";
 import { docked } from "../../widgets/dock.js";
 import { fromStiffness } from "./fill.js";
 import { fromOutline } from "./outline.js";

@@ -2,13 +2,13 @@
  * Find a fabric: targets with tolerances, in this yarn or in all, and what comes nearest.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {CandidateResult, FindResult, TargetInput} from "../../types.js"
  */
 
 import { figure, percent } from "../../core/format.js";
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { curlInWords, paintWith, sourceInWords } from "./atlas.js";

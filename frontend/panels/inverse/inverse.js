@@ -3,10 +3,10 @@
  * fabric and the inspector, so that the chart stays in sight.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  */
 
-import { byId, h } from "../../dom.js";
+import { byId, h } from "../../elements/dom.js";
 import { iconButton } from "../../widgets/buttons.js";
 import { atlasTab } from "./atlas.js";
 import { findTab } from "./find.js";

@@ -1,15 +1,15 @@
 /**
  * Stitches from a wanted outline: how wide the stretched swatch shall be, line by line.
  *
- * @import {Studio} from "../../studio.js"
+ * @import {Studio} from "../../state/studio.js"
  * @import {Direction} from "../../types.js"
  * @import {ShapeResult} from "../../types.js"
  */
 
 import { figure, percent } from "../../core/format.js";
-import { Grid } from "../../core/grid.js";
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { Grid } from "../../grid/grid.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
 import { field } from "./find.js";

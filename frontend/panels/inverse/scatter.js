@@ -7,9 +7,9 @@
  * @typedef {{key: string, index: number, x: number, y: number}} Point a repeat
  */
 
-import { readPalette } from "../../studio/palette.js";
+import { readPalette, themedReader } from "../../state/palette.js";
 import { figure } from "../../core/format.js";
-import { h } from "../../dom.js";
+import { h } from "../../elements/dom.js";
 
 const PAD = { left: 54, right: 14, top: 10, bottom: 40 };
 const NEAR_PX = 16;
@@ -60,7 +60,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     }
     const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     const palette = readPalette();
-    const line = getComputedStyle(canvas).getPropertyValue("--line");
+    const line = themedReader()("--line");
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     if (!table) return;
@@ -122,7 +122,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     }
   };
 
-  /** @param {CanvasRenderingContext2D} context @param {number} index @param {import("../../studio/palette.js").Palette} palette */
+  /** @param {CanvasRenderingContext2D} context @param {number} index @param {import("../../state/palette.js").Palette} palette */
   const interval = (context, index, palette) => {
     if (!table) return;
     const { x, y } = points[index];
@@ -223,7 +223,7 @@ export function inWords({ index }, table) {
  * @param {string} source
  * @param {number} x
  * @param {number} y
- * @param {import("../../studio/palette.js").Palette} palette
+ * @param {import("../../state/palette.js").Palette} palette
  */
 function mark(context, source, x, y, palette) {
   context.beginPath();
@@ -240,13 +240,13 @@ function mark(context, source, x, y, palette) {
   }
 }
 
-/** @param {CanvasRenderingContext2D} context @param {string} text @param {number} x @param {number} y @param {number} width @param {import("../../studio/palette.js").Palette} palette */
+/** @param {CanvasRenderingContext2D} context @param {string} text @param {number} x @param {number} y @param {number} width @param {import("../../state/palette.js").Palette} palette */
 function label(context, text, x, y, width, palette) {
   const half = context.measureText(text).width / 2 + 2;
   const at = Math.min(width - PAD.right - half, Math.max(PAD.left + half, x));
   context.textAlign = "center";
   context.lineWidth = 4;
-  context.strokeStyle = getComputedStyle(context.canvas).getPropertyValue("--panel");
+  context.strokeStyle = themedReader()("--panel");
   context.strokeText(text, at, y);
   context.fillStyle = palette.text;
   context.fillText(text, at, y);

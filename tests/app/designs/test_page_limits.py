@@ -1,4 +1,4 @@
-"""The page checks designs itself (`frontend/core/design.js`): with the library's limits."""
+"""The page checks designs itself (`frontend/design/design.js`): with the library's limits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from knitcore.formats import design, layout
 
-SCRIPT = Path(__file__).resolve().parents[3] / "frontend" / "core" / "design.js"
+SCRIPT = Path(__file__).resolve().parents[3] / "frontend" / "design" / "design.js"
 
 
 def test_the_page_has_the_librarys_limits() -> None:

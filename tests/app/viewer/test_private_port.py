@@ -1,11 +1,24 @@
-"""The queue of a view's messages."""
+"""viser as it is changed here, and the version that this holds for."""
 
 from __future__ import annotations
 
 import asyncio
 import threading
+from pathlib import Path
 
-from app.viewer.private_port import NewsEvent, private_server
+import viser
+
+from app.viewer.private_port import TESTED_VISER, NewsEvent, private_server
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def test_viser_is_the_version_that_its_patches_were_tested_with() -> None:
+    assert viser.__version__.startswith(f"{TESTED_VISER}.")
+    major, minor = map(int, TESTED_VISER.split("."))
+    allowed = f'"viser>={TESTED_VISER},<{major}.{minor + 1}"'
+    assert allowed in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    assert f"viser {TESTED_VISER}" in (ROOT / "frontend" / "README.md").read_text(encoding="utf-8")
 
 
 def test_who_falls_asleep_just_after_another_thread_set_the_event_is_woken() -> None:

@@ -1,13 +1,12 @@
-"""Figures, views and the editor of the notebook extra."""
+"""Figures and views of the notebook extra."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from knitcore import InputError, StitchChart, curve, material, predict
-from knitcore.notebook import ChartEditor, figure, view
-from knitcore.notebook.editor import MAX_STITCHES
+from knitcore import StitchChart, curve, material, predict
+from knitcore.notebook import figure, view
 from tests.knitcore.notebook.results import curled, relaxed_cell, sweep
 
 ACRYLIC = material("acrylic")
@@ -48,21 +47,3 @@ def test_a_curled_piece_in_space_is_its_corners() -> None:
 def test_objects_without_a_picture_are_refused(show) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(TypeError, match="a str has no"):
         show("KP")
-
-
-class TestEditor:
-    def test_it_returns_the_painted_chart(self) -> None:
-        editor = ChartEditor(RIB)
-        assert editor.chart == RIB
-        editor.text = "KK\nPP"  # as the page does
-        assert editor.chart.key == "KK/PP"
-        editor.chart = StitchChart.parse("KP")
-        assert editor.text == "KP"
-
-    def test_it_refuses_invalid_charts(self) -> None:
-        editor = ChartEditor("KP")
-        with pytest.raises(InputError):
-            editor.text = "KX"
-        with pytest.raises(InputError):
-            ChartEditor(StitchChart.of_fabric("rib", rows=MAX_STITCHES + 1, columns=1))
-        assert editor.chart.key == "KP"

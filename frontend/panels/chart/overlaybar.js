@@ -1,0 +1,242 @@
+/**
+ * What the chart's colours show: chips, the legend, and a read-out of the stitch under the pointer.
+ *
+ * @import {ChartView} from "../../chart/view.js"
+ * @import {ScaleLegend} from "../../state/overlays.js"
+ * @import {Cell} from "../../grid/raster.js"
+ * @import {Studio} from "../../state/studio.js"
+ */
+
+import { OVERLAYS, shownOverlay } from "../../state/overlays.js";
+import { groupAt, meanExtensibility } from "../../chart/rectangles.js";
+import { LINES } from "../../core/directions.js";
+import { figure, percent, percentRange, range } from "../../core/format.js";
+import { paced } from "../../core/paced.js";
+import { h } from "../../elements/dom.js";
+
+/** Sides of the blocks that rectangles may stand for. */
+const BLOCKS = [2, 4, 8, 16];
+const READ_MS = 80;
+const IDLE = "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.";
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @param {ChartView} view
+ * @returns {() => void} draws the legend anew, for another theme
+ */
+export function overlaybar(host, studio, view) {
+  const chips = OVERLAYS.map((overlay) =>
+    h(
+      "button",
+      {
+        class: "chip",
+        role: "radio",
+        id: `overlay-${overlay.id}`,
+        title: overlay.hint,
+        "aria-label": overlay.label,
+        onclick: () => (studio.overlay.value = overlay),
+      },
+      overlay.short,
+    ),
+  );
+  const rectangles = h(
+    "button",
+    {
+      class: "chip",
+      id: "overlay-rectangles",
+      title: "Extensibility rectangles: as wide and as high as a stitch stretches along rows and columns (E)",
+      onclick: () => (studio.rectangles.value = !studio.rectangles.value),
+    },
+    h("span", { class: "chip-rectangle", "aria-hidden": "true" }),
+    "Rectangles",
+  );
+  const { crosses: crossing } = studio.seeing;
+  const crosses = h(
+    "button",
+    {
+      class: "chip",
+      id: "overlay-crosses",
+      onclick: () => (crossing.value = !crossing.value),
+    },
+    "+ Strain",
+  );
+  crossing.watch((on) => crosses.setAttribute("aria-pressed", String(on)));
+  const grouping = h(
+    "select",
+    {
+      class: "chip-select",
+      id: "rectangle-groups",
+      title: "What one rectangle stands for",
+      "aria-label": "What one rectangle stands for",
+      onchange: () => {
+        const [groups, block] = grouping.value.split("-");
+        if (block) studio.seeing.block.value = Number(block);
+        studio.seeing.groups.value = /** @type {import("../../state/seeing.js").Groups} */ (groups);
+      },
+    },
+    h("option", { value: "stitch" }, "each stitch"),
+    ...BLOCKS.map((n) => h("option", { value: `block-${n}` }, `${n} × ${n} stitches`)),
+    h("option", { value: "region" }, "each region"),
+  );
+  const { groups, block } = studio.seeing;
+  grouping.value = groups.value === "block" ? `block-${block.value}` : groups.value;
+  const legend = h("div", { class: "legend" });
+  const readout = h("output", { class: "readout figures", id: "readout" });
+
+  let pulled = false;
+  const show = () => {
+    const shown = shownOverlay(studio);
+    pulled = Boolean(studio.currentStrain());
+    const needs = studio.currentStretch() ? "Needs a pull: move the slider" : "Needs a stretch test of this chart";
+    OVERLAYS.forEach((overlay, i) => {
+      chips[i].setAttribute("aria-checked", String(overlay === shown));
+      const available = overlay.available(studio);
+      chips[i].disabled = !available;
+      chips[i].title = available ? overlay.hint : `${overlay.hint}. ${needs}.`;
+    });
+    crosses.disabled = !pulled;
+    crosses.title = `Strain crosses: how far the cloth stretches along rows and columns; red where it narrows${
+      pulled ? "" : `. ${needs}.`
+    }`;
+    const content = shown.legend(studio, view.palette);
+    legend.replaceChildren(
+      ...(content.kind === "scale"
+        ? scale(content)
+        : content.items.map(({ label, colour, dot }) => {
+            const key = h("span", { class: dot ? "key dot" : "key" });
+            key.style.background = colour;
+            return h("span", { class: "legend-item" }, key, label);
+          })),
+    );
+    if (studio.rectangles.value) {
+      legend.append(
+        h(
+          "label",
+          { class: "legend-item" },
+          h("span", { class: "chip-rectangle" }),
+          h("span", { class: "wide", title: "Sides grow as the square root of the extensibility" }, "extensibility of"),
+          grouping,
+        ),
+      );
+    }
+  };
+  for (const signal of [studio.overlay, studio.material, studio.rectangles]) signal.listen(show);
+  for (const signal of [studio.rectangles, groups, block]) signal.listen(() => read());
+  studio.rectangles.watch((on) => rectangles.setAttribute("aria-pressed", String(on)));
+
+  const read = () => (readout.textContent = describe(studio, view.hover.value));
+  read();
+  const readSoon = paced(read, READ_MS);
+  view.hover.listen(readSoon);
+  studio.document.onChange(readSoon);
+  studio.step.listen(() => {
+    if (pulled !== Boolean(studio.currentStrain())) show();
+    read();
+  });
+  studio.stretch.watch(() => {
+    show();
+    read();
+  });
+
+  host.append(
+    h(
+      "div",
+      { class: "chips" },
+      h(
+        "div",
+        { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" },
+        ...chips.slice(0, 3),
+        h("span", { class: "chip-heading", "aria-hidden": "true" }, "Modulus"),
+        ...chips.slice(3, 6),
+        h("span", { class: "chip-divider", "aria-hidden": "true" }),
+        ...chips.slice(6),
+      ),
+      rectangles,
+      crosses,
+    ),
+    legend,
+    readout,
+  );
+  return show;
+}
+
+/** @param {ScaleLegend} scale */
+function scale({ map, low, high, unit, log, label }) {
+  const gradient = h("span", { class: "gradient" });
+  const colours = Array.from({ length: 33 }, (_, i) => map.css(i / 32));
+  gradient.style.backgroundImage = `linear-gradient(to right, ${colours})`;
+  return [
+    h("span", {}, label),
+    h("span", { class: "figures" }, figure(low, 2)),
+    gradient,
+    h("span", { class: "figures" }, `${figure(high, 2)}${unit ? ` ${unit}` : ""}`),
+    log && h("span", { class: "muted" }, "log"),
+  ].filter((part) => part instanceof Node);
+}
+
+/**
+ * @param {Studio} studio
+ * @param {Cell | null} cell
+ */
+function describe(studio, cell) {
+  const { grid, codes } = studio.document;
+  if (!cell || !grid.has(...cell)) return IDLE;
+  const [row, column] = cell;
+  const i = grid.index(row, column);
+  const side = studio.editing.round.value || row % 2 === 0 ? "RS" : "WS";
+  const parts = [`Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`];
+  if (studio.rectangles.value && studio.kinds().length) {
+    parts.push(give(studio, row, column));
+    return parts.join(" · ");
+  }
+  const kind = studio.kinds()[codes[i]];
+  const { id } = shownOverlay(studio);
+  const strain = studio.field("strain")?.[i];
+  const used = studio.field("utilisation")?.[i];
+  /** @param {"strain" | "utilisation"} name @param {number} [decimals] */
+  const within = (name, decimals) => {
+    const ends = studio.interval(name)?.map((end) => end[studio.step.value]?.[i]);
+    return ends ? ` (${percentRange(ends, decimals)})` : "";
+  };
+  if (id === "strain" && strain !== undefined) {
+    parts.push(`stretch ${percent(strain, 1)}${within("strain", 1)}`);
+  } else if (id === "utilisation" && used !== undefined) {
+    parts.push(`${percent(used)}${within("utilisation")} of lock-up`);
+  } else if (kind) {
+    const value = (/** @type {"course" | "wale"} */ direction) => {
+      const interval = range(kind[`modulus_${direction}_interval_n_per_mm`]);
+      return `${LINES[direction]} ${figure(kind[`modulus_${direction}_n_per_mm`])}${interval && ` (${interval})`}`;
+    };
+    parts.push(`${value("course")}, ${value("wale")} N/mm`);
+  }
+  return parts.join(" · ");
+}
+
+/**
+ * What the rectangle at a stitch says.
+ *
+ * @param {Studio} studio
+ * @param {number} row
+ * @param {number} column
+ */
+function give(studio, row, column) {
+  const group = groupAt(studio, row, column);
+  if (!group) return "in no region";
+  const kinds = studio.kinds();
+  const { codes } = studio.document;
+  const { course, wale } = meanExtensibility(kinds, codes, group.cells, group.count);
+  const interval = (/** @type {"course" | "wale"} */ direction) => {
+    let low = 0;
+    let high = 0;
+    for (const i of group.cells) {
+      const [least, most] = kinds[codes[i]][`modulus_${direction}_interval_n_per_mm`] ?? [NaN, NaN];
+      low += 1 / most;
+      high += 1 / least;
+    }
+    const text = range([low / group.count, high / group.count]);
+    return Number.isFinite(low) && text ? ` (${text})` : "";
+  };
+  const of = group.count > 1 ? `${group.count} stitches stretch` : "stretches";
+  return `${of} along rows ${figure(course)}${interval("course")}, columns ${figure(wale)}${interval("wale")} mm/N`;
+}

@@ -1,0 +1,97 @@
+/**
+ * The tools at the left, brush size and symmetry, and the panels of the chart's parts.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Studio} from "../../state/studio.js"
+ */
+
+import { SIZES } from "../../actions/look.js";
+import { action, shown } from "../../actions/registry.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
+import { TOOLS } from "../../tools/registry.js";
+import { actionButton } from "../../widgets/buttons.js";
+
+const SYMMETRY_NAMES = { none: "off", across: "left and right", up: "top and bottom", both: "both ways" };
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function rail(host, studio, context) {
+  const tools = TOOLS.map((tool) =>
+    h(
+      "button",
+      {
+        class: "tool",
+        id: `tool-${tool.id}`,
+        title: `${tool.label} (${tool.key})\n${tool.hint}`,
+        "aria-label": tool.label,
+        "aria-keyshortcuts": tool.key,
+        onclick: () => (studio.tool.value = tool),
+      },
+      icon(tool.icon),
+    ),
+  );
+  studio.tool.watch((chosen) =>
+    TOOLS.forEach((tool, i) => tools[i].setAttribute("aria-pressed", String(tool === chosen))),
+  );
+
+  const size = h("button", {
+    class: "tool size",
+    id: "brush-size",
+    onclick: () => {
+      studio.size.value = SIZES[(SIZES.indexOf(studio.size.value) + 1) % SIZES.length];
+    },
+  });
+  studio.size.watch((value) => {
+    const dot = h("span", { class: "size-dot" });
+    dot.style.width = dot.style.height = `${4 + 1.4 * value}px`;
+    size.replaceChildren(dot, h("span", { class: "figures" }, value));
+    size.title = `Brush: ${value} × ${value} stitches ([ and ])`;
+    size.setAttribute("aria-label", `Brush size ${value}; next size`);
+  });
+  studio.tool.watch(({ sized }) => (size.disabled = !sized));
+
+  /** @param {string} id */
+  const small = (id) => actionButton(action(id), context, "tool");
+  const symmetry = small("symmetry");
+  studio.symmetry.watch((value) => {
+    symmetry.setAttribute("aria-pressed", String(value !== "none"));
+    symmetry.setAttribute("aria-label", `Symmetry: ${SYMMETRY_NAMES[value]}`);
+    symmetry.title = `Symmetry: ${SYMMETRY_NAMES[value]} (Y)`;
+    symmetry.replaceChildren(
+      icon(value === "up" ? "flip" : "mirror"),
+      value === "both" ? h("span", { class: "badge" }, "2") : "",
+    );
+  });
+
+  /** @param {"regions" | "repeats"} name @param {string} label */
+  const panel = (name, label) => {
+    const button = h(
+      "button",
+      {
+        class: "tool",
+        id: `open-${name}`,
+        title: `${label} (${shown(action(name).keys[0])})`,
+        "aria-label": label,
+        onclick: () => action(name).perform(context),
+      },
+      icon(name === "regions" ? "regions" : "link"),
+    );
+    studio.editing.panel.watch((open) => button.setAttribute("aria-pressed", String(open === name)));
+    return button;
+  };
+
+  host.append(
+    ...tools,
+    h("hr"),
+    size,
+    symmetry,
+    h("hr"),
+    panel("regions", "Regions"),
+    panel("repeats", "Linked repeats"),
+    small("open-atlas"),
+  );
+}

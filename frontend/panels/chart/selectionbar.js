@@ -1,0 +1,66 @@
+/**
+ * What can be done with the selection; while there is one, it takes the place of the strip's choices.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ */
+
+import { action, shown } from "../../actions/registry.js";
+import { selectedCells } from "../../design/selection.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
+
+const GROUPS = [
+  ["copy", "cut", "paste", "clear"],
+  ["mirror", "flip", "rotate", "turn-over", "swap"],
+  ["insert-row-above", "delete-rows", "insert-column-right", "delete-columns"],
+];
+const NAMED = [
+  ["keep-pattern", "Pattern"],
+  ["make-repeat", "Repeat"],
+  ["make-region", "Region"],
+];
+
+/**
+ * @param {HTMLElement} host
+ * @param {ActionContext} context
+ */
+export function selectionbar(host, context) {
+  const { studio } = context;
+  /** @param {string} id @param {string} [text] */
+  const button = (id, text) => {
+    const { label, icon: picture, keys, perform } = action(id);
+    return h(
+      "button",
+      {
+        class: text ? "bar-button named" : "bar-button",
+        id: `selection-${id}`,
+        title: keys[0] ? `${label} (${shown(keys[0])})` : label,
+        "aria-label": label,
+        onclick: () => perform(context),
+      },
+      picture && icon(picture),
+      text && h("span", {}, text),
+    );
+  };
+  const count = h("span", { class: "bar-count figures" });
+  const bar = h(
+    "div",
+    { class: "selection-bar", role: "toolbar", "aria-label": "Selection", id: "selection-bar", hidden: true },
+    count,
+    ...GROUPS.map((group) => h("span", { class: "bar-group" }, ...group.map((id) => button(id)))),
+    h("span", { class: "bar-group" }, ...NAMED.map(([id, text]) => button(id, text))),
+    button("deselect"),
+  );
+  const strip = host.querySelector(".chart-strip");
+  strip?.append(bar);
+  studio.selection.watch((selection) => {
+    bar.hidden = !selection;
+    strip?.toggleAttribute("data-selecting", selection !== null);
+    if (!selection) return;
+    const wide = selection.column1 - selection.column0;
+    const high = selection.row1 - selection.row0;
+    count.textContent = selection.mask
+      ? `${selectedCells(selection, studio.document.grid).length} sts`
+      : `${wide} × ${high}`;
+  });
+}

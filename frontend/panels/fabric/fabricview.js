@@ -1,0 +1,353 @@
+/**
+ * The fabric in 3D: the service's viewer in a frame, kept in step with the chart. At most one request
+ * is under way; of the changes meanwhile only the last is sent.
+ *
+ * @import {ChartView} from "../../chart/view.js"
+ * @import {Studio} from "../../state/studio.js"
+ * @import {CameraSide, ViewRequest} from "../../types.js"
+ */
+
+import { ApiError, api } from "../../api.js";
+import { atRest, shownOverlay } from "../../state/overlays.js";
+import { onTheme, readPalette } from "../../state/palette.js";
+import { along } from "../../core/directions.js";
+import { outlineText } from "../../design/snapshot.js";
+import { h, nextTask } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
+import { ViewLink } from "./link.js";
+import { Still } from "./still.js";
+import { toolbar } from "./toolbar.js";
+import { problemText } from "../../widgets/problem.js";
+import { POSES, wordsOf } from "../../state/seeing.js";
+import { REST } from "../../state/studio.js";
+
+/** Delay before the 3D view updates: without a GPU, drawing can block painting. */
+const DELAY_MS = 650;
+/** After a stroke another one often follows. */
+const BETWEEN_STROKES_MS = 600;
+/** A frame whose page did not come is loaded again after this time. */
+const RELOAD_MS = 2500;
+/** The service draws so many stitches as yarn at most; of larger charts only a part. */
+const MAX_DRAWN = 40_000;
+
+const BLIND = {
+  type: "browser",
+  status: 0,
+  title: "A picture of the fabric, which cannot be turned",
+  detail: "This browser draws nothing in 3D: it has no WebGL 2.",
+  remedy: "Allow it graphics acceleration, or use another one. Chart, numbers and stretch test work all the same.",
+};
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @param {ChartView} view
+ * @returns {() => void} sends the design again, for a service that has forgotten it
+ */
+export function fabricview(host, studio, view) {
+  const frame = h("iframe", { title: "Fabric in 3D", class: "fabric-frame", tabIndex: 0 });
+  // Without our origin it may have a process of its own; then its frames do not keep the page waiting.
+  frame.setAttribute("sandbox", "allow-scripts");
+  const status = h("div", { class: "fabric-status", role: "status" });
+  const caption = h("div", { class: "fabric-caption" });
+  const still = new Still(frame);
+  const drawing = { slow: false, held: false };
+  /** @param {{pass: string} | {hold: boolean} | {ink: string}} message */
+  const tellFrame = (message) => frame.contentWindow?.postMessage(message, "*");
+  const tellInk = () => tellFrame({ ink: getComputedStyle(host).color });
+  /** Let its frames wait, or go on. @param {boolean} held */
+  const hold = (held) => {
+    if (drawing.held === held) return;
+    drawing.held = held;
+    tellFrame({ hold: held });
+  };
+  const link = new ViewLink(studio, view, {
+    lost: () => {
+      sent = "";
+      now();
+    },
+    slow: () => drawing.slow,
+  });
+
+  /** @param {CameraSide} side */
+  const look = async (side) => {
+    try {
+      await api.look(studio.designId, side);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      studio.tellProblem(error.problem);
+    }
+  };
+
+  /** Whether the view's page runs in the frame. */
+  let loaded = false;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let reloading;
+  const reload = () => {
+    if (shown && !loaded) frame.src = shown;
+  };
+  frame.addEventListener("load", () => {
+    if (shown) reloading = setTimeout(reload, RELOAD_MS); // the browser's own page about a failure loads, too
+  });
+  /** The browser draws nothing in 3D. */
+  let blind = false;
+  addEventListener("message", ({ source, data }) => {
+    if (source !== frame.contentWindow) return;
+    if (data.view === "loaded") {
+      loaded = true;
+      blind = false;
+      tellFrame({ hold: drawing.held });
+      tellInk();
+      if (pass) tellFrame({ pass });
+    }
+    if (data.view === "seen") knitted();
+    if (data.view === "none") {
+      blind = true;
+      status.replaceChildren(icon("warning"), problemText(BLIND));
+    }
+    if (typeof data.slow === "boolean") drawing.slow = data.slow;
+  });
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let holding;
+  const release = () => {
+    clearTimeout(holding);
+    if (studio.document.painting) holding = setTimeout(release, BETWEEN_STROKES_MS);
+    else hold(false);
+  };
+  studio.document.onChange(() => {
+    hold(true);
+    clearTimeout(holding);
+    holding = setTimeout(release, BETWEEN_STROKES_MS);
+  });
+
+  let sending = false;
+  let again = false;
+  /** What the service shows. */
+  let sent = "";
+  /** Address of the view in the frame, and what lets the frame watch it. */
+  let shown = "";
+  let pass = "";
+  let source = "";
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+
+  const request = () => viewRequest(studio, view);
+  host.replaceChildren(
+    frame,
+    still.root,
+    caption,
+    toolbar(studio, (side) => void look(side), request),
+    status,
+  );
+
+  let problem = false;
+  let live = false;
+  /** @param {boolean} now */
+  const setLive = (now) => {
+    live = now;
+    host.toggleAttribute("data-live", live);
+  };
+  /** The live view shows the cloth. */
+  const knitted = () => {
+    setLive(true);
+    still.clear();
+    if (!problem) status.replaceChildren();
+  };
+  /** Until it does, or always where it cannot, a picture stands in for it. */
+  const beStill = () => {
+    setLive(false);
+    void still.draw(request(), () => {
+      if (!problem && !blind) status.replaceChildren();
+    });
+  };
+  /** @param {string} url */
+  const open = (url) => {
+    if (shown === url) return;
+    shown = url;
+    pass = "";
+    sent = "";
+    setLive(false);
+    status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
+    still.clear();
+    clearTimeout(reloading);
+    loaded = false;
+    frame.src = url;
+    link.disconnect();
+  };
+  const send = async () => {
+    if (sending) {
+      again = true;
+      return;
+    }
+    open(`/view/${encodeURIComponent(studio.designId)}/`); // it loads while the scene is being made
+    const asked = request();
+    const told = words();
+    const text = JSON.stringify(asked);
+    if (text === sent) return;
+    sending = true;
+    host.toggleAttribute("data-sending", true);
+    if (!live) beStill();
+    await nextTask();
+    try {
+      sent = "";
+      const answer = await api.view(studio.designId, asked);
+      sent = text;
+      if (problem) status.replaceChildren();
+      problem = false;
+      source = answer.source;
+      confirmed = told;
+      describe();
+      studio.online.value = true;
+      pass = answer.url.slice(answer.url.indexOf("#") + 1);
+      tellFrame({ pass });
+      link.connect();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.offline) {
+        studio.online.value = false;
+        status.replaceChildren(); // the banner over the cloth says why nothing comes
+        describe();
+        return;
+      }
+      const { field } = error.problem;
+      if (field === "curl.id" && studio.seeing.posed.value) {
+        const { pose, curling } = studio.seeing;
+        const forgotten = { pose: pose.value, curling: curling.value }; // by a restarted service
+        [pose.value, curling.value] = ["flat", false];
+        [pose.value, curling.value] = [forgotten.pose, forgotten.curling];
+        return;
+      }
+      const id = field === "stretch.id" ? (studio.currentStretch()?.id ?? null) : null;
+      if (id !== null) {
+        status.replaceChildren(h("span", { class: "spinner" }), "Pulling the cloth once more …");
+        studio.seeing.forgotten.value = id; // it is run again, and then sent again
+        return;
+      }
+      problem = true;
+      status.replaceChildren(icon("warning"), problemText(error.problem));
+    } finally {
+      sending = false;
+      host.toggleAttribute("data-sending", false);
+      if (again) {
+        again = false;
+        void send();
+      }
+    }
+  };
+  const soon = () => {
+    clearTimeout(timer);
+    timer = setTimeout(() => {
+      if (studio.document.painting) soon();
+      else void send();
+    }, DELAY_MS);
+  };
+  const now = () => {
+    clearTimeout(timer);
+    void send();
+  };
+
+  /** What the service said last that it shows; the cloth keeps it while the service cannot be reached. */
+  let confirmed = "";
+  const words = () => {
+    const strain = studio.seeing.pose.value !== "flat" ? 0 : studio.currentStrain();
+    return strain && !studio.seeing.posed.value
+      ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
+      : poseText(studio);
+  };
+  const describe = () => {
+    caption.replaceChildren(
+      (!studio.online.value && confirmed) || words(),
+      h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
+    );
+    caption.title = studio.seeing.posed.value?.note ?? (source && `Yarn: ${source}`);
+  };
+
+  studio.document.onChange(soon);
+  const { yarnColours, groups, block, pose, posed } = studio.seeing;
+  for (const signal of [studio.materialId, studio.overlay, studio.rectangles, studio.stretch, groups, block]) {
+    signal.listen(soon);
+  }
+  yarnColours.listen(now);
+  let form = posed.value?.id;
+  posed.listen((found) => {
+    const same = found?.id === form; // it waits for the next one: sent now, it would hold that up
+    form = found?.id;
+    if (!same) now();
+    if (found && !same && !drawing.slow) release();
+    describe();
+  });
+  pose.listen(() => {
+    now();
+    describe();
+  });
+  studio.step.listen(now);
+  onTheme(() => {
+    tellInk();
+    soon();
+  });
+  studio.stretch.watch(describe);
+  studio.step.listen(describe);
+  void nextTask().then(now);
+  return () => {
+    shown = ""; // a restarted service has new scenes, so the frame must connect anew
+    const test = pulled(studio);
+    if (test)
+      studio.seeing.forgotten.value = test.id; // it is run again, and then sent
+    else now();
+  };
+}
+
+/**
+ * What the view is to show.
+ *
+ * @param {Studio} studio
+ * @param {ChartView} view
+ * @returns {ViewRequest}
+ */
+export function viewRequest(studio, view) {
+  const { document: chart, seeing } = studio;
+  const posed = seeing.posed.value;
+  const stretch = posed ? null : pulled(studio);
+  const overlay = stretch ? shownOverlay(studio) : atRest(shownOverlay(studio));
+  const ofChart = posed?.pose === "worn" ? "pressure" : overlay.view;
+  const colour = seeing.yarnColours.value === "chart" ? ofChart : seeing.yarnColours.value;
+  const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
+  const { rows, columns } = chart.grid;
+  const { written: palette } = readPalette();
+  const seen = view.viewport.visible(chart.grid);
+  if (posed?.piece) {
+    return { ...studio.request, ...posed.piece, colour: "fabric", palette, curl: { id: posed.id } };
+  }
+  return {
+    ...studio.request,
+    outline: chart.shaped ? outlineText(chart.outline, columns) : null,
+    colour: /** @type {ViewRequest["colour"]} */ (colour),
+    palette,
+    regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],
+    rectangles: studio.rectangles.value,
+    rectangle_groups: seeing.groups.value,
+    rectangle_block: seeing.block.value,
+    stretch: stretch && studio.step.value !== REST ? { id: stretch.id, step: studio.step.value } : null,
+    curl: posed && { id: posed.id },
+    focus:
+      rows * columns > MAX_DRAWN
+        ? { row: (seen.row0 + seen.row1) >> 1, column: (seen.column0 + seen.column1) >> 1 }
+        : null,
+  };
+}
+
+/** The test that is shown: none while the fabric is shown in another pose, or the test is run again. @param {Studio} studio */
+function pulled(studio) {
+  const { pose, forgotten } = studio.seeing;
+  const test = pose.value === "flat" ? studio.currentStretch() : null;
+  return test?.id === forgotten.value ? null : test;
+}
+
+/** How the fabric that nobody pulls is shown. @param {Studio} studio */
+function poseText(studio) {
+  const { pose, posed } = studio.seeing;
+  const { value } = pose;
+  if (posed.value) return wordsOf(posed.value);
+  if (value === "flat") return "Relaxed, held flat";
+  return `${POSES[value]}: being computed`;
+}

@@ -1,0 +1,160 @@
+/**
+ * What the cloth's own weight does: hanging, over an edge, over a disc, and how wide a border would hold
+ * it flat. Asked for by buttons, since these take seconds.
+ *
+ * @import {Studio} from "../../state/studio.js"
+ */
+
+import { ApiError, api, isAbort } from "../../api.js";
+import { figure, percent } from "../../core/format.js";
+import { Latest } from "../../core/latest.js";
+import { h } from "../../elements/dom.js";
+import { scopeOf } from "../../services/scope.js";
+import { labelled, numberField } from "../../widgets/fields.js";
+import { problemText } from "../../widgets/problem.js";
+
+/** @typedef {{chart: string, material: string, linear_density_g_per_m: number}} Weighed */
+/**
+ * @typedef {{words: string[], notes: string[], converged?: boolean, piece?: {id: string, chart: string, outline: string}}} Told
+ *   words, and what to show in 3D and whether that is at rest
+ */
+
+/** Fabrics of a border. */
+const BORDERS = /** @type {const} */ (["garter", "seed", "rib"]);
+
+/**
+ * The simulated tests: words of the button, what it is for, and the answer in words.
+ *
+ * @type {{id: string, label: string, hint: string,
+ *   tell: (asked: Weighed, signal: AbortSignal) => Promise<Told>}[]}
+ */
+const TESTS = [
+  {
+    id: "overhang",
+    label: "Over an edge",
+    hint: "A strip that hangs over the edge of a table: Peirce's bending length",
+    tell: async (asked, signal) => {
+      const ways = /** @type {const} */ (["course", "wale"]);
+      const found = await Promise.all(ways.map((direction) => api.run("overhang", { ...asked, direction }, signal)));
+      const [rows, columns] = found.map(({ bending_length_mm: mm }) => figure(mm / 10, 2));
+      return {
+        words: [`Bending length ${rows} cm along the rows, ${columns} cm along the columns.`],
+        notes: found[0].notes,
+        converged: found[0].converged,
+        piece: found[0].piece,
+      };
+    },
+  },
+  {
+    id: "drape",
+    label: "Over a disc",
+    hint: "A round piece of 30 cm over a disc of 18 cm: the drape coefficient",
+    tell: async (asked, signal) => {
+      const found = await api.run("drape", asked, signal);
+      const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, converged, piece } = found;
+      const states = ends.map((end) => percent(end)).join(" to ");
+      return {
+        words: [
+          `Drape coefficient ${percent(coefficient)} (states of rest found: ${states}), ${folds} folds.`,
+          `Falls by ${figure(fall_mm / 10, 2)} cm. Soft cloth drapes more than this.`,
+        ],
+        notes,
+        converged,
+        piece,
+      };
+    },
+  },
+  {
+    id: "border",
+    label: "Border",
+    hint: "How wide a border of garter, seed or rib holds it flat by its weight",
+    tell: async (asked, signal) => {
+      const found = await Promise.all(BORDERS.map((border) => api.run("border", { ...asked, border }, signal)));
+      const words = found.map(({ sides, ends }, i) => {
+        const [wide, high] = [sides, ends].map(({ width_mm: mm }) => figure(mm / 10, 2));
+        const lies = sides.holds && ends.holds ? "" : ", and wider would roll up, too";
+        return `A ${BORDERS[i]} border by its weight alone: ${wide} cm at the sides, ${high} cm at the ends${lies}.`;
+      });
+      return { words, notes: found[0].notes };
+    },
+  },
+];
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @returns {() => void} nothing to draw anew
+ */
+export function drape(host, studio) {
+  const latest = new Latest(0);
+  const answer = h("div", { class: "limb-answer", role: "status", id: "drape-answer" });
+  const weight = numberField({ id: "drape-weight", min: "0.005", max: "20", step: "0.01", value: studio.weight.value });
+  weight.addEventListener("change", () => {
+    if (weight.valueAsNumber > 0) studio.weight.value = weight.valueAsNumber;
+  });
+  /** @param {string} label @param {NonNullable<Told["piece"]>} piece @param {boolean} converged @param {string} note */
+  const show = (label, { id, chart, outline }, converged, note) => {
+    const { rows, columns } = studio.document.grid;
+    studio.seeing.pose.value = "tested";
+    studio.seeing.posed.value = {
+      pose: "tested",
+      id,
+      rows,
+      columns,
+      converged,
+      words: `${label}, by its weight`,
+      note,
+      piece: { chart, outline },
+    };
+  };
+  /** @param {(typeof TESTS)[number]} test */
+  const run = ({ label, tell }) => {
+    const { grid } = scopeOf(studio);
+    const asked = {
+      chart: grid.text,
+      material: studio.materialId.value,
+      linear_density_g_per_m: studio.weight.value,
+    };
+    answer.replaceChildren(h("span", { class: "spinner" }), `${label}: being computed`);
+    latest.run(async (signal) => {
+      try {
+        const { words, notes, converged = false, piece } = await tell(asked, signal);
+        if (piece) show(label, piece, converged, notes[0]);
+        answer.replaceChildren(
+          ...words.map((text) => h("p", { class: "figures" }, text)),
+          ...notes.map((text) => h("p", { class: "muted" }, text)),
+        );
+      } catch (error) {
+        if (isAbort(error)) return;
+        if (!(error instanceof ApiError)) throw error;
+        answer.replaceChildren(problemText(error.problem));
+      }
+    });
+  };
+  host.append(
+    h(
+      "div",
+      { class: "limb-more" },
+      labelled("Yarn weighs", weight, "g/m"),
+      h(
+        "button",
+        {
+          class: "button",
+          id: "drape-hang",
+          title: "Hanging from its top edge, in 3D",
+          onclick: () => (studio.seeing.pose.value = "hung"),
+        },
+        "Hang it",
+      ),
+      ...TESTS.map((test) =>
+        h(
+          "button",
+          { class: "button", id: `drape-${test.id}`, title: test.hint, onclick: () => run(test) },
+          test.label,
+        ),
+      ),
+    ),
+    answer,
+  );
+  return () => {};
+}

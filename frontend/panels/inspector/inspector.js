@@ -1,0 +1,340 @@
+/**
+ * The numbers of the chart or the selection, with interval and source, and two plots.
+ *
+ * @import {Studio} from "../../state/studio.js"
+ * @import {Direction, PredictResult} from "../../types.js"
+ * @import {Scope} from "../../services/scope.js"
+ */
+
+import { LINES, along } from "../../core/directions.js";
+import { figure, percents, range } from "../../core/format.js";
+import { paced } from "../../core/paced.js";
+import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
+import { scopeOf, sizeAtRest } from "../../services/scope.js";
+import { h } from "../../elements/dom.js";
+import { icon } from "../../elements/icons.js";
+import { curvePlot } from "../../plots/curve.js";
+import { rigidityPlot } from "../../plots/rigidity.js";
+import { drape } from "./drape.js";
+import { limb } from "./limb.js";
+import { ownGauge } from "./owngauge.js";
+import { problemText } from "../../widgets/problem.js";
+
+const COUNT_MS = 80;
+const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb", "drape"]);
+/** @typedef {(typeof PLOTS)[number]} Plot */
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @returns {() => void} draws the plots anew, for another theme
+ */
+export function inspector(host, studio) {
+  const title = h("h2", {});
+  const scopes = h("select", {
+    class: "chip-select",
+    id: "inspector-scope",
+    title: "What these numbers describe",
+    "aria-label": "What these numbers describe",
+    onchange: () => {
+      studio.selection.value = null;
+      studio.seeing.region.value = scopes.value || null;
+    },
+  });
+  const gauge = ownGauge(studio);
+  const provenance = h("summary", { id: "provenance", title: "Where these numbers come from" });
+  const notes = h("ul", { class: "notes" });
+  const source = h("details", { class: "source" }, provenance, gauge.element, notes);
+  const problem = h("div", { class: "problem", hidden: true });
+  const table = h("table", { class: "numbers" });
+  const shares = h("div", { class: "shares" });
+  const rigidity = h("div", { class: "plot", id: "plot-rigidity" });
+  const curve = h("div", { class: "plot", id: "plot-curve" });
+  const worn = h("div", { class: "limb", id: "plot-limb" });
+  const weighed = h("div", { class: "limb", id: "plot-drape" });
+  const plots = { rigidity, curve, limb: worn, drape: weighed };
+  /** @type {Record<Plot, () => void>} */
+  const draw = {
+    rigidity: rigidityPlot(rigidity, studio),
+    curve: curvePlot(curve, studio),
+    limb: limb(worn, studio),
+    drape: drape(weighed, studio),
+  };
+
+  /** @param {Plot} id @param {string} label */
+  const tab = (id, label) =>
+    h(
+      "button",
+      {
+        class: "tab",
+        role: "tab",
+        id: `tab-${id}`,
+        "aria-controls": `plot-${id}`,
+        onclick: () => {
+          choose(id);
+          // Where the plot is below the numbers.
+          plots[id].scrollIntoView({ block: "nearest" });
+        },
+      },
+      label,
+    );
+  const tabs = {
+    rigidity: tab("rigidity", "Stiffness"),
+    curve: tab("curve", "Curves"),
+    limb: tab("limb", "Limb"),
+    drape: tab("drape", "Drape"),
+  };
+  const pulls = h("div", {
+    class: "segmented small curve-pulls",
+    role: "radiogroup",
+    "aria-label": "Direction of the curves",
+  });
+  const ways = /** @type {Direction[]} */ (["course", "wale"]).map((way) => {
+    const button = h(
+      "button",
+      {
+        class: "segment",
+        role: "radio",
+        id: `curve-${way}`,
+        title: `Pulled ${along(way)}`,
+        "aria-label": LINES[way],
+        onclick: () => (studio.seeing.pull.value = way),
+      },
+      icon(way),
+    );
+    studio.seeing.pull.watch((chosen) => button.setAttribute("aria-checked", String(chosen === way)));
+    return button;
+  });
+  pulls.append(...ways);
+  /** @param {Plot} id */
+  const choose = (id) => {
+    pulls.hidden = id !== "curve";
+    for (const one of PLOTS) {
+      plots[one].hidden = one !== id;
+      tabs[one].setAttribute("aria-selected", String(one === id));
+    }
+    draw[id]();
+  };
+
+  host.append(
+    h(
+      "div",
+      { class: "inspector-numbers" },
+      h("div", { class: "inspector-head" }, h("div", { class: "inspector-title" }, title, scopes), source),
+      problem,
+      table,
+      shares,
+    ),
+    h(
+      "div",
+      { class: "inspector-plots" },
+      h("div", { class: "tabs", role: "tablist", "aria-label": "Plots" }, ...Object.values(tabs)),
+      pulls,
+      ...Object.values(plots),
+    ),
+  );
+  choose("rigidity");
+
+  /** @type {PredictResult | null | undefined} */
+  let shown;
+  const show = () => {
+    const { value, busy, problem: wrong, scope } = studio.prediction.value;
+    host.classList.toggle("busy", busy);
+    if (busy && shown === value) return; // asked again: the old numbers stay, greyed, until the answer comes
+    shown = value;
+    const part = scopeOf(studio);
+    title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, part.size));
+    title.title = part.note || (part.shaped && value ? value.notes[0] : "");
+    // While the service is unreachable the banner says so.
+    problem.hidden = !wrong || wrong.type === "offline";
+    if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
+    // Numbers of another scope would be mistaken for this one's.
+    fill(table, scope === part.kind ? value : null, part);
+    source.hidden = !value;
+    if (value) {
+      const told = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
+      name();
+      notes.replaceChildren(...told.map((note) => h("li", {}, note)));
+      gauge.show();
+    }
+  };
+  const name = () => {
+    const { value } = studio.prediction.value;
+    provenance.textContent = `${value?.provenance}${studio.relaxing.value ? ", relaxing …" : ""}`;
+  };
+  const count = () => {
+    const { document: chart } = studio;
+    const { grid, mask } = scopeOf(studio).counted;
+    const segments = countSegments(grid, mask);
+    const mix = fabricShares(grid === chart.grid ? chart.codes : surroundings(grid, mask), mask);
+    const rounded = percents(mix);
+    shares.replaceChildren(
+      shareBar(
+        "share-fabrics",
+        FABRICS.map((fabric, i) => ({ share: mix[i], colour: `var(--${fabric})`, text: `${fabric} ${rounded[i]}` })),
+      ),
+      .../** @type {Direction[]} */ (["course", "wale"]).map((direction) => {
+        const { even, odd } = segments[direction];
+        const all = even + odd || 1;
+        return shareBar(
+          `segments-${direction}`,
+          [
+            { share: even / all, colour: "var(--even)", text: `${even} even` },
+            { share: odd / all, colour: "var(--odd)", text: `${odd} odd` },
+          ],
+          direction,
+        );
+      }),
+    );
+  };
+  const countSoon = paced(count, COUNT_MS);
+  studio.prediction.watch(show);
+  studio.relaxing.listen(name);
+  studio.selection.listen(() => {
+    shown = undefined;
+    show();
+    countSoon();
+  });
+  const offer = () => {
+    const { regions } = studio.document;
+    const { region } = studio.seeing;
+    if (region.value !== null && !studio.document.region(region.value)) region.value = null;
+    scopes.hidden = !regions.length;
+    scopes.replaceChildren(
+      h("option", { value: "" }, "Whole chart"),
+      ...regions.map(({ id, name }) => h("option", { value: id }, name)),
+    );
+    scopes.value = region.value ?? "";
+  };
+  studio.document.onSettle(offer);
+  studio.seeing.region.listen(() => {
+    shown = undefined;
+    offer();
+    show();
+    countSoon();
+  });
+  offer();
+  studio.document.onChange(countSoon);
+  count();
+  studio.stretch.watch(({ value, stale, direction }) => {
+    if (!value || stale) return;
+    studio.seeing.pull.value = direction;
+    choose("curve");
+  });
+  return () => {
+    draw.rigidity();
+    if (!curve.hidden) draw.curve();
+  };
+}
+
+/**
+ * @param {HTMLTableElement} table
+ * @param {PredictResult | null} value
+ * @param {Scope} scope of the numbers
+ */
+function fill(table, value, scope) {
+  const size = value && sizeAtRest(scope, value);
+  /** @param {string} id @param {number | undefined} number @param {string} [interval] */
+  const cell = (id, number, interval) =>
+    h(
+      "td",
+      { id },
+      h("span", { class: "value" }, figure(number)),
+      interval && h("span", { class: "interval", title: "90 % interval" }, interval),
+    );
+  /** @param {string} label @param {string} unit @param {string} hint @param {HTMLElement[]} cells */
+  const row = (label, unit, hint, ...cells) =>
+    h("tr", {}, h("th", { scope: "row", title: hint }, label, unit && h("span", { class: "unit" }, unit)), ...cells);
+  table.replaceChildren(
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("td", {}),
+        h("th", { scope: "col", title: "Pulled along the rows" }, icon("course"), "Rows"),
+        h("th", { scope: "col", title: "Pulled along the columns" }, icon("wale"), "Columns"),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      row(
+        "Modulus",
+        "N/mm",
+        "Young's modulus at the beginning of a pull: force per width over stretch",
+        cell("modulus-course", value?.modulus_course_n_per_mm, range(value?.modulus_course_interval_n_per_mm)),
+        cell("modulus-wale", value?.modulus_wale_n_per_mm, range(value?.modulus_wale_interval_n_per_mm)),
+      ),
+      row(
+        "Extensibility",
+        "mm/N",
+        "One over the modulus: the stretch of 1 mm under 1 N per mm of width",
+        cell(
+          "extensibility-course",
+          value?.extensibility_course_mm_per_n,
+          range(inverse(value?.modulus_course_interval_n_per_mm)),
+        ),
+        cell(
+          "extensibility-wale",
+          value?.extensibility_wale_mm_per_n,
+          range(inverse(value?.modulus_wale_interval_n_per_mm)),
+        ),
+      ),
+      row(
+        "Size at rest",
+        "cm",
+        "Width and height of the cloth when nothing pulls at it",
+        cell("size-course", inCm(size?.course.value), range(size && cmOf(size.course.interval))),
+        cell("size-wale", inCm(size?.wale.value), range(size && cmOf(size.wale.interval))),
+      ),
+      row(
+        "Poisson",
+        "ratio",
+        "Contraction across when pulled along",
+        cell("poisson-yx", value?.poisson_yx, range(value?.poisson_yx_interval)),
+        cell("poisson-xy", value?.poisson_xy, range(value?.poisson_xy_interval)),
+      ),
+    ),
+  );
+}
+
+/** @param {number | undefined} mm */
+const inCm = (mm) => (mm === undefined ? undefined : mm / 10);
+
+/** @param {[number, number]} mm @returns {[number, number]} */
+const cmOf = ([low, high]) => [low / 10, high / 10];
+
+/** @param {[number, number] | null | undefined} interval @returns {[number, number] | null} */
+function inverse(interval) {
+  return interval ? [1 / interval[1], 1 / interval[0]] : null;
+}
+
+/**
+ * A bar in parts, and below it their key.
+ *
+ * @param {string} id
+ * @param {{share: number, colour: string, text: string}[]} parts
+ * @param {Direction} [direction] of what is counted
+ */
+function shareBar(id, parts, direction) {
+  const present = parts.filter(({ share }) => share > 0);
+  const bar = h("div", { class: "bar", "aria-hidden": "true" });
+  const keys = present.map(({ share, colour, text }) => {
+    const piece = h("span", {});
+    piece.style.flexGrow = String(share);
+    piece.style.backgroundColor = colour;
+    bar.append(piece);
+    const key = h("span", { class: "key" });
+    key.style.backgroundColor = colour;
+    return h("span", { class: "legend-item" }, key, text);
+  });
+  const title = direction ? `Segments ${along(direction)}` : "Shares of the four fabrics, by quarters of stitches";
+  return h(
+    "div",
+    { class: direction ? "share counts" : "share", id, title },
+    bar,
+    h("div", { class: "share-text figures" }, direction && icon(direction), ...keys),
+  );
+}

@@ -1,0 +1,191 @@
+/**
+ * The chart (or its part) worn as a tube on a limb: how it fits and presses along it.
+ *
+ * @import {GirthAt} from "../../state/seeing.js"
+ * @import {Studio} from "../../state/studio.js"
+ * @import {Direction, LimbResult} from "../../types.js"
+ */
+
+import { ApiError, api, isAbort } from "../../api.js";
+import { percent, range } from "../../core/format.js";
+import { Latest } from "../../core/latest.js";
+import { h } from "../../elements/dom.js";
+import { pressurePlot } from "../../plots/pressure.js";
+import { scopeOf } from "../../services/scope.js";
+import { iconButton } from "../../widgets/buttons.js";
+import { labelled, numberField } from "../../widgets/fields.js";
+import { problemText } from "../../widgets/problem.js";
+
+const DELAY_MS = 250;
+const MAX_GIRTHS = 12;
+/** From the last girth to one that is added, mm. */
+const FARTHER_MM = 50;
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @returns {() => void} asks anew
+ */
+export function limb(host, studio) {
+  const chosen = studio.seeing.limb;
+  const latest = new Latest(DELAY_MS);
+  const ask = () => {
+    if (host.hidden || !studio.prediction.value.value) return;
+    const { girths, direction } = studio.limb;
+    if (!chosen.value.girths) showGirths(girths); // those that fit the chart
+    const { kind, grid } = scopeOf(studio);
+    // A part is a repeat of the tube, the whole chart is the tube.
+    const rest_mm = tube.valueAsNumber > 0 ? tube.valueAsNumber : null;
+    const sized = rest_mm ? girths.map((girth) => ({ ...girth, rest_mm })) : girths;
+    const chart = rest_mm || kind !== "chart" ? grid.text : studio.request.chart;
+    latest.run(async (signal) => {
+      try {
+        show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal));
+      } catch (error) {
+        if (isAbort(error)) return;
+        if (!(error instanceof ApiError)) throw error;
+        answer.replaceChildren(problemText(error.problem));
+      }
+    });
+  };
+  const tube = numberField({ id: "limb-tube", min: "10", max: "3000", placeholder: "chart", oninput: ask });
+  const around = h(
+    "select",
+    {
+      class: "select",
+      id: "limb-around",
+      onchange: () => (chosen.value = { ...chosen.value, direction: /** @type {Direction} */ (around.value) }),
+    },
+    h("option", { value: "course" }, "rows"),
+    h("option", { value: "wale" }, "columns"),
+  );
+  around.value = chosen.value.direction;
+
+  const table = h("tbody", {});
+  /** Girths as they stand in the fields; those without a number, or out of order, are left out. */
+  const given = () => {
+    const found = [...table.rows].map((row) => {
+      const [at, girth] = [...row.querySelectorAll("input")].map((field) => field.valueAsNumber);
+      return { at_mm: at, girth_mm: girth };
+    });
+    return found
+      .filter(({ at_mm, girth_mm }) => at_mm >= 0 && girth_mm > 0)
+      .sort((a, b) => a.at_mm - b.at_mm)
+      .filter(({ at_mm }, i, all) => at_mm !== all[i - 1]?.at_mm);
+  };
+  const change = () => {
+    const girths = given();
+    if (girths.length > 1) chosen.value = { ...chosen.value, girths };
+  };
+  /** @param {GirthAt[]} girths */
+  const showGirths = (girths) => {
+    const old = given();
+    if (JSON.stringify(old) === JSON.stringify(girths)) return;
+    table.replaceChildren(...girths.map(girthRow));
+  };
+  /** @param {GirthAt} girth @param {number} i */
+  const girthRow = ({ at_mm, girth_mm }, i) => {
+    const row = h(
+      "tr",
+      {},
+      h(
+        "td",
+        {},
+        numberField({ value: at_mm, min: "0", max: "3000", "aria-label": `Place ${i + 1}`, oninput: change }),
+      ),
+      h(
+        "td",
+        {},
+        numberField({ value: girth_mm, min: "10", max: "3000", "aria-label": `Girth ${i + 1}`, oninput: change }),
+      ),
+      h(
+        "td",
+        {},
+        iconButton("close", `Leave girth ${i + 1} out`, () => {
+          if (table.rows.length < 3) return;
+          row.remove();
+          change();
+        }),
+      ),
+    );
+    return row;
+  };
+  const add = () => {
+    const girths = given();
+    const last = girths.at(-1);
+    if (!last || girths.length >= MAX_GIRTHS) return;
+    chosen.value = {
+      ...chosen.value,
+      girths: [...girths, { at_mm: last.at_mm + FARTHER_MM, girth_mm: last.girth_mm }],
+    };
+    showGirths(chosen.value.girths ?? []);
+  };
+  showGirths(chosen.value.girths ?? []);
+
+  const answer = h("div", { class: "limb-answer", role: "status", id: "limb-answer" });
+  /** @param {LimbResult} found */
+  const show = (found) => {
+    const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm, interval_source } = found;
+    const pressed = places.filter(({ mmhg }) => mmhg);
+    const ends = (/** @type {"mmhg" | "mmhg_with_spread"} */ name) => {
+      const all = pressed.map((place) => /** @type {[number, number]} */ (place[name]));
+      return [Math.min(...all.map(([low]) => low)), Math.max(...all.map(([, high]) => high))];
+    };
+    const stretch = places.map(({ ease }) => 1 / (1 + ease) - 1);
+    const words = [
+      `Stretched around the limb by ${percent(Math.max(0, Math.min(...stretch)))} to ${percent(Math.max(0, ...stretch))}.`,
+      `Nearest to its lock-up ${tightest_mm.toFixed(0)} mm along (${percent(Math.max(...places.map((p) => p.lock_up_share)))}).`,
+      loose_mm > 0 ? `Loose over ${loose_mm.toFixed(0)} mm.` : "",
+      length_mm && relaxed_length_mm
+        ? `${length_mm.toFixed(0)} mm long on the limb if free to shorten, ${relaxed_length_mm.toFixed(0)} mm unworn.`
+        : "",
+    ];
+    const problem = places.find((place) => place.problem && place.ease < 0)?.problem;
+    answer.replaceChildren(
+      h(
+        "p",
+        { class: "limb-pressure" },
+        h("span", { class: "value figures" }, pressed.length ? `${range(ends("mmhg"))} mmHg` : "No pressure"),
+        pressed.length
+          ? h(
+              "span",
+              { class: "muted figures", title: interval_source },
+              `90 % interval ${range(ends("mmhg_with_spread"))}`,
+            )
+          : "",
+      ),
+      pressurePlot(places),
+      h("p", { class: "muted figures" }, words.filter(Boolean).join(" ")),
+      problem ? h("p", { class: "muted" }, problem) : "",
+      h("p", { class: "muted" }, "A mean over the limb, without friction or posture; not a medical class."),
+    );
+  };
+  host.append(
+    h(
+      "div",
+      { class: "limb-fields" },
+      h(
+        "table",
+        { class: "limb-girths" },
+        h("thead", {}, h("tr", {}, h("th", {}, "At, mm"), h("th", {}, "Girth, mm"), h("th", {}))),
+        table,
+      ),
+      h(
+        "div",
+        { class: "limb-more" },
+        h("button", { class: "button", id: "limb-add", onclick: add }, "Add a girth"),
+        labelled("Tube at rest", tube, "mm"),
+        labelled("Around it run the", around),
+        h(
+          "button",
+          { class: "button", id: "limb-wear", onclick: () => (studio.seeing.pose.value = "worn") },
+          "Show on the body",
+        ),
+      ),
+    ),
+    answer,
+  );
+  studio.prediction.listen(({ busy }) => !busy && ask());
+  chosen.listen(ask);
+  return ask;
+}

@@ -1,0 +1,257 @@
+/**
+ * The state that the panels share: the chart, how it is shown and painted, what the service says of
+ * it. Panels watch the signals and change them; none knows another.
+ *
+ * @import {GirthAt} from "./seeing.js"
+ * @import {ChartDocument} from "../design/document.js"
+ * @import {Selection} from "../design/selection.js"
+ * @import {History} from "../design/history.js"
+ * @import {Ink, Symmetry} from "../design/ink.js"
+ * @import {Overlay} from "./overlays.js"
+ * @import {Tool} from "../tools/tool.js"
+ * @import {DesignDocument, Direction, MaterialDetail, MaterialSummary, PredictResult, Problem, StitchKind,
+ *   StretchResult} from "../types.js"
+ *
+ * @typedef {{value: PredictResult | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
+ * @typedef {{value: StretchResult | null, direction: Direction, busy: boolean, stale: boolean,
+ *   problem: Problem | null}} StretchState
+ * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
+ */
+
+import { Grid } from "../grid/grid.js";
+import { PURL } from "../design/ink.js";
+import { Signal } from "../core/signal.js";
+import { loadSettings, saveSettings } from "../design/store.js";
+import { Editing } from "./editing.js";
+import { OVERLAYS } from "./overlays.js";
+import { Seeing } from "./seeing.js";
+import { Gauges } from "./gauges.js";
+import { TOOLS } from "../tools/registry.js";
+
+const SETTINGS = {
+  overlay: "fabrics",
+  rectangles: false,
+  tool: "pencil",
+  size: 1,
+  weight: 0.5,
+};
+
+/** Girths of a limb that a tube of the chart sits on firmly, over its size at rest. */
+const SNUG = [1.12, 1.25];
+
+/** Number of the step before the first: the cloth lies between its clamps, not pulled yet. */
+export const REST = -1;
+
+export class Studio {
+  /**
+   * @param {ChartDocument} document
+   * @param {{id: string, name: string, material: string, note?: string}} design
+   */
+  constructor(document, design) {
+    const settings = loadSettings(SETTINGS);
+    this.document = document;
+    this.designId = design.id;
+    this.name = new Signal(design.name);
+    this.note = new Signal(design.note ?? "");
+
+    /** @type {Signal<string>} */
+    this.materialId = new Signal(design.material);
+    this.material = new Signal(/** @type {MaterialDetail | null} */ (null));
+    this.materials = new Signal(/** @type {MaterialSummary[]} */ ([]));
+
+    /** @type {Signal<Tool>} */
+    this.tool = new Signal(TOOLS.find(({ id }) => id === settings.tool) ?? TOOLS[0]);
+    this.ink = new Signal(/** @type {Ink} */ (PURL));
+    this.shelf = new Signal(/** @type {Ink[]} */ ([]));
+    this.size = new Signal(settings.size);
+    this.symmetry = new Signal(/** @type {Symmetry} */ ("none"));
+    this.selection = new Signal(/** @type {Selection | null} */ (null));
+    this.editing = new Editing(document, this.selection);
+
+    /** @type {Signal<Overlay>} */
+    this.overlay = new Signal(OVERLAYS.find(({ id }) => id === settings.overlay) ?? OVERLAYS[1]);
+    this.rectangles = new Signal(settings.rectangles);
+    this.seeing = new Seeing();
+    this.gauges = new Gauges();
+    /** Of the yarn, g/m. */
+    this.weight = new Signal(settings.weight);
+
+    /** Whether the repeat on show is being relaxed at the yarn level. */
+    this.relaxing = new Signal(false);
+    this.prediction = new Signal(
+      /** @type {PredictionState} */ ({ value: null, busy: false, problem: null, scope: "chart" }),
+    );
+    this.stretch = new Signal(
+      /** @type {StretchState} */ ({
+        value: null,
+        direction: "wale",
+        busy: false,
+        stale: false,
+        problem: null,
+      }),
+    );
+    this.step = new Signal(0);
+    this.online = new Signal(true);
+    /** Who is signed in with this browser, if anybody is. */
+    this.user = new Signal(/** @type {string | null} */ (null));
+    this.message = new Signal(/** @type {Message | null} */ (null));
+
+    this.overlay.listen(({ id }) => {
+      // A stretch is gone after a reload, so its overlays are not remembered.
+      if (id !== "strain" && id !== "utilisation") saveSettings({ overlay: id });
+    });
+    this.rectangles.listen((rectangles) => saveSettings({ rectangles }));
+    this.tool.listen(({ id }) => saveSettings({ tool: id }));
+    this.weight.listen((weight) => saveSettings({ weight }));
+    this.size.listen((size) => saveSettings({ size }));
+  }
+
+  /** The design as a project file holds it. @returns {DesignDocument} */
+  toDocument() {
+    return {
+      format: "knitcore-design",
+      version: 2,
+      name: this.name.value,
+      material: this.materialId.value,
+      note: this.note.value,
+      ...this.document.content,
+    };
+  }
+
+  /**
+   * Show another design in place of this one.
+   *
+   * @param {DesignDocument} design
+   * @param {string} id
+   * @param {History} [history] a new one if left out
+   */
+  open(design, id, history) {
+    this.designId = id;
+    this.name.value = design.name;
+    this.note.value = design.note;
+    this.selection.value = null;
+    this.materialId.value = design.material;
+    this.document.open(design, history);
+    this.stretch.value = { ...this.stretch.value, value: null, stale: false, problem: null };
+  }
+
+  /**
+   * Take over what somebody else changed in this design, as a step that can be undone.
+   *
+   * @param {DesignDocument} design
+   */
+  follow(design) {
+    const { content } = this.document;
+    this.name.value = design.name;
+    this.note.value = design.note;
+    this.materialId.value = design.material;
+    const label = "Changes from elsewhere";
+    /** @param {Partial<DesignDocument>} part */
+    const rest = ({ outline, regions, repeats, shelf }) => JSON.stringify([outline, regions, repeats, shelf]);
+    if (rest(content) === rest(design)) this.document.replace(Grid.fromText(design.chart), label);
+    else this.document.load(design, label);
+  }
+
+  /** What the service has to know of the design. */
+  get request() {
+    return { chart: this.document.grid.text, material: this.materialId.value };
+  }
+
+  /** The limb that the chart is worn on: as given, or one on which a tube of it sits firmly. */
+  get limb() {
+    const { direction, girths } = this.seeing.limb.value;
+    return { direction, girths: girths ?? this.snugLimb };
+  }
+
+  /** A limb of the chart's size that grows a little along it. @returns {GirthAt[]} */
+  get snugLimb() {
+    const { rows, columns } = this.document.grid;
+    const size = this.prediction.value.value;
+    const [course, wale] = [columns * (size?.relaxed_course_mm ?? 1), rows * (size?.relaxed_wale_mm ?? 1)];
+    const [around, long] = this.seeing.limb.value.direction === "course" ? [course, wale] : [wale, course];
+    return [
+      { at_mm: 0, girth_mm: Math.round(SNUG[0] * around) },
+      { at_mm: Math.max(1, Math.round(long)), girth_mm: Math.round(SNUG[1] * around) },
+    ];
+  }
+
+  /** The 16 kinds of stitch in the chosen material; none until it is loaded. @returns {StitchKind[]} */
+  kinds() {
+    return this.material.value?.stitch_table?.codes ?? [];
+  }
+
+  /** The stretch on show, if it is of this very chart. @returns {StretchResult | null} */
+  currentStretch() {
+    const { value, stale } = this.stretch.value;
+    const { rows, columns } = this.document.grid;
+    return value && !stale && value.rows === rows && value.columns === columns ? value : null;
+  }
+
+  /** @returns {Direction} */
+  stretchDirection() {
+    return this.stretch.value.direction;
+  }
+
+  /** The strain of the step on show: 0 at rest; null without a test. */
+  currentStrain() {
+    const test = this.currentStretch();
+    if (!test) return null;
+    return this.step.value === REST ? 0 : test.strain[this.step.value];
+  }
+
+  /**
+   * Values of all stitches at the step on show.
+   *
+   * @param {"strain" | "utilisation"} name strain is the one along the pull
+   * @returns {number[] | null}
+   */
+  field(name) {
+    return this.#steps(name)?.[this.step.value] ?? null;
+  }
+
+  /** Smallest and largest strain of a stitch along the pull in the whole test; rest is among them. */
+  strainRange() {
+    const range = { low: 0, high: 0 };
+    for (const step of this.#steps("strain") ?? []) {
+      for (const value of step) {
+        if (value < range.low) range.low = value;
+        if (value > range.high) range.high = value;
+      }
+    }
+    return range;
+  }
+
+  /** Largest size of strain along the pull in the whole test. */
+  largestStrain() {
+    const { low, high } = this.strainRange();
+    return Math.max(high, -low);
+  }
+
+  /** @param {"strain" | "utilisation"} name */
+  #steps(name) {
+    const fields = this.currentStretch()?.stitch_fields;
+    if (name === "utilisation") return fields?.utilisation;
+    return this.stretchDirection() === "course" ? fields?.strain_course : fields?.strain_wale;
+  }
+
+  /** @param {"strain" | "utilisation"} name of values at the stitches; low and high ends by step */
+  interval(name) {
+    const fields = this.currentStretch()?.stitch_fields;
+    if (name === "utilisation") return fields?.utilisation_interval;
+    return fields?.[this.stretchDirection() === "course" ? "strain_course_interval" : "strain_wale_interval"];
+  }
+
+  /**
+   * Show a message to the user.
+   *
+   * @param {Problem} problem
+   */
+  tellProblem(problem) {
+    this.message.value = { kind: "error", ...problem };
+  }
+
+  /** @param {string} title */
+  tell(title) {
+    this.message.value = { kind: "info", title };
+  }
+}

@@ -1,0 +1,25 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { KINDS, hindrance, ofExtensions } from "../../../panels/exports/kinds.js";
+
+test("what the service would refuse is not offered", () => {
+  const glove = { shaped: true, stitches: 77 * 132 };
+  assert.match(hindrance("knitspeak", glove), /outline/);
+  assert.match(hindrance("glb", glove), /2,500/);
+  assert.equal(hindrance("knitout", glove), "");
+  for (const { to } of KINDS) assert.equal(hindrance(to, { shaped: false, stitches: 100 }), "");
+});
+
+test("formats of extensions are offered, with the package that they come from", () => {
+  const house = { name: "house", package: "knit-house 1.0", problem: null };
+  const found = ofExtensions([
+    { ...house, group: "knitcore.exporters", offers: ["punchcard", "jacquard"] },
+    { ...house, group: "knitcore.patterns", offers: ["waffle"] },
+    { ...house, group: "knitcore.exporters", offers: ["broken"], problem: "It cannot be loaded." },
+  ]);
+  assert.deepEqual(
+    found.map(({ to }) => to),
+    ["punchcard", "jacquard"],
+  );
+  assert.match(found[0].note, /knit-house 1\.0/);
+});

@@ -1,0 +1,102 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { api } from "../../api.js";
+import { wordsOf } from "../../state/seeing.js";
+import { Signal } from "../../core/signal.js";
+import { startPoser } from "../../services/poser.js";
+
+/** What the poser reads of the page. @returns {any} */
+function studio() {
+  let change = () => {};
+  const signal = (/** @type {unknown} */ value) => new Signal(value);
+  const seeing = { pose: signal("flat"), posed: signal(null), limb: signal(null), curling: signal(false) };
+  return {
+    seeing,
+    weight: signal(0.5),
+    step: signal(0),
+    stretch: signal(null),
+    materialId: signal("acrylic"),
+    request: { chart: "KP", material: "acrylic" },
+    currentStrain: () => null,
+    document: {
+      grid: { rows: 1, columns: 2 },
+      shaped: false,
+      onChange: (/** @type {() => void} */ heard) => (change = heard),
+    },
+    paint: () => change(),
+  };
+}
+
+/** Shapes that are shown one after the other, until `count` are there. @param {any} page @param {number} count */
+function shown(page, count) {
+  /** @type {any[]} */
+  const found = [];
+  return new Promise((resolve) => {
+    page.seeing.posed.listen((/** @type {any} */ posed) => {
+      if (posed && found.push(posed) === count) resolve(found);
+    });
+  });
+}
+
+/** A service that answers so often that a shape is not at rest. @param {number} previews */
+function answering(previews) {
+  let asked = 0;
+  /** @type {any} */ (api).run = () =>
+    Promise.resolve({ id: `shape ${asked}`, rows: 1, columns: 2, converged: asked++ >= previews, notes: [] });
+}
+
+test("a shape that is not at rest is called a preview until the one at rest has come", async () => {
+  answering(1);
+  const page = studio();
+  startPoser(page);
+  const both = shown(page, 2);
+  page.seeing.pose.value = "lying";
+  const [first, last] = await both;
+  assert.match(wordsOf(first), /a preview/);
+  assert.doesNotMatch(wordsOf(last), /a preview/);
+});
+
+test("a shape that never comes to rest stays a preview", async () => {
+  answering(Infinity);
+  const page = studio();
+  startPoser(page);
+  const all = shown(page, 2);
+  page.seeing.pose.value = "lying";
+  for (const posed of await all) assert.match(wordsOf(posed), /a preview/);
+});
+
+test("after a stroke the old shape is a preview at once", async () => {
+  answering(0);
+  const page = studio();
+  startPoser(page);
+  const first = shown(page, 1);
+  page.seeing.pose.value = "lying";
+  await first;
+  page.paint();
+  assert.match(wordsOf(page.seeing.posed.value), /a preview/);
+  page.seeing.pose.value = "flat"; // nothing is asked for any more
+});
+
+test("the first shape begins at the old one, and the last one at nothing", async () => {
+  /** @type {any[]} */
+  const begun = [];
+  /** @type {any} */ (api).run = (/** @type {any} */ { after, time_limit_s }) => {
+    begun.push(after);
+    const id = `shape ${begun.length}`;
+    return Promise.resolve({ id, rows: 1, columns: 2, converged: time_limit_s > 1 || after, notes: [] });
+  };
+  const page = studio();
+  startPoser(page);
+  const two = shown(page, 2);
+  page.seeing.pose.value = "lying";
+  await two;
+  const three = shown(page, 3);
+  page.paint();
+  const [old, first, last] = await three;
+  assert.deepEqual(begun, [null, null, "shape 2", null]);
+  assert.deepEqual(
+    [old, first, last].map(({ converged }) => converged),
+    [false, false, true],
+  );
+});

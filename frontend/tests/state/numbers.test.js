@@ -1,0 +1,47 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { batlow, vik } from "../../state/colormaps.js";
+import { logScale } from "../../state/overlays.js";
+import { figure, percent, percentRange, percents, range } from "../../core/format.js";
+
+test("three figures, with the zeros that count", () => {
+  assert.equal(figure(0.223147), "0.223");
+  assert.equal(figure(0.056), "0.0560");
+  assert.equal(figure(16.12), "16.1");
+  assert.equal(figure(1234.5), "1235");
+  assert.equal(figure(-0.5), "−0.500");
+  assert.equal(figure(0), "0");
+  assert.equal(figure(undefined), "–");
+  assert.equal(figure(Number.NaN), "–");
+});
+
+test("intervals and percentages", () => {
+  assert.equal(range([0.054, 0.072]), "0.054 – 0.072");
+  assert.equal(range(null), "");
+  assert.equal(percent(0.3), "30 %");
+  assert.equal(percent(-0.064, 1), "−6.4 %");
+  assert.equal(percentRange([-0.0072, 0.1352], 1), "−0.7 – 13.5");
+  assert.equal(percentRange([0.28, 0.32]), "28 – 32");
+  assert.equal(percentRange([]), "");
+});
+
+test("colour maps end where Crameri's end, and take what is outside to the ends", () => {
+  assert.deepEqual(batlow.at(0), [1, 25, 89]);
+  assert.deepEqual(batlow.at(1), [250, 204, 250]);
+  assert.deepEqual(vik.at(0.5), [236, 229, 224]);
+  assert.deepEqual(batlow.at(-3), batlow.at(0));
+  assert.deepEqual(batlow.at(Number.NaN), batlow.at(0));
+});
+
+test("a logarithmic scale halves ratios", () => {
+  const { low, high, at } = logScale([0.01, 1]);
+  assert.deepEqual([low, high], [0.01, 1]);
+  assert.ok(Math.abs(at(0.1) - 0.5) < 1e-12);
+  assert.equal(logScale([2, 2]).at(2), 0);
+});
+
+test("shares in percent add up, and what is there is never nothing", () => {
+  assert.deepEqual(percents([0.525, 0.475]), ["53 %", "47 %"]);
+  assert.deepEqual(percents([1 / 3, 1 / 3, 1 / 3]), ["34 %", "33 %", "33 %"]);
+  assert.deepEqual(percents([0.998, 0.002, 0, 0]), ["100 %", "< 1 %", "0 %", "0 %"]);
+});
