@@ -7,9 +7,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from knitcore.answer.choose import choose as predict
-    from knitcore.answer.curve import curve
-    from knitcore.answer.relaxed import RelaxedSize
     from knitcore.chart import StitchChart
     from knitcore.errors import (
         CancelledError,
@@ -21,6 +18,9 @@ if TYPE_CHECKING:
     from knitcore.fabric import Direction, Fabric
     from knitcore.materials.library import material
     from knitcore.phases import quarter_phases
+    from knitcore.prediction.curve import curve
+    from knitcore.prediction.predict import predict as predict
+    from knitcore.prediction.size import RelaxedSize
     from knitcore.segments import SegmentCounts, SegmentMap, segment_map
     from knitcore.swatch.strip import strip_test
     from knitcore.yarnlevel.relax import relax
@@ -32,14 +32,14 @@ _HOMES = {
     "Fabric": "knitcore.fabric.Fabric",
     "InputError": "knitcore.errors.InputError",
     "KnitcoreError": "knitcore.errors.KnitcoreError",
-    "RelaxedSize": "knitcore.answer.relaxed.RelaxedSize",
+    "RelaxedSize": "knitcore.prediction.size.RelaxedSize",
     "SegmentCounts": "knitcore.segments.SegmentCounts",
     "SegmentMap": "knitcore.segments.SegmentMap",
     "StitchChart": "knitcore.chart.StitchChart",
     "UnravelledError": "knitcore.errors.UnravelledError",
-    "curve": "knitcore.answer.curve.curve",
+    "curve": "knitcore.prediction.curve.curve",
     "material": "knitcore.materials.library.material",
-    "predict": "knitcore.answer.choose.choose",
+    "predict": "knitcore.prediction.predict.predict",
     "quarter_phases": "knitcore.phases.quarter_phases",
     "relax": "knitcore.yarnlevel.relax.relax",
     "segment_map": "knitcore.segments.segment_map",

@@ -14,10 +14,10 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from knitcore import StitchChart, material, predict, showing
-from knitcore.answer.answer import Answer
 from knitcore.fabric import Direction
 from knitcore.formats.export import ExportKind, ExportOptions, export_chart
 from knitcore.patterns import PATTERNS
+from knitcore.prediction.prediction import Prediction
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 SIDE = 24
@@ -88,7 +88,7 @@ def designs() -> Iterator[Design]:
     )
 
 
-def picture(design: Design, answer: Answer) -> str:
+def picture(design: Design, answer: Prediction) -> str:
     """Chart, rectangle and curves beside each other, on paper of their own."""
     along = {d: answer.along(d) for d in Direction}
     drawn = [
@@ -106,7 +106,7 @@ def picture(design: Design, answer: Answer) -> str:
     return showing.svg(700, 245, design.name, [paper, 'font-family="sans-serif">', *placed, "</g>"])
 
 
-def section(design: Design, answer: Answer, files: dict[ExportKind, str]) -> str:
+def section(design: Design, answer: Prediction, files: dict[ExportKind, str]) -> str:
     """The part of the page about a design."""
     rows = []
     for d in Direction:

@@ -11,13 +11,13 @@ from app.models.extensions import ExtensionName
 from app.models.gauge import GaugedRequest
 from app.models.laws import ElasticConstants, Extensibility
 from app.operations.registry import Command, Operation
-from knitcore.answer.choose import choose
-from knitcore.answer.measures import measure
-from knitcore.answer.relaxation import worth_relaxing
 from knitcore.chart import size_in_words
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.geometry.laid_out import size_at_rest
+from knitcore.prediction.measures import measure
+from knitcore.prediction.predict import predict as predict_chart
+from knitcore.prediction.swept import worth_relaxing
 from knitcore.segments import segment_map
 
 
@@ -95,7 +95,7 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
             "All but the size is of the largest rectangle inside the outline, "
             f"{chart.columns} x {chart.rows} stitches."
         )
-    found = choose(chart, material, request.relaxed_size)
+    found = predict_chart(chart, material, request.relaxed_size)
     segments = segment_map(chart)
     to_relax = worth_relaxing(chart, material, found)
     return PredictResult.of(

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.answer.answer import SHOWN_STRESS_N_PER_MM, Answer
-from knitcore.answer.curve import ChartCurve
 from knitcore.arrays import Array
 from knitcore.fabric import Direction
+from knitcore.prediction.curve import ChartCurve
+from knitcore.prediction.prediction import SHOWN_STRESS_N_PER_MM, Prediction
 from knitcore.showing import INKS
 from knitcore.swatch.figures import stress_strain_figure
 from knitcore.swatch.results import StripTest
@@ -34,7 +34,7 @@ def figure(of: object) -> Any:
 
 
 @figure.register
-def _(of: Answer) -> Any:
+def _(of: Prediction) -> Any:
     stress = np.linspace(0.0, SHOWN_STRESS_N_PER_MM, 61)
     drawn = _empty(f"{of.provenance}, with 90 % intervals")
     for direction, ink in zip(Direction, INKS, strict=True):

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from knitcore import RelaxedSize, StitchChart, predict
-from knitcore.answer.answer import Source
-from knitcore.answer.patches import patches_of
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import Transverse
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import Laws, load_library, load_variants, material
+from knitcore.prediction.predict import patches_of
+from knitcore.prediction.prediction import Source
 
 ALL = {**load_library(Laws.PUBLISHED), **load_variants(Laws.PUBLISHED)}
 
@@ -203,7 +203,7 @@ def test_a_piece_of_patches_keeps_to_a_gauge():
     piece = StitchChart(np.vstack([hem, np.zeros((20, 40), dtype=bool)]))
     patches = patches_of(piece, material("acrylic:published"), RelaxedSize.from_gauge(35, 40))
     assert patches.together().relaxed_course_mm == pytest.approx(100 / 35, rel=0.01)
-    bottom, top = patches.answers[0][0], patches.answers[-1][0]
+    bottom, top = patches.predictions[0][0], patches.predictions[-1][0]
     assert bottom.relaxed_course_mm < 0.9 * top.relaxed_course_mm
     assert bottom.provenance == "learned with known size"
 
@@ -281,7 +281,7 @@ def test_an_answer_says_what_its_intervals_rest_on():
     assert predict(garter, yarn).stretch_errors == (tests,)
     assert predict(mixed, yarn).stretch_errors == (learned, tests)
     assert learned in predict(mixed, yarn).size_errors
-    assert predict(mixed, yarn, gauge=gauge).size_errors == ("the gauge as given",)
+    assert predict(mixed, yarn, size=gauge).size_errors == ("the gauge as given",)
     large = StitchChart.of_fabric("garter", 40, 40).purl.copy()
     large[20:, ::2] ^= True
     assert predict(StitchChart(large), yarn).stretch_errors == (learned, tests)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from knitcore.answer.answer import Along, Answer, Source
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.response import free_response, held_response, stiffened
 from knitcore.law.uniaxial import free_transverse_strains
 from knitcore.materials import FabricRecord, Interval, Material, Origin
 from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.prediction.prediction import Along, Prediction, Source
 
 CURL = (
     "Stockinette curls: its sides roll to the back, its top and bottom edges to the face. The "
@@ -22,8 +22,8 @@ GAUGE_SD_SOURCE = "one aspect ratio of stitches for all yarns (8 %)"
 _SOURCES = {Origin.SIMULATED: Source.SWEPT, Origin.ESTIMATED: Source.ESTIMATED}
 
 
-def measured(fabric: Fabric, material: Material) -> Answer:
-    """Answer for a pure fabric, from the record of the material.
+def predict_pure(fabric: Fabric, material: Material) -> Prediction:
+    """Predict a pure fabric from its record in the material.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def measured(fabric: Fabric, material: Material) -> Answer:
     record = material.record(fabric)
     notes = [CURL] if fabric is Fabric.STOCKINETTE else []
     course, wale = (_along(record, direction) for direction in Direction)
-    return Answer(
+    return Prediction(
         course,
         wale,
         record.law.shear_modulus,

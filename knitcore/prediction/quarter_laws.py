@@ -1,18 +1,18 @@
-"""Laws for the quarter cells of a piece, such that the piece as a whole agrees with its answer.
+"""Laws for the quarter cells of a piece, such that the piece as a whole agrees with its prediction.
 
 The quarter grid with the pure fabrics' own laws and sizes is the flat composite, without folds. So
-each patch of a mixed chart (:mod:`knitcore.answer.patches`) gets laws of its own. At every stress
-a phase's strain over the patch's lies between 1 and what it is in the flat composite,
+each patch of a mixed chart (:mod:`knitcore.prediction.patches`) gets laws of its own. At every
+stress a phase's strain over the patch's lies between 1 and what it is in the flat composite,
 
-    strain_p = answer (1 + c (strain_p of the pure fabric / strain of the flat composite - 1)),
+    strain_p = prediction (1 + c (strain_p of the pure fabric / strain of the flat composite - 1)),
 
-and laws are fitted to that. Phases in series then add up to the answer, and the quarters that
+and laws are fitted to that. Phases in series then add up to the prediction, and the quarters that
 stretch most in the flat composite still do. In fine textures c is a half: neighbours restrain each
 other (and neighbouring cells that differed as much as the pure fabrics would be crushed). With the
-share of wide areas of one phase it rises to 1. Like the answers, these parts pass gradually from
-those of the whole chart to those of its patches.
-Stitch sizes are those of their surroundings (:mod:`knitcore.answer.neighbourhood`), scaled
-to the answer's relaxed size. Poisson's ratios are the answer's, or less where one
+share of wide areas of one phase it rises to 1. Like the predictions, these parts pass gradually
+from those of the whole chart to those of its patches.
+Stitch sizes are those of their surroundings (:mod:`knitcore.prediction.neighbourhood`), scaled
+to the prediction's relaxed size. Poisson's ratios are the prediction's, or less where one
 energy for both directions requires it. A piece of one pure fabric keeps its own law.
 
 Finite elements larger than a stitch take even laws instead: one for all quarters of a patch, with
@@ -33,11 +33,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
-from knitcore.answer.answer import Answer
-from knitcore.answer.mixture import law_strains
-from knitcore.answer.neighbourhood import sizes_and_folds
-from knitcore.answer.patches import Patches, patches_of
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
@@ -46,6 +41,12 @@ from knitcore.law.stiffening import stiffening
 from knitcore.materials import FabricRecord, Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.phases import pure_fabric, quarter_phases
+from knitcore.prediction.mixture import law_strains
+from knitcore.prediction.neighbourhood import sizes_and_folds
+from knitcore.prediction.patches import Patches
+from knitcore.prediction.predict import patches_of
+from knitcore.prediction.prediction import Prediction
+from knitcore.prediction.size import RelaxedSize
 
 STRESSES: Array = np.geomspace(0.003, 0.5, 24)
 """Stresses (N/mm) at which laws are fitted."""
@@ -84,7 +85,7 @@ class QuarterLaws:
 def quarter_laws(
     chart: StitchChart,
     material: Material,
-    gauge: RelaxedSize | None = None,
+    size: RelaxedSize | None = None,
     *,
     even: bool = False,
 ) -> QuarterLaws:
@@ -94,7 +95,7 @@ def quarter_laws(
     ----------
     chart : the piece.
     material : a yarn at one setting.
-    gauge : measured relaxed size of the chart's mean stitch, if known.
+    size : relaxed size of the chart's mean stitch, if known.
     even : give all quarters of a mixed patch one law, that of the patch.
 
     Raises
@@ -103,9 +104,9 @@ def quarter_laws(
         If the chart needs a pure fabric that the material lacks.
     """
     pure = pure_fabric(chart) is not None
-    if pure and gauge is None:
+    if pure and size is None:
         return flat_laws(chart, material)
-    patches = patches_of(chart, material, gauge)
+    patches = patches_of(chart, material, size)
     phases = quarter_phases(chart)
     scale = _scale(chart, phases, patches, material)
     if pure:
@@ -114,10 +115,10 @@ def quarter_laws(
     laws: list[ConstitutiveLaw] = []
     # of the repeat, if it has several patches
     number = np.zeros((patches.rows[-1], patches.columns[-1]), dtype=np.intp)
-    for here, cells, answer in _each(patches, phases):
+    for here, cells, prediction in _each(patches, phases):
         number[here] = len(laws) // len(PHASES)
         parts = patches.alike * whole + (1 - patches.alike) * _parts(cells, material)
-        laws += _fitted_laws(cells, answer, material, None if even else parts)
+        laws += _fitted_laws(cells, prediction, material, None if even else parts)
     everywhere = np.ix_(
         *(np.arange(n) % period for n, period in zip(chart.purl.shape, number.shape, strict=True))
     )
@@ -127,20 +128,20 @@ def quarter_laws(
 
 def _each(
     patches: Patches, phases: NDArray[np.uint8]
-) -> Iterator[tuple[tuple[slice, slice], NDArray[np.uint8], Answer]]:
-    """Stitches, quarter cells and answer of each patch."""
-    for (below, above), line in zip(pairwise(patches.rows), patches.answers, strict=True):
-        for (left, right), answer in zip(pairwise(patches.columns), line, strict=True):
+) -> Iterator[tuple[tuple[slice, slice], NDArray[np.uint8], Prediction]]:
+    """Stitches, quarter cells and prediction of each patch."""
+    for (below, above), line in zip(pairwise(patches.rows), patches.predictions, strict=True):
+        for (left, right), prediction in zip(pairwise(patches.columns), line, strict=True):
             cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
-            yield (slice(below, above), slice(left, right)), cells, answer
+            yield (slice(below, above), slice(left, right)), cells, prediction
 
 
 def _stress_log_sd(phases: NDArray[np.uint8], patches: Patches, material: Material) -> Array:
     """The mean of the patches."""
     spread, all_cells = np.zeros((2, len(SPREAD_AT))), 4 * patches.rows[-1] * patches.columns[-1]
-    for _, cells, answer in _each(patches, phases):
+    for _, cells, prediction in _each(patches, phases):
         for direction in Direction:
-            own = _own_log_sd(cells, answer, material, direction)
+            own = _own_log_sd(cells, prediction, material, direction)
             spread[direction.axis] += own * (cells.size / all_cells)
     return spread
 
@@ -148,7 +149,7 @@ def _stress_log_sd(phases: NDArray[np.uint8], patches: Patches, material: Materi
 def _scale(
     chart: StitchChart, phases: NDArray[np.uint8], patches: Patches, material: Material
 ) -> Array:
-    """Folded sizes of the stitches over those of their phases, such that the mean is the answer's.
+    """Folded sizes of the stitches over those of their phases, with the predicted mean.
 
     Each stitch folds by its surroundings, so that a hem is narrower than the cloth above it.
     """
@@ -195,10 +196,10 @@ def _own_laws(cells: NDArray[np.uint8], material: Material) -> list[Constitutive
 
 
 def _own_log_sd(
-    cells: NDArray[np.uint8], answer: Answer, material: Material, direction: Direction
+    cells: NDArray[np.uint8], prediction: Prediction, material: Material, direction: Direction
 ) -> Array:
-    """Part of the answer's stress interval that does not come from the laws' own uncertainty."""
-    along = answer.along(direction)
+    """Part of the predicted stress interval that does not come from the laws' own uncertainty."""
+    along = prediction.along(direction)
     low, high = along.stress_interval(along.strain(SPREAD_AT))
     whole = np.log(high / low) / (2 * Z_SCORE)
     records = _records(cells, material)
@@ -207,9 +208,9 @@ def _own_log_sd(
 
 
 def _fitted_laws(
-    cells: NDArray[np.uint8], answer: Answer, material: Material, parts: Array | None
+    cells: NDArray[np.uint8], prediction: Prediction, material: Material, parts: Array | None
 ) -> list[ConstitutiveLaw]:
-    """Laws of the phases with which a patch does what its answer says, even ones if no parts of
+    """Laws of the phases with which a patch does what its prediction says, even ones if no parts of
     the phases are given.
 
     A phase keeps its couplings kappa as far as it is as stiff as in its pure fabric: cloth that
@@ -221,7 +222,7 @@ def _fitted_laws(
     growth = np.array([r.law.shear_stiffening for r in records])
     constants = np.zeros((2, len(records), 3))  # Young's modulus, alpha, beta
     for direction in Direction:
-        strains = answer.along(direction).strain(STRESSES)
+        strains = prediction.along(direction).strain(STRESSES)
         if parts is None:
             constants[direction.axis] = _fitted(strains)
             continue
@@ -236,12 +237,12 @@ def _fitted_laws(
         shear[:], growth[:] = np.exp(shares @ np.log(shear)), shares @ growth
         kappa[:], regained[:] = shares @ kappa, (shares @ regained)[:, None]
     constants *= np.exp(regained)
-    most_yx, most_xy = (max(answer.along(d).poisson, 0.0) for d in Direction)
+    most_yx, most_xy = (max(prediction.along(d).poisson, 0.0) for d in Direction)
     found = []
     for (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y), coupled, modulus, grown in zip(
         *(values.tolist() for values in (*constants, kappa, shear, growth)), strict=True
     ):
-        # One coupling for both, as an energy needs; neither contraction is more than the answer's.
+        # One coupling for both, as an energy needs; neither contraction exceeds the predicted one.
         nu_xy = min(most_xy, most_yx * modulus_y / modulus_x)
         nu_yx = nu_xy * modulus_x / modulus_y
         held = 1 - min(nu_yx * nu_xy, _MAX_POISSON)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from knitcore import RelaxedSize, StitchChart, predict
-from knitcore.answer.answer import Answer
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
+from knitcore.prediction.prediction import Prediction
 
 YARN = material("acrylic")
 SEED, KNIT = (StitchChart.of_fabric(f, 32, 256) for f in (Fabric.SEED, Fabric.STOCKINETTE))
@@ -17,7 +17,7 @@ BOTH = StitchChart(np.hstack([SEED.purl, KNIT.purl]))
 FORCES_N = np.array([1e-3, 0.05, 0.2]) * 80
 
 
-def answers() -> list[Answer]:
+def answers() -> list[Prediction]:
     """Of the whole, of the left half, and of the right one."""
     return [predict(chart, YARN) for chart in (BOTH, SEED, KNIT)]
 
@@ -56,7 +56,7 @@ def test_along_the_columns_they_are_side_by_side() -> None:
 
 @pytest.mark.parametrize("chart", [BOTH, KNIT], ids=["patches", "pure"])
 def test_ones_own_gauge_is_the_size_of_the_whole(chart: StitchChart) -> None:
-    found = predict(chart, YARN, gauge=RelaxedSize(3.0, 2.0, 0.01))
+    found = predict(chart, YARN, size=RelaxedSize(3.0, 2.0, 0.01))
     assert found.relaxed_course_mm == pytest.approx(3.0)
     assert found.relaxed_wale_mm == pytest.approx(2.0)
     assert found.course.relaxed_log_sd == pytest.approx(0.01)

@@ -59,10 +59,10 @@ def test_stress_and_strain_are_inverse(fabric, direction):
 def test_a_curve_keeps_its_stresses_and_takes_ones_own_gauge():
     chart, yarn = StitchChart.parse("KKPP"), material("acrylic")
     size = RelaxedSize(4.0, 3.0)
-    found = curve(chart, yarn, "course", [0, 1], gauge=size)
+    found = curve(chart, yarn, "course", [0, 1], size=size)
     assert found.stress_n_per_mm.tolist() == [0.0, 1.0]
-    own = predict(chart, yarn, gauge=size).course.strain([0.05])
-    assert curve(chart, yarn, "course", [0.05], gauge=size).strain == pytest.approx(own)
+    own = predict(chart, yarn, size=size).course.strain([0.05])
+    assert curve(chart, yarn, "course", [0.05], size=size).strain == pytest.approx(own)
     assert curve(chart, yarn, "course", [0.05]).strain != pytest.approx(own, rel=1e-3)
 
 

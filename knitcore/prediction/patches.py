@@ -1,4 +1,4 @@
-"""Large charts: patches of stitches, each with its own answer, that pull on each other.
+"""Large charts: patches of stitches, each with its own prediction, that pull on each other.
 
 A repeat of at most :data:`SIDE` stitches a side is one patch. A larger chart is cut at its middle
 and in steps of that size from there. The densities of a patch are means over the window of that
@@ -24,18 +24,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.answer.answer import Along, Answer
-from knitcore.answer.densities import Densities, densities, densities_of
-from knitcore.answer.learned import SweptChart, packaged_model
-from knitcore.answer.measured import measured
-from knitcore.answer.mixed import mixed, mixed_patches
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.law.response import Response, response_through
 from knitcore.materials import Interval, Material
-from knitcore.phases import pure_fabric
+from knitcore.prediction.densities import Densities, densities, densities_of
+from knitcore.prediction.learned import packaged_model
+from knitcore.prediction.mixed import predict_mixed
+from knitcore.prediction.prediction import Along, Prediction
+from knitcore.prediction.size import RelaxedSize
 
 SIDE = 16
 """Stitches along the side of a patch and of its window."""
@@ -47,24 +45,29 @@ _FORCES_N: Array = np.geomspace(1e-6, 30.0, 200)
 
 @dataclass(frozen=True, eq=False)
 class Patches:
-    """A chart in patches.
+    """A chart in patches, each with its prediction.
 
     Attributes
     ----------
     rows, columns : where patches begin and end, from 0, in stitches, or in shares of a line; one
         more than there are patches.
-    answers : of each patch, [row][column].
+    predictions : of each patch, [row][column].
     alike : share of the whole chart in the densities of each patch.
     """
 
     rows: NDArray[Any]
     columns: NDArray[Any]
-    answers: tuple[tuple[Answer, ...], ...]
+    predictions: tuple[tuple[Prediction, ...], ...]
     alike: float = 1.0
 
+    @classmethod
+    def whole(cls, chart: StitchChart, prediction: Prediction) -> Patches:
+        """Take a chart as one patch."""
+        return cls(np.array([0, chart.rows]), np.array([0, chart.columns]), ((prediction,),))
+
     @property
-    def _flat(self) -> list[Answer]:
-        return [answer for line in self.answers for answer in line]
+    def _flat(self) -> list[Prediction]:
+        return [prediction for line in self.predictions for prediction in line]
 
     @property
     def _share(self) -> Array:
@@ -74,48 +77,48 @@ class Patches:
 
     def relaxed_mm(self, direction: Direction) -> float:
         """Extent of the mean stitch at rest."""
-        return float(self._share @ [a.along(direction).relaxed_mm for a in self._flat])
+        return float(self._share @ [patch.along(direction).relaxed_mm for patch in self._flat])
 
-    def together(self) -> Answer:
-        """The answer of the whole chart."""
-        first = self.answers[0][0]
-        if len(self.answers) == len(self.answers[0]) == 1:
+    def together(self) -> Prediction:
+        """Combine the patches to the prediction of the whole chart."""
+        first = self.predictions[0][0]
+        if len(self.predictions) == len(self.predictions[0]) == 1:
             return first
         flat, share = self._flat, self._share
         course, wale = (self._along(flat, share, direction) for direction in Direction)
 
-        def said(words: Callable[[Answer], tuple[str, ...]]) -> tuple[str, ...]:
+        def together(words: Callable[[Prediction], tuple[str, ...]]) -> tuple[str, ...]:
             return tuple(dict.fromkeys(chain.from_iterable(map(words, flat))))
 
         # the least certain source, and the errors and notes of all
-        source = next((a for a in flat if a.provenance.startswith("learned")), first)
+        learned = (patch for patch in flat if patch.provenance.startswith("learned"))
         return replace(
-            source,
+            next(learned, first),
             course=course,
             wale=wale,
-            shear_modulus_n_per_mm=float(share @ [a.shear_modulus_n_per_mm for a in flat]),
-            method=f"{len(self.answers[0])} x {len(self.answers)} patches, in series along the "
-            "pull and side by side across it; mixed ones learned from yarn-level simulations",
-            stretch_errors=said(lambda answer: answer.stretch_errors),
-            size_errors=said(lambda answer: answer.size_errors),
-            notes=said(lambda answer: answer.notes),
+            shear_modulus_n_per_mm=float(share @ [patch.shear_modulus_n_per_mm for patch in flat]),
+            method=f"{len(self.predictions[0])} x {len(self.predictions)} patches, in series along "
+            "the pull and side by side across it; mixed ones learned from yarn-level simulations",
+            stretch_errors=together(lambda patch: patch.stretch_errors),
+            size_errors=together(lambda patch: patch.size_errors),
+            notes=together(lambda patch: patch.notes),
         )
 
-    def lines(self, direction: Direction) -> tuple[Answer, ...]:
-        """Answers of the chart's rows (course), or of its columns, for a pull along them.
+    def lines(self, direction: Direction) -> tuple[Prediction, ...]:
+        """Predict the chart's rows (course), or its columns, for a pull along them.
 
         Between the middles of the patches' windows they change gradually, as if a line were knitted
         partly as the one window, partly as the other.
         """
         by_row = direction is Direction.COURSE
         cuts, across = (self.rows, self.columns) if by_row else (self.columns, self.rows)
-        grid = self.answers if by_row else tuple(zip(*self.answers, strict=True))
+        grid = self.predictions if by_row else tuple(zip(*self.predictions, strict=True))
         count = int(cuts[-1])
         places = np.arange(count) + 0.5
         middles = _windows(cuts) @ places
 
         @cache
-        def line(first: int, share: float) -> Answer:
+        def line(first: int, share: float) -> Prediction:
             near, parts = grid[first : first + 2], np.array([0.0, 1.0 - share, 1.0])
             if share in (0.0, 1.0):
                 near, parts = (near[int(share)],), np.array([0.0, 1.0])
@@ -129,8 +132,8 @@ class Patches:
         share = np.clip((places - middles[first]) / np.diff(middles)[first], 0.0, 1.0)
         return tuple(line(*at) for at in zip(first.tolist(), share.tolist(), strict=True))
 
-    def _along(self, flat: list[Answer], share: Array, direction: Direction) -> Along:
-        parts = [answer.along(direction) for answer in flat]
+    def _along(self, flat: list[Prediction], share: Array, direction: Direction) -> Along:
+        parts = [patch.along(direction) for patch in flat]
 
         def mean(of: Callable[[Along], float]) -> float:
             return float(share @ [of(part) for part in parts])
@@ -166,11 +169,11 @@ class Patches:
 
     def _response(self, direction: Direction, kind: Callable[[Along], Response]) -> Response:
         """One curve of the whole chart from that of its patches."""
-        grid, along, across = self.answers, np.diff(self.columns), np.diff(self.rows)
+        grid, along, across = self.predictions, np.diff(self.columns), np.diff(self.rows)
         if direction is Direction.WALE:
             grid, along, across = tuple(zip(*grid, strict=True)), across, along
 
-        @cache  # patches of one fabric share its answer
+        @cache  # patches of one fabric share its prediction
         def strains_of(response: Response, width: float) -> Array:
             return response.strain(_FORCES_N / width)
 
@@ -191,69 +194,60 @@ class Patches:
         return response_through(force / float(across @ np.array(heights)), common)
 
 
-def patches_of(
-    chart: StitchChart,
-    material: Material,
-    gauge: RelaxedSize | None = None,
-    swept: SweptChart | None = None,
-) -> Patches:
-    """A chart in patches, each with its answer.
+def is_large(repeat: StitchChart) -> bool:
+    """Whether a repeat is larger than one patch."""
+    return max(repeat.rows, repeat.columns) > SIDE
+
+
+def in_patches(repeat: StitchChart, material: Material, size: RelaxedSize | None = None) -> Patches:
+    """Predict a large repeat patch by patch.
 
     Parameters
     ----------
-    chart : a repeat or a whole piece, as for :func:`knitcore.answer.choose.choose`.
-    gauge : relaxed size of the whole chart's mean stitch, if known.
-    swept : sweep of its repeat at the yarn level, if there is one; a simulated material has those
-        of the packaged samples.
+    repeat : the repeat, or a whole piece.
+    material : a yarn at one setting.
+    size : relaxed size of the whole chart's mean stitch, if known.
 
     Raises
     ------
     InputError
-        If the chart needs a pure fabric that the material lacks.
+        If the repeat needs a pure fabric that the material lacks.
     """
-    fabric = pure_fabric(chart)
-    if fabric is not None:
-        answer = measured(fabric, material)
-        return _one(chart, answer if gauge is None else answer.with_size(gauge))
-    repeat = chart.repeat_cut()
-    if swept is None and material.is_simulated:
-        swept = packaged_model().sweep_of(repeat, material)
-    whole = densities(repeat)
-    if swept is not None or max(repeat.rows, repeat.columns) <= SIDE:
-        return _one(chart, mixed(repeat, whole, material, gauge, swept))
     rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
     cells = product(pairwise(rows.tolist()), pairwise(columns.tolist()))
     parts = [repeat.region(slice(*up), slice(*along)) for up, along in cells]
-    found = _densities_of(repeat, whole, rows, columns)
-    # a chart slightly larger than one patch gets almost the answer of one patch
+    whole = densities(repeat)
+    # a chart slightly larger than one patch gets almost the prediction of one patch
     alike = max(2 - max(repeat.rows, repeat.columns) / SIDE, 0.0)
-    found = found.towards(whole, alike)
+    compositions = _densities_of(repeat, whole, rows, columns).towards(whole, alike)
 
-    def answered(sizes: Sequence[RelaxedSize | None]) -> Patches:
-        flat = mixed_patches(parts, found, material, sizes)
+    def predicted(sizes: Sequence[RelaxedSize | None]) -> Patches:
+        learned = packaged_model().responses(compositions, material, sizes)
+        flat = [
+            predict_mixed(part, composition, material, response, known)
+            for part, composition, response, known in zip(
+                parts, compositions, learned, sizes, strict=True
+            )
+        ]
         wide = len(columns) - 1
         lines = (tuple(flat[k : k + wide]) for k in range(0, len(flat), wide))
         return Patches(rows, columns, tuple(lines), alike)
 
-    free = answered([None] * len(parts))
-    if gauge is None:
+    free = predicted([None] * len(parts))
+    if size is None:
         return free
-    wider, higher = (gauge.extent_mm(d) / free.relaxed_mm(d) for d in Direction)
-    return answered(
+    wider, higher = (size.extent_mm(d) / free.relaxed_mm(d) for d in Direction)
+    return predicted(
         [
             replace(
-                gauge,
-                course_mm=a.relaxed_course_mm * wider,
-                wale_mm=a.relaxed_wale_mm * higher,
+                size,
+                course_mm=patch.course.relaxed_mm * wider,
+                wale_mm=patch.wale.relaxed_mm * higher,
             )
-            for line in free.answers
-            for a in line
+            for line in free.predictions
+            for patch in line
         ]
     )
-
-
-def _one(chart: StitchChart, answer: Answer) -> Patches:
-    return Patches(np.array([0, chart.rows]), np.array([0, chart.columns]), ((answer,),))
 
 
 def _cuts(stitches: int) -> NDArray[np.intp]:

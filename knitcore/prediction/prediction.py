@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore import showing
-from knitcore.answer.relaxed import KnownBy, RelaxedSize
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.response import Response
 from knitcore.materials.uncertainty import Interval, log_interval, normal_interval
+from knitcore.prediction.size import KnownBy, RelaxedSize
 
 SHOWN_STRESS_N_PER_MM = 0.2
 """Stress up to which an answer's curves are drawn."""
@@ -119,7 +119,7 @@ class Along:
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class Prediction:
     """Response of a chart of a material in both directions; intervals are 90 % intervals.
 
     Attributes
@@ -164,7 +164,7 @@ class Answer:
         """
         return Direction.parse(direction).of(self.course, self.wale)
 
-    def with_size(self, relaxed: RelaxedSize) -> Answer:
+    def with_size(self, relaxed: RelaxedSize) -> Prediction:
         """The answer with a known relaxed size, and the same stretch from it."""
         course, wale = (
             replace(self.along(d), relaxed_mm=relaxed.extent_mm(d), relaxed_log_sd=relaxed.log_sd)
@@ -184,7 +184,7 @@ class Answer:
         return self.along(direction).modulus_n_per_mm
 
     def __repr__(self) -> str:
-        return f"Answer(course: {self.course}; wale: {self.wale}; {self.provenance})"
+        return f"Prediction(course: {self.course}; wale: {self.wale}; {self.provenance})"
 
     def _repr_html_(self) -> str:
         def ends(value: float, interval: Interval, digits: str) -> str:

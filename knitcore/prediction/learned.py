@@ -1,7 +1,7 @@
 """Response of a mixed chart, learned from yarn-level simulations: milliseconds for any chart.
 
-The mixture of the pure fabrics by their shares (:mod:`knitcore.answer.mixture`) is corrected in two
-steps, each a kernel regression on the chart's densities and the yarn's dimensionless numbers:
+The mixture of the pure fabrics by their shares (:mod:`knitcore.prediction.mixture`) is corrected in
+two steps, each a kernel regression on the chart's densities and the yarn's dimensionless numbers:
 
 1. *Folding*: logarithms of relaxed width and height over those of the mixture.
 2. *Unfolding*: logarithms of the strain over that of the mixture, at six stresses and in both
@@ -25,14 +25,14 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.answer.densities import Densities, densities
-from knitcore.answer.kernel import KernelModel, KernelSettings, Samples
-from knitcore.answer.mixture import Mixture, present, pure_numbers
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material, Origin
+from knitcore.prediction.densities import Densities, densities
+from knitcore.prediction.gaussian_process import KernelModel, KernelSettings, Samples
+from knitcore.prediction.mixture import Mixture, present, pure_numbers
+from knitcore.prediction.size import RelaxedSize
 
 STRESS_GRID = np.array([400.0, 800.0, 2000.0, 4000.0, 8000.0, 12000.0])
 """Stresses over B / L³ at which strains are learned: about .01 to .3 N/mm."""
@@ -67,7 +67,7 @@ class SweptChart:
 
 
 @dataclass(frozen=True, eq=False)
-class LearnedAnswer:
+class LearnedResponse:
     """Size and response of a mixed chart.
 
     Attributes
@@ -132,15 +132,15 @@ class LearnedAnswer:
 
 
 def learned(
-    chart: StitchChart, material: Material, known: RelaxedSize | None = None
-) -> LearnedAnswer:
+    chart: StitchChart, material: Material, size: RelaxedSize | None = None
+) -> LearnedResponse:
     """Size and response of a chart that repeats indefinitely.
 
     Parameters
     ----------
     chart : the repeat.
     material : a yarn at one setting, with the pure fabrics that the chart is made of.
-    known : its relaxed size, if known.
+    size : its relaxed size, if known.
 
     Raises
     ------
@@ -154,7 +154,7 @@ def learned(
     >>> bool(rib.size_mm[0] < material("acrylic").record("rib").stitch_course_mm)  # folds deeper
     True
     """
-    return packaged_model().answer(densities(chart), material, known)
+    return packaged_model().response(densities(chart), material, size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +170,7 @@ class LearnedModel:
     slopes : (14, 2) for each output: derivatives by ln width and ln height.
     folding_scale, unfolding_scale : (4, 2), (4, 14) standard deviation over the root of the
         regression's variance, such that 90 % of the left-out values lie in their 90 % intervals,
-        by ways (:class:`knitcore.answer.densities.Densities`). A chart has their mean.
+        by ways (:class:`knitcore.prediction.densities.Densities`). A chart has their mean.
     sweeps : of each sample; None where it was only relaxed.
     most_folded : see :data:`MAX_FOLDED`.
     """
@@ -187,57 +187,63 @@ class LearnedModel:
     sweeps: tuple[SweptChart | None, ...]
     most_folded: float = MAX_FOLDED
 
-    def answer(
+    def response(
         self,
-        found: Densities,
+        composition: Densities,
         material: Material,
-        known: RelaxedSize | None = None,
+        size: RelaxedSize | None = None,
         swept: SweptChart | None = None,
-    ) -> LearnedAnswer:
-        """Size and response of a chart with these densities.
+    ) -> LearnedResponse:
+        """Size and response of one chart with these densities, as :meth:`responses`."""
+        alone = Densities(*(values[None] for values in composition.arrays))
+        return self.responses(alone, material, [size], swept)[0]
 
-        A sweep takes the place of the regressions. Its variance is their noise: whatever densities
-        do not explain, such as which of several shapes the simulation settled in.
-        """
-        if swept is None:
-            one = Densities(*(values[None] for values in found.arrays))
-            return self.answers(one, material, [known])[0]
-        mixture = Mixture.of(found.shares, material)
-        folding = swept.folding, self.folding.settings.noise
-        unfolding = swept.unfolding, self.unfolding.settings.noise
-        return self._answer(found, mixture, known, folding, unfolding)
-
-    def answers(
-        self, found: Densities, material: Material, known: Sequence[RelaxedSize | None]
-    ) -> list[LearnedAnswer]:
-        """Sizes and responses of several charts, by their densities and known sizes."""
-        mixtures = Mixture.each(found.shares, material)
-        samples = self.sample(found.features, np.array([m.numbers for m in mixtures]))
-        corrections = (zip(*of(samples), strict=True) for of in (self.folding, self.unfolding))
-        each = zip(found, mixtures, known, *corrections, strict=True)
-        return [self._answer(*one) for one in each]
-
-    def _answer(
+    def responses(
         self,
-        found: Densities,
+        compositions: Densities,
+        material: Material,
+        sizes: Sequence[RelaxedSize | None],
+        swept: SweptChart | None = None,
+    ) -> list[LearnedResponse]:
+        """Sizes and responses of several charts, by their densities and known sizes.
+
+        The sweep of a single chart takes the place of the regressions. Its variance is their noise:
+        whatever densities do not explain, such as which of several shapes the simulation settled
+        in.
+        """
+        mixtures = Mixture.each(compositions.shares, material)
+        if swept is None:
+            numbers = np.array([mixture.numbers for mixture in mixtures])
+            samples = self.sample(compositions.features, numbers)
+            folding = [*zip(*self.folding(samples), strict=True)]
+            unfolding = [*zip(*self.unfolding(samples), strict=True)]
+        else:
+            folding = [(swept.folding, self.folding.settings.noise)]
+            unfolding = [(swept.unfolding, self.unfolding.settings.noise)]
+        charts = zip(compositions, mixtures, sizes, folding, unfolding, strict=True)
+        return [self._corrected(*chart) for chart in charts]
+
+    def _corrected(
+        self,
+        composition: Densities,
         mixture: Mixture,
-        known: RelaxedSize | None,
+        size: RelaxedSize | None,
         folding: tuple[Array, float],
         unfolding: tuple[Array, float],
-    ) -> LearnedAnswer:
-        """From means and variances of folding and unfolding."""
-        flat_mm = mixture.size_mm
-        if known is not None:
-            fold = np.log(np.array([known.course_mm, known.wale_mm]) / flat_mm)
-            fold_sd = np.full(2, known.log_sd)
-        else:
-            fold, fold_sd = self.folded(*folding, found, simulated=mixture.simulated)
-        mean, variance = unfolding
+    ) -> LearnedResponse:
+        """Correct a mixture, from means and variances of folding and unfolding."""
         slopes = self.slopes * follows(mixture)
+        flat_mm = mixture.size_mm
+        if size is not None:
+            fold = np.log(np.array([size.course_mm, size.wale_mm]) / flat_mm)
+            fold_sd = np.full(2, size.log_sd)
+        else:
+            fold, fold_sd = self.folded(*folding, composition, simulated=mixture.simulated)
+        mean, variance = unfolding
         values = mean + slopes @ fold
-        spread = found.uncertainty @ self.unfolding_scale
+        spread = composition.uncertainty @ self.unfolding_scale
         deviations = np.sqrt(spread**2 * variance + slopes**2 @ fold_sd**2)
-        return LearnedAnswer(
+        return LearnedResponse(
             size_mm=flat_mm * np.exp(fold),
             size_log_sd=fold_sd,
             mixture=mixture,
@@ -248,7 +254,7 @@ class LearnedModel:
         )
 
     def folded(
-        self, fold: Array, variance: ArrayLike, found: Densities, *, simulated: bool
+        self, fold: Array, variance: ArrayLike, composition: Densities, *, simulated: bool
     ) -> tuple[Array, Array]:
         """Logarithms of size over the mixture's and their standard deviations, (…, 2) each.
 
@@ -257,14 +263,14 @@ class LearnedModel:
         fold, variance : (…, 2), (…) at the yarn level.
         simulated : for yarn-level fabric, which folds more than knitted fabric.
         """
-        deviation = found.uncertainty @ self.folding_scale * np.sqrt(variance)[..., None]
+        deviation = composition.uncertainty @ self.folding_scale * np.sqrt(variance)[..., None]
         if simulated:
             return fold, deviation
-        shown = found.straight**2 / (1.0 + np.abs(fold) / self.most_folded)
-        rest = SHOWN_LOG_SD * np.asarray(found.mixed)[..., None]
+        shown = composition.straight**2 / (1.0 + np.abs(fold) / self.most_folded)
+        rest = SHOWN_LOG_SD * np.asarray(composition.mixed)[..., None]
         return shown * fold, np.hypot(rest, shown * deviation)
 
-    def relaxed_mm(self, found: Densities, material: Material) -> Array:
+    def relaxed_mm(self, composition: Densities, material: Material) -> Array:
         """(m, 2) relaxed width and height of m charts.
 
         Raises
@@ -272,23 +278,23 @@ class LearnedModel:
         InputError
             If the material lacks a pure fabric with a share.
         """
-        shares = found.shares
+        shares = composition.shares
         phases = present(shares)
         records = [material.record(PHASES[phase]) for phase in phases]
         flat = shares[:, phases] @ [(r.stitch_course_mm, r.stitch_wale_mm) for r in records]
         of_fabrics = pure_numbers(material, phases)[phases, :-1]
         share = shares[:, phases, None]
         numbers = np.where(share > 0, share * of_fabrics, 0.0).sum(axis=1)
-        samples = self.sample(found.features, numbers)
+        samples = self.sample(composition.features, numbers)
         simulated = all(record.origin is Origin.SIMULATED for record in records)
-        fold, _ = self.folded(*self.folding(samples), found, simulated=simulated)
+        fold, _ = self.folded(*self.folding(samples), composition, simulated=simulated)
         return np.asarray(flat * np.exp(fold))
 
     def sweep_of(self, chart: StitchChart, material: Material) -> SweptChart | None:
         """The sweep of a chart among the samples, if it was of the material's yarn."""
-        found = densities(chart)
-        mixture = Mixture.of(found.shares, material)
-        yarn = self.sample(found.features[None], mixture.numbers[None]).numbers
+        composition = densities(chart)
+        mixture = Mixture.of(composition.shares, material)
+        yarn = self.sample(composition.features[None], mixture.numbers[None]).numbers
         key, numbers = chart.canonical().key, self.folding.samples.numbers
         return next(
             (
@@ -323,9 +329,9 @@ def packaged_model(left_out: frozenset[str] = frozenset()) -> LearnedModel:
     ----------
     left_out : keys of charts (:attr:`StitchChart.key`, canonical) to leave out, for tests.
     """
-    path = files("knitcore.answer") / "data" / "learned.npz"
-    with path.open("rb") as stream, np.load(stream) as found:
-        arrays = {name: found[name] for name in found.files}
+    path = files("knitcore.prediction") / "data" / "learned.npz"
+    with path.open("rb") as stream, np.load(stream) as stored:
+        arrays = {name: stored[name] for name in stored.files}
     kept = ~np.isin(arrays["charts"], list(left_out))
     samples = Samples(
         np.asarray(arrays["features"], dtype=float)[kept],

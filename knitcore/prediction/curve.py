@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore import showing
-from knitcore.answer.answer import Source
-from knitcore.answer.choose import choose
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import in_a_sentence
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Source
+from knitcore.prediction.size import RelaxedSize
 
 DEFAULT_STRESS_N_PER_MM = tuple(float(s) for s in np.linspace(0.0, 0.3, 31))
 
@@ -80,7 +80,7 @@ def curve(
     direction: Direction | str,
     stress_n_per_mm: ArrayLike = DEFAULT_STRESS_N_PER_MM,
     *,
-    gauge: RelaxedSize | None = None,
+    size: RelaxedSize | None = None,
 ) -> ChartCurve:
     """Stress and strain of a chart that is free to narrow, with 90 % intervals.
 
@@ -90,7 +90,7 @@ def curve(
     material : a yarn at one setting.
     direction : of the pull.
     stress_n_per_mm : increasing stresses at which strains are given, N/mm.
-    gauge : measured relaxed size of the chart's mean stitch, if known.
+    size : relaxed size of the chart's mean stitch, if known.
 
     Raises
     ------
@@ -107,14 +107,14 @@ def curve(
     True
     """
     stress = increasing(stress_n_per_mm)
-    answer = choose(chart, material, gauge)
-    along = answer.along(Direction.parse(direction))
+    prediction = predict(chart, material, size)
+    along = prediction.along(Direction.parse(direction))
     strain = along.strain(stress)
     return ChartCurve(
         stress,
         strain,
         *along.strain_interval(stress),
         *along.stress_interval(strain),
-        answer.provenance,
-        in_a_sentence(answer.stretch_errors),
+        prediction.provenance,
+        in_a_sentence(prediction.stretch_errors),
     )

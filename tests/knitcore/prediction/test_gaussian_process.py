@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.answer.kernel import KernelModel, KernelSettings, Samples, covariance
+from knitcore.prediction.gaussian_process import KernelModel, KernelSettings, Samples, covariance
 
 SETTINGS = KernelSettings(0.5, 0.1, 1.0, 1.0, 2.0, 0.01)
 

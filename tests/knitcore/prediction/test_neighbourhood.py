@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 
 from knitcore import StitchChart
-from knitcore.answer import neighbourhood
-from knitcore.answer.learned import learned
-from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.fabric import PHASES
 from knitcore.materials import material
+from knitcore.prediction import neighbourhood
+from knitcore.prediction.learned import learned
+from knitcore.prediction.neighbourhood import neighbourhood_sizes
 from tests.knitcore.charts import stitch_charts
 
 ACRYLIC = material("acrylic:published")

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from knitcore import StitchChart
-from knitcore.answer.densities import densities
 from knitcore.fabric import PHASES
+from knitcore.prediction.densities import densities
 from tests.knitcore.charts import stitch_charts
 
 

@@ -10,18 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from knitcore import StitchChart
-from knitcore.answer.densities import densities
-from knitcore.answer.learned import LearnedAnswer, learned, packaged_model
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import material
+from knitcore.prediction.densities import densities
+from knitcore.prediction.learned import LearnedResponse, learned, packaged_model
+from knitcore.prediction.size import RelaxedSize
 from tests.knitcore.charts import stitch_charts
 
 ACRYLIC = material("acrylic:published")
 STRESS = np.array([0.05, 0.1, 0.2])
 
 
-def strains(answer: LearnedAnswer) -> np.ndarray:
+def strains(answer: LearnedResponse) -> np.ndarray:
     return np.stack([answer.strain(direction, STRESS) for direction in Direction])
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from knitcore.answer.answer import Answer
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.extensions import Group, offered, running
 from knitcore.materials import Material
+from knitcore.prediction.prediction import Prediction
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Measure:
     identifier: str
     unit: str
     description: str
-    of: Callable[[StitchChart, Material, Answer], float]
+    of: Callable[[StitchChart, Material, Prediction], float]
 
-    def value(self, chart: StitchChart, material: Material, answer: Answer) -> float:
+    def value(self, chart: StitchChart, material: Material, answer: Prediction) -> float:
         """Its value, given the answer for the chart of the material.
 
         Raises

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from knitcore import StitchChart, material, predict
-from knitcore.answer.quarter_laws import quarter_laws
 from knitcore.fabric import PHASES, Direction, Fabric
+from knitcore.prediction.quarter_laws import quarter_laws
 from knitcore.swatch import chart_sheet
 
 

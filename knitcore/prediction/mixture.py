@@ -1,7 +1,7 @@
 """The pure fabrics of a material, mixed by their shares in a chart whatever their arrangement.
 
 Strain at equal stress (the Reuss bound), size and Poisson's ratio are means over the quarter cells.
-:mod:`knitcore.answer.learned` corrects this mixture.
+:mod:`knitcore.prediction.learned` corrects this mixture.
 """
 
 from __future__ import annotations

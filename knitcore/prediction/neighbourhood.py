@@ -2,9 +2,9 @@
 
 The relaxed size of a stitch depends on the texture around it. The piece is divided into windows
 that overlap by half. Each is a chart of its own, whose learned folding
-(:mod:`knitcore.answer.learned`) gives the width and height of its stitches; between the centres of
-windows, sizes vary linearly. So a ribbed hem is narrow, the stockinette above it is wide, and the
-transition is gradual. Beyond the edges of the piece, the chart is continued as its mirror
+(:mod:`knitcore.prediction.learned`) gives the width and height of its stitches; between the centres
+of windows, sizes vary linearly. So a ribbed hem is narrow, the stockinette above it is wide, and
+the transition is gradual. Beyond the edges of the piece, the chart is continued as its mirror
 image, not as its repeat.
 """
 
@@ -19,13 +19,13 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from knitcore.answer.densities import densities_of
-from knitcore.answer.learned import packaged_model
-from knitcore.answer.mixture import present, pure_numbers
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES
 from knitcore.materials import Material, Origin
+from knitcore.prediction.densities import densities_of
+from knitcore.prediction.learned import packaged_model
+from knitcore.prediction.mixture import present, pure_numbers
 
 WINDOW = 16
 """Rows and columns of a window."""

@@ -1,17 +1,27 @@
-"""Sizes that a relaxation at the yarn level finds, in place of learned ones."""
+"""Charts that were themselves simulated: sweeps, and sizes of a relaxation."""
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 from knitcore import Direction, RelaxedSize, StitchChart, predict
-from knitcore.answer.choose import choose
-from knitcore.answer.relaxation import MAX_STITCHES, size_from_relaxation, worth_relaxing
-from knitcore.answer.relaxed import KnownBy
 from knitcore.fabric import Fabric
 from knitcore.materials import Material, material
+from knitcore.prediction.densities import densities
+from knitcore.prediction.learned import packaged_model
+from knitcore.prediction.mixture import Mixture
+from knitcore.prediction.size import KnownBy
+from knitcore.prediction.swept import (
+    MAX_STITCHES,
+    STRESS,
+    of_law,
+    size_from_relaxation,
+    swept_chart,
+    worth_relaxing,
+)
 from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
 from scripts.training.learned import simulated_materials
 
@@ -26,6 +36,54 @@ def _stored(text: str) -> StoredStitch:
     found = stored_stitch(StitchChart.parse(text), "acrylic")
     assert found is not None
     return found
+
+
+@pytest.mark.parametrize("text", ["KKPP", "K/K/P", "KP/KK", "KKPP/PPKK"])
+def test_a_simulated_material_answers_like_its_sweep(text: str, simulated: Material) -> None:
+    """Strains within 5 %: the answer goes through six stresses of the curve."""
+    stored = _stored(text)
+    assert stored.law is not None
+    size = stored.cell_course_mm, stored.cell_wale_mm
+    sweep = swept_chart(stored.chart, size, stored.law, simulated.fabrics, simulated)
+    found = predict(stored.chart, simulated, swept=sweep)
+    assert found.provenance == "swept"
+    assert (found.relaxed_course_mm, found.relaxed_wale_mm) == pytest.approx(size)
+    strains, _ = of_law(stored.law)
+    for direction, strain in zip(Direction, strains, strict=True):
+        along = found.along(direction)
+        np.testing.assert_allclose(along.strain(STRESS)[4:], strain[4:], rtol=0.05)
+        low, high = along.strain_interval(0.05)
+        assert low < along.strain(0.05) < high
+
+
+def test_a_simulated_material_finds_the_packaged_sweep(simulated: Material) -> None:
+    """And no other material does; with a gauge its stretch starts at that size."""
+    chart = StitchChart.parse("KP/KK")
+    stored = _stored("KP/KK")
+    found = predict(chart, simulated)
+    assert found.provenance == "swept"
+    assert found.relaxed_course_mm == pytest.approx(stored.cell_course_mm, rel=0.02)
+    assert predict(StitchChart.parse("KP/KK"), material("acrylic")).provenance == "learned"
+    assert packaged_model().sweep_of(chart, material("lace-bamboo")) is None
+    known = predict(chart, simulated, RelaxedSize(3.0, 2.0))
+    assert known.relaxed_course_mm == 3.0
+    assert known.course.strain(0.05) != pytest.approx(found.course.strain(0.05), rel=0.01)
+
+
+@pytest.mark.parametrize("text", ["KKPP", "K/K/P/P", "KKPP/KKPP/PPKK/PPKK"])
+def test_knitted_fabric_folds_less_than_its_sweep_as_the_learned_answer_does(text: str) -> None:
+    chart, acrylic = StitchChart.parse(text), material("acrylic")
+    sweep = packaged_model().sweep_of(chart, acrylic)
+    assert sweep is not None
+    found, learned = predict(chart, acrylic, swept=sweep), predict(chart, acrylic)
+    assert found.provenance == "swept"
+    flat = Mixture.of(densities(chart).shares, acrylic).size_mm
+    for direction in Direction:
+        own, other = found.along(direction), learned.along(direction)
+        fold = np.log(own.relaxed_mm / flat[direction.axis])
+        assert abs(fold) <= abs(sweep.folding[direction.axis])
+        assert own.relaxed_mm == pytest.approx(other.relaxed_mm, rel=0.06)
+        assert own.strain(0.1) == pytest.approx(other.strain(0.1), rel=0.35)
 
 
 def _found(text: str, of: Material) -> RelaxedSize:
@@ -58,10 +116,10 @@ def test_measured_cloth_takes_only_a_part_of_the_fold() -> None:
 
 def test_it_makes_the_stretch_of_a_simulated_material_more_certain() -> None:
     chart, of = StitchChart.parse("KPPK/KKPK/PKKP"), material("acrylic:simulation")
-    learned = choose(chart, of)
+    learned = predict(chart, of)
     size = learned.relaxed_course_mm, learned.relaxed_wale_mm
     sd = _found("KP/KK", of).log_sd  # that of another chart of the same kind
-    known = choose(chart, of, RelaxedSize(*size, sd, KnownBy.RELAXATION))
+    known = predict(chart, of, RelaxedSize(*size, sd, KnownBy.RELAXATION))
     assert (known.provenance, known.relaxed_source) == ("learned with known size", "relaxation")
     assert known.size_is_known
     assert "relaxation" in " ".join(known.notes)
