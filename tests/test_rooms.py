@@ -16,6 +16,7 @@ FLOORS = (
     {"batch", "bounds", "choice", "dense", "elementary", "extensions", "showing"},
     {"fabric"},
     {"chart"},
+    {"result"},
     {"segments", "patterns", "worked"},
     {"phases", "repeats"},
     {"law", "gridsolver"},

@@ -95,19 +95,18 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
             "All but the size is of the largest rectangle inside the outline, "
             f"{chart.columns} x {chart.rows} stitches."
         )
-    found = predict_chart(chart, material, request.relaxed_size)
+    predicted = predict_chart(chart, material, request.relaxed_size)
     segments = segment_map(chart)
-    to_relax = worth_relaxing(chart, material, found)
+    to_relax = worth_relaxing(chart, material, predicted)
     return PredictResult.of(
-        found,
         chart,
-        size_at_rest(shaped, material, found),
+        size_at_rest(shaped, material, predicted),
+        **predicted.to_dict() | {"notes": [*notes, *predicted.notes]},
         segments={direction: segments.counts(direction) for direction in Direction},
         worth_relaxing=None if to_relax is None else to_relax.text,
-        notes=[*notes, *found.notes],
         measures=[
-            MeasureResult.of(one, value=one.value(chart, material, found))
-            for one in map(measure, request.measures)
+            MeasureResult.of(each, value=each.value(chart, material, predicted))
+            for each in map(measure, request.measures)
         ],
     )
 

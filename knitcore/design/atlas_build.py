@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from knitcore.batch import BatchProgress, run_batch
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
 from knitcore.errors import Cancelled, InputError, KnitcoreError, Progress
 from knitcore.fabric import Direction
-from knitcore.materials import Interval, Material
+from knitcore.materials import Interval, Material, as_material
 from knitcore.prediction.learned import SweptChart
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Prediction
@@ -42,8 +42,8 @@ class AtlasTask:
 
 
 def build_atlas(
-    material: Material,
-    repeats: Sequence[StitchChart],
+    material: Material | str,
+    repeats: Sequence[StitchChart | str],
     *,
     file: Path | None = None,
     workers: int | None = 1,
@@ -70,9 +70,10 @@ def build_atlas(
     InputError
         If the file holds something else, or the cluster does not answer.
     """
+    material = as_material(material)
     fingerprint = material_fingerprint(material)
     known = known_entries(file, fingerprint)
-    keys = [repeat.key for repeat in repeats]
+    keys = [as_chart(repeat).key for repeat in repeats]
     missing = [key for key in keys if key not in known]
     parts = [tuple(missing[k : k + AT_ONCE]) for k in range(0, len(missing), AT_ONCE)]
     tasks = {f"{fingerprint}-{_digest(part)}": AtlasTask(material, part) for part in parts}

@@ -17,12 +17,15 @@ from knitcore.materials.uncertainty import in_a_sentence
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Source
 from knitcore.prediction.size import RelaxedSize
+from knitcore.result import Result
 
 DEFAULT_STRESS_N_PER_MM = tuple(float(s) for s in np.linspace(0.0, 0.3, 31))
+MAX_STRESS_N_PER_MM = 100.0
+"""Laws say nothing beyond."""
 
 
 @dataclass(frozen=True, eq=False)
-class ChartCurve:
+class ChartCurve(Result):
     """A stress-strain curve of a chart, transverse direction free; arrays of one length.
 
     Attributes
@@ -62,7 +65,7 @@ def increasing(stress_n_per_mm: ArrayLike) -> Array:
     Raises
     ------
     InputError
-        If they are not finite, increasing and at least 0.
+        If they do not increase from 0 to at most :data:`MAX_STRESS_N_PER_MM`.
     """
     stress = np.atleast_1d(np.asarray(stress_n_per_mm, dtype=float))
     if not np.all(np.isfinite(stress)) or np.any(np.diff(stress) <= 0) or np.any(stress < 0):
@@ -71,12 +74,19 @@ def increasing(stress_n_per_mm: ArrayLike) -> Array:
             "must be finite, increasing and at least 0.",
             "Give, for example, 0, 0.1, 0.2 N/mm.",
         )
+    if stress[-1] > MAX_STRESS_N_PER_MM:
+        raise InputError(
+            "stress",
+            f"{stress[-1]:g} N/mm is more than any fabric carries.",
+            f"Give at most {MAX_STRESS_N_PER_MM:g} N/mm.",
+            most=MAX_STRESS_N_PER_MM,
+        )
     return stress
 
 
 def curve(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     direction: Direction | str,
     stress_n_per_mm: ArrayLike = DEFAULT_STRESS_N_PER_MM,
     *,
@@ -86,23 +96,21 @@ def curve(
 
     Parameters
     ----------
-    chart : a repeat, or a swatch that may cut its last repeat off.
-    material : a yarn at one setting.
+    chart, material : as for :func:`knitcore.prediction.predict.predict`.
     direction : of the pull.
-    stress_n_per_mm : increasing stresses at which strains are given, N/mm.
+    stress_n_per_mm : increasing stresses at which strains are given, N/mm; at most 100.
     size : relaxed size of the chart's mean stitch, if known.
 
     Raises
     ------
     InputError
-        If the stresses are not finite, increasing and at least 0, or the chart needs a pure fabric
-        that the material lacks.
+        If the stresses do not increase from 0 to at most 100 N/mm, the chart needs a pure fabric
+        that the material lacks, or an argument is not of its kind.
 
     Examples
     --------
-    >>> from knitcore.materials import material
-    >>> wide = curve(StitchChart.parse("KKPP"), material("acrylic"), "course", [0.1])
-    >>> flat = curve(StitchChart.parse("K"), material("acrylic"), "course", [0.1])
+    >>> wide = curve("KKPP", "acrylic", "course", [0.1])
+    >>> flat = curve("K", "acrylic", "course", [0.1])
     >>> bool(wide.strain[0] > flat.strain[0])
     True
     """

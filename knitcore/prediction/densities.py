@@ -103,11 +103,11 @@ class Densities:
     def towards(self, other: Densities, share: float) -> Densities:
         """Densities between these (share 0) and others (1)."""
         pairs = zip(self.arrays, other.arrays, strict=True)
-        return Densities(*((1 - share) * own + share * one for own, one in pairs))
+        return Densities(*((1 - share) * own + share * theirs for own, theirs in pairs))
 
     def __iter__(self) -> Iterator[Densities]:
         """One chart after another."""
-        return (Densities(*one) for one in zip(*self.arrays, strict=True))
+        return (Densities(*chart) for chart in zip(*self.arrays, strict=True))
 
 
 def _mean(values: NDArray[np.generic]) -> Array:
@@ -120,8 +120,8 @@ def densities(chart: StitchChart) -> Densities:
 
     Examples
     --------
-    >>> found = densities(StitchChart.parse("KKPP"))
-    >>> found.shares.tolist(), found.straight.round(2).tolist()
+    >>> rib = densities(StitchChart.parse("KKPP"))
+    >>> rib.shares.tolist(), rib.straight.round(2).tolist()
     ([0.5, 0.0, 0.5, 0.0], [1.0, 0.0])
     """
     return densities_of(chart.purl)
@@ -166,32 +166,32 @@ def _values(sign: Array, mean: Mean) -> Array:
     """(…, densities), the squares of s smoothed along the course and along the wale last."""
     odd_course, odd_wale = _odd_sides(sign, -1), _odd_sides(sign, -2)
     sides = [(i, j) for i in range(3) for j in range(3) if i + j > 0]
-    found = [mean((odd_course == i) & (odd_wale == j)) for i, j in sides]
-    found += [mean(_product(sign, up, right)) for up, right in _LAGS]
+    values = [mean((odd_course == i) & (odd_wale == j)) for i, j in sides]
+    values += [mean(_product(sign, up, right)) for up, right in _LAGS]
     pair = sign * _lagged(sign, 0, 1)
-    found += [mean(pair * _lagged(pair, up, right)) for up, right in _PAIRS]
+    values += [mean(pair * _lagged(pair, up, right)) for up, right in _PAIRS]
     kx, ky, back = _waves(sign)
     for bed in _BEDS:
         bent = 1 / ((kx**2 + ky**2) ** 2 + bed**4)
         for slope in (kx, ky):
             course, wale = (_leaning(back(slope * k**2 * bent)) for k in (kx, ky))
-            found += [mean(course * course), mean(course * wale), mean(wale * wale)]
+            values += [mean(course * course), mean(course * wale), mean(wale * wale)]
     for length in _SMOOTHED_OVER:
         along, up = _weights(kx, length), _weights(ky, length)
-        found += [mean(back(weights) ** 2) for weights in (along * up, along, up)]
-    return np.stack(found, axis=-1)
+        values += [mean(back(weights) ** 2) for weights in (along * up, along, up)]
+    return np.stack(values, axis=-1)
 
 
 def _lines(sign: Array, mean: Mean) -> Array:
     """(…, 2) part of the changes from column to column that goes on upwards; of those of rows."""
     kx, ky, back = _waves(sign)
-    found = []
+    shares = []
     for across, along in ((kx, ky), (ky, kx)):
         change = np.sin(across / 2)
         plain = mean(back(change) ** 2)
         smooth = mean(back(change * _weights(along, _SMOOTHED_OVER[-1])) ** 2)
-        found.append(np.divide(smooth, plain, out=np.zeros_like(plain), where=plain > _NO_CHANGE))
-    return np.stack(found, axis=-1)
+        shares.append(np.divide(smooth, plain, out=np.zeros_like(plain), where=plain > _NO_CHANGE))
+    return np.stack(shares, axis=-1)
 
 
 def _waves(sign: Array) -> tuple[Array, Array, Callable[[Array], Array]]:

@@ -100,19 +100,19 @@ class KernelModel:
         factor = np.asarray(np.linalg.cholesky(noisy_covariance(settings, samples)), dtype=float)
         return cls(settings, samples, factor, cho_solve((factor, True), targets))
 
-    def __call__(self, wanted: Samples) -> tuple[Array, Array]:
+    def __call__(self, charts: Samples) -> tuple[Array, Array]:
         """Mean (m, outputs), and variance (m,) of an observation in units of each output's own."""
         from scipy.linalg import solve_triangular
 
-        cross = covariance(self.settings, wanted, self.samples)
+        cross = covariance(self.settings, charts, self.samples)
         reduced = solve_triangular(self.factor, cross.T, lower=True)
-        prior = self._prior_variance(wanted)
+        prior = self._prior_variance(charts)
         variance = prior - np.einsum("nm,nm->m", reduced, reduced) + self.settings.noise
         return cross @ self.weights, variance
 
-    def _prior_variance(self, wanted: Samples) -> Array:
-        size = wanted.features.shape[1]
-        linear = self.settings.linear * np.einsum("mf,mf->m", wanted.features, wanted.features)
-        by_yarn = np.einsum("mk,mk->m", wanted.numbers, wanted.numbers)
+    def _prior_variance(self, charts: Samples) -> Array:
+        size = charts.features.shape[1]
+        linear = self.settings.linear * np.einsum("mf,mf->m", charts.features, charts.features)
+        by_yarn = np.einsum("mk,mk->m", charts.numbers, charts.numbers)
         linear *= (1.0 + self.settings.linear_by_yarn * by_yarn) / size
         return np.asarray(linear + self.settings.smooth)

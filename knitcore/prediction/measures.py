@@ -1,4 +1,4 @@
-"""Measures: further numbers of a chart of a material, which extensions compute from its answer."""
+"""Measures: further numbers of a chart of a material, which extensions compute."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Measure:
     description: str
     of: Callable[[StitchChart, Material, Prediction], float]
 
-    def value(self, chart: StitchChart, material: Material, answer: Prediction) -> float:
-        """Its value, given the answer for the chart of the material.
+    def value(self, chart: StitchChart, material: Material, prediction: Prediction) -> float:
+        """Its value, given the prediction for the chart of the material.
 
         Raises
         ------
@@ -38,7 +38,7 @@ class Measure:
             If it fails.
         """
         with running(Group.MEASURES, self.identifier):
-            return float(self.of(chart, material, answer))
+            return float(self.of(chart, material, prediction))
 
 
 def measure(identifier: str) -> Measure:
@@ -54,8 +54,8 @@ def measure(identifier: str) -> Measure:
     knitcore.extensions.ExtensionWarning
         Of every extension that cannot be used.
     """
-    found = offered(Group.MEASURES, Measure)
-    if identifier not in found:
-        known = f"Use one of {', '.join(found)}." if found else "Install a package that has it."
+    offers = offered(Group.MEASURES, Measure)
+    if identifier not in offers:
+        known = f"Use one of {', '.join(offers)}." if offers else "Install a package that has it."
         raise InputError("measures", f"there is no measure {identifier!r}.", known)
-    return found[identifier]
+    return offers[identifier]

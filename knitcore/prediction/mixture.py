@@ -64,14 +64,14 @@ class Mixture:
     def each(cls, shares: Array, material: Material) -> list[Mixture]:
         """The mixtures with each of these shares, (m, 4)."""
         yarns = pure_numbers(material, present(shares))
-        found = []
+        mixtures = []
         for own in shares:
             phases = present(own)
             parts = tuple((float(own[k]), material.record(PHASES[k])) for k in phases)
             *numbers, bending = own[phases] @ yarns[phases]
             stress = USUAL_STRESS_N_PER_MM if math.isnan(bending) else math.exp(bending)
-            found.append(cls(parts, np.array(numbers), stress))
-        return found
+            mixtures.append(cls(parts, np.array(numbers), stress))
+        return mixtures
 
     @property
     def simulated(self) -> bool:
@@ -144,8 +144,8 @@ _LOG_STRESSES: Array = np.log(_STRESSES)
 def law_strains(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
     """Strains of a law from its table, within 1e-4 of their own size."""
     at = np.log(np.maximum(stress_n_per_mm, _STRESSES[0]))
-    found = np.exp(np.interp(at, _LOG_STRESSES, _log_strains(law, direction)))
-    return np.asarray(found * np.minimum(stress_n_per_mm / _STRESSES[0], 1.0))
+    strains = np.exp(np.interp(at, _LOG_STRESSES, _log_strains(law, direction)))
+    return np.asarray(strains * np.minimum(stress_n_per_mm / _STRESSES[0], 1.0))
 
 
 def _law_slopes(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
@@ -201,11 +201,11 @@ def pure_numbers(material: Material, phases: NDArray[np.int64]) -> Array:
     """(4, 5) numbers of the yarn in these pure fabrics; nan in others, and where too little is
     known.
     """
-    found = np.full((len(PHASES), 5), np.nan)
+    numbers = np.full((len(PHASES), 5), np.nan)
     for phase in phases:
         try:
             used = yarn_for(material, StitchChart.of_fabric(PHASES[phase]))
         except InputError:
             continue
-        found[phase] = yarn_numbers(used.yarn, used.loop_length_mm)
-    return found
+        numbers[phase] = yarn_numbers(used.yarn, used.loop_length_mm)
+    return numbers

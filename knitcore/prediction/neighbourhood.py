@@ -71,8 +71,8 @@ def sizes_and_folds(chart: StitchChart, material: Material) -> tuple[Array, Arra
     known = _of_yarn(_numbers(material))
     counted = list(product(*(_windows(count) for count in chart.purl.shape)))
     sums = sum(_interpolated(chart, material, known, *each) for each in counted)
-    found = np.asarray(sums) / len(counted)
-    return found[..., :2], found[..., 2:]
+    values = np.asarray(sums) / len(counted)
+    return values[..., :2], values[..., 2:]
 
 
 def _numbers(material: Material) -> bytes:
@@ -102,15 +102,15 @@ def _interpolated(
     windows = sliding_window_view(around, (WINDOW, WINDOW))[::HALF, ::HALF]
     count, windows = windows.shape[:2], windows.reshape(-1, WINDOW, WINDOW)
     keys = [packed.tobytes() for packed in np.packbits(windows.reshape(len(windows), -1), axis=1)]
-    found = {key: value for key in keys if (value := known.get(key)) is not None}
-    new = {key: window for key, window in zip(keys, windows, strict=True) if key not in found}
+    here = {key: value for key in keys if (value := known.get(key)) is not None}
+    new = {key: window for key, window in zip(keys, windows, strict=True) if key not in here}
     if new:
         values = _sizes_and_folds(np.array(list(new.values())), material)
-        found.update(zip(new, values, strict=True))
+        here.update(zip(new, values, strict=True))
         if len(known) > MOST_KNOWN:
             known.clear()
-        known.update(found)
-    values = np.array([found[key] for key in keys]).reshape(*count, -1)
+        known.update(here)
+    values = np.array([here[key] for key in keys]).reshape(*count, -1)
     return _between(_between(values, rows.places), columns.places, axis=1)
 
 
@@ -124,10 +124,10 @@ def _between(values: Array, places: Array, axis: int = 0) -> Array:
 
 def _sizes_and_folds(windows: NDArray[np.bool_], material: Material) -> Array:
     """(windows, 4) size, and size over the flat mixture's."""
-    found = densities_of(windows)
-    phases = present(found.shares)
-    flat = found.shares[:, phases] @ [material.record(PHASES[k]).stitch_mm for k in phases]
-    relaxed = packaged_model().relaxed_mm(found, material)
+    composition = densities_of(windows)
+    phases = present(composition.shares)
+    flat = composition.shares[:, phases] @ [material.record(PHASES[k]).stitch_mm for k in phases]
+    relaxed = packaged_model().relaxed_mm(composition, material)
     return np.concatenate([relaxed, relaxed / flat], axis=1)
 
 

@@ -19,8 +19,9 @@ repeat may take, and no nearer to another of its shapes than the learned predict
 
 from __future__ import annotations
 
-from knitcore.chart import StitchChart
-from knitcore.materials import Material
+from knitcore.chart import StitchChart, as_chart
+from knitcore.errors import InputError
+from knitcore.materials import Material, as_material
 from knitcore.phases import pure_fabric
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import SweptChart, packaged_model
@@ -32,8 +33,8 @@ from knitcore.prediction.size import RelaxedSize
 
 
 def predict(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     size: RelaxedSize | None = None,
     swept: SweptChart | None = None,
 ) -> Prediction:
@@ -41,15 +42,16 @@ def predict(
 
     Parameters
     ----------
-    chart : a repeat, or a swatch that may cut its last repeat off.
-    material : a yarn at one setting.
+    chart : a repeat, or a swatch that may cut its last repeat off; or its text, or the name of a
+        pure fabric.
+    material : a yarn at one setting, or its identifier.
     size : relaxed size of the chart's mean stitch, if known.
     swept : yarn-level sweep of the chart's repeat (:mod:`knitcore.prediction.swept`), if any.
 
     Raises
     ------
     InputError
-        If the chart needs a pure fabric that the material lacks.
+        If the chart needs a pure fabric that the material lacks, or an argument is not of its kind.
 
     Examples
     --------
@@ -57,11 +59,18 @@ def predict(
     >>> garter = predict(StitchChart.of_fabric("garter", 31, 31), material("acrylic"))
     >>> round(garter.modulus_course_n_per_mm, 3), round(garter.modulus_wale_n_per_mm, 3)
     (0.134, 0.081)
-    >>> predict(StitchChart.parse("KKPP"), material("acrylic")).provenance
+    >>> predict("KKPP", "acrylic").provenance
     <Source.LEARNED: 'learned'>
-    >>> predict(StitchChart.parse("KKPP"), material("acrylic:simulation")).provenance
+    >>> predict("KKPP", "acrylic:simulation").provenance
     <Source.SWEPT: 'swept'>
     """
+    chart, material = as_chart(chart), as_material(material)
+    if not isinstance(size, RelaxedSize | None):
+        raise InputError(
+            "size",
+            f"a {type(size).__name__} is not a relaxed size.",
+            "Give a RelaxedSize, such as RelaxedSize.from_gauge(22, 30).",
+        )
     fabric = pure_fabric(chart)
     if fabric is not None:
         pure = predict_pure(fabric, material)

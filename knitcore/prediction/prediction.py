@@ -1,10 +1,11 @@
-"""The answer for a chart of a material: response in both directions, intervals, source, notes."""
+"""The prediction for a chart: response in both directions, intervals, source and notes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,11 +19,11 @@ from knitcore.materials.uncertainty import Interval, log_interval, normal_interv
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 SHOWN_STRESS_N_PER_MM = 0.2
-"""Stress up to which an answer's curves are drawn."""
+"""Stress up to which a prediction's curves are drawn."""
 
 
 class Source(StrEnum):
-    """Where an answer comes from."""
+    """Source of a prediction."""
 
     MEASURED = "measured"
     ESTIMATED = "estimated"
@@ -102,8 +103,8 @@ class Along:
 
     def stress_interval(self, strain: ArrayLike) -> tuple[Array, Array]:
         """Lower and upper ends of the stresses' 90 % intervals."""
-        wanted = _not_negative("strain", strain)
-        return self.soft.stress(wanted), self.stiff.stress(wanted)
+        strains = _not_negative("strain", strain)
+        return self.soft.stress(strains), self.stiff.stress(strains)
 
     def held_strain(self, stress_n_per_mm: ArrayLike) -> Array:
         """Strains at stresses (N/mm, at least 0) while the width is held."""
@@ -127,7 +128,7 @@ class Prediction:
     course, wale : pulled along the rows, and along the columns.
     shear_modulus_n_per_mm : an assumption of the laws unless they were calibrated.
     provenance : the source; for a chart in patches the least certain of theirs.
-    method : how the answer was found, in words.
+    method : how the prediction was made, in words.
     relaxed_source : where the relaxed size comes from.
     stretch_errors, size_errors : what the intervals of moduli, Poisson's ratios and curves rest
         on, and those of the relaxed size.
@@ -155,7 +156,7 @@ class Prediction:
         return f"Stretch: {'; '.join(self.stretch_errors)}. Size: {'; '.join(self.size_errors)}."
 
     def along(self, direction: Direction | str) -> Along:
-        """The answer for a pull in a direction.
+        """The prediction for a pull in a direction.
 
         Raises
         ------
@@ -165,7 +166,7 @@ class Prediction:
         return Direction.parse(direction).of(self.course, self.wale)
 
     def with_size(self, relaxed: RelaxedSize) -> Prediction:
-        """The answer with a known relaxed size, and the same stretch from it."""
+        """The prediction with a known relaxed size, and the same stretch from it."""
         course, wale = (
             replace(self.along(d), relaxed_mm=relaxed.extent_mm(d), relaxed_log_sd=relaxed.log_sd)
             for d in Direction
@@ -182,6 +183,36 @@ class Prediction:
     def modulus_n_per_mm(self, direction: Direction | str) -> float:
         """Young's modulus in a direction."""
         return self.along(direction).modulus_n_per_mm
+
+    def to_dict(self) -> dict[str, Any]:
+        """Collect the numbers of both directions under the names that REST and files use.
+
+        Units are in the names, intervals are lists of two ends; curves and functions are left out.
+        """
+        numbers: dict[str, Any] = {}
+        both = self.course, self.wale
+        for direction, along, ratio in zip(Direction, both, ("yx", "xy"), strict=True):
+            intervals = {
+                f"modulus_{direction}_interval_n_per_mm": along.modulus_interval_n_per_mm,
+                f"modulus_{direction}_bounds_n_per_mm": along.bounds_n_per_mm,
+                f"poisson_{ratio}_interval": along.poisson_interval,
+                f"relaxed_{direction}_interval_mm": along.relaxed_interval_mm,
+            }
+            numbers |= {
+                f"modulus_{direction}_n_per_mm": along.modulus_n_per_mm,
+                f"extensibility_{direction}_mm_per_n": 1.0 / along.modulus_n_per_mm,
+                f"poisson_{ratio}": along.poisson,
+                f"relaxed_{direction}_mm": along.relaxed_mm,
+            }
+            numbers |= {name: [ends.low, ends.high] for name, ends in intervals.items()}
+        return numbers | {
+            "shear_modulus_n_per_mm": self.shear_modulus_n_per_mm,
+            "relaxed_source": str(self.relaxed_source),
+            "provenance": self.provenance.value,
+            "method": self.method,
+            "interval_source": self.interval_source,
+            "notes": [*self.notes],
+        }
 
     def __repr__(self) -> str:
         return f"Prediction(course: {self.course}; wale: {self.wale}; {self.provenance})"
@@ -211,11 +242,9 @@ class Prediction:
             showing.rectangles([("extensibility", *give)], "mm/N"),
         )
         extensible = f"The rectangle is the extensibility: {give[0]:.3g} × {give[1]:.3g} mm/N."
-        told = f"{self.provenance}: {self.method}. 90 % intervals: {self.interval_source}"
+        source = f"{self.provenance}: {self.method}. 90 % intervals: {self.interval_source}"
         table = showing.html_table(head, rows)
-        return showing.captioned(table + pictures, extensible, told, *self.notes)
-
-    # -- under the names that command line, REST and files use ------------------------------
+        return showing.captioned(table + pictures, extensible, source, *self.notes)
 
     @property
     def modulus_course_n_per_mm(self) -> float:
@@ -226,26 +255,6 @@ class Prediction:
     def modulus_wale_n_per_mm(self) -> float:
         """Young's modulus along the wales."""
         return self.wale.modulus_n_per_mm
-
-    @property
-    def modulus_course_interval_n_per_mm(self) -> Interval:
-        """90 % interval of the modulus along the courses."""
-        return self.course.modulus_interval_n_per_mm
-
-    @property
-    def modulus_wale_interval_n_per_mm(self) -> Interval:
-        """90 % interval of the modulus along the wales."""
-        return self.wale.modulus_interval_n_per_mm
-
-    @property
-    def modulus_course_bounds_n_per_mm(self) -> Interval:
-        """Bounds of the modulus along the courses."""
-        return self.course.bounds_n_per_mm
-
-    @property
-    def modulus_wale_bounds_n_per_mm(self) -> Interval:
-        """Bounds of the modulus along the wales."""
-        return self.wale.bounds_n_per_mm
 
     @property
     def extensibility_course_mm_per_n(self) -> float:
@@ -268,16 +277,6 @@ class Prediction:
         return self.wale.poisson
 
     @property
-    def poisson_yx_interval(self) -> Interval:
-        """90 % interval of :attr:`poisson_yx`."""
-        return self.course.poisson_interval
-
-    @property
-    def poisson_xy_interval(self) -> Interval:
-        """90 % interval of :attr:`poisson_xy`."""
-        return self.wale.poisson_interval
-
-    @property
     def relaxed_course_mm(self) -> float:
         """Width of the mean stitch at rest."""
         return self.course.relaxed_mm
@@ -286,16 +285,6 @@ class Prediction:
     def relaxed_wale_mm(self) -> float:
         """Height of the mean stitch at rest."""
         return self.wale.relaxed_mm
-
-    @property
-    def relaxed_course_interval_mm(self) -> Interval:
-        """90 % interval of the width."""
-        return self.course.relaxed_interval_mm
-
-    @property
-    def relaxed_wale_interval_mm(self) -> Interval:
-        """90 % interval of the height."""
-        return self.wale.relaxed_interval_mm
 
 
 def _not_negative(field: str, values: ArrayLike) -> Array:

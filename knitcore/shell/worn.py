@@ -21,6 +21,7 @@ from knitcore.garment.limb import LimbPlace, MeasuredLimb, place_on
 from knitcore.materials import Material
 from knitcore.prediction.neighbourhood import neighbourhood_sizes
 from knitcore.prediction.predict import patches_of
+from knitcore.result import Result
 
 LEAST_AROUND = 4
 """Stitches that can close to a tube."""
@@ -30,8 +31,8 @@ BARE = 0.12
 """So many girths of the limb are seen beyond either end of the tube."""
 
 
-@dataclass(frozen=True, eq=False)
-class TubeOnLimb:
+@dataclass(frozen=True, eq=False, repr=False)
+class TubeOnLimb(Result):
     """A tube on a limb, in space: the limb's axis along y (x if the columns run around it).
 
     Attributes

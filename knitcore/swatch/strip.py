@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.bounds import check_range
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.choice import Choice
 from knitcore.errors import Cancelled, InputError, Progress
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.material import Material
+from knitcore.materials import Material, as_material
 from knitcore.prediction.quarter_laws import QuarterLaws, quarter_laws
 from knitcore.prediction.size import RelaxedSize
 from knitcore.swatch.grid import QuarterGrid, check_cloth
@@ -41,8 +41,8 @@ class Clamps(Choice):
 
 
 def strip_test(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     direction: Direction | str,
     strain: float | Sequence[float],
     *,
@@ -106,8 +106,8 @@ def strip_test(
     (True, [0.1, 0.2, 0.3])
     """
     sheet = chart_sheet(
-        chart,
-        material,
+        as_chart(chart),
+        as_material(material),
         model,
         shear_modulus,
         draw_in,

@@ -81,3 +81,9 @@ def test_what_cannot_be_asked_is_named(asked, field):
     with pytest.raises(InputError) as refused:
         getattr(along, asked)(-0.1)
     assert refused.value.field == field
+
+
+def test_a_stress_beyond_any_fabric_is_refused_with_the_largest() -> None:
+    with pytest.raises(InputError, match="at most 100 N/mm") as refused:
+        curve("KP", "acrylic", "wale", [0.1, 1e9])
+    assert refused.value.most == 100.0

@@ -1,6 +1,7 @@
 """Predictions: the tables, the rule of sources, symmetry, bounds and intervals."""
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -103,7 +104,7 @@ def test_a_gauge_is_the_size_of_any_chart(text):
     found = predict(StitchChart.parse(text), material("cotton:published"), size)
     assert (found.relaxed_course_mm, found.relaxed_wale_mm) == pytest.approx((4.0, 2.5))
     assert found.relaxed_source == "gauge"
-    assert found.relaxed_course_interval_mm.high < 1.06 * 4.0
+    assert found.course.relaxed_interval_mm.high < 1.06 * 4.0
 
 
 def test_wide_rib_pulls_in_and_unfolds():
@@ -285,3 +286,27 @@ def test_an_answer_says_what_its_intervals_rest_on():
     large = StitchChart.of_fabric("garter", 40, 40).purl.copy()
     large[20:, ::2] ^= True
     assert predict(StitchChart(large), yarn).stretch_errors == (learned, tests)
+
+
+def test_names_stand_for_charts_and_materials() -> None:
+    rib, acrylic = StitchChart.parse("KKPP"), material("acrylic")
+    assert predict("KKPP", "acrylic").to_dict() == predict(rib, acrylic).to_dict()
+    garter = StitchChart.of_fabric("garter")
+    assert predict("garter", "acrylic").to_dict() == predict(garter, acrylic).to_dict()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "field"),
+    [
+        ((3, "acrylic"), "chart"),
+        (("KKPP", 3), "material"),
+        (("KKPP", StitchChart.parse("K")), "material"),
+        (("KKPP", "acrylic", 3.0), "size"),
+        (("KX", "acrylic"), "chart"),
+        (("KKPP", "nylon"), "material"),
+    ],
+)
+def test_arguments_of_another_kind_are_named(arguments: tuple[Any, ...], field: str) -> None:
+    with pytest.raises(InputError) as refused:
+        predict(*arguments)
+    assert refused.value.field == field
