@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.curl import squares
-from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import Material, material
+from knitcore.prediction.predict import predict
 from knitcore.shell.curl import curl
 from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.sheet import sheet_of
@@ -63,7 +63,7 @@ def main() -> None:
     for name, repeat in (*rib, *welt, *basket):
         cells = []
         for yarn in map(material, MATERIALS):
-            answer = choose(repeat, yarn)
+            answer = predict(repeat, yarn)
             told = [answer.along(direction).relaxed_mm for direction in Direction]
             for width, height in (lying_mm(repeat, yarn), told):
                 words = {"rib": f"{width:.2f}", "welt": f"{height:.2f}"}
@@ -74,7 +74,7 @@ def main() -> None:
         repeat = StitchChart.parse("K" * knits + "P" * purls)
         cells = []
         for yarn in map(material, MATERIALS):
-            width = choose(repeat, yarn).course.relaxed_mm
+            width = predict(repeat, yarn).course.relaxed_mm
             cells += [f"{laid_flat_mm(repeat, yarn):.2f}", f"{width:.2f}"]
         print(f"| {knits}×{purls} rib, width | {' | '.join(cells)} |", flush=True)
 

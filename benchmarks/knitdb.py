@@ -24,11 +24,11 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from knitcore import StitchChart, material, predict
-from knitcore.answer.densities import densities
-from knitcore.answer.learned import packaged_model
-from knitcore.answer.mixture import Mixture
 from knitcore.arrays import Array
 from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.prediction.densities import densities
+from knitcore.prediction.learned import packaged_model
+from knitcore.prediction.mixture import Mixture
 
 STOCKINETTE = "Stockinette"
 
@@ -61,7 +61,7 @@ def main() -> None:
 
     def missed(most: float) -> Array:
         fitted_to = replace(model, most_folded=most)
-        sizes = np.log([fitted_to.answer(found, of).size_mm for found in made_of])
+        sizes = np.log([fitted_to.response(found, of).size_mm for found in made_of])
         return np.asarray(sizes - sizes[first] - true)
 
     best, left_out = fitted(missed, len(names))

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from knitcore.answer.kernel import KernelModel
-from knitcore.answer.learned import packaged_model
+from knitcore.prediction.gaussian_process import KernelModel
+from knitcore.prediction.learned import packaged_model
 from scripts.training.learned import Row, kind_of, rows
 
 COUNTS = (12, 25, 50, 100, 150)

@@ -23,13 +23,13 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.answer.densities import densities
-from knitcore.answer.learned import STRESS_GRID, LearnedAnswer, packaged_model
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.prediction.densities import densities
+from knitcore.prediction.learned import STRESS_GRID, LearnedResponse, packaged_model
+from knitcore.prediction.size import RelaxedSize
 from scripts.training.learned import Row, kind_of, rows, simulated_materials
 
 GAUGE_LOG_SD = 0.03
@@ -63,7 +63,7 @@ def main() -> None:
             ("gauge", RelaxedSize(gauge[0], gauge[1], GAUGE_LOG_SD)),
             ("known size", RelaxedSize(size[0], size[1], RELAXED_LOG_SD)),
         ):
-            answer = model.answer(densities(chart), materials[entry["yarn"]], known)
+            answer = model.response(densities(chart), materials[entry["yarn"]], known)
             if known is None:
                 record(
                     missed,
@@ -92,7 +92,7 @@ def main() -> None:
 
 
 def like_the_mean(
-    answer: LearnedAnswer, chart: StitchChart, learned_from: list[Row]
+    answer: LearnedResponse, chart: StitchChart, learned_from: list[Row]
 ) -> tuple[Array, Strains]:
     """The mixture with the mean correction of the chart's class."""
     alike = [r for r in learned_from if kind_of(r.chart) == kind_of(chart) and r.chart != chart]

@@ -14,9 +14,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from knitcore.answer.densities import densities
-from knitcore.answer.learned import packaged_model
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -24,6 +21,9 @@ from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material, Origin, material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.phases import pure_fabric
+from knitcore.prediction.densities import densities
+from knitcore.prediction.learned import packaged_model
+from knitcore.prediction.size import RelaxedSize
 from knitcore.yarnlibrary.store import MATERIALS, StoredStitch, stored_charts, stored_stitch
 
 STRESS = np.array([0.03, 0.05, 0.1, 0.2])
@@ -44,7 +44,7 @@ def main() -> None:
             size = np.array([stored.cell_course_mm, stored.cell_wale_mm])
             measured = RelaxedSize(stored.cell_course_mm, stored.cell_wale_mm, 0.0)
             for name, known in (("learned", None), ("with size", measured)):
-                found = model.answer(densities(chart), simulated, known)
+                found = model.response(densities(chart), simulated, known)
                 for direction in Direction:
                     own = free_strains_at_stress(stored.law, direction, STRESS)
                     off = np.append(

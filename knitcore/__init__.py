@@ -1,84 +1,35 @@
 """Mechanics of knitted fabric, stitch by stitch.
 
-Everything below is imported when it is first used, so that ``import knitcore`` costs little.
+The public names are listed in ``__init__.pyi``, which type checkers read as well. Each is imported
+when it is first used, so that ``import knitcore`` costs little.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from knitcore.answer.choose import choose as predict
-    from knitcore.answer.curve import curve
-    from knitcore.answer.relaxed import RelaxedSize
-    from knitcore.chart import StitchChart
-    from knitcore.errors import (
-        CancelledError,
-        ConvergenceError,
-        InputError,
-        KnitcoreError,
-        UnravelledError,
-    )
-    from knitcore.fabric import Direction, Fabric
-    from knitcore.materials.library import material
-    from knitcore.phases import quarter_phases
-    from knitcore.segments import SegmentCounts, SegmentMap, segment_map
-    from knitcore.swatch.strip import strip_test
-    from knitcore.yarnlevel.relax import relax
+import re as _re
+from importlib import import_module as _import_module
+from pathlib import Path as _Path
+from typing import Any as _Any
 
 _HOMES = {
-    "CancelledError": "knitcore.errors.CancelledError",
-    "ConvergenceError": "knitcore.errors.ConvergenceError",
-    "Direction": "knitcore.fabric.Direction",
-    "Fabric": "knitcore.fabric.Fabric",
-    "InputError": "knitcore.errors.InputError",
-    "KnitcoreError": "knitcore.errors.KnitcoreError",
-    "RelaxedSize": "knitcore.answer.relaxed.RelaxedSize",
-    "SegmentCounts": "knitcore.segments.SegmentCounts",
-    "SegmentMap": "knitcore.segments.SegmentMap",
-    "StitchChart": "knitcore.chart.StitchChart",
-    "UnravelledError": "knitcore.errors.UnravelledError",
-    "curve": "knitcore.answer.curve.curve",
-    "material": "knitcore.materials.library.material",
-    "predict": "knitcore.answer.choose.choose",
-    "quarter_phases": "knitcore.phases.quarter_phases",
-    "relax": "knitcore.yarnlevel.relax.relax",
-    "segment_map": "knitcore.segments.segment_map",
-    "strip_test": "knitcore.swatch.strip.strip_test",
+    name: module
+    for module, name in _re.findall(
+        r"^from (\S+) import (\w+) as \2$",
+        _Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"),
+        _re.MULTILINE,
+    )
 }
-
-__all__ = [
-    "CancelledError",
-    "ConvergenceError",
-    "Direction",
-    "Fabric",
-    "InputError",
-    "KnitcoreError",
-    "RelaxedSize",
-    "SegmentCounts",
-    "SegmentMap",
-    "StitchChart",
-    "UnravelledError",
-    "curve",
-    "material",
-    "predict",
-    "quarter_phases",
-    "relax",
-    "segment_map",
-    "strip_test",
-]
+__all__ = list(_HOMES)
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> _Any:
     if name == "__version__":
         from importlib.metadata import version
 
         return version("knitcore")
     if name not in _HOMES:
         raise AttributeError(f"module 'knitcore' has no attribute {name!r}")
-    module, _, home = _HOMES[name].rpartition(".")
-    found = getattr(import_module(module), home)
-    globals()[name] = found
-    return found
+    public = getattr(_import_module(_HOMES[name]), name)
+    globals()[name] = public
+    return public
 
 
 def __dir__() -> list[str]:

@@ -122,6 +122,15 @@ class StitchChart:
         return cls((row + column) % 2 == 1)
 
     @property
+    def shape(self) -> tuple[int, int]:
+        """Number of rows and of columns."""
+        return self.rows, self.columns
+
+    def __len__(self) -> int:
+        """Number of rows, as of an array."""
+        return self.rows
+
+    @property
     def rows(self) -> int:
         """Number of courses."""
         return int(self.purl.shape[0])
@@ -293,3 +302,28 @@ def _period(grid: NDArray[np.bool_], *, cut: bool = False) -> int:
 
 def _candidates(n: int, *, cut: bool) -> Iterator[int]:
     return (p for p in range(1, n // 2 + 1) if cut or n % p == 0)
+
+
+def as_chart(chart: StitchChart | str) -> StitchChart:
+    """Take a chart as it is, or read its text: K and P, or the name of a pure fabric.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or its text is no chart.
+
+    Examples
+    --------
+    >>> as_chart("KP/PK") == as_chart("seed")
+    True
+    """
+    if isinstance(chart, StitchChart):
+        return chart
+    if not isinstance(chart, str):
+        raise InputError(
+            "chart",
+            f"a {type(chart).__name__} is not a chart.",
+            "Give a StitchChart, rows of K and P such as 'KP/PK', or a fabric such as 'garter'.",
+        )
+    name = chart.strip().lower()
+    return StitchChart.of_fabric(name) if name in tuple(Fabric) else StitchChart.parse(chart)

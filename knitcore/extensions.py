@@ -32,7 +32,7 @@ class Group(StrEnum):
     EXPORTERS = "knitcore.exporters"
     """:class:`knitcore.formats.export.Exporter`"""
     MEASURES = "knitcore.measures"
-    """:class:`knitcore.answer.measures.Measure`"""
+    """:class:`knitcore.prediction.measures.Measure`"""
 
 
 class Offer(Protocol):

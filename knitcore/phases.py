@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.fabric import PHASES, Fabric
 from knitcore.segments import segment_map
 
@@ -59,7 +59,7 @@ def surroundings(
 
 
 def quarter_phases(
-    chart: StitchChart,
+    chart: StitchChart | str,
     *,
     periodic: bool = False,
     tube: bool = False,
@@ -78,6 +78,7 @@ def quarter_phases(
     array([[0, 0, 0, 2, 2, 2],
            [0, 0, 0, 2, 2, 2]], dtype=uint8)
     """
+    chart = as_chart(chart)
     codes = surroundings(chart, periodic=periodic, tube=tube, stitch=stitch)
     phases = QUARTERS_OF_CODE[codes]  # (rows, columns, 2, 2)
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)

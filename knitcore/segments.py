@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.fabric import Direction
+from knitcore.result import Result
 
 
 @dataclass(frozen=True)
@@ -24,8 +25,8 @@ class SegmentCounts:
     odd: int
 
 
-@dataclass(frozen=True, eq=False)
-class SegmentMap:
+@dataclass(frozen=True, eq=False, repr=False)
+class SegmentMap(Result):
     """Parities of all segments of a chart.
 
     Attributes
@@ -48,7 +49,9 @@ class SegmentMap:
         return SegmentCounts(even=int(odd_map.size) - odd, odd=odd)
 
 
-def segment_map(chart: StitchChart, *, periodic: bool = False, tube: bool = False) -> SegmentMap:
+def segment_map(
+    chart: StitchChart | str, *, periodic: bool = False, tube: bool = False
+) -> SegmentMap:
     """The even/odd maps of a chart, course-wise and wale-wise.
 
     Parameters
@@ -65,7 +68,7 @@ def segment_map(chart: StitchChart, *, periodic: bool = False, tube: bool = Fals
     >>> segment_map(rib, tube=True).counts(Direction.COURSE)
     SegmentCounts(even=0, odd=12)
     """
-    purl = chart.purl
+    purl = as_chart(chart).purl
     course_odd, wale_odd = (purl ^ np.roll(purl, -1, axis=axis) for axis in (1, 0))
     if not (periodic or tube):
         course_odd = course_odd[:, :-1]

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from knitcore import StitchChart, material, predict, showing
-from knitcore.answer.answer import Answer
 from knitcore.fabric import Direction
 from knitcore.formats.export import ExportKind, ExportOptions, export_chart
 from knitcore.patterns import PATTERNS
+from knitcore.prediction.prediction import Prediction
 
 SIDE = 24
 STRESS_N_PER_MM = np.linspace(0.0, 0.2, 31)
@@ -81,7 +81,7 @@ def designs() -> Iterator[Design]:
     )
 
 
-def picture(design: Design, answer: Answer) -> str:
+def picture(design: Design, answer: Prediction) -> str:
     """Chart, rectangle and curves beside each other, on paper of their own."""
     along = {d: answer.along(d) for d in Direction}
     drawn = [
@@ -99,7 +99,7 @@ def picture(design: Design, answer: Answer) -> str:
     return showing.svg(700, 245, design.name, [paper, 'font-family="sans-serif">', *placed, "</g>"])
 
 
-def section(design: Design, answer: Answer, files: dict[ExportKind, str]) -> str:
+def section(design: Design, answer: Prediction, files: dict[ExportKind, str]) -> str:
     """The part of the page about a design."""
     rows = []
     for d in Direction:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
 from app.models.laws import FabricRequest
-from knitcore.answer.relaxed import KnownBy, RelaxedSize
+from knitcore.prediction.size import KnownBy, RelaxedSize
 
 Count = Annotated[
     float,

@@ -13,10 +13,10 @@ from app.models.base import EARLIER_NAME, EndsOfList, Floats, IntervalResult
 from app.models.checks import CheckedBy
 from app.models.gauge import GaugedRequest
 from app.operations.registry import Command, Operation
-from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM, increasing
-from knitcore.answer.curve import curve as chart_curve
 from knitcore.errors import check_cancelled
 from knitcore.fabric import Direction
+from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM, increasing
+from knitcore.prediction.curve import curve as chart_curve
 
 Stress = Annotated[float, Field(ge=0, le=100)]
 
@@ -49,7 +49,7 @@ class CurveResult(IntervalResult):
 def curve(request: CurveRequest, context: Context) -> CurveResult:
     """Strain at each stress, and the stress interval at each strain, for a chart of any size."""
     check_cancelled(context.cancelled)
-    found = request.pass_to(chart_curve, *request.fabric(context), gauge=request.relaxed_size)
+    found = request.pass_to(chart_curve, *request.fabric(context), size=request.relaxed_size)
     return CurveResult.of(
         found,
         strain_interval=(found.strain_low, found.strain_high),

@@ -7,12 +7,12 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import NoRequest, ResultModel
 from app.operations.registry import Command, Operation
-from knitcore.answer.measures import Measure
 from knitcore.extensions import ExtensionError, Group, Offer
 from knitcore.extensions import extensions as installed
 from knitcore.formats.export import Exporter
 from knitcore.materials import Material
 from knitcore.patterns import Pattern
+from knitcore.prediction.measures import Measure
 
 KINDS: dict[Group, type[Offer]] = {
     Group.PATTERNS: Pattern,

@@ -18,8 +18,11 @@ from app.models.laws import FabricRequest
 from app.models.posed import Body, PosedView
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
-from knitcore.answer.choose import choose
-from knitcore.answer.limb import (
+from knitcore.chart import check_stitches
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.formats.curled import write_curled_glb
+from knitcore.garment.limb import (
     LEAST_GIRTH_MM,
     MAX_GIRTHS,
     PLACES,
@@ -27,13 +30,10 @@ from knitcore.answer.limb import (
     MeasuredLimb,
     on_limb,
 )
-from knitcore.answer.patches import SIDE
-from knitcore.chart import check_stitches
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
-from knitcore.formats.curled import write_curled_glb
 from knitcore.materials.uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
+from knitcore.prediction.patches import SIDE
+from knitcore.prediction.predict import predict
 from knitcore.shell.worn import TubeOnLimb, worn_tube
 
 MAX_STITCHES = 40_000
@@ -151,7 +151,7 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
         a tube, or the material lacks a fabric of the chart.
     """
     rests = [g.rest_mm for g in request.girths if g.rest_mm is not None]
-    answer = choose(*request.fabric(context))
+    answer = predict(*request.fabric(context))
     source = in_a_sentence(answer.stretch_errors)
     if not rests:
         tube = _tube(request, context)

@@ -11,13 +11,13 @@ from app.models.extensions import ExtensionName
 from app.models.gauge import GaugedRequest
 from app.models.laws import ElasticConstants, Extensibility
 from app.operations.registry import Command, Operation
-from knitcore.answer.choose import choose
-from knitcore.answer.measures import measure
-from knitcore.answer.relaxation import worth_relaxing
 from knitcore.chart import size_in_words
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.geometry.laid_out import size_at_rest
+from knitcore.prediction.measures import measure
+from knitcore.prediction.predict import predict as predict_chart
+from knitcore.prediction.swept import worth_relaxing
 from knitcore.segments import segment_map
 
 
@@ -95,19 +95,18 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
             "All but the size is of the largest rectangle inside the outline, "
             f"{chart.columns} x {chart.rows} stitches."
         )
-    found = choose(chart, material, request.relaxed_size)
+    predicted = predict_chart(chart, material, request.relaxed_size)
     segments = segment_map(chart)
-    to_relax = worth_relaxing(chart, material, found)
+    to_relax = worth_relaxing(chart, material, predicted)
     return PredictResult.of(
-        found,
         chart,
-        size_at_rest(shaped, material, found),
+        size_at_rest(shaped, material, predicted),
+        **predicted.to_dict() | {"notes": [*notes, *predicted.notes]},
         segments={direction: segments.counts(direction) for direction in Direction},
         worth_relaxing=None if to_relax is None else to_relax.text,
-        notes=[*notes, *found.notes],
         measures=[
-            MeasureResult.of(one, value=one.value(chart, material, found))
-            for one in map(measure, request.measures)
+            MeasureResult.of(each, value=each.value(chart, material, predicted))
+            for each in map(measure, request.measures)
         ],
     )
 

@@ -15,12 +15,10 @@ from app.models.base import Ends, IntervalResult
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from knitcore.answer.answer import Answer
-from knitcore.answer.choose import choose
-from knitcore.answer.tube import tube_for, tube_pressure
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, law_from_mapping, load_law
+from knitcore.garment.limb import tube_for, tube_pressure
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.uncertainty import (
     Z_SCORE,
@@ -35,6 +33,8 @@ from knitcore.mechanics.pressure import (
     limb_pressure,
     rest_circumference,
 )
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Prediction
 
 NO_INTERVAL = "No interval: the law comes without standard errors."
 
@@ -93,14 +93,14 @@ def pressure(request: PressureRequest, context: Context) -> PressureResult:
         return _of_file(law_from_mapping(request.law or {}), request)
     material = context.material(request.material)
     if request.chart is not None and request.fabric is None:
-        return _of_answer(choose(to_chart(request.chart), material), request)
+        return _of_answer(predict(to_chart(request.chart), material), request)
     if request.chart is not None or request.fabric is None:
         raise InputError("fabric", "one of fabric and chart is needed.", "Give exactly one.")
     record = material.record(request.fabric)
     return _of_law(record.law, request, uncertainty=record.uncertainty, source=record.law_source)
 
 
-def _of_answer(answer: Answer, request: PressureRequest) -> PressureResult:
+def _of_answer(answer: Prediction, request: PressureRequest) -> PressureResult:
     along = answer.along(request.direction)
     rest, sizes = _sizes(request, partial(tube_for, along))
     found = tube_pressure(along, rest, request.worn_mm)

@@ -16,11 +16,11 @@ from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_spl
 from app.models.gauge import FoundGauge
 from app.models.yarn_level import YarnResult, kept_or_made, relax_requested, size_intervals
 from app.operations.registry import Command, Operation
-from knitcore.answer.relaxation import size_from_relaxation
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS
 from knitcore.phases import pure_fabric
+from knitcore.prediction.swept import size_from_relaxation
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.hysteresis import History, rest_sizes
 from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, lowest

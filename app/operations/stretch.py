@@ -169,7 +169,7 @@ def _test(
         chart,
         material,
         stitch=None if request.outline is None else outline_marks(request.outline),
-        gauge=request.relaxed_size,
+        size=request.relaxed_size,
         laws=None,  # those that the request chooses are in the material
     )
     test = pull(

@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.answer.answer import Answer
-from knitcore.answer.choose import choose
-from knitcore.answer.learned import SweptChart
 from knitcore.batch import BatchProgress, run_batch
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
 from knitcore.errors import Cancelled, InputError, KnitcoreError, Progress
 from knitcore.fabric import Direction
-from knitcore.materials import Interval, Material
+from knitcore.materials import Interval, Material, as_material
+from knitcore.prediction.learned import SweptChart
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Prediction
 
 AT_ONCE = 16
 """Repeats in one task of a batch: half a second of work."""
@@ -42,8 +42,8 @@ class AtlasTask:
 
 
 def build_atlas(
-    material: Material,
-    repeats: Sequence[StitchChart],
+    material: Material | str,
+    repeats: Sequence[StitchChart | str],
     *,
     file: Path | None = None,
     workers: int | None = 1,
@@ -70,9 +70,10 @@ def build_atlas(
     InputError
         If the file holds something else, or the cluster does not answer.
     """
+    material = as_material(material)
     fingerprint = material_fingerprint(material)
     known = known_entries(file, fingerprint)
-    keys = [repeat.key for repeat in repeats]
+    keys = [as_chart(repeat).key for repeat in repeats]
     missing = [key for key in keys if key not in known]
     parts = [tuple(missing[k : k + AT_ONCE]) for k in range(0, len(missing), AT_ONCE)]
     tasks = {f"{fingerprint}-{_digest(part)}": AtlasTask(material, part) for part in parts}
@@ -115,13 +116,13 @@ def predict_repeats(task: AtlasTask) -> dict[str, Any]:
 
 def predict_repeat(
     repeat: StitchChart, material: Material, swept: SweptChart | None = None
-) -> Answer:
-    """Answer for a large cloth of a repeat, from its yarn-level sweep if there is one."""
+) -> Prediction:
+    """Prediction for a large cloth of a repeat, from its yarn-level sweep if there is one."""
     # two repeats each way, so that it is not read as a swatch with edges
-    return choose(repeat.tile(2, 2), material, swept=swept)
+    return predict(repeat.tile(2, 2), material, swept=swept)
 
 
-def entry_of(answer: Answer) -> Entry:
+def entry_of(answer: Prediction) -> Entry:
     """The row of a repeat."""
     course, wale = (answer.along(d) for d in Direction)
     values = (
@@ -163,7 +164,7 @@ def material_fingerprint(material: Material) -> str:
     }
     text = json.dumps([FORMAT, material.identifier, content], sort_keys=True, default=str)
     digest = hashlib.sha256(text.encode())
-    digest.update(files("knitcore.answer").joinpath("data/learned.npz").read_bytes())
+    digest.update(files("knitcore.prediction").joinpath("data/learned.npz").read_bytes())
     return digest.hexdigest()[:24]
 
 

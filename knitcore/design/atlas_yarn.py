@@ -3,7 +3,7 @@
 A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
 in a folder beside the atlas, and the run can be stopped at any point and resumed. The pure
 fabrics of the same yarn relate the results to the measured material
-(:mod:`knitcore.answer.swept`).
+(:mod:`knitcore.prediction.swept`).
 """
 
 from __future__ import annotations
@@ -13,8 +13,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from knitcore.answer.answer import Source
-from knitcore.answer.swept import simulated_record, swept_chart
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
@@ -27,6 +25,8 @@ from knitcore.design.atlas_build import (
 from knitcore.errors import Cancelled, Progress
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
+from knitcore.prediction.prediction import Source
+from knitcore.prediction.swept import simulated_record, swept_chart
 from knitcore.yarnlibrary.characterise import RepeatTask, characterise_repeat, law_of
 from knitcore.yarnlibrary.yarns import yarn_for
 

@@ -17,6 +17,7 @@ from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.errors import InputError
 from knitcore.materials import Interval, Laws
 from knitcore.materials.library import INCONSISTENT
+from knitcore.result import Result
 
 __all__ = ["Candidate", "FoundFabrics", "Quantity", "Target", "WornTube", "find_fabric"]
 
@@ -24,8 +25,8 @@ _LONG = 24
 """Longest key that is spelt out in a sentence."""
 
 
-@dataclass(frozen=True)
-class Candidate:
+@dataclass(frozen=True, repr=False)
+class Candidate(Result):
     """A repeat, and how near it comes to the targets.
 
     Attributes
@@ -56,8 +57,8 @@ class Candidate:
     cost: KnittingCost
 
 
-@dataclass(frozen=True)
-class FoundFabrics:
+@dataclass(frozen=True, repr=False)
+class FoundFabrics(Result):
     """The answer to a search.
 
     Attributes
@@ -75,8 +76,8 @@ class FoundFabrics:
 
 
 def find_fabric(
-    atlases: Sequence[Atlas],
-    targets: Sequence[Target],
+    atlases: Atlas | Sequence[Atlas],
+    targets: Target | Sequence[Target],
     *,
     count: int = 10,
     limits: CostLimits | None = None,
@@ -87,7 +88,7 @@ def find_fabric(
     Parameters
     ----------
     atlases : one, or several to search across yarns and needles.
-    targets : at most one for each quantity (at one load, on one limb).
+    targets : one or several, at most one for each quantity (at one load, on one limb).
     count : how many candidates to return.
     limits : repeats that cost more are left out.
 
@@ -97,6 +98,8 @@ def find_fabric(
         If there is no atlas or no target, a target is given twice, or no repeat keeps within the
         limits.
     """
+    atlases = [atlases] if isinstance(atlases, Atlas) else atlases
+    targets = [targets] if isinstance(targets, Target) else targets
     if not atlases or not any(len(atlas) for atlas in atlases):
         raise InputError("atlas", "there is no repeat to choose from.", "Build an atlas first.")
     labels = [target.label for target in targets]

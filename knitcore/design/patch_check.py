@@ -13,13 +13,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.quarter_laws import flat_laws
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import Cancelled
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.mechanics.homogenisation import homogenise
+from knitcore.prediction.quarter_laws import flat_laws
 from knitcore.swatch import Fields, strip_test
 
 SMALL_STRAIN = 0.005

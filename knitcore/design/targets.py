@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Self
 
 import numpy as np
 from scipy.special import ndtr
@@ -18,6 +19,15 @@ from knitcore.mechanics.pressure import MIN_LENGTH, MMHG_PER_KPA
 
 USUAL_LOAD_N_PER_MM = 0.1
 MAX_LOAD_N_PER_MM = 0.5
+
+
+_UNITS = ("_n_per_mm", "_mm_per_n", "_mmhg")
+
+
+def _without_unit(name: str) -> str:
+    for unit in _UNITS:
+        name = name.removesuffix(unit)
+    return name
 
 
 class Quantity(StrEnum):
@@ -34,6 +44,25 @@ class Quantity(StrEnum):
     STRETCH_WALE = "stretch_wale"
     PRESSURE_COURSE = "pressure_course_mmhg"
     PRESSURE_WALE = "pressure_wale_mmhg"
+
+    @classmethod
+    def parse(cls, name: str) -> Self:
+        """Find a quantity by its name, with or without its unit.
+
+        Raises
+        ------
+        InputError
+            If there is none of this name.
+
+        Examples
+        --------
+        >>> Quantity.parse("modulus_course") is Quantity.MODULUS_COURSE
+        True
+        """
+        for quantity in cls:
+            if name in (quantity, _without_unit(quantity)):
+                return quantity
+        raise InputError("quantity", f"{name!r} is not known.", f"Use {', '.join(cls)}.")
 
     @property
     def direction(self) -> Direction:
@@ -89,9 +118,9 @@ class Target:
 
     Attributes
     ----------
-    quantity : what is sought; the anisotropy is Y_course / Y_wale, stretch is a strain (0.5 = 50 %)
-        with the cloth free across the pull, pressure that of a tube whose direction runs around the
-        limb.
+    quantity : what is sought, or its name with or without the unit; the anisotropy is Y_course /
+        Y_wale, stretch is a strain (0.5 = 50 %) with the cloth free across the pull, pressure that
+        of a tube whose direction runs around the limb.
     value : the target; above 0 except for Poisson's ratios.
     tolerance : relative deviation that still counts as reached (0.1 = 10 %); for Poisson's ratios
         the difference.
@@ -108,6 +137,7 @@ class Target:
     limb: WornTube | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "quantity", Quantity.parse(self.quantity))
         for name in ("value", "tolerance", "weight"):
             number = getattr(self, name)
             signed = name == "value" and self.quantity.is_poisson

@@ -30,13 +30,7 @@ def write_curled_glb(
 
 
 def write_curled_npz(piece: CurledPiece) -> bytes:
-    """NumPy archive: ``corners_mm`` and ``flat_mm``, (rows + 1, columns + 1, 3), NaN where there
-    is no stitch; ``purl`` and ``stitch``, (rows, columns).
-    """
+    """NumPy archive of :meth:`~knitcore.shell.curl.CurledPiece.arrays`."""
     stream = BytesIO()
-    known = np.where(piece.used[..., None], (piece.corners_mm, piece.flat_mm), np.nan)
-    stitch = np.ones_like(piece.chart.purl) if piece.stitches is None else piece.stitches
-    np.savez_compressed(
-        stream, corners_mm=known[0], flat_mm=known[1], purl=piece.chart.purl, stitch=stitch
-    )
+    np.savez_compressed(stream, allow_pickle=False, **piece.arrays())
     return stream.getvalue()

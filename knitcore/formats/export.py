@@ -7,7 +7,6 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.extensions import Group, offered, running
@@ -31,6 +30,7 @@ from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
 from knitcore.geometry.laid_out import mean_stitch_mm
 from knitcore.materials import Material
+from knitcore.prediction.size import RelaxedSize
 from knitcore.worked import Construction, Side
 
 

@@ -12,8 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import label
 
-from knitcore.answer.answer import Answer
-from knitcore.answer.choose import choose
 from knitcore.arrays import runs
 from knitcore.chart import StitchChart
 from knitcore.formats.chart_key import tinted
@@ -23,6 +21,8 @@ from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.piece import Piece
 from knitcore.materials import Material
 from knitcore.mechanics.local import local_moduli
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Prediction
 
 MAX_RECTANGLES = 900
 """Rectangles of stitches in a drawing; of larger pieces every second, third, … is drawn."""
@@ -44,7 +44,7 @@ class RegionField:
     name: str
     colour: str
     stitches: int
-    answer: Answer
+    answer: Prediction
     row: float
     column: float
 
@@ -71,7 +71,7 @@ def region_fields(
         if not cells.any():
             continue
         inside = piece.chart.purl[largest_rectangle(cells)]
-        answer = choose(StitchChart.parse(fill) if fill else StitchChart(inside), material)
+        answer = predict(StitchChart.parse(fill) if fill else StitchChart(inside), material)
         parts, _ = label(cells)
         largest = parts == np.bincount(parts[cells]).argmax()
         row, column = (float(np.median(place)) for place in np.nonzero(largest))

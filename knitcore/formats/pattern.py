@@ -15,8 +15,6 @@ from itertools import pairwise
 import numpy as np
 from PIL import Image, ImageChops
 
-from knitcore.answer.answer import Along, Answer, Source
-from knitcore.answer.choose import choose
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -35,6 +33,8 @@ from knitcore.formats.written import written_sections
 from knitcore.garment.piece import Piece, yarn_name
 from knitcore.geometry.laid_out import SizeAtRest, laid_sizes_mm, size_at_rest
 from knitcore.materials import Interval, Material
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Along, Prediction, Source
 from knitcore.worked import Construction
 
 TITLE_MM, HEADING_MM, BODY_MM = 9.0, 5.0, 3.2
@@ -162,14 +162,14 @@ class _Facts:
     """
 
     piece: Piece
-    answer: Answer | None
+    answer: Prediction | None
     size: SizeAtRest
     sizes_mm: Array
 
     @classmethod
     def of(cls, piece: Piece, material: Material) -> _Facts:
         shaped = piece.shaped
-        answer = choose(shaped.rectangle_inside(), material, piece.gauge)
+        answer = predict(shaped.rectangle_inside(), material, piece.gauge)
         size = size_at_rest(shaped, material, answer)
         own = answer if piece.is_rectangle else None
         return cls(piece, own, size, laid_sizes_mm(shaped, material, piece.gauge))

@@ -7,9 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from knitcore.answer.answer import Along, Answer
-from knitcore.answer.choose import choose
-from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM
 from knitcore.arrays import runs
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
@@ -22,6 +19,9 @@ from knitcore.garment.piece import Piece
 from knitcore.geometry.laid_out import SizeAtRest, size_at_rest
 from knitcore.materials import Interval, Material
 from knitcore.mechanics.local import local_moduli
+from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Along, Prediction
 from knitcore.segments import segment_map
 
 # Cividis at five points: perceptually uniform, and the same for colour-blind readers.
@@ -60,7 +60,7 @@ def design_report(
     """
     piece = Piece.of(chart)
     pages = []
-    found = choose(piece.shaped.rectangle_inside(), material, piece.gauge)
+    found = predict(piece.shaped.rectangle_inside(), material, piece.gauge)
     size = size_at_rest(piece.shaped, material, found)
     if piece.is_rectangle:
         shapes = [
@@ -76,7 +76,7 @@ def design_report(
     return to_pdf([*pages, *chart_pages(piece, style, first=len(pages) + 1)], name)
 
 
-def assumptions(found: Answer) -> list[str]:
+def assumptions(found: Prediction) -> list[str]:
     """How an answer was found and what it takes for granted, in sentences."""
     return [
         f"Law: {found.method}.",
@@ -149,7 +149,7 @@ def _in_cm(size: SizeAtRest) -> str:
 
 
 def _numbers(
-    chart: StitchChart, material: Material, name: str, found: Answer, at_rest: SizeAtRest
+    chart: StitchChart, material: Material, name: str, found: Prediction, at_rest: SizeAtRest
 ) -> Iterator[Shape]:
     yield Label(MARGIN_MM, 16.0, name, 6.0)
     size = f"{chart.columns} stitches × {chart.rows} rows, {_in_cm(at_rest)}"
@@ -217,7 +217,7 @@ def _colour(level: int) -> str:
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
 
-def _plot(found: Answer) -> Iterator[Shape]:
+def _plot(found: Prediction) -> Iterator[Shape]:
     """Stress over strain, both directions."""
     yield Label(MARGIN_MM, 158.0, "stress (N/mm) over strain, pulled one way, free the other", 3.0)
     left, top, width, height = MARGIN_MM + 10.0, 162.0, 150.0, 52.0

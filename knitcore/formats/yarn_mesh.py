@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart, check_stitches
 from knitcore.fabric import Fabric
 from knitcore.garment.piece import Piece
@@ -19,6 +18,7 @@ from knitcore.geometry.laid_out import laid_corners_mm
 from knitcore.geometry.loops import loop_centre_line, loop_kinds
 from knitcore.geometry.tubes import TriangleMesh, tube_mesh
 from knitcore.materials import Material
+from knitcore.prediction.predict import predict
 from knitcore.shell.surface import Surface
 
 MAX_STITCHES = 10_000
@@ -60,7 +60,7 @@ def yarn_radius_mm(chart: StitchChart, material: Material) -> float:
     known = [d for d in diameters if d is not None]
     if known:
         return 0.5 * float(np.mean(known))
-    return 0.5 * DEFAULT_DIAMETER_SHARE * choose(chart, material).relaxed_course_mm
+    return 0.5 * DEFAULT_DIAMETER_SHARE * predict(chart, material).relaxed_course_mm
 
 
 def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from knitcore.answer.measured import GAUGE_LOG_SD
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
+from knitcore.prediction.pure import GAUGE_LOG_SD
+from knitcore.prediction.size import RelaxedSize
 
 SWATCH_LOG_SD = RelaxedSize.log_sd
 """Standard deviation of the logarithm of a knitter's own gauge."""

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import runs
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.garment.shaped import ShapedChart
+from knitcore.prediction.size import RelaxedSize
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.choose import choose
 from knitcore.bounds import check_positive
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
@@ -18,6 +17,7 @@ from knitcore.materials import Interval, Material
 from knitcore.materials.loops import loop_lengths_mm
 from knitcore.materials.uncertainty import log_interval
 from knitcore.phases import quarter_phases
+from knitcore.prediction.predict import predict
 
 MISFIT = 0.10
 """Relative difference of stitch sizes above which a seam between regions puckers visibly."""
@@ -154,7 +154,7 @@ def region_numbers(
         cells = region.cells & shaped.stitch
         if not cells.any():
             continue
-        found = choose(region.fill, material)
+        found = predict(region.fill, material)
         course, wale = found.modulus_course_n_per_mm, found.modulus_wale_n_per_mm
         numbers.append(
             RegionNumbers(region.name, int(cells.sum()), 1 / course, 1 / wale, course, wale)

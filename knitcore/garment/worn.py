@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Real
 
 from knitcore.bounds import check_range
 from knitcore.errors import InputError
@@ -69,6 +70,13 @@ class Fit:
     mmhg: float | None = None
 
     def __post_init__(self) -> None:
+        for name, value in (("ease", self.ease), ("mmhg", self.mmhg or 0.0)):
+            if not isinstance(value, Real):
+                raise InputError(
+                    name,
+                    f"a {type(value).__name__} is not one number.",
+                    "Give one number for the whole garment.",
+                )
         check_range("ease", self.ease, -0.6, 1, what="an ease")
 
     def rest_mm(

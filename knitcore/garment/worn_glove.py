@@ -4,7 +4,7 @@ The hand has the measurements for which the glove is made: forearm, palm and bas
 straight in front and behind and round at the sides, fingers and thumb are cylinders with round
 tips. Every loop of stitches around a part is as long as the part's girth, or as at rest where that
 is more; along the hand the glove is held by crotches and tips. Pressure is that of a tube of the
-part's fabric (:mod:`knitcore.answer.tube`).
+part's fabric (:mod:`knitcore.garment.limb`).
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.answer import Answer
-from knitcore.answer.choose import choose
-from knitcore.answer.limb import LimbPlace, place_on
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.glove import CROTCH_ROWS, GloveLayout, Hand, glove
+from knitcore.garment.limb import LimbPlace, place_on
 from knitcore.garment.plan import GarmentPlan
 from knitcore.materials import Material
 from knitcore.mechanics.pressure import MMHG_PER_KPA
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Prediction
 
 FINGERS = ("index finger", "middle finger", "ring finger", "little finger")
 SIDES = 48
@@ -108,9 +108,9 @@ def glove_on_hand(
     return GloveOnHand(plan, corners, mmhg, parts, tuple(loop.skin() for loop in loops))
 
 
-def answer_of(fabric: Fabric, material: Material) -> Answer:
+def answer_of(fabric: Fabric, material: Material) -> Prediction:
     """What a part of one fabric does."""
-    return choose(StitchChart.of_fabric(fabric, 2, 2), material)
+    return predict(StitchChart.of_fabric(fabric, 2, 2), material)
 
 
 def _hidden(rows: int, columns: int, hand: Hand) -> Array:

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.answer import Answer
-from knitcore.answer.choose import choose
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import ShapedChart
 from knitcore.geometry.lattice import resting_lattice
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import Interval, log_interval
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Prediction
+from knitcore.prediction.size import RelaxedSize
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class SizeAtRest:
     height_interval_mm: Interval
 
 
-def size_at_rest(shaped: ShapedChart, material: Material, answer: Answer) -> SizeAtRest:
+def size_at_rest(shaped: ShapedChart, material: Material, answer: Prediction) -> SizeAtRest:
     """How large a piece lies at rest.
 
     A rectangle is as many mean stitches wide and high as it has columns and rows. A piece with an
@@ -52,7 +52,7 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Answer) -> Siz
     >>> from knitcore.materials import material
     >>> acrylic = material("acrylic")
     >>> piece = ShapedChart.rectangle(StitchChart.of_fabric("garter", 40, 30))
-    >>> size = size_at_rest(piece, acrylic, choose(piece.chart, acrylic))
+    >>> size = size_at_rest(piece, acrylic, predict(piece.chart, acrylic))
     >>> round(size.width_mm), round(size.height_mm)
     (119, 81)
     """
@@ -86,7 +86,7 @@ def mean_stitch_mm(
     if gauge is not None:
         return np.array([gauge.course_mm, gauge.wale_mm])
     if shaped.is_rectangle:
-        return _stitch_mm(choose(shaped.chart, material))
+        return _stitch_mm(predict(shaped.chart, material))
     lattice = resting_lattice(shaped.continued(), material)
     return np.asarray(lattice.sizes_mm[shaped.stitch].mean(axis=0))
 
@@ -127,7 +127,7 @@ def laid_sizes_mm(
     return np.stack([across[1:] + across[:-1], up[:, 1:] + up[:, :-1]], axis=-1) / 2
 
 
-def _stitch_mm(answer: Answer) -> Array:
+def _stitch_mm(answer: Prediction) -> Array:
     return np.array([answer.along(direction).relaxed_mm for direction in Direction])
 
 

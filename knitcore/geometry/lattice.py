@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials.material import Material
 from knitcore.phases import QUARTERS_OF_CODE, pure_fabric, quarter_phases, surroundings
+from knitcore.prediction.neighbourhood import neighbourhood_sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,10 +75,10 @@ def resting_lattice(chart: StitchChart, material: Material) -> Lattice:
     """The chart as it lies at rest with free edges: textures of different gauge draw each other in.
 
     Every stitch tends to the size that its surroundings give it
-    (:mod:`knitcore.answer.neighbourhood`), and shear holds rows and columns together: the places x
-    of the edges between stitches minimise the sum of (step along the course - width)² + weight
-    (step along the wale)², and y likewise; the weights are shear over Young's modulus. Both are
-    Poisson's equation on a rectangle, which a cosine transform solves.
+    (:mod:`knitcore.prediction.neighbourhood`), and shear holds rows and columns together: the
+    places x of the edges between stitches minimise the sum of (step along the course - width)² +
+    weight (step along the wale)², and y likewise; the weights are shear over Young's modulus. Both
+    are Poisson's equation on a rectangle, which a cosine transform solves.
 
     Raises
     ------

@@ -6,7 +6,13 @@ from knitcore.materials.files import (
     material_from_mapping,
     save_material_file,
 )
-from knitcore.materials.library import load_library, load_variants, material, offered_materials
+from knitcore.materials.library import (
+    as_material,
+    load_library,
+    load_variants,
+    material,
+    offered_materials,
+)
 from knitcore.materials.material import FabricRecord, Laws, Material, Origin, Yarn
 from knitcore.materials.measured import MeasuredCurve
 from knitcore.materials.uncertainty import Interval, LawUncertainty
@@ -22,6 +28,7 @@ __all__ = [
     "MeasuredCurve",
     "Origin",
     "Yarn",
+    "as_material",
     "load_library",
     "load_material_file",
     "load_variants",

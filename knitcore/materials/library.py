@@ -119,6 +119,25 @@ def material(identifier: str, laws: Laws | str | None = None) -> Material:
     return others[key]
 
 
+def as_material(of: Material | str) -> Material:
+    """Take a material as it is, or look up its identifier.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or there is no material of that name.
+    """
+    if isinstance(of, Material):
+        return of
+    if not isinstance(of, str):
+        raise InputError(
+            "material",
+            f"a {type(of).__name__} is not a material.",
+            "Give a Material, or the identifier of one such as 'acrylic'.",
+        )
+    return material(of)
+
+
 def offered_materials() -> dict[str, Material]:
     """Materials of extensions by identifier; each has only its own laws.
 

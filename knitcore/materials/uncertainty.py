@@ -8,7 +8,7 @@ c becomes sqrt(ln(1 + c²)), which has the same variance and never crosses zero.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from statistics import NormalDist
 
@@ -62,10 +62,19 @@ QUIET_STRESS_N_PER_MM = 0.03
 
 @dataclass(frozen=True)
 class Interval:
-    """An interval, in the unit of its value; it covers 90 % unless stated."""
+    """An interval, in the unit of its value; it covers 90 % unless stated.
+
+    Examples
+    --------
+    >>> low, high = Interval(0.1, 0.2)
+    """
 
     low: float
     high: float
+
+    def __iter__(self) -> Iterator[float]:
+        """Both ends, the lower one first."""
+        return iter((self.low, self.high))
 
     def scaled(self, factor: float) -> Interval:
         """The interval in another unit."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -21,6 +22,8 @@ SPIKE_SHARE = 0.1
 """Distance from the median of the six neighbours, over the peak, that marks a misreading."""
 FALL_SHARE = 0.35
 """Fall below the running maximum, over the peak, that marks an unloading or a rupture."""
+_NAMED = re.compile(r"(?<![a-z])(course|wale)(?:wise)?(?![a-z])", re.IGNORECASE)
+"""A direction by name in a description or a file's name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,12 +302,18 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
 
 
 def stated_direction(test: StretchTest) -> Direction | None:
-    """The direction that description and file name state as a lone X or Y, if they agree."""
+    """The direction that description and file name state, if they agree.
+
+    They state it in words (``course``, ``wale``, ``course-wise``), or as a lone X or Y.
+    """
     stated = set()
     for text in (test.description, test.source.rsplit(".", 1)[0]):
-        words = [w for w in text.replace("_", " ").replace("-", " ").split() if w in ("X", "Y")]
-        if words:
-            stated.add(Direction.COURSE if words[-1] == "X" else Direction.WALE)
+        named = {Direction(word.lower()) for word in _NAMED.findall(text)}
+        letters = [w for w in text.replace("_", " ").replace("-", " ").split() if w in ("X", "Y")]
+        if len(named) == 1:
+            stated |= named
+        elif letters and not named:
+            stated.add(Direction.COURSE if letters[-1] == "X" else Direction.WALE)
     return stated.pop() if len(stated) == 1 else None
 
 

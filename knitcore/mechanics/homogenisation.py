@@ -22,12 +22,13 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
 from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.fabric import PHASES, Direction
-from knitcore.materials import Material
+from knitcore.materials import Material, as_material
 from knitcore.mechanics.lamination import SheetGrid, coarsened
 from knitcore.mechanics.periodic_mesh import PeriodicMesh
 from knitcore.phases import quarter_phases
+from knitcore.result import Result
 
 MAX_CELLS = 1024
 """Quarter cells solved as they are: a repeat of 16 x 16. Larger grids are first coarsened."""
@@ -56,8 +57,8 @@ class PhaseGrid:
         return shares
 
 
-@dataclass(frozen=True, eq=False)
-class EffectiveSheet:
+@dataclass(frozen=True, eq=False, repr=False)
+class EffectiveSheet(Result):
     """Effective linear constants of a chart, small strain.
 
     Attributes
@@ -112,8 +113,8 @@ def phase_grid(chart: StitchChart, material: Material, *, periodic: bool = True)
 
 
 def homogenise(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     *,
     periodic: bool = True,
     most_cells: int = MAX_CELLS,
@@ -141,6 +142,7 @@ def homogenise(
     >>> round(sheet.modulus_n_per_mm(Direction.COURSE), 4)
     0.0301
     """
+    chart, material = as_chart(chart), as_material(material)
     grid = phase_grid(chart, material, periodic=periodic)
     fine = _sheet_grid(grid, material)
     stiffness = _solve(coarsened(fine, most_cells))

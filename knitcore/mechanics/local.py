@@ -17,16 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
-from knitcore.materials import Material
+from knitcore.materials import Material, as_material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.phases import QUARTERS_OF_CODE, surroundings
+from knitcore.result import Result
 
 
-@dataclass(frozen=True, eq=False)
-class StitchTable:
+@dataclass(frozen=True, eq=False, repr=False)
+class StitchTable(Result):
     """Elastic constants of the 16 kinds of stitch of one material.
 
     Attributes
@@ -69,7 +70,7 @@ class StitchTable:
         return modulus / factor, modulus * factor
 
 
-def stitch_table(material: Material) -> StitchTable:
+def stitch_table(material: Material | str) -> StitchTable:
     """The table of a material's 16 kinds of stitch.
 
     A material that lacks a pure fabric gets NaN for the kinds that contain it.
@@ -81,6 +82,7 @@ def stitch_table(material: Material) -> StitchTable:
     >>> round(float(table.modulus_course_n_per_mm[0b1100]), 3)  # garter: odd below and above
     0.134
     """
+    material = as_material(material)
     missing = np.full(4, np.nan)
     moduli, deviations, sizes = np.array([missing] * 2), np.array([missing] * 2), np.ones((2, 4))
     for phase, fabric in enumerate(PHASES):
@@ -119,8 +121,8 @@ def _mix(
     return total, np.sqrt((terms**2).sum(axis=-1))
 
 
-@dataclass(frozen=True, eq=False)
-class LocalModuli:
+@dataclass(frozen=True, eq=False, repr=False)
+class LocalModuli(Result):
     """Local moduli of every stitch of a chart.
 
     Attributes
@@ -190,7 +192,9 @@ class LocalModuli:
         return replace(self, codes=codes)
 
 
-def local_moduli(chart: StitchChart, material: Material, *, periodic: bool = False) -> LocalModuli:
+def local_moduli(
+    chart: StitchChart | str, material: Material | str, *, periodic: bool = False
+) -> LocalModuli:
     """Local moduli of every stitch.
 
     Raises
@@ -205,6 +209,7 @@ def local_moduli(chart: StitchChart, material: Material, *, periodic: bool = Fal
     >>> local_moduli(chart, material("acrylic")).modulus_course_n_per_mm.round(3)
     array([[0.303, 0.303, 0.028, 0.013, 0.013, 0.013, 0.013, 0.013]])
     """
+    chart, material = as_chart(chart), as_material(material)
     codes = surroundings(chart, periodic=periodic)
     if not material.is_complete:
         for phase in np.unique(QUARTERS_OF_CODE[np.unique(codes)]):

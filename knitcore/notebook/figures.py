@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.answer.answer import SHOWN_STRESS_N_PER_MM, Answer
-from knitcore.answer.curve import ChartCurve
 from knitcore.arrays import Array
 from knitcore.fabric import Direction
+from knitcore.prediction.curve import ChartCurve
+from knitcore.prediction.prediction import SHOWN_STRESS_N_PER_MM, Prediction
 from knitcore.showing import INKS
-from knitcore.swatch.figures import stress_strain_figure
+from knitcore.swatch.figures import plotly_objects, stress_strain_figure
 from knitcore.swatch.results import StripTest
 from knitcore.yarnlevel.results import Sweep
 
@@ -29,12 +29,14 @@ def figure(of: object) -> Any:
     ------
     TypeError
         For anything else.
+    ModuleNotFoundError
+        If plotly is not installed.
     """
     raise TypeError(f"a {type(of).__name__} has no stress-strain curve")
 
 
 @figure.register
-def _(of: Answer) -> Any:
+def _(of: Prediction) -> Any:
     stress = np.linspace(0.0, SHOWN_STRESS_N_PER_MM, 61)
     drawn = _empty(f"{of.provenance}, with 90 % intervals")
     for direction, ink in zip(Direction, INKS, strict=True):
@@ -65,8 +67,7 @@ def _(of: StripTest) -> Any:
 
 
 def _empty(title: str) -> Any:
-    import plotly.graph_objects as go
-
+    go = plotly_objects()
     drawn = go.Figure()
     drawn.update_layout(title=title, xaxis_title="strain", yaxis_title="stress (N/mm)")
     return drawn

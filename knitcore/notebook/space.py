@@ -9,6 +9,7 @@ import numpy as np
 
 from knitcore.geometry.tubes import tube_mesh
 from knitcore.shell.curl import CurledPiece
+from knitcore.swatch.figures import plotly_objects
 from knitcore.yarnlevel.results import RelaxedCell
 
 YARN, CLOTH = "#d9b48a", "#c7a77f"
@@ -33,8 +34,7 @@ def view(of: object) -> Any:
 
 @view.register
 def _(of: RelaxedCell) -> Any:
-    import plotly.graph_objects as go
-
+    go = plotly_objects()
     drawn = go.Figure()
     for line in of.tiled_lines():
         mesh = tube_mesh(line, of.yarn.core_radius_mm, SIDES)
@@ -46,8 +46,7 @@ def _(of: RelaxedCell) -> Any:
 
 @view.register
 def _(of: CurledPiece) -> Any:
-    import plotly.graph_objects as go
-
+    go = plotly_objects()
     x, y, z = np.moveaxis(of.corners_mm, -1, 0)
     scale = [[0, CLOTH], [1, CLOTH]]
     drawn = go.Figure(go.Surface(x=x, y=y, z=z, showscale=False, colorscale=scale))

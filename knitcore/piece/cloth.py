@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.quarter_laws import quarter_laws
 from knitcore.arrays import Array
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.errors import InputError
-from knitcore.materials.material import Material
+from knitcore.materials import Material
 from knitcore.piece.outline import CutPiece
+from knitcore.prediction.quarter_laws import quarter_laws
 from knitcore.swatch.models import EnergyModel, SheetModel
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import chart_sheet

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,13 +15,14 @@ from knitcore.piece.assembly import PieceEnergy
 from knitcore.piece.conditions import Condition, Constraints
 from knitcore.piece.equilibrium import PieceEquilibrium
 from knitcore.piece.outline import CutPiece
+from knitcore.result import Result
 from knitcore.swatch.fields import fibre_strains, response, stiffening_of
 
 SUFFIXES = (".npz", ".csv", ".vtu")
 
 
-@dataclass(frozen=True, eq=False)
-class ElementFields:
+@dataclass(frozen=True, eq=False, repr=False)
+class ElementFields(Result):
     """Means over each element, (elements,).
 
     Attributes
@@ -46,8 +47,8 @@ class ElementFields:
     utilisation: Array
 
 
-@dataclass(frozen=True, eq=False)
-class PieceTest:
+@dataclass(frozen=True, eq=False, repr=False)
+class PieceTest(Result):
     """The load steps of a piece that converged.
 
     Attributes
@@ -66,6 +67,14 @@ class PieceTest:
     found: tuple[PieceEquilibrium, ...]
     problem: str | None
     seconds: float
+
+    also_listed: ClassVar = ("converged", "share", "energy_n_mm", "force_n", "moved_mm")
+
+    def write(self, path: Path | str) -> None:
+        """Write all steps (``.npz``), forces (``.csv``) or the last step (``.vtu``), as
+        :func:`write_piece_test`.
+        """
+        write_piece_test(self, path)
 
     @property
     def converged(self) -> bool:

@@ -9,16 +9,17 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.bounds import check_range
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.errors import Cancelled, InputError, Progress
 from knitcore.fabric import Direction
-from knitcore.materials.material import Material
+from knitcore.materials import Material, as_material
 from knitcore.piece.cloth import Cloth, cloth_under
 from knitcore.piece.conditions import MAX_SHEAR_ANGLE, Framed, Held, frame_rate
 from knitcore.piece.outline import CutPiece
 from knitcore.piece.results import PieceTest
 from knitcore.piece.solve import solve
 from knitcore.piece.uncertainty import force_log_sd
+from knitcore.result import Result
 from knitcore.swatch.strip import LOCK_UP_SHARE, MAX_STRAIN
 
 STRETCH = "a stretch that can be computed"
@@ -26,8 +27,8 @@ MIN_STRAIN = 1e-9
 """Of a test: forces of smaller ones cannot be told from rounding."""
 
 
-@dataclass(frozen=True, eq=False)
-class BiasTest:
+@dataclass(frozen=True, eq=False, repr=False)
+class BiasTest(Result):
     """A strip cut at an angle and pulled between clamps, along y.
 
     Attributes
@@ -50,8 +51,8 @@ class BiasTest:
     force_log_sd: Array
 
 
-@dataclass(frozen=True, eq=False)
-class BiaxialTest:
+@dataclass(frozen=True, eq=False, repr=False)
+class BiaxialTest(Result):
     """A rectangle whose four edges are pulled outwards and slide along themselves.
 
     Attributes
@@ -74,8 +75,8 @@ class BiaxialTest:
     force_y_log_sd: Array
 
 
-@dataclass(frozen=True, eq=False)
-class TrellisTest:
+@dataclass(frozen=True, eq=False, repr=False)
+class TrellisTest(Result):
     """A square in a hinged frame (picture frame) that is pulled at opposite corners.
 
     Attributes
@@ -97,8 +98,8 @@ class TrellisTest:
 
 
 def bias_test(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     strain: float,
     *,
     width_mm: float = 50.0,
@@ -140,6 +141,7 @@ def bias_test(
     True
     """
     piece = CutPiece.rectangle(width_mm, length_mm, grain_deg=angle_deg)
+    chart, material = as_chart(chart), as_material(material)
     cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
     check_range("strain", strain, MIN_STRAIN, MAX_STRAIN, what=STRETCH)
     most = LOCK_UP_SHARE * _largest_strain(cloth, width_mm, length_mm, angle_deg)
@@ -167,8 +169,8 @@ def bias_test(
 
 
 def biaxial_test(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     strain_x: float,
     strain_y: float,
     *,
@@ -201,6 +203,7 @@ def biaxial_test(
         remedy = f"Give one of {MIN_STRAIN:g} or more."
         raise InputError("strain_x", "both strains are 0, or nearly.", remedy)
     piece = CutPiece.rectangle(width_mm, length_mm, grain_deg=grain_deg)
+    chart, material = as_chart(chart), as_material(material)
     cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
     stretched = piece.turn * (1 + np.array([[strain_x], [strain_y]]))
     for direction, needed in zip(Direction, np.linalg.norm(stretched, axis=0) - 1, strict=True):
@@ -237,8 +240,8 @@ def biaxial_test(
 
 
 def trellis_test(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     shear_angle: float,
     *,
     side_mm: float = 100.0,
@@ -265,6 +268,7 @@ def trellis_test(
     """
     check_range("shear_angle", shear_angle, MIN_STRAIN, MAX_SHEAR_ANGLE, "rad")
     piece = CutPiece.rectangle(side_mm, side_mm, grain_deg=grain_deg)
+    chart, material = as_chart(chart), as_material(material)
     cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
     conditions = [Framed(edge, shear_angle) for edge in piece.edges]
     test = solve(

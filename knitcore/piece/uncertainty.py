@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from knitcore.answer.quarter_laws import SPREAD_AT
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.gridsolver.factor import positive_definite_factor
 from knitcore.materials.material import Material
 from knitcore.piece.results import PieceTest
+from knitcore.prediction.quarter_laws import SPREAD_AT
 from knitcore.swatch.margins import sampled_steps
 from knitcore.swatch.uncertainty import STEP, law_parameters
 

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 from scipy.ndimage import map_coordinates
 
-from knitcore.answer.choose import choose
 from knitcore.arrays import Array, rounded
 from knitcore.bounds import check_linear_density
 from knitcore.chart import StitchChart
@@ -23,6 +22,7 @@ from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
 from knitcore.materials.loops import loop_lengths_mm
 from knitcore.phases import pure_fabric, quarter_phases
+from knitcore.prediction.predict import predict
 from knitcore.shell.bends import bends_of, mirrored_bending
 from knitcore.shell.sheet import TWIST, Net, StitchSheet
 from knitcore.yarnlevel.bending import MAX_STITCHES, ROLLS_FROM, bending_length_mm
@@ -146,7 +146,7 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
         If it does not relax at the yarn level, or folds by itself.
     """
     repeat = chart.repeat()
-    found = choose(repeat, material)
+    found = predict(repeat, material)
     course, wale = found.along(Direction.COURSE), found.along(Direction.WALE)
     poisson = np.sqrt(max(course.poisson * wale.poisson, 0.0)).clip(max=_MAX_POISSON)
     stiff = [along.modulus_n_per_mm / (1.0 - poisson**2) for along in (course, wale)]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +13,12 @@ from scipy.ndimage import label
 
 from knitcore import showing
 from knitcore.arrays import Array
-from knitcore.chart import StitchChart, check_stitches
+from knitcore.chart import StitchChart, as_chart, check_stitches
 from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction
-from knitcore.materials import Material
+from knitcore.materials import Material, as_material
 from knitcore.phases import continued
+from knitcore.result import Result
 from knitcore.shell.folds import balances
 from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.rolled import start
@@ -46,8 +49,8 @@ NOTE = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class CurledPiece:
+@dataclass(frozen=True, eq=False, repr=False)
+class CurledPiece(Result):
     """A piece at rest, on average aligned with the flat one: x along the rows, z towards the face.
 
     Parameters
@@ -92,6 +95,49 @@ class CurledPiece:
             return np.ones(self.corners_mm.shape[:2], dtype=bool)
         return corners_of(self.stitches)
 
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Collect the shape as arrays.
+
+        ``corners_mm`` and ``flat_mm``, (rows + 1, columns + 1, 3), are NaN where there is no
+        stitch; ``purl`` and ``stitch`` are (rows, columns).
+        """
+        known = np.where(self.used[..., None], (self.corners_mm, self.flat_mm), np.nan)
+        stitch = np.ones_like(self.chart.purl) if self.stitches is None else self.stitches
+        return {
+            "corners_mm": known[0],
+            "flat_mm": known[1],
+            "purl": self.chart.purl,
+            "stitch": stitch,
+        }
+
+    def write(self, path: Path | str) -> None:
+        """Write by the file's suffix: ``.npz`` (:meth:`arrays`) or ``.vtu``, stitches as
+        quadrilaterals in space.
+
+        Raises
+        ------
+        InputError
+            If the suffix is neither of these.
+        """
+        target = Path(path)
+        arrays = self.arrays()
+        if target.suffix.lower() == ".npz":
+            np.savez_compressed(target, allow_pickle=False, **arrays)
+        elif target.suffix.lower() == ".vtu":
+            import meshio
+
+            corner = np.arange(self.used.size).reshape(self.used.shape)
+            around = corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]
+            stitches = np.stack(around, axis=-1)[arrays["stitch"]]
+            purl = arrays["purl"][arrays["stitch"]].astype(np.int8)
+            meshio.Mesh(
+                np.where(self.used[..., None], self.corners_mm, 0.0).reshape(-1, 3),
+                [("quad", stitches)],
+                cell_data={"purl": [purl]},
+            ).write(target, file_format="vtu")
+        else:
+            raise InputError("out", f"{target.name} has an unknown suffix.", "Use .npz or .vtu.")
+
     def _repr_html_(self) -> str:
         step = max(1, max(self.corners_mm.shape[:2]) // 30)
         rows, columns = self.corners_mm[::step], self.corners_mm.transpose(1, 0, 2)[::step]
@@ -117,8 +163,8 @@ class Pull:
 
 
 def curl(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     *,
     stitches: NDArray[np.bool_] | None = None,
     pull: Pull | None = None,
@@ -150,6 +196,7 @@ def curl(
     CancelledError
         If ``cancelled`` says so.
     """
+    chart, material = as_chart(chart), as_material(material)
     check_piece(chart, stitches)
     if pull is not None and min(chart.rows, chart.columns) < _BETWEEN:
         raise InputError("chart", "is too small for clamps.", f"Give {_BETWEEN} rows and columns.")

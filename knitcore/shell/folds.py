@@ -3,9 +3,10 @@ wide as the answer for its chart.
 
 Where nothing opposes it, stockinette turns by more than a radian from stitch to stitch. Between
 opposite folds it cannot: a row of n like stitches between others turns only until the cloth is as
-narrow as the relaxed sizes of its surroundings (:mod:`knitcore.answer.neighbourhood`). n stitches,
-each turned by θ against the one before, span the share sin(nθ/2) / (n sin(θ/2)) of their length,
-about 1 − (n² − 1) θ²/24. The rest of the narrowing is in the size of the stitches themselves.
+narrow as the relaxed sizes of its surroundings (:mod:`knitcore.prediction.neighbourhood`). n
+stitches, each turned by θ against the one before, span the share sin(nθ/2) / (n sin(θ/2)) of their
+length, about 1 − (n² − 1) θ²/24. The rest of the narrowing is in the size of the stitches
+themselves.
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.neighbourhood import sizes_and_folds
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.phases import quarter_phases
+from knitcore.prediction.neighbourhood import sizes_and_folds
 
 MIN_FOLD = 0.2
 """Least share of its length by which a row of opposed runs folds if nothing else holds it. The

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.choice import Choice
 from knitcore.errors import Cancelled
-from knitcore.materials import Material
+from knitcore.materials import Material, as_material
 from knitcore.phases import continued
+from knitcore.result import Result
 from knitcore.shell.cloth import stitch_weights_n
 from knitcore.shell.curl import TIME_LIMIT_S, check_piece
 from knitcore.shell.relax import settle, shake_mm
@@ -27,8 +28,8 @@ class HungBy(Choice):
     CORNERS = "corners"
 
 
-@dataclass(frozen=True, eq=False)
-class HungPiece:
+@dataclass(frozen=True, eq=False, repr=False)
+class HungPiece(Result):
     """A hanging piece at rest: x along the rows, y up, z towards the face.
 
     Parameters
@@ -53,8 +54,8 @@ class HungPiece:
 
 
 def hang(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     *,
     linear_density_g_per_m: float,
     stitches: NDArray[np.bool_] | None = None,
@@ -81,6 +82,7 @@ def hang(
     CancelledError
         If ``cancelled`` says so.
     """
+    chart, material = as_chart(chart), as_material(material)
     check_piece(chart, stitches)
     there = np.ones_like(chart.purl) if stitches is None else stitches
     chart = continued(chart, there)

@@ -1,13 +1,13 @@
 """A piece of knitting as a sheet of stitches in space.
 
 Every stitch is a quadrilateral between four corners. Its size is the relaxed size of its
-surroundings (:mod:`knitcore.answer.neighbourhood`), without the narrowing that folds account for
-(:mod:`knitcore.shell.folds`). The rest comes from its quarters, each of which is one of the four
-pure fabrics (:mod:`knitcore.phases`): stiffness of the membrane from the material, bending rigidity
-and free curvature from the yarn level. Two neighbours of one kind with even segments all around
-turn as stockinette does, knits with the face outside and purls with the back, and less where folds
-oppose them; where segments are odd (garter, rib, seed) the next stitch cancels the curvature, and
-the line between them stays flat.
+surroundings (:mod:`knitcore.prediction.neighbourhood`), without the narrowing that folds account
+for (:mod:`knitcore.shell.folds`). The rest comes from its quarters, each of which is one of the
+four pure fabrics (:mod:`knitcore.phases`): stiffness of the membrane from the material, bending
+rigidity and free curvature from the yarn level. Two neighbours of one kind with even segments all
+around turn as stockinette does, knits with the face outside and purls with the back, and less where
+folds oppose them; where segments are odd (garter, rib, seed) the next stitch cancels the curvature,
+and the line between them stays flat.
 
 Fabric cannot fold tighter than its thickness t allows: at 2 arctan(l / t) between stitches of size
 l its inner surface is closed.

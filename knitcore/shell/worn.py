@@ -2,8 +2,8 @@
 
 Around the limb a line of stitches (a row, or a column) is as long as the limb's girth there, or as
 at rest where that is more. Along the limb nothing holds it, so that it shortens as the answer says
-of a strip free to narrow (:mod:`knitcore.answer.tube`). Sizes at rest are those of every stitch's
-surroundings, and so is the law (:meth:`knitcore.answer.patches.Patches.lines`).
+of a strip free to narrow (:mod:`knitcore.garment.limb`). Sizes at rest are those of every stitch's
+surroundings, and so is the law (:meth:`knitcore.prediction.patches.Patches.lines`).
 """
 
 from __future__ import annotations
@@ -13,14 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.limb import LimbPlace, MeasuredLimb, place_on
-from knitcore.answer.neighbourhood import neighbourhood_sizes
-from knitcore.answer.patches import patches_of
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.garment.limb import LimbPlace, MeasuredLimb, place_on
 from knitcore.materials import Material
+from knitcore.prediction.neighbourhood import neighbourhood_sizes
+from knitcore.prediction.predict import patches_of
+from knitcore.result import Result
 
 LEAST_AROUND = 4
 """Stitches that can close to a tube."""
@@ -30,8 +31,8 @@ BARE = 0.12
 """So many girths of the limb are seen beyond either end of the tube."""
 
 
-@dataclass(frozen=True, eq=False)
-class TubeOnLimb:
+@dataclass(frozen=True, eq=False, repr=False)
+class TubeOnLimb(Result):
     """A tube on a limb, in space: the limb's axis along y (x if the columns run around it).
 
     Attributes
@@ -78,12 +79,12 @@ def worn_tube(
     if not by_row:
         sizes = sizes.transpose(1, 0, 2)[..., ::-1]
     rests, heights = sizes[..., 0].sum(axis=1), sizes[..., 1].mean(axis=1)
-    answers = patches_of(chart, material).lines(around)
+    predictions = patches_of(chart, material).lines(around)
     places, along_mm = [], [0.0]
     for line, (rest, height) in enumerate(zip(rests.tolist(), heights.tolist(), strict=True)):
-        answer = answers[line % len(answers)].along(around)
+        prediction = predictions[line % len(predictions)].along(around)
         at = along_mm[-1] + 0.5 * height
-        place = place_on(answer, at, float(np.interp(at, limb.at_mm, limb.girths_mm)), rest)
+        place = place_on(prediction, at, float(np.interp(at, limb.at_mm, limb.girths_mm)), rest)
         places.append(place)
         along_mm.append(along_mm[-1] + height * (1.0 + place.axial_strain))
     rings = _between(np.array([max(p.rest_mm, p.girth_mm) for p in places])) / (2.0 * np.pi)

@@ -15,6 +15,23 @@ MAX_PATCHES = 20_000
 EXTENSION_COLOUR, CONTRACTION_COLOUR = "#b2182b", "#2166ac"
 
 
+def plotly_objects() -> Any:
+    """Import ``plotly.graph_objects``.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If plotly is not installed; the message says how to install it.
+    """
+    try:
+        from plotly import graph_objects
+    except ModuleNotFoundError:
+        raise ModuleNotFoundError(
+            "Figures need plotly. Install it with: pip install 'knitcore[notebook]'", name="plotly"
+        ) from None
+    return graph_objects
+
+
 def displacement_figure(test: SwatchTest, step: int = -1, component: str = "x") -> Any:
     """A displacement component (mm) in colour on the deformed shape.
 
@@ -24,8 +41,7 @@ def displacement_figure(test: SwatchTest, step: int = -1, component: str = "x") 
     step : which step.
     component : ``x`` (along the courses, as in the paper) or ``y``.
     """
-    import plotly.graph_objects as go
-
+    go = plotly_objects()
     fields = test.fields(step)
     value = fields.ux_mm if component == "x" else fields.uy_mm
     x, y = fields.x_mm + fields.ux_mm, fields.y_mm + fields.uy_mm
@@ -64,8 +80,7 @@ def displacement_figure(test: SwatchTest, step: int = -1, component: str = "x") 
 
 def strain_crosses_figure(test: SwatchTest, step: int = -1, crosses: int = 400) -> Any:
     """Crosses of the principal strains on the deformed shape: red extension, blue contraction."""
-    import plotly.graph_objects as go
-
+    go = plotly_objects()
     fields = test.fields(step)
     figure = go.Figure()
     for sign, colour, name in (
@@ -95,8 +110,7 @@ def stress_strain_figure(
     measured_stress_n_per_mm: ArrayLike | None = None,
 ) -> Any:
     """The curve of a strip test, with a measured one for comparison if given."""
-    import plotly.graph_objects as go
-
+    go = plotly_objects()
     figure = go.Figure(
         go.Scatter(
             x=np.concatenate([[0.0], test.strain]),

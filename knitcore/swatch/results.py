@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Self
+from pathlib import Path
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from knitcore import showing
 from knitcore.arrays import Array
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.stiffening import EXTENSION_START
+from knitcore.result import Result
 from knitcore.swatch.fields import (
     Fields,
     cell_strains,
@@ -18,12 +20,12 @@ from knitcore.swatch.fields import (
     triangle_utilisation,
     utilisation,
 )
-from knitcore.swatch.run import Path
+from knitcore.swatch.run import Path as LoadPath
 from knitcore.swatch.sheet import Sheet, State
 
 
-@dataclass(frozen=True)
-class LockUp:
+@dataclass(frozen=True, repr=False)
+class LockUp(Result):
     """The place in a swatch that is nearest to its lock-up.
 
     Attributes
@@ -43,8 +45,8 @@ class LockUp:
     fabric: str
 
 
-@dataclass(frozen=True, eq=False)
-class SwatchTest:
+@dataclass(frozen=True, eq=False, repr=False)
+class SwatchTest(Result):
     """The load steps of a test that converged.
 
     Attributes
@@ -66,8 +68,10 @@ class SwatchTest:
     problem: str | None
     seconds: float
 
+    not_listed: ClassVar = ("states",)
+
     @classmethod
-    def of(cls, sheet: Sheet, path: Path, **more: Any) -> Self:
+    def of(cls, sheet: Sheet, path: LoadPath, **more: Any) -> Self:
         """The result of a path on a sheet; ``more`` are fields of this kind of test."""
         return cls(
             sheet=sheet,
@@ -79,6 +83,18 @@ class SwatchTest:
             seconds=path.seconds,
             **more,
         )
+
+    def write(self, path: Path | str) -> None:
+        """Write the fields by the file's suffix: ``.npz`` (all steps) or ``.vtu`` (the last step).
+
+        Raises
+        ------
+        InputError
+            If the suffix is neither of these, or there is no step to write.
+        """
+        from knitcore.swatch.files import write_fields
+
+        write_fields(self, path)
 
     @property
     def steps(self) -> int:

@@ -72,7 +72,8 @@ class Sheet:
     grid : the mesh.
     laws : laws by code (``grid.law_of_cell``); codes that do not occur may repeat any law.
     model : the energy model and its assumptions.
-    log_sd : gives :attr:`stress_log_sd`, as in :class:`knitcore.answer.quarter_laws.QuarterLaws`.
+    log_sd : gives :attr:`stress_log_sd`, as in
+        :class:`knitcore.prediction.quarter_laws.QuarterLaws`.
 
     Examples
     --------

@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.quarter_laws import QuarterLaws, quarter_laws
-from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.bounds import check_range
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, as_chart
 from knitcore.choice import Choice
 from knitcore.errors import Cancelled, InputError, Progress
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.material import Material
+from knitcore.materials import Material, as_material
+from knitcore.prediction.quarter_laws import QuarterLaws, quarter_laws
+from knitcore.prediction.size import RelaxedSize
 from knitcore.swatch.grid import QuarterGrid, check_cloth
 from knitcore.swatch.misfit import draw_in as draw_in_path
 from knitcore.swatch.models import EnergyModel, SheetModel, energy_model
@@ -41,8 +41,8 @@ class Clamps(Choice):
 
 
 def strip_test(
-    chart: StitchChart,
-    material: Material,
+    chart: StitchChart | str,
+    material: Material | str,
     direction: Direction | str,
     strain: float | Sequence[float],
     *,
@@ -52,7 +52,7 @@ def strip_test(
     clamps: Clamps | str = Clamps.CLAMPED,
     draw_in: bool = False,
     stitch: NDArray[np.bool_] | None = None,
-    gauge: RelaxedSize | None = None,
+    size: RelaxedSize | None = None,
     laws: QuarterLaws | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
@@ -76,9 +76,9 @@ def strip_test(
         regions wrinkle: by default the model then has its tension field on.
     stitch : bool (rows, columns), where a shaped piece has stitches, row 0 at the bottom; the
         clamps hold those of its outermost rows or columns. All of the rectangle by default.
-    gauge : measured relaxed size of the chart's mean stitch, if known; not used beside ``laws``.
+    size : relaxed size of the chart's mean stitch, if known; not used beside ``laws``.
     laws : of the quarter cells; by default those with which the swatch agrees with
-        :func:`knitcore.answer.choose.choose`.
+        :func:`knitcore.prediction.predict.predict`.
     width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
     progress : called with (steps done, steps in all).
     cancelled : called from time to time; True stops the test.
@@ -106,13 +106,13 @@ def strip_test(
     (True, [0.1, 0.2, 0.3])
     """
     sheet = chart_sheet(
-        chart,
-        material,
+        as_chart(chart),
+        as_material(material),
         model,
         shear_modulus,
         draw_in,
         stitch=stitch,
-        gauge=gauge,
+        size=size,
         laws=laws,
         width_mm=width_mm,
         length_mm=length_mm,
@@ -135,21 +135,21 @@ def chart_sheet(
     draw_in: bool = False,
     *,
     stitch: NDArray[np.bool_] | None = None,
-    gauge: RelaxedSize | None = None,
+    size: RelaxedSize | None = None,
     laws: QuarterLaws | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
 ) -> Sheet:
-    """The sheet of a chart of a material; ``stitch`` and ``gauge`` as for :func:`strip_test`.
+    """The sheet of a chart of a material; ``stitch`` and ``size`` as for :func:`strip_test`.
 
     Its cells' laws and sizes are such that a large swatch agrees with
-    :func:`knitcore.answer.choose.choose`.
+    :func:`knitcore.prediction.predict.predict`.
     """
     chosen = sheet_model(model, shear_modulus)
     if draw_in and not isinstance(model, SheetModel) and chosen.energy is EnergyModel.FULL:
         chosen = replace(chosen, tension_field=True)
     sizes = {fabric: record.stitch_mm for fabric, record in material.fabrics.items()}
-    local = laws or _local_laws(chart, material, stitch, gauge)
+    local = laws or _local_laws(chart, material, stitch, size)
     grid = QuarterGrid.of_chart(
         chart, sizes, local.scale, stitch=stitch, width_mm=width_mm, length_mm=length_mm
     )
@@ -164,16 +164,16 @@ def _local_laws(
     chart: StitchChart,
     material: Material,
     stitch: NDArray[np.bool_] | None,
-    gauge: RelaxedSize | None,
+    size: RelaxedSize | None,
 ) -> QuarterLaws:
     """Laws of a piece; a shaped one counts as its bounding rectangle, filled with its pattern."""
     if stitch is None or np.all(stitch):
-        return quarter_laws(chart, material, gauge)
+        return quarter_laws(chart, material, size)
     inside = np.asarray(stitch, dtype=bool)
     check_cloth(inside, chart.rows, chart.columns)
     rows, columns = (np.flatnonzero(inside.any(axis=axis)) for axis in (1, 0))
     here = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    found = quarter_laws(_continued(chart.purl[here], inside[here]), material, gauge)
+    found = quarter_laws(_continued(chart.purl[here], inside[here]), material, size)
     patch, scale = np.zeros(inside.shape, dtype=np.intp), np.ones((*inside.shape, 2))
     patch[here], scale[here] = found.patch, found.scale
     return replace(found, patch=patch, scale=scale)

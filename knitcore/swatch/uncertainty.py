@@ -15,7 +15,7 @@ parameters add up. The parameters are
 - each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
 - the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
 - the model's own error, where fabrics are mixed: for the force that of the chart's answer
-  (:mod:`knitcore.answer.quarter_laws`), for strains one for each fabric separately.
+  (:mod:`knitcore.prediction.quarter_laws`), for strains one for each fabric separately.
 
 The lock-up (1 / alpha) is itself uncertain, and its utilisation with it.
 """
@@ -30,7 +30,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.quarter_laws import SPREAD_AT
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
@@ -45,6 +44,7 @@ from knitcore.materials.uncertainty import (
     in_a_sentence,
     log_interval,
 )
+from knitcore.prediction.quarter_laws import SPREAD_AT
 from knitcore.swatch.calibration import LOG_SHEAR_PRIOR
 from knitcore.swatch.fields import cell_strains, corner_means, stiffening_of, utilisation
 from knitcore.swatch.kernel import Nodes

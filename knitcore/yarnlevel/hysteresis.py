@@ -56,7 +56,7 @@ _PULLS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Leg(Sweep):
     """One way of a loop, as a stretch; strain and stress refer to the agitated state.
 

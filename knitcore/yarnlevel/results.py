@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
 from knitcore.fabric import Direction
+from knitcore.result import Result
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -23,8 +25,8 @@ class Branch(Choice):
     FREE = "free"
 
 
-@dataclass(frozen=True)
-class StartReport:
+@dataclass(frozen=True, repr=False)
+class StartReport(Result):
     """Outcome of one start.
 
     Attributes
@@ -41,8 +43,8 @@ class StartReport:
     cell_wale_mm: float
 
 
-@dataclass(frozen=True, eq=False)
-class RelaxedCell:
+@dataclass(frozen=True, eq=False, repr=False)
+class RelaxedCell(Result):
     """A cell of yarn at the lowest energy that was found.
 
     Parameters
@@ -92,6 +94,8 @@ class RelaxedCell:
     notes: tuple[str, ...] = ()
     starts: tuple[StartReport, ...] = ()
 
+    not_listed: ClassVar = ("state",)
+
     def cell_mm(self, direction: Direction) -> float:
         """Size of one stitch along a direction, mm."""
         return direction.of(self.cell_course_mm, self.cell_wale_mm)
@@ -117,8 +121,8 @@ class RelaxedCell:
         ]
 
 
-@dataclass(frozen=True, eq=False)
-class Sweep:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Result):
     """A stretch in one direction while the other is free of force, or its size prescribed.
 
     Parameters
@@ -137,6 +141,8 @@ class Sweep:
     stress_n_per_mm: Array
     jumps: tuple[int, ...] = ()
     notes: tuple[str, ...] = field(default=())
+
+    also_listed: ClassVar = ("strain", "transverse_strain")
 
     @property
     def strain(self) -> Array:

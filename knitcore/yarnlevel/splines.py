@@ -72,7 +72,7 @@ _SHAKES = (7, 8)
 """Seeds of the displacements with which the mirrored state is left."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class RelaxedRepeat(RelaxedCell):
     """A relaxed repeat on splines (branches ``mirrored`` and ``free``).
 

@@ -17,16 +17,21 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve, cholesky
 from scipy.optimize import linprog, minimize
 
-from knitcore.answer.densities import FEATURES, Densities, densities
-from knitcore.answer.kernel import KernelModel, KernelSettings, Samples, noisy_covariance
-from knitcore.answer.learned import STRESS_GRID, follows
-from knitcore.answer.mixture import Mixture, yarn_numbers
-from knitcore.answer.swept import STRESS, of_law, over_mixture, simulated_record
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction, Fabric
 from knitcore.materials import FabricRecord, Material, Yarn, load_library
 from knitcore.materials.uncertainty import COVERAGE, Z_SCORE
+from knitcore.prediction.densities import FEATURES, Densities, densities
+from knitcore.prediction.gaussian_process import (
+    KernelModel,
+    KernelSettings,
+    Samples,
+    noisy_covariance,
+)
+from knitcore.prediction.learned import STRESS_GRID, follows
+from knitcore.prediction.mixture import Mixture, yarn_numbers
+from knitcore.prediction.swept import STRESS, of_law, over_mixture, simulated_record
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.store import MATERIALS, stored_charts, stored_stitch
 from scripts.training.entries import TrainingEntry, training_entries
@@ -73,8 +78,8 @@ class Row:
         it was not relaxed without mirrors.
     ratio : (14,) ln of strain over the mixture's, and Poisson's ratios less the mixture's; nan
         where it was not stretched.
-    uncertainty : (4,) see :class:`knitcore.answer.densities.Densities`.
-    follows : (14,) see :func:`knitcore.answer.learned.follows`.
+    uncertainty : (4,) see :class:`knitcore.prediction.densities.Densities`.
+    follows : (14,) see :func:`knitcore.prediction.learned.follows`.
     """
 
     chart: StitchChart

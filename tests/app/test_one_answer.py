@@ -18,7 +18,6 @@ from app.models.gauge import GaugeInput
 from app.operations.predict import PredictRequest
 from app.operations.predict import predict as predict_operation
 from knitcore import Direction, Fabric, RelaxedSize, StitchChart, curve, predict, strip_test
-from knitcore.answer.answer import Answer
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.targets import Quantity, Target, WornTube, values_of
@@ -34,6 +33,7 @@ from knitcore.garment.piece import Piece
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.geometry.laid_out import laid_corners_mm, mean_stitch_mm
 from knitcore.materials import Interval, Material, material
+from knitcore.prediction.prediction import Prediction
 from knitcore.yarnlibrary.store import stored_charts
 from tests.app.command_line import run
 
@@ -116,7 +116,7 @@ def test_all_ways_of_asking_give_one_curve(
         assert shown["strain"][-1] == pytest.approx(own.strain[-1])
 
 
-def _agrees_with_library(told: Any, answer: Answer) -> None:
+def _agrees_with_library(told: Any, answer: Prediction) -> None:
     assert told["provenance"] == answer.provenance
     for direction in Direction:
         along = answer.along(direction)
@@ -131,7 +131,7 @@ def _agrees_with_library(told: Any, answer: Answer) -> None:
         assert low <= along.modulus_n_per_mm <= high
 
 
-def _agrees_with_atlas(atlas: Atlas, chart: StitchChart, answer: Answer) -> None:
+def _agrees_with_atlas(atlas: Atlas, chart: StitchChart, answer: Prediction) -> None:
     """The curves of an atlas are kept in single precision."""
     row = atlas.index_of(chart)
     assert row is not None
@@ -148,7 +148,7 @@ def _agrees_with_atlas(atlas: Atlas, chart: StitchChart, answer: Answer) -> None
             )
 
 
-def _agrees_with_report(labels: set[str], answer: Answer) -> None:
+def _agrees_with_report(labels: set[str], answer: Prediction) -> None:
     """Figures are printed with three digits."""
     assert any(answer.provenance in label for label in labels)
     for direction in Direction:
@@ -160,7 +160,7 @@ def _agrees_with_report(labels: set[str], answer: Answer) -> None:
             assert _with_interval(value, interval) in labels
 
 
-def _agrees_with_files(chart: StitchChart, used: Material, answer: Answer) -> None:
+def _agrees_with_files(chart: StitchChart, used: Material, answer: Prediction) -> None:
     """The cloth of VTU, glTF and STL is as large as its stitches together."""
     piece = Piece.of(chart)
     stitch = np.array([answer.along(direction).relaxed_mm for direction in Direction])
@@ -260,7 +260,7 @@ def test_a_strip_of_a_known_gauge_stretches_like_the_curve_of_that_gauge(
     along = predict(chart, material("acrylic"), gauge).along(direction)
     strains = along.strain([0.05, 0.1, 0.2])
     test = strip_test(
-        chart, material("acrylic"), direction, strains.tolist(), clamps="sliding", gauge=gauge
+        chart, material("acrylic"), direction, strains.tolist(), clamps="sliding", size=gauge
     )
     np.testing.assert_allclose(along.strain(test.stress_n_per_mm), strains, rtol=0.1)
     assert test.length_mm * test.width_mm == pytest.approx(50 * 200 / 3)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.chart import MAX_STITCHES_PER_SIDE, check_stitches, size_in_words
+from knitcore.chart import MAX_STITCHES_PER_SIDE, as_chart, check_stitches, size_in_words
 from tests.knitcore.charts import stitch_charts
 
 
@@ -112,3 +112,16 @@ def test_too_many_stitches_are_refused_with_the_most_that_are_taken() -> None:
 def test_one_column_is_not_several() -> None:
     assert size_in_words(1, 12) == "1 column x 12 rows"
     assert size_in_words(20, 1) == "20 columns x 1 row"
+
+
+def test_a_chart_has_a_shape_and_a_length() -> None:
+    chart = StitchChart.parse("KKP/PPK")
+    assert chart.shape == chart.purl.shape == (2, 3)
+    assert len(chart) == 2
+
+
+@pytest.mark.parametrize("fabric", Fabric)
+def test_a_chart_is_read_from_its_text_or_a_fabric_name(fabric: Fabric) -> None:
+    chart = StitchChart.of_fabric(fabric)
+    assert as_chart(chart) is chart
+    assert as_chart(chart.text) == as_chart(fabric.value.upper()) == chart

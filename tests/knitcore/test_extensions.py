@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from knitcore import InputError, StitchChart, material, predict
-from knitcore.answer.measures import Measure, measure
 from knitcore.extensions import ExtensionError, ExtensionWarning, Group, extensions, offered
 from knitcore.formats.export import Exporter, ExportKind, export_chart
 from knitcore.materials import Material
 from knitcore.patterns import PATTERNS, Pattern, patterns
+from knitcore.prediction.measures import Measure, measure
 from tests.extension_package import install, install_example
 
 BAD = """

@@ -54,7 +54,7 @@ def test_a_material_lists_its_fabrics() -> None:
 def test_an_answer_gives_numbers_intervals_source_and_notes() -> None:
     answer = predict(StitchChart.parse("KKPP"), ACRYLIC)
     html = shown(answer)
-    low = answer.modulus_course_interval_n_per_mm.low
+    low = answer.course.modulus_interval_n_per_mm.low
     assert f"{answer.modulus_course_n_per_mm:.4f} ({low:.4f} to" in html
     assert "learned" in html
     assert answer.notes[0] in html

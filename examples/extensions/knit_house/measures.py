@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from knitcore.answer.answer import Answer
-from knitcore.answer.measures import Measure
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES
 from knitcore.materials import Material
 from knitcore.phases import quarter_phases
+from knitcore.prediction.measures import Measure
+from knitcore.prediction.prediction import Prediction
 
 
 def measures() -> list[Measure]:
@@ -20,12 +20,12 @@ def measures() -> list[Measure]:
     ]
 
 
-def _density(chart: StitchChart, material: Material, answer: Answer) -> float:
+def _density(chart: StitchChart, material: Material, answer: Prediction) -> float:
     del chart, material
     return 100.0 / (answer.relaxed_course_mm * answer.relaxed_wale_mm)
 
 
-def _cover(chart: StitchChart, material: Material, answer: Answer) -> float:
+def _cover(chart: StitchChart, material: Material, answer: Prediction) -> float:
     """Loop length times diameter over the area of a stitch; NaN where one is not known."""
     counts = np.bincount(quarter_phases(chart).ravel(), minlength=len(PHASES))
     yarn_mm2 = 0.0

@@ -1,9 +1,12 @@
 """What never ranks first."""
 
+import pytest
+
 from knitcore.chart import StitchChart
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.find import find_fabric
 from knitcore.design.targets import Quantity, Target, WornTube
+from knitcore.errors import InputError
 from knitcore.materials import material
 
 REPEATS = [StitchChart.parse(text) for text in ("K", "K\nP", "KP", "KP\nPK", "KKP\nPPK")]
@@ -24,3 +27,13 @@ def test_a_fabric_whose_figures_contradict_each_other_never_ranks_first() -> Non
             assert last.values[target.label] == max(pressures[quantity])
     wale = pressures[Quantity.PRESSURE_WALE]
     assert wale == sorted(wale, reverse=True)
+
+
+def test_one_atlas_and_one_target_by_name_are_enough() -> None:
+    atlas = build_atlas(material("acrylic"), [StitchChart.parse(t) for t in ("KKPP", "KP/PK")])
+    target = Target("modulus_course", 0.04, tolerance=0.5)
+    assert target == Target(Quantity.MODULUS_COURSE, 0.04, tolerance=0.5)
+    alone, listed = find_fabric(atlas, target), find_fabric([atlas], [target])
+    assert alone.to_dict() == listed.to_dict()
+    with pytest.raises(InputError, match="quantity: 'modulus' is not known"):
+        Target("modulus", 0.04)

@@ -262,3 +262,8 @@ def test_measurements_that_cannot_be_knitted(make: object, field: str) -> None:
     with pytest.raises(InputError) as caught:
         make()
     assert caught.value.field == field
+
+
+def test_a_fit_takes_one_pressure() -> None:
+    with pytest.raises(InputError, match="mmhg: a list is not one number"):
+        Fit(mmhg=[20.0, 15.0])

@@ -380,3 +380,22 @@ def test_points_outside_the_sample_are_refused(tmp_path: Path) -> None:
     path = with_column(write_csv(tmp_path / "x.csv", X, runs=2), "across_mm", "99")
     with pytest.raises(InputError, match="more than the clamped width"):
         read_stretch_test(path)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [("course.csv", "wale.csv"), ("rib_COURSE-wise 2.csv", "wale2.csv"), ("course.csv", "b.csv")],
+)
+def test_files_named_after_the_other_direction_are_refused(
+    tmp_path: Path, names: tuple[str, str]
+) -> None:
+    course, wale = (write_csv(tmp_path / name, d) for name, d in zip(names, (X, Y), strict=True))
+    assert fit_files(course, wale).law.alpha_xx == pytest.approx(LAW.alpha_xx, rel=0.02)
+    with pytest.raises(InputError, match=r"pulled (course|wale)-wise"):
+        fit_files(wale, course)
+
+
+def test_names_that_hold_both_directions_state_none(tmp_path: Path) -> None:
+    names = "course and wale.csv", "concourse.csv"
+    course, wale = (write_csv(tmp_path / name, d) for name, d in zip(names, (X, Y), strict=True))
+    assert fit_files(course, wale).law.alpha_xx == pytest.approx(LAW.alpha_xx, rel=0.02)

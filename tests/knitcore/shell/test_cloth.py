@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import material
+from knitcore.prediction.predict import predict
 from knitcore.shell.bends import bends_of
 from knitcore.shell.cloth import EvenCloth, cloth_of, stitch_corners, stitch_weights_n
 from knitcore.shell.sheet import sheet_of
@@ -44,7 +44,7 @@ def test_packaged_repeats_are_bent_from_the_store(monkeypatch: pytest.MonkeyPatc
 
 def test_stretched_it_has_the_modulus_of_the_answer() -> None:
     """Free to narrow, C₁₁ − C₁₂² / C₂₂."""
-    cloth, answer = _cloth("KP/PK"), choose(StitchChart.parse("KP/PK"), ACRYLIC)
+    cloth, answer = _cloth("KP/PK"), predict(StitchChart.parse("KP/PK"), ACRYLIC)
     c11, c22, c12, _ = cloth.membrane_n_per_mm
     assert c11 - c12**2 / c22 == pytest.approx(answer.course.modulus_n_per_mm)
     assert c22 - c12**2 / c11 == pytest.approx(answer.wale.modulus_n_per_mm)

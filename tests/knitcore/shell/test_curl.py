@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
+from knitcore.prediction.predict import predict
 from knitcore.shell.curl import UNBALANCED_NOTE, CurledPiece, Pull, curl
 from knitcore.shell.relax import settle
 from knitcore.shell.sheet import sheet_of
@@ -79,7 +79,7 @@ def test_folds_are_as_wide_and_high_as_the_relaxed_fabric(
     chart = StitchChart.parse(repeat)
     piece = curl(chart.tile(up, across), ACRYLIC)
     assert piece.converged
-    answer = choose(chart, ACRYLIC)
+    answer = predict(chart, ACRYLIC)
     for axis, along in ((1, answer.course), (0, answer.wale)):
         line = piece.corners_mm.mean(axis=1 - axis)
         ends = line[[chart.purl.shape[axis], -1 - chart.purl.shape[axis]]]
@@ -101,7 +101,7 @@ def test_ribs_that_do_not_balance_are_as_wide_as_predicted_when_laid_flat(repeat
     assert flat.converged
     line = flat.x.reshape(chart.rows + 1, chart.columns + 1, 3)[:, :, 0].mean(axis=0)
     width = (line[3 * wide] - line[wide]) / (2 * wide)
-    predicted = choose(StitchChart.parse(repeat), ACRYLIC).course.relaxed_mm
+    predicted = predict(StitchChart.parse(repeat), ACRYLIC).course.relaxed_mm
     assert width == pytest.approx(predicted, rel=0.1)
     piece = curl(chart, ACRYLIC)
     assert piece.converged

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.materials import material
+from knitcore.prediction.neighbourhood import neighbourhood_sizes
 from knitcore.shell.folds import balances, folds_of, opposed, rest_turns, turning
 
 ACRYLIC = material("acrylic")

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.answer.choose import choose
-from knitcore.answer.limb import MeasuredLimb, place_on
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.garment.limb import MeasuredLimb, place_on
 from knitcore.geometry.placing import lying
 from knitcore.materials import material
+from knitcore.prediction.predict import predict
 from knitcore.shell.worn import worn_tube
 
 ACRYLIC = material("acrylic")
@@ -25,7 +25,7 @@ def _radius_mm(corners: np.ndarray) -> np.ndarray:
 def test_every_row_fits_as_a_tube_of_its_repeat_does() -> None:
     girth = 170.0
     tube = worn_tube(PLAIN, ACRYLIC, MeasuredLimb((0.0, 300.0), (girth, girth)))
-    along = choose(StitchChart.parse("K"), ACRYLIC).along(Direction.COURSE)
+    along = predict(StitchChart.parse("K"), ACRYLIC).along(Direction.COURSE)
     alone = place_on(along, 0.0, girth, 40 * along.relaxed_mm)
     assert alone.pressure is not None
     for place in tube.places:

@@ -11,12 +11,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore.answer.quarter_laws import flat_laws
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import FabricRecord, Laws, LawUncertainty, Material, load_library, material
 from knitcore.materials.uncertainty import Z_SCORE, CurveUncertainty
+from knitcore.prediction.quarter_laws import flat_laws
 from knitcore.swatch import StripTest, chart_sheet, strip_test
 from knitcore.swatch.fields import Fields
 from knitcore.swatch.strip import Clamps

@@ -6,12 +6,12 @@ from dataclasses import replace
 import pytest
 
 from knitcore import predict
-from knitcore.answer.answer import Source
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import load_library, material
 from knitcore.materials.files import load_material_file, save_material_file
+from knitcore.prediction.prediction import Source
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlibrary.characterise import RepeatTask, characterise_repeat

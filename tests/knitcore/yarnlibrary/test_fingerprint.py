@@ -61,4 +61,4 @@ def test_the_solvers_reach_kernels_law_fit_and_starts() -> None:
     found = fingerprint.reached(SOLVERS)
     for name in ("yarnlevel.kernels.rod", "measure.law_fit", "yarnlevel.published.minimise"):
         assert f"knitcore.{name}" in found
-    assert "knitcore.answer" not in found
+    assert "knitcore.prediction" not in found

@@ -1,0 +1,64 @@
+"""Pure fabrics: their own law and gauge."""
+
+from __future__ import annotations
+
+from knitcore.fabric import Direction, Fabric
+from knitcore.law.response import free_response, held_response, stiffened
+from knitcore.law.uniaxial import free_transverse_strains
+from knitcore.materials import FabricRecord, Interval, Material, Origin
+from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.prediction.prediction import Along, Prediction, Source
+
+CURL = (
+    "Stockinette curls: its sides roll to the back, its top and bottom edges to the face. The "
+    "moduli are those of a sheet held flat."
+)
+
+GAUGE_LOG_SD = 0.08
+"""Standard deviation of the logarithm of a pure fabric's size: one aspect ratio is used for all
+yarns, and those of two yarns differ by up to 17 % (``materials/data/aspect.csv``)."""
+GAUGE_SD_SOURCE = "one aspect ratio of stitches for all yarns (8 %)"
+
+_SOURCES = {Origin.SIMULATED: Source.SWEPT, Origin.ESTIMATED: Source.ESTIMATED}
+
+
+def predict_pure(fabric: Fabric, material: Material) -> Prediction:
+    """Predict a pure fabric from its record in the material.
+
+    Raises
+    ------
+    InputError
+        If the material has no such fabric.
+    """
+    record = material.record(fabric)
+    notes = [CURL] if fabric is Fabric.STOCKINETTE else []
+    course, wale = (_along(record, direction) for direction in Direction)
+    return Prediction(
+        course,
+        wale,
+        record.law.shear_modulus,
+        _SOURCES.get(record.origin, Source.MEASURED),
+        f"law of {fabric}, {record.origin}",
+        "gauge of the pure fabric",
+        (record.uncertainty.source,),
+        (GAUGE_SD_SOURCE,),
+        (*notes, *([material.note] if material.note else [])),
+    )
+
+
+def _along(record: FabricRecord, direction: Direction) -> Along:
+    law, spread = record.law, record.uncertainty
+    response, modulus = free_response(law, direction), law.modulus(direction)
+    # the stress at each strain is uncertain; the lock-up strain, which tests fix best, is kept
+    return Along(
+        response,
+        stiffened(response, lambda stress: Z_SCORE * spread.log_stress(direction, stress)),
+        stiffened(response, lambda stress: -Z_SCORE * spread.log_stress(direction, stress)),
+        lambda stress: free_transverse_strains(law, direction, response.strain(stress)),
+        held_response(law, direction),
+        poisson=law.poisson(direction),
+        poisson_sd=spread.poisson(direction),
+        relaxed_mm=record.stitch_size_mm(direction),
+        relaxed_log_sd=GAUGE_LOG_SD,
+        bounds_n_per_mm=Interval(modulus, modulus),
+    )

@@ -1,0 +1,327 @@
+"""Laws for the quarter cells of a piece, such that the piece as a whole agrees with its prediction.
+
+The quarter grid with the pure fabrics' own laws and sizes is the flat composite, without folds. So
+each patch of a mixed chart (:mod:`knitcore.prediction.patches`) gets laws of its own. At every
+stress a phase's strain over the patch's lies between 1 and what it is in the flat composite,
+
+    strain_p = prediction (1 + c (strain_p of the pure fabric / strain of the flat composite - 1)),
+
+and laws are fitted to that. Phases in series then add up to the prediction, and the quarters that
+stretch most in the flat composite still do. In fine textures c is a half: neighbours restrain each
+other (and neighbouring cells that differed as much as the pure fabrics would be crushed). With the
+share of wide areas of one phase it rises to 1. Like the predictions, these parts pass gradually
+from those of the whole chart to those of its patches.
+Stitch sizes are those of their surroundings (:mod:`knitcore.prediction.neighbourhood`), scaled
+to the prediction's relaxed size. Poisson's ratios are the prediction's, or less where one
+energy for both directions requires it. A piece of one pure fabric keeps its own law.
+
+Finite elements larger than a stitch take even laws instead: one for all quarters of a patch, with
+the patch's own strains.
+
+The flat composite is taken as lines of cells along the pull: in a line the phases are in series at
+one force, and all lines are strained alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter, minimum_filter
+
+from knitcore.arrays import Array
+from knitcore.chart import StitchChart
+from knitcore.fabric import PHASES, Direction
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.stiffening import stiffening
+from knitcore.materials import FabricRecord, Material
+from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.phases import pure_fabric, quarter_phases
+from knitcore.prediction.mixture import law_strains
+from knitcore.prediction.neighbourhood import sizes_and_folds
+from knitcore.prediction.patches import Patches
+from knitcore.prediction.predict import patches_of
+from knitcore.prediction.prediction import Prediction
+from knitcore.prediction.size import RelaxedSize
+
+STRESSES: Array = np.geomspace(0.003, 0.5, 24)
+"""Stresses (N/mm) at which laws are fitted."""
+SPREAD_AT: Array = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.4])
+"""Stresses (N/mm) at which the model's own error is kept."""
+_FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 200)])
+_LOCKED: Array = np.concatenate([np.linspace(0.3, 0.9, 25), np.linspace(0.905, 0.995, 19)])
+"""Shares of the lock-up strain that the largest of the strains may be."""
+_WIDE = 9
+"""Quarter cells a side of an area of one phase that counts as wide: two stitches around one."""
+_MAX_POISSON = 0.9
+"""Limit of the product of both Poisson ratios, so that the law is stable."""
+
+
+@dataclass(frozen=True, eq=False)
+class QuarterLaws:
+    """Laws and sizes of a chart's quarter cells.
+
+    Attributes
+    ----------
+    laws : four for each patch, in the order of the phase codes; a phase that is not in the patch
+        has the law of another one.
+    patch : (rows, columns) number of each stitch's patch.
+    scale : (rows, columns, 2) width and height of the stitches over those of their phases.
+    log_sd : gives the standard deviation of the logarithm of stress course-wise and wale-wise,
+        (2, stresses) at :data:`SPREAD_AT`: the model's own error, not that of the pure fabrics'
+        laws.
+    """
+
+    laws: tuple[ConstitutiveLaw, ...]
+    patch: NDArray[np.intp]
+    scale: Array
+    log_sd: Callable[[], Array]
+
+
+def quarter_laws(
+    chart: StitchChart,
+    material: Material,
+    size: RelaxedSize | None = None,
+    *,
+    even: bool = False,
+) -> QuarterLaws:
+    """Laws of a piece.
+
+    Parameters
+    ----------
+    chart : the piece.
+    material : a yarn at one setting.
+    size : relaxed size of the chart's mean stitch, if known.
+    even : give all quarters of a mixed patch one law, that of the patch.
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    pure = pure_fabric(chart) is not None
+    if pure and size is None:
+        return flat_laws(chart, material)
+    patches = patches_of(chart, material, size)
+    phases = quarter_phases(chart)
+    scale = _scale(chart, phases, patches, material)
+    if pure:
+        return replace(flat_laws(chart, material), scale=scale)
+    whole = _parts(phases, material)
+    laws: list[ConstitutiveLaw] = []
+    # of the repeat, if it has several patches
+    number = np.zeros((patches.rows[-1], patches.columns[-1]), dtype=np.intp)
+    for here, cells, prediction in _each(patches, phases):
+        number[here] = len(laws) // len(PHASES)
+        parts = patches.alike * whole + (1 - patches.alike) * _parts(cells, material)
+        laws += _fitted_laws(cells, prediction, material, None if even else parts)
+    everywhere = np.ix_(
+        *(np.arange(n) % period for n, period in zip(chart.purl.shape, number.shape, strict=True))
+    )
+    own_error = partial(_stress_log_sd, phases, patches, material)
+    return QuarterLaws(tuple(laws), number[everywhere], scale, own_error)
+
+
+def _each(
+    patches: Patches, phases: NDArray[np.uint8]
+) -> Iterator[tuple[tuple[slice, slice], NDArray[np.uint8], Prediction]]:
+    """Stitches, quarter cells and prediction of each patch."""
+    for (below, above), line in zip(pairwise(patches.rows), patches.predictions, strict=True):
+        for (left, right), prediction in zip(pairwise(patches.columns), line, strict=True):
+            cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
+            yield (slice(below, above), slice(left, right)), cells, prediction
+
+
+def _stress_log_sd(phases: NDArray[np.uint8], patches: Patches, material: Material) -> Array:
+    """The mean of the patches."""
+    spread, all_cells = np.zeros((2, len(SPREAD_AT))), 4 * patches.rows[-1] * patches.columns[-1]
+    for _, cells, prediction in _each(patches, phases):
+        for direction in Direction:
+            own = _own_log_sd(cells, prediction, material, direction)
+            spread[direction.axis] += own * (cells.size / all_cells)
+    return spread
+
+
+def _scale(
+    chart: StitchChart, phases: NDArray[np.uint8], patches: Patches, material: Material
+) -> Array:
+    """Folded sizes of the stitches over those of their phases, with the predicted mean.
+
+    Each stitch folds by its surroundings, so that a hem is narrower than the cloth above it.
+    """
+    _, folds = sizes_and_folds(chart, material)
+    records = _records(phases, material)
+    for direction in Direction:
+        flat = np.array([_size(record, direction) for record in records])[phases]
+        flat = flat.reshape(chart.rows, 2, chart.columns, 2).mean(axis=(1, 3))
+        mean = float((flat * folds[..., direction.axis]).mean())
+        folds[..., direction.axis] *= patches.relaxed_mm(direction) / mean
+    return folds
+
+
+def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
+    """The pure fabrics' own laws and sizes: the flat composite, without folds.
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    laws = tuple(_own_laws(quarter_phases(chart), material))
+    shape = chart.purl.shape
+    none = partial(np.zeros, (2, len(SPREAD_AT)))
+    return QuarterLaws(laws, np.zeros(shape, dtype=np.intp), np.ones((*shape, 2)), none)
+
+
+def _records(cells: NDArray[np.uint8], material: Material) -> list[FabricRecord]:
+    """Records of the four phases; one that does not occur is replaced by one that does."""
+    present = np.unique(cells)
+    return [material.record(PHASES[k if k in present else present[0]]) for k in range(4)]
+
+
+def _shares(cells: NDArray[np.uint8]) -> Array:
+    return np.bincount(cells.ravel(), minlength=4) / cells.size
+
+
+def _size(record: FabricRecord, direction: Direction) -> float:
+    return record.stitch_size_mm(direction)
+
+
+def _own_laws(cells: NDArray[np.uint8], material: Material) -> list[ConstitutiveLaw]:
+    return [record.law for record in _records(cells, material)]
+
+
+def _own_log_sd(
+    cells: NDArray[np.uint8], prediction: Prediction, material: Material, direction: Direction
+) -> Array:
+    """Part of the predicted stress interval that does not come from the laws' own uncertainty."""
+    along = prediction.along(direction)
+    low, high = along.stress_interval(along.strain(SPREAD_AT))
+    whole = np.log(high / low) / (2 * Z_SCORE)
+    records = _records(cells, material)
+    laws = [r.uncertainty.log_stress(direction, SPREAD_AT) for r in records]
+    return np.sqrt(np.maximum(whole**2 - _shares(cells) ** 2 @ np.square(laws), 0.0))
+
+
+def _fitted_laws(
+    cells: NDArray[np.uint8], prediction: Prediction, material: Material, parts: Array | None
+) -> list[ConstitutiveLaw]:
+    """Laws of the phases with which a patch does what its prediction says, even ones if no parts of
+    the phases are given.
+
+    A phase keeps its couplings kappa as far as it is as stiff as in its pure fabric: cloth that
+    unfolds first has little strain in its yarn. So a patch that is all but pure has nearly the
+    laws of its pure fabric.
+    """
+    records = _records(cells, material)
+    shear = np.array([r.law.shear_modulus for r in records])
+    growth = np.array([r.law.shear_stiffening for r in records])
+    constants = np.zeros((2, len(records), 3))  # Young's modulus, alpha, beta
+    for direction in Direction:
+        strains = prediction.along(direction).strain(STRESSES)
+        if parts is None:
+            constants[direction.axis] = _fitted(strains)
+            continue
+        constants[direction.axis] = [_fitted(strains * part) for part in parts[direction.axis]]
+    alone = np.array([[_fitted_alone(r.law, d) for r in records] for d in Direction])
+    own = np.array([[_constants(r.law, d) for r in records] for d in Direction])
+    kept = np.minimum((constants / alone)[..., 0].min(axis=0), 1.0)[:, None]
+    kappa = kept * [(r.law.kappa_xx, r.law.kappa_yy) for r in records]
+    regained = kept * np.log(np.divide(own, alone, out=np.ones_like(own), where=alone * own > 0))
+    if parts is None:
+        shares = _shares(cells)
+        shear[:], growth[:] = np.exp(shares @ np.log(shear)), shares @ growth
+        kappa[:], regained[:] = shares @ kappa, (shares @ regained)[:, None]
+    constants *= np.exp(regained)
+    most_yx, most_xy = (max(prediction.along(d).poisson, 0.0) for d in Direction)
+    found = []
+    for (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y), coupled, modulus, grown in zip(
+        *(values.tolist() for values in (*constants, kappa, shear, growth)), strict=True
+    ):
+        # One coupling for both, as an energy needs; neither contraction exceeds the predicted one.
+        nu_xy = min(most_xy, most_yx * modulus_y / modulus_x)
+        nu_yx = nu_xy * modulus_x / modulus_y
+        held = 1 - min(nu_yx * nu_xy, _MAX_POISSON)
+        found.append(
+            ConstitutiveLaw(
+                stiffness_xxxx=modulus_x / held,
+                stiffness_yyyy=modulus_y / held,
+                stiffness_xxyy=nu_xy * modulus_x / held,
+                stiffness_yyxx=nu_yx * modulus_y / held,
+                alpha_xx=alpha_x,
+                alpha_yy=alpha_y,
+                beta_xx=beta_x,
+                beta_yy=beta_y,
+                shear_modulus=modulus,
+                kappa_xx=coupled[0],
+                kappa_yy=coupled[1],
+                shear_stiffening=grown,
+            )
+        )
+    return found
+
+
+def _constants(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
+    """Young's modulus (N/mm), alpha and beta (N/mm) of a law."""
+    if direction is Direction.COURSE:
+        return law.modulus_course, law.alpha_xx, law.beta_xx
+    return law.modulus_wale, law.alpha_yy, law.beta_yy
+
+
+@lru_cache(maxsize=64)
+def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
+    """The constants that a law has by :func:`_fitted`, which knows no kappa."""
+    return _fitted(law_strains(law, direction, STRESSES))
+
+
+def _parts(cells: NDArray[np.uint8], material: Material) -> Array:
+    """(2, phases, stresses) strains of the phases at :data:`STRESSES` over those of cloth of these
+    cells: half as far from 1 as in the flat composite, or as far in wide areas of one phase.
+    """
+    records = _records(cells, material)
+    wide = maximum_filter(cells, _WIDE) == minimum_filter(cells, _WIDE)
+    contrast = (1 + wide.mean()) / 2
+    found = []
+    for direction in Direction:
+        strains = np.array([law_strains(r.law, direction, STRESSES) for r in records])
+        found.append(1 + contrast * (strains / _flat_strain(cells, records, direction) - 1))
+    return np.array(found)
+
+
+def _flat_strain(
+    cells: NDArray[np.uint8], records: list[FabricRecord], direction: Direction
+) -> Array:
+    lines = cells if direction is Direction.COURSE else cells.T
+    along, across = (np.array([_size(r, d) for r in records]) for d in (direction, direction.other))
+    counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)
+    kinds, same = np.unique(counts, axis=0, return_inverse=True)
+    lengths = kinds * along
+    strains = np.stack([law_strains(r.law, direction, _FINE) for r in records])
+    of_line = lengths @ strains / lengths.sum(axis=1, keepdims=True)
+    width = np.bincount(same.ravel()) * (kinds @ across)
+    common = np.linspace(0.0, 1.0, 400) ** 2 * of_line[:, -1].min()
+    stress = width @ np.array([np.interp(common, line, _FINE) for line in of_line]) / width.sum()
+    found: Array = np.interp(STRESSES, stress, common)
+    return found
+
+
+def _fitted(strains: Array) -> tuple[float, float, float]:
+    """Young's modulus (N/mm), alpha and beta (N/mm) of a law with strains at :data:`STRESSES`.
+
+    For each alpha, modulus and beta, not below 0, follow by least squares of the relative stress.
+    """
+    alpha = _LOCKED / strains[-1]
+    slopes = stiffening(np.outer(alpha, strains))[1] / STRESSES
+    line = strains / STRESSES
+    # the normal equations of two unknowns, for all alphas at once
+    mixed, total = slopes @ line, line.sum()
+    determinant = line @ line * (slopes**2).sum(axis=1) - mixed**2
+    beta = np.maximum((line @ line * slopes.sum(axis=1) - mixed * total) / determinant, 0.0)
+    modulus = (total - mixed * beta) / (line @ line)
+    off = ((np.outer(modulus, line) + beta[:, None] * slopes - 1) ** 2).sum(axis=1)
+    best = int(np.argmin(np.where(modulus > 0, off, np.inf)))
+    return float(modulus[best]), float(alpha[best]), float(beta[best])

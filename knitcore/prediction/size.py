@@ -1,0 +1,84 @@
+"""A known relaxed size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from knitcore.bounds import check_positive
+from knitcore.fabric import Direction
+
+
+class KnownBy(StrEnum):
+    """How a relaxed size became known."""
+
+    GAUGE = "gauge"
+    RELAXATION = "relaxation"
+
+    @property
+    def errors(self) -> str:
+        """What the interval of such a size rests on, in words."""
+        return _ERRORS[self]
+
+
+_ERRORS = {
+    KnownBy.GAUGE: "the gauge as given",
+    KnownBy.RELAXATION: "how far yarn-level charts of the same densities differ",
+}
+
+
+@dataclass(frozen=True)
+class RelaxedSize:
+    """Relaxed size of one mean stitch of a chart.
+
+    Attributes
+    ----------
+    course_mm, wale_mm : width and height.
+    log_sd : standard deviation of their logarithms.
+    known_by : a gauge counted on cloth, or a relaxation at the yarn level
+        (:mod:`knitcore.prediction.relaxation`).
+
+    Raises
+    ------
+    InputError
+        If a size is not a positive number.
+    """
+
+    course_mm: float
+    wale_mm: float
+    log_sd: float = 0.03
+    known_by: KnownBy = KnownBy.GAUGE
+
+    def __post_init__(self) -> None:
+        for name in ("course_mm", "wale_mm"):
+            check_positive(name, getattr(self, name), "mm", "a stitch size", 500)
+
+    @classmethod
+    def from_gauge(cls, stitches_per_10_cm: float, rows_per_10_cm: float) -> RelaxedSize:
+        """From a swatch's gauge.
+
+        Examples
+        --------
+        >>> RelaxedSize.from_gauge(25, 40).course_mm
+        4.0
+        """
+        for name, value in (
+            ("stitches_per_10_cm", stitches_per_10_cm),
+            ("rows_per_10_cm", rows_per_10_cm),
+        ):
+            check_positive(name, value, what="a gauge")
+        return cls(100 / stitches_per_10_cm, 100 / rows_per_10_cm)
+
+    @property
+    def stitches_per_10_cm(self) -> float:
+        """Gauge along the rows."""
+        return 100 / self.course_mm
+
+    @property
+    def rows_per_10_cm(self) -> float:
+        """Gauge along the columns."""
+        return 100 / self.wale_mm
+
+    def extent_mm(self, direction: Direction) -> float:
+        """Relaxed size along a direction, mm."""
+        return direction.of(self.course_mm, self.wale_mm)

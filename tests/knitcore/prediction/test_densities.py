@@ -1,0 +1,55 @@
+"""Densities of charts: invariances, pure fabrics, and how little one stitch changes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from knitcore import StitchChart
+from knitcore.fabric import PHASES
+from knitcore.prediction.densities import densities
+from tests.knitcore.charts import stitch_charts
+
+
+@settings(max_examples=40, deadline=None)
+@given(stitch_charts(), st.integers(0, 11), st.integers(0, 11))
+def test_the_same_cloth_has_the_same_densities(chart: StitchChart, up: int, right: int) -> None:
+    found = densities(chart)
+    shifted = StitchChart(np.roll(chart.purl, (up, right), axis=(0, 1)))
+    for other in (shifted, chart.mirror(), chart.swap(), chart.turn_over(), chart.tile(2, 3)):
+        same = densities(other)
+        assert np.allclose(same.features, found.features, atol=1e-9)
+        assert np.allclose(same.straight, found.straight, atol=1e-9)
+
+
+@pytest.mark.parametrize("fabric", PHASES)
+def test_a_pure_fabric_has_no_excess(fabric: str) -> None:
+    found = densities(StitchChart.of_fabric(fabric, 4, 6))
+    assert np.abs(found.excess).max() < 1e-12
+    assert found.shares.max() == 1.0
+
+
+@settings(max_examples=20, deadline=None)
+@given(stitch_charts(8), st.integers(0, 31), st.integers(0, 31))
+def test_one_stitch_of_1024_changes_little(chart: StitchChart, row: int, column: int) -> None:
+    whole = chart.resized(32, 32)
+    flipped = whole.purl.copy()
+    flipped[row, column] ^= True
+    before, after = densities(whole), densities(StitchChart(flipped))
+    assert np.abs(after.shares - before.shares).max() < 6 / 1024
+    assert np.abs(after.excess - before.excess).max() < 80 / 1024  # fields reach about 10 stitches
+
+
+def test_columns_of_a_rib_are_straight_and_rows_of_a_welt() -> None:
+    assert densities(StitchChart.parse("KKPP")).straight == pytest.approx([1, 0], abs=0.01)
+    assert densities(StitchChart.parse("K\nK\nP\nP")).straight == pytest.approx([0, 1], abs=0.01)
+
+
+@pytest.mark.parametrize("side", [4, 8, 32])
+def test_single_purls_are_two_dimensional_however_few_they_are(side: int) -> None:
+    grid = np.zeros((side, side), dtype=bool)
+    grid[0, 0] = True
+    assert densities(StitchChart(grid)).ways[2:].sum() > 0.6
+    assert densities(StitchChart.parse("KKPP")).ways == pytest.approx([1, 0, 0, 0], abs=1e-9)
