@@ -85,7 +85,7 @@ coverage: $(VENV)/.installed-dev page ## Tell which lines the default suite runs
 	$(BIN)/coverage report
 
 study: $(VENV)/.installed-dev ## Compare with the study's raw data in the folder KNITCORE_STUDY_DATA
-	$(BIN)/pytest benchmarks/study
+	$(BIN)/python -m pytest studies/raw_data
 
 test-postgres: $(VENV)/.installed-dev ## Run the tests of the designs on a real PostgreSQL
 	dpkg -s postgresql >/dev/null 2>&1 || apt-get install -y --no-install-recommends postgresql
@@ -126,11 +126,12 @@ format: $(VENV)/.installed-dev frontend/node_modules/.installed ## Format the co
 	$(BIN)/ruff format .
 	cd frontend && npm run --silent format
 
-bench: $(VENV)/.installed-dev ## Print the benchmarks (CPU time and ratios)
-	for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+bench: $(VENV)/.installed-dev ## Print how fast it is: CPU times and ratios
+	for name in mechanics swatch curl yarnlevel files page service; do \
+		echo "== $$name"; $(BIN)/python -m studies.speed.$$name || exit 1; done
 
 bench-service: $(VENV)/.installed-dev ## Fifty people paint beside computations; SECONDS=600 for ten minutes
-	$(BIN)/python benchmarks/service.py
+	$(BIN)/python -m studies.speed.service
 
 docs: $(VENV)/.installed-dev ## Run every example of the documentation
 	$(BIN)/pytest -q tests/test_docs.py
