@@ -121,8 +121,9 @@ format: $(VENV)/.installed-tests frontend/node_modules/.installed ## Format the 
 	$(BIN)/ruff format .
 	cd frontend && npm run --silent format
 
-bench: $(VENV)/.installed-tests ## Print the benchmarks (CPU time and ratios)
-	for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+bench: $(VENV)/.installed-tests ## Print how fast it is: CPU times and ratios
+	for name in mechanics swatch curl yarnlevel files page service; do \
+		echo "== $$name"; $(BIN)/python -m studies.speed.$$name || exit 1; done
 
 docs: $(VENV)/.installed-tests ## Build the documentation as a site in build/site; no network needed
 	PYTHONPATH=. NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict

@@ -97,13 +97,19 @@ def test_the_library_does_not_import_the_service() -> None:
 
 
 @pytest.mark.parametrize("folder", ["knitcore", "app", "scripts"])
-def test_nothing_imports_the_scripts_or_the_benchmarks_that_use_it(folder: str) -> None:
-    above = {"benchmarks", "scripts"} - {folder}
+def test_nothing_imports_the_scripts_or_the_studies_that_use_it(folder: str) -> None:
+    above = {"studies", "scripts"} - {folder}
     for file in (ROOT / folder).rglob("*.py"):
         assert not {module.split(".")[0] for module in imports(file)} & above, file
 
 
-@pytest.mark.parametrize("folder", ["benchmarks", "docs", "examples", "scripts"])
+def test_studies_import_neither_tests_nor_documentation() -> None:
+    for file in (ROOT / "studies").rglob("*.py"):
+        assert not {module.split(".")[0] for module in imports(file)} & {"docs", "tests"}, file
+        assert "sys.path" not in file.read_text(encoding="utf-8"), file
+
+
+@pytest.mark.parametrize("folder", ["studies", "examples", "scripts"])
 def test_what_programs_beside_the_product_import_from_it_exists(folder: str) -> None:
     for file in (ROOT / folder).rglob("*.py"):
         tree = ast.parse(file.read_text(encoding="utf-8"))

@@ -38,7 +38,7 @@ error that its phases have in common; half of the rest, in logarithms, is kept."
 
 YARN_LEVEL_SIZE_LOG_SD = 0.16
 """Standard deviation of the logarithm of a relaxed width or height: rms of yarn-level over knitted
-sizes, the four pure fabrics of acrylic and cotton (``benchmarks/against_knitted.py``)."""
+sizes, the four pure fabrics of acrylic and cotton (``studies/against_knitted.py``)."""
 
 YARN_LEVEL_FREE_SIZE_LOG_SD = 0.27
 """The same of the shapes that they lead to without the symmetries of the chart."""

@@ -41,7 +41,7 @@ MAX_FOLDED = 0.87
 """Knitted fabric folds less than the yarn level predicts, which has no friction and no set. In
 logarithms a fold f becomes f / (1 + |f| / MAX_FOLDED), times the squared straightness of the fold
 lines: folds that cross hinder each other. The number was fitted to the 29 swatches of KnitDB, and
-the power was chosen there from 1, 2 and 3 (benchmarks/knitdb.py)."""
+the power was chosen there from 1, 2 and 3 (studies/knitdb.py)."""
 
 SHOWN_LOG_SD = 0.055
 """Residual of that fit: standard deviation of the logarithm of a swatch's width or height."""

@@ -29,7 +29,7 @@ LOG_WIDTH_READING = 0.03
 """Standard deviation of the logarithm of a clamped width read from a picture."""
 TYPICAL_LOG_ERROR = 0.046
 """Error of the force of a pull predicted from the others: rms over acrylic's eight tests
-(``benchmarks/true_to_tests.py --left-out`` prints it)."""
+(``studies/true_to_tests.py --left-out`` prints it)."""
 LOG_SHEAR_DOUBT = 0.7
 """Standard deviation of ln C_xyxy beside what the fit says: tests along course and wale are hardly
 sensitive to it, and what is known of it varies as much

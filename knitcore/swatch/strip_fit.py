@@ -50,7 +50,7 @@ KAPPA_STARTS = ((0.4, 0.02), (0.05, 0.4))
 """Starts of kappa_xx and kappa_yy besides their prior: the sum of squares has several minima."""
 LOG_SHEAR_PRIOR = (math.log(0.2), 0.35)
 """Mean and standard deviation of ln(C_xyxy / sqrt(Y_x Y_y)): 0.15 to 0.35 in jersey pulled on the
-bias (``benchmarks/bias_strip.py``), 0.1 to 0.2 in a displacement field of acrylic garter, 0.08 and
+bias (``studies/graded_jersey.py``), 0.1 to 0.2 in a displacement field of acrylic garter, 0.08 and
 0.15 at the yarn level (acrylic stockinette and garter). That is a deviation of 0.7; half of it
 here, because the sum of squares counts neighbouring points, which err alike, as if independent."""
 SHEAR_STIFFENING = 4.0

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from benchmarks.knitogami import folds
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.materials import material
-from knitcore.shell.curl import curl
+from knitcore.shell.curl import CurledPiece, curl
 
 Ints = NDArray[np.int64]
 SIDE = 48
@@ -35,6 +35,41 @@ PURL: dict[str, Callable[[Ints, Ints], NDArray[np.generic]]] = {
     "weave": lambda r, c: np.where(r % 12 < 2, 0, (c // 12 + r // 12) % 2),
 }
 """Where a stitch of a row and column is a purl."""
+
+
+def turns(corners_mm: Array) -> Array:
+    """Turn between neighbours along the rows, (rows, columns - 1), rad, positive over a ridge."""
+    diagonals = corners_mm[1:, 1:] - corners_mm[:-1, :-1], corners_mm[1:, :-1] - corners_mm[:-1, 1:]
+    normal = np.cross(*diagonals)
+    normal /= np.linalg.norm(normal, axis=2)[..., None]
+    line = corners_mm[1:, 1:-1] - corners_mm[:-1, 1:-1]
+    line /= np.linalg.norm(line, axis=2)[..., None]
+    across = np.cross(normal[:, :-1], normal[:, 1:])
+    sine = np.einsum("ijm,ijm->ij", across, line)
+    return np.asarray(np.arctan2(sine, np.einsum("ijm,ijm->ij", normal[:, :-1], normal[:, 1:])))
+
+
+def folds(piece: CurledPiece) -> tuple[float, list[float]]:
+    """Share of the folding that goes as the natural curvature does, and the mean fold of a panel.
+
+    Folds are in degrees: knits and purls along the rows, then along the columns.
+    """
+    mean_folds, right, total = [], 0.0, 0.0
+    for purl, corners, sign in (
+        (piece.chart.purl, piece.corners_mm, 1.0),
+        (piece.chart.purl.T, piece.corners_mm.transpose(1, 0, 2), -1.0),
+    ):
+        turn = sign * turns(corners)
+        inside = purl[:, 1:] == purl[:, :-1]
+        for kind in (False, True):
+            alike = inside & (purl[:, 1:] == kind)
+            begins = alike & ~np.pad(alike, ((0, 0), (1, 0)))[:, :-1]
+            panels = max(np.count_nonzero(begins), 1)
+            mean_folds.append(float(np.degrees(turn[alike].sum() / panels)))
+            natural = -sign if kind else sign
+            right += float(np.maximum(natural * turn[alike], 0.0).sum())
+            total += float(np.abs(turn[alike]).sum())
+    return right / total, mean_folds
 
 
 @pytest.mark.slow

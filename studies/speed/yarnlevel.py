@@ -1,0 +1,181 @@
+"""Yarn-level figures with their targets: CPU seconds, energies, the authors' figures.
+
+    python -m studies.speed.yarnlevel [--sides 1 2 4 8 16] [--charts 3]
+        [--cells-only] [--skip-published]
+
+Run with OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1: idle threads of the linear algebra would count
+as CPU time. The authors' public code, unmodified, needs about 250 CPU seconds for one point of one
+fabric.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction, Fabric
+from knitcore.yarnlevel.cell import mirrored_cell, plain_cell
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.growth import Start, grow
+from knitcore.yarnlevel.published.relax import relax_published
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.samples import load_samples, sample
+from knitcore.yarnlevel.solver import Options
+from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.splines import ROUGH_FROM
+from knitcore.yarnlevel.sweep import sweep
+from knitcore.yarnlevel.yarn import YarnModel
+
+AUTHORS_POINT_S = 250.0
+FAR = {
+    Fabric.STOCKINETTE: (0.9, 0.5),
+    Fabric.GARTER: (1.0, 1.6),
+    Fabric.RIB: (3.0, 0.8),
+    Fabric.SEED: (1.2, 1.4),
+}
+YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
+LOOP_MM = 11.28
+LIMITS_S = {1: 0.04, 2: 0.2, 4: 1.0, 8: 8.0, 16: 60.0}
+STITCH_LIMIT_S, SWEEP_LIMIT_S, SWEEPS_LIMIT_S = 0.15, 4.0, 90.0
+AUTHORS_COURSE_MM, AUTHORS_SPLINE_N_MM = 2.80, 0.3957
+
+
+def against(value: float, limit: float, unit: str = "s") -> str:
+    """A value, its limit and whether it is within it."""
+    return f"{value:.4g} {unit} (limit {limit:g}: {'kept' if value <= limit else 'MISSED'})"
+
+
+def stitches() -> None:
+    """One stitch and its stretches for each of the eight samples."""
+    print("one stitch, two starts, polished on the fine grid; 25-point sweeps there and back")
+    print(f"{'sample':24}{'relax s':>9}{'x authors':>11}{'course s':>10}{'wale s':>8}{'N·mm':>9}")
+    total = slowest = longest = 0.0
+    for entry in load_samples():
+        zero = relax(
+            StitchChart.of_fabric(entry.fabric, 2, 2),
+            entry.yarn,
+            entry.loop_length_mm,
+            branch="mirrored",
+        )
+        times = []
+        for direction, far in zip(Direction, FAR[entry.fabric], strict=True):
+            began = time.process_time()
+            sweep(zero, direction, far, points=25)
+            times.append(time.process_time() - began)
+        total, slowest = total + sum(times), max(slowest, zero.seconds)
+        longest = max(longest, *times)
+        name, ratio = f"{entry.fabric} {entry.yarn_id}", AUTHORS_POINT_S / zero.seconds
+        print(
+            f"{name:24}{zero.seconds:9.3f}{ratio:11.0f}{times[0]:10.2f}{times[1]:8.2f}"
+            f"{zero.energy_n_mm:9.4f}"
+        )
+    print("slowest stitch:", against(slowest, STITCH_LIMIT_S))
+    print("longest sweep:", against(longest, SWEEP_LIMIT_S))
+    print("all 16 sweeps:", against(total, SWEEPS_LIMIT_S))
+
+
+def cells(sides: list[int], charts: int) -> None:
+    """Cells of random knits and purls in both yarns: CPU and wall seconds.
+
+    Small cells have one start, of the two that are usual.
+    """
+    print("cells of random K and P, from the first shape to the tolerance")
+    print(f"{'cell':9}{'yarn':9}{'chart':>6}{'CPU s':>9}{'s/stitch':>10}{'wall s':>9}{'N·mm':>10}")
+    for side in sides:
+        times = []
+        for seed in range(1, charts + 1):
+            chart = StitchChart(np.random.default_rng(seed).random((side, side)) < 0.5)
+            for name in ("acrylic", "cotton"):
+                entry = sample(name, "stockinette")
+                began = time.perf_counter()
+                one = [Start("usual")] if chart.stitches < ROUGH_FROM else None
+                found = relax(
+                    chart, entry.yarn, entry.loop_length_mm, starts=one, branch="mirrored"
+                )
+                wall = time.perf_counter() - began
+                times.append(found.seconds)
+                state = "" if found.converged else "  not converged"
+                print(
+                    f"{f'{side} x {side}':9}{name:9}{seed:6}{found.seconds:9.3f}"
+                    f"{found.seconds / side**2:10.3f}{wall:9.3f}{found.energy_n_mm:10.6f}{state}",
+                    flush=True,
+                )
+        limit = LIMITS_S.get(side, np.inf)
+        print(f"{side} x {side}: median", against(float(np.median(times)), limit))
+
+
+def authors_sample() -> None:
+    """The authors' stockinette sample on splines, by grid; and single against general solver."""
+    configured, loop_mm = sample("acrylic", "stockinette").as_configured()
+    yarn = replace(configured, core_radius_mm=0.30)
+    stitch = StitchChart.parse("K")
+    print(f"authors' stockinette sample, l_x {AUTHORS_COURSE_MM} mm, splines by control points")
+    found = []
+    for grid in (SplineGrid(16, 3), SplineGrid(20, 4), SplineGrid(24, 5), SplineGrid(32, 5)):
+        held = relax(
+            stitch, yarn, loop_mm, convention=Convention.AUTHORS_CODE, grid=grid,
+            cell_course_mm=AUTHORS_COURSE_MM, branch="mirrored",
+        )  # fmt: skip
+        found.append(held.energy_n_mm)
+        print(f"  {grid.controls}: {held.energy_n_mm:.6f} N·mm")
+    print("  relaxed energy:", against(found[-1], AUTHORS_SPLINE_N_MM, "N·mm"))
+    print("  grid (20 to 32):", against(abs(found[1] / found[-1] - 1.0), 1e-4, "relative"))
+    energies = []
+    for cell in (
+        mirrored_cell(stitch, SplineGrid(16, 3)),
+        plain_cell(stitch.tile(2, 2), SplineGrid(16, 3)),
+    ):
+        state = grow(
+            cell, yarn, np.full(cell.rows, loop_mm), Convention.AUTHORS_CODE, Start("usual"),
+            options=Options(tolerance=1e-9),
+        )  # fmt: skip
+        energies.append(state.terms.energy / cell.stitches)
+    print(
+        "  single and general solver:",
+        against(abs(energies[1] / energies[0] - 1.0), 1e-5, "relative"),
+    )
+
+
+def published() -> None:
+    """Zero-force energies of the published branch."""
+    print("published branch: energies and contact shares of Supplementary Table 8")
+    energy = share = 0.0
+    for entry in load_samples():
+        cell = relax_published(entry.fabric, entry.yarn, entry.loop_length_mm)
+        energy = max(energy, abs(cell.energy_n_mm / entry.energy_n_mm - 1.0))
+        share = max(share, abs(cell.contact_share - entry.contact_share))
+    print("  energies off by at most", against(energy, 0.03, "relative"))
+    print("  contact shares off by at most", against(share, 0.015, "absolute"))
+    configured, loop_mm = sample("acrylic", "stockinette").as_configured()
+    cell = relax_published(
+        "stockinette", replace(configured, core_radius_mm=0.30), loop_mm,
+        cell_course_mm=AUTHORS_COURSE_MM, convention=Convention.AUTHORS_CODE,
+    )  # fmt: skip
+    print(f"  authors' sample: {cell.energy_n_mm:.5f} N·mm (.4045 within 1e-3)")
+
+
+def main() -> None:
+    """Print everything."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--sides", type=int, nargs="*", default=[1, 2, 4, 8])
+    parser.add_argument("--charts", type=int, default=3, help="random charts of each size")
+    parser.add_argument("--cells-only", action="store_true")
+    parser.add_argument("--skip-published", action="store_true")
+    asked = parser.parse_args()
+    relax(StitchChart.parse("K"), YARN, LOOP_MM, branch="mirrored")  # compiles
+    relax(StitchChart.parse("KP/KK"), YARN, LOOP_MM, branch="mirrored")
+    cells(asked.sides, asked.charts)
+    if asked.cells_only:
+        return
+    stitches()
+    authors_sample()
+    if not asked.skip_published:
+        published()
+
+
+if __name__ == "__main__":
+    main()
