@@ -123,4 +123,4 @@ def save(axes: Axes, name: str) -> None:
     axes.get_figure(root=True).savefig(path, metadata={"Date": None, "Creator": None})
     plt.close("all")
     drawn = re.sub(r"(\d\.\d\d)\d{3,}", r"\1", path.read_text(encoding="utf-8"))  # 0.01 pt
-    path.write_text(re.sub(r"\s*\n\s*", "\n", drawn), encoding="utf-8")
+    path.write_text(re.sub(r"\s*\n\s*", " ", drawn).strip() + "\n", encoding="utf-8")
