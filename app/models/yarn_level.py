@@ -124,6 +124,11 @@ class YarnResult(ResultModel):
     provenance: str
     estimated: bool
 
+    @classmethod
+    def of_chart(cls, used: ChartYarn) -> YarnResult:
+        """Describe the yarn of a chart."""
+        return cls.of(used.yarn, provenance=used.provenance, estimated=used.estimated)
+
 
 def _lengths(request: YarnLevelRequest, used: ChartYarn, rows: int, columns: int) -> ArrayLike:
     """One loop length, one for every course, or one for every stitch."""

@@ -142,7 +142,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         stable=shown.minimum,
         provenance="yarn level, linear response of the repeat, relaxed "
         f"{symmetry} the symmetries of its chart{whence}; yarn: {used.provenance}",
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         notes=notes,
     )
 

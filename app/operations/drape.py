@@ -80,8 +80,8 @@ def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
     rim = 0.5 * request.disc_mm * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     result = DrapeResult.of(
         found,
-        cloth,
         piece=piece,
+        weight_g_per_m2=cloth.weight_g_per_m2,
         coefficient_of_states=(min(found.coefficients), max(found.coefficients)),
         bending_length_course_mm=cloth.bending_length_mm(0),
         bending_length_wale_mm=cloth.bending_length_mm(1),

@@ -89,9 +89,9 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
     if limit := MAX_STITCHES.get(request.to):
         check_stitches(chart.stitches, limit, instead=f" for {request.to}, or the command line")
     file = _export(chart, request, context)
-    return ExportResult.of(
-        file,
-        _facts(chart, file),
+    return ExportResult(
+        **dict(_facts(chart, file)),
+        media_type=file.media_type,
         name=_file_name(request.name) + file.suffix,
         content=base64.b64encode(file.content).decode(),
     )
@@ -104,7 +104,7 @@ def _export(chart: StitchChart, request: ExportRequest, context: Context) -> Exp
 
 
 def _facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
-    return ExportFacts.of(file, chart, bytes=len(file.content))
+    return ExportFacts.of(file, rows=chart.rows, columns=chart.columns, bytes=len(file.content))
 
 
 def _file_name(name: str) -> str:

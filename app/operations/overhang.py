@@ -77,8 +77,8 @@ def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResul
     table = TABLE_MM * np.array([(-1.0, -0.5), (0.0, -0.5), (0.0, 0.5), (-1.0, 0.5)])
     result = OverhangResult.of(
         found,
-        cloth,
         piece=piece,
+        weight_g_per_m2=cloth.weight_g_per_m2,
         angle_deg=math.degrees(found.angle_rad),
         yarn_level_rigidity_n_mm=cloth.rigidity_n_mm[axis],
         corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,

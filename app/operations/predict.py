@@ -95,18 +95,44 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
             "All but the size is of the largest rectangle inside the outline, "
             f"{chart.columns} x {chart.rows} stitches."
         )
-    found = choose(chart, material, request.relaxed_size)
+    answer = choose(chart, material, request.relaxed_size)
+    course, wale = answer.course, answer.wale
+    size = size_at_rest(shaped, material, answer)
     segments = segment_map(chart)
-    to_relax = worth_relaxing(chart, material, found)
-    return PredictResult.of(
-        found,
-        chart,
-        size_at_rest(shaped, material, found),
+    to_relax = worth_relaxing(chart, material, answer)
+    return PredictResult(
+        rows=chart.rows,
+        columns=chart.columns,
         segments={direction: segments.counts(direction) for direction in Direction},
+        modulus_course_n_per_mm=course.modulus_n_per_mm,
+        modulus_wale_n_per_mm=wale.modulus_n_per_mm,
+        modulus_course_interval_n_per_mm=course.modulus_interval_n_per_mm,
+        modulus_wale_interval_n_per_mm=wale.modulus_interval_n_per_mm,
+        modulus_course_bounds_n_per_mm=course.bounds_n_per_mm,
+        modulus_wale_bounds_n_per_mm=wale.bounds_n_per_mm,
+        shear_modulus_n_per_mm=answer.shear_modulus_n_per_mm,
+        extensibility_course_mm_per_n=1.0 / course.modulus_n_per_mm,
+        extensibility_wale_mm_per_n=1.0 / wale.modulus_n_per_mm,
+        poisson_yx=course.poisson,
+        poisson_xy=wale.poisson,
+        poisson_yx_interval=course.poisson_interval,
+        poisson_xy_interval=wale.poisson_interval,
+        relaxed_course_mm=course.relaxed_mm,
+        relaxed_wale_mm=wale.relaxed_mm,
+        relaxed_course_interval_mm=course.relaxed_interval_mm,
+        relaxed_wale_interval_mm=wale.relaxed_interval_mm,
+        relaxed_source=answer.relaxed_source,
+        width_mm=size.width_mm,
+        height_mm=size.height_mm,
+        width_interval_mm=size.width_interval_mm,
+        height_interval_mm=size.height_interval_mm,
+        provenance=answer.provenance,
+        method=answer.method,
+        interval_source=answer.interval_source,
         worth_relaxing=None if to_relax is None else to_relax.text,
-        notes=[*notes, *found.notes],
+        notes=[*notes, *answer.notes],
         measures=[
-            MeasureResult.of(one, value=one.value(chart, material, found))
+            MeasureResult.of(one, value=one.value(chart, material, answer))
             for one in map(measure, request.measures)
         ],
     )

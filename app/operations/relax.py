@@ -201,7 +201,8 @@ def _relaxed(
     ]
     return RelaxResult.of(
         cell,
-        request,
+        friction=request.friction,
+        history=request.history,
         rest_sizes=rests,
         unmirrored=unmirrored,
         cell_course_interval_mm=free[0],
@@ -211,7 +212,7 @@ def _relaxed(
         repeat_columns=cell.chart.columns,
         force_course_n=cell.force_n[0],
         force_wale_n=cell.force_n[1],
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         centre_lines_mm=[line.tolist() for line in cell.centre_lines]
         if request.centre_lines
         else None,

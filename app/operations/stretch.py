@@ -213,7 +213,6 @@ def _curve(
     """The numbers of a test."""
     return StretchCurve.of(
         test,
-        test.sheet.grid,
         interval_source=margins.source,
         force_interval_n=(
             test.force_n / margins.force_factor,
@@ -273,9 +272,10 @@ def _stitches(
     shown: dict[str, Any] = {name: _rounded(values) for name, values in fields.items()}
     for name, width in margin.items():
         shown[f"{name}_interval"] = [_rounded(ends) for ends in _around(fields[name], width)]
-    result = StretchResult.of(
-        _curve(chart, request, test, margins),
-        chart,
+    result = StretchResult(
+        **dict(_curve(chart, request, test, margins)),
+        rows=chart.rows,
+        columns=chart.columns,
         id=OPERATION.key(request),
         stitch_fields=shown,
     )

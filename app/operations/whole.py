@@ -128,7 +128,7 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
         cell_course_interval_mm=course,
         cell_wale_interval_mm=wale,
         interval_source=YARN_LEVEL_ERRORS,
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         centre_lines_mm=[line.tolist() for line in found.centre_lines]
         if request.centre_lines
         else None,

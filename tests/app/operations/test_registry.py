@@ -230,7 +230,7 @@ def test_an_operation_is_described_by_its_function() -> None:
 class Found:
     """What a library function returned."""
 
-    modulus_course = 0.5
+    modulus_course_n_per_mm = 0.5
     interval = Interval(1.0, 2.0)
     values = (1.0, 2.0)
     beyond = float("nan")
