@@ -14,7 +14,7 @@ import click
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.patterns import patterns
+from knitcore.patterns import PATTERNS
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -132,7 +132,7 @@ def resolve_chart(chart: str, size: str | None) -> StitchChart:
         return read_chart(chart)
     named = {str(fabric): StitchChart.of_fabric(fabric) for fabric in Fabric}
     if chart.lower() not in named:
-        named |= {pattern.identifier: pattern.chart for pattern in patterns()}
+        named |= {pattern.identifier: pattern.chart for pattern in PATTERNS}
     if chart.lower() not in named:
         names = ", ".join(named)
         raise InputError(

@@ -1336,7 +1336,7 @@ export interface GloveResult {
 }
 
 /** Groups of entry points, and what their functions return lists of. */
-export type Group = "knitcore.patterns" | "knitcore.materials" | "knitcore.exporters" | "knitcore.measures";
+export type Group = "knitcore.materials" | "knitcore.exporters";
 
 /** A whole piece and what holds it. */
 export interface HangRequest {
@@ -1749,15 +1749,6 @@ export interface Materials {
   materials: MaterialSummary[];
 }
 
-/** A number that an extension adds. */
-export interface MeasureResult {
-  identifier: string;
-  /** Null where it has no finite value. */
-  value: number | null;
-  unit: string;
-  description: string;
-}
-
 /** The model refitted from the packaged tables, and its leave-one-yarn-out figures. */
 export interface ModelReport {
   yarns: number;
@@ -1992,8 +1983,6 @@ export interface PredictRequest {
   gauge?: GaugeInput | null;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
-  /** Further numbers, by the names of installed extensions. */
-  measures?: string[];
 }
 
 /** Effective elastic constants of the whole chart at small strain, with 90 % intervals. */
@@ -2040,8 +2029,6 @@ export interface PredictResult {
   /** Chart of the repeat whose relaxation (`relax`, some seconds) has a `gauge` with which these numbers would be more certain; null if there is none. */
   worth_relaxing: string | null;
   notes: string[];
-  /** The measures that were asked for. */
-  measures: MeasureResult[];
 }
 
 /** A tube on a limb: its law, or a fabric or chart of a material, and its sizes. */

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 from pathlib import Path
+from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
@@ -11,12 +12,12 @@ from app.command_options import out_option
 from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
-from app.models.extensions import ExtensionName
 from app.models.gauge import GaugeInput
 from app.models.laws import LawsRequest
 from app.models.uploads import Content
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart, check_stitches, size_in_words
+from knitcore.extensions import IDENTIFIER
 from knitcore.formats.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import DesignLayout
@@ -28,6 +29,10 @@ MAX_STITCHES: dict[str, int] = {
     ExportKind.STL: 2_500,
 }
 """Largest chart over REST, in stitches; the command line accepts larger ones."""
+
+
+ExtensionName = Annotated[str, Field(pattern=f"^{IDENTIFIER.pattern}$")]
+"""The identifier of a format that is not built in."""
 
 
 class ExportRequest(DesignLayout, LawsRequest):

@@ -5,14 +5,12 @@ from __future__ import annotations
 from pydantic import Field
 
 from app.context import Context
-from app.models.base import Ends, IntervalResult, Known, ResultModel
+from app.models.base import Ends, IntervalResult, ResultModel
 from app.models.charts import OutlineInput
-from app.models.extensions import ExtensionName
 from app.models.gauge import GaugedRequest
 from app.models.laws import ElasticConstants, Extensibility
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
-from knitcore.answer.measures import measure
 from knitcore.answer.relaxation import worth_relaxing
 from knitcore.chart import size_in_words
 from knitcore.fabric import Direction
@@ -26,18 +24,6 @@ class PredictRequest(GaugedRequest):
     inside its outline, its size is that of the whole."""
 
     outline: OutlineInput = None
-    measures: list[ExtensionName] = Field(
-        [], max_length=16, description="Further numbers, by the names of installed extensions."
-    )
-
-
-class MeasureResult(ResultModel):
-    """A number that an extension adds."""
-
-    identifier: str
-    value: Known = Field(description="Null where it has no finite value.")
-    unit: str
-    description: str
 
 
 class SegmentCountsResult(ResultModel):
@@ -80,7 +66,6 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
         "with which these numbers would be more certain; null if there is none."
     )
     notes: list[str]
-    measures: list[MeasureResult] = Field([], description="The measures that were asked for.")
 
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
@@ -131,10 +116,6 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         interval_source=answer.interval_source,
         worth_relaxing=None if to_relax is None else to_relax.text,
         notes=[*notes, *answer.notes],
-        measures=[
-            MeasureResult.of(one, value=one.value(chart, material, answer))
-            for one in map(measure, request.measures)
-        ],
     )
 
 
@@ -156,10 +137,6 @@ def _lines(r: PredictResult) -> list[str]:
         f"stitch at rest  {_relaxed(r)}",
         f"size at rest    {r.width_mm / 10:.1f} x {r.height_mm / 10:.1f} cm",
         f"source          {r.provenance} ({r.method})",
-        *(
-            f"{m.identifier:15} {'none' if m.value is None else f'{m.value:.4g}'} {m.unit}"
-            for m in r.measures
-        ),
     ]
 
 
@@ -179,6 +156,5 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help="Moduli, Poisson's ratios and extensibility of CHART.",
-        names={"measures": "--measure"},
     ),
 )
