@@ -15,7 +15,7 @@ from app.context import Context
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import to_chart
 from app.models.laws import FabricRequest
-from app.models.posed import Body, PosedView
+from app.models.posed import PosedView
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
@@ -32,6 +32,7 @@ from knitcore.chart import check_stitches
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.formats.curled import write_curled_glb
+from knitcore.geometry.body import Body
 from knitcore.materials.uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
 from knitcore.shell.worn import TubeOnLimb, worn_tube

@@ -11,7 +11,7 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.posed import Body, PosedView
+from app.models.posed import PosedView
 from app.models.weighed import (
     ClothPiece,
     Corners,
@@ -23,6 +23,7 @@ from app.models.weighed import (
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
+from knitcore.geometry.body import Body
 from knitcore.shell.overhang import overhang as hang_over
 
 TABLE_MM = 40.0

@@ -14,7 +14,7 @@ from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
 from app.models.gauge import FoundGauge
-from app.models.yarn_level import YarnResult, kept_or_made, relax_requested, size_intervals
+from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
 from knitcore.answer.relaxation import size_from_relaxation
 from knitcore.chart import StitchChart, size_in_words
@@ -26,7 +26,7 @@ from knitcore.yarnlevel.hysteresis import History, rest_sizes
 from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, lowest
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlevel.splines import has_mirrors
+from knitcore.yarnlevel.splines import has_mirrors, size_intervals
 from knitcore.yarnlevel.whole import WINDOWS_FROM
 from knitcore.yarnlibrary.yarns import ChartYarn, phase_shares
 

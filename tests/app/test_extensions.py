@@ -32,7 +32,8 @@ def run(*arguments: str) -> str:
 def test_the_commands_take_its_yarn_and_its_format(tmp_path: Path) -> None:
     asked = ["moss", "--size", "24x6", "--material", "house-dk"]
     predicted = json.loads(run("predict", *asked, "--json"))
-    assert predicted["provenance"] == "estimated"
+    assert (predicted["columns"], predicted["rows"]) == (24, 6)
+    assert predicted["modulus_course_n_per_mm"] > 0
 
     out = tmp_path / "card.txt"
     run("export", "moss", "--size", "24x6", "--to", "punchcard", "-o", str(out))
