@@ -1,4 +1,4 @@
-"""Extensions: patterns, yarns, exporters and measures of other installed packages.
+"""Extensions: yarns and file formats of other installed packages.
 
 A package offers them by entry points (``importlib.metadata``) of the groups in :class:`Group`. Each
 names a function without arguments that returns a list of what the group holds. An extension is
@@ -25,14 +25,10 @@ IDENTIFIER = re.compile(r"[a-z0-9][a-z0-9:-]{0,79}")
 class Group(StrEnum):
     """Groups of entry points, and what their functions return lists of."""
 
-    PATTERNS = "knitcore.patterns"
-    """:class:`knitcore.patterns.Pattern`"""
     MATERIALS = "knitcore.materials"
     """:class:`knitcore.materials.Material`"""
     EXPORTERS = "knitcore.exporters"
     """:class:`knitcore.formats.export.Exporter`"""
-    MEASURES = "knitcore.measures"
-    """:class:`knitcore.prediction.measures.Measure`"""
 
 
 class Offer(Protocol):

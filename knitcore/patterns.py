@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from knitcore.chart import StitchChart
-from knitcore.extensions import Group, offered
 
 
 @dataclass(frozen=True)
@@ -53,10 +52,4 @@ PATTERNS = (
         "Purl lines on stockinette; soft along the lines.",
     ),
 )
-"""The patterns that are built in, in the order in which they are shown."""
-
-
-def patterns() -> tuple[Pattern, ...]:
-    """All patterns: those built in, then those of extensions."""
-    built_in = {pattern.identifier for pattern in PATTERNS}
-    return (*PATTERNS, *offered(Group.PATTERNS, Pattern, built_in).values())
+"""All patterns, in the order in which they are shown."""

@@ -17,7 +17,7 @@ import click
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.patterns import patterns
+from knitcore.patterns import PATTERNS
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -206,11 +206,11 @@ def _is_one_line(chart: str) -> bool:
 def _chart_of_name(name: str) -> StitchChart | None:
     if name.lower() in set(Fabric):
         return StitchChart.of_fabric(Fabric(name.lower()))
-    return next((p.chart for p in patterns() if p.identifier == name.lower()), None)
+    return next((p.chart for p in PATTERNS if p.identifier == name.lower()), None)
 
 
 def _no_chart(chart: str) -> InputError:
-    names = ", ".join([*map(str, Fabric), *(pattern.identifier for pattern in patterns())])
+    names = ", ".join([*map(str, Fabric), *(pattern.identifier for pattern in PATTERNS)])
     problem = "is neither a file, a repeat in one line nor the name of a fabric"
     if os.path.isdir(chart):
         problem = "is a folder, not a file"

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from app.models.posed import Body
 from knitcore.arrays import Array
+from knitcore.geometry.body import Body
 from knitcore.geometry.instances import MAX_STITCHES
 from knitcore.geometry.lattice import Lattice
 from knitcore.geometry.placing import PlacedStitches

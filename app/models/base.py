@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from inspect import signature
 from typing import Annotated, Any, Self, TypeVar
 
@@ -14,7 +14,6 @@ from pydantic import (
     Field,
     TypeAdapter,
     ValidationError,
-    model_validator,
 )
 from pydantic.config import JsonDict
 
@@ -83,40 +82,21 @@ class NoRequest(RequestModel):
 
 
 class ResultModel(BaseModel):
-    """A result, or a part of one, read from the attributes of a library result.
+    """A result, or a part of one, read from the attributes of a library result."""
 
-    A field takes the attribute of its name, or of its name without the unit N/mm: laws have
-    ``stiffness_xxxx`` where a result has ``stiffness_xxxx_n_per_mm``.
-    """
+    model_config = ConfigDict(from_attributes=True)
 
     @classmethod
-    def of(cls, *sources: object, **more: Any) -> Self:
-        """A result from the attributes of the first source that has each, and the values given."""
-        found = more
-        for source in sources:
-            found = _attributes(cls, source) | found
-        return cls.model_validate(found)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _read(cls, value: Any) -> Any:
-        return value if isinstance(value, Mapping | BaseModel) else _attributes(cls, value)
+    def of(cls, source: object, **given: Any) -> Self:
+        """Read the fields that are not given from one library result, by their names."""
+        names = (name for name in cls.model_fields if name not in given and hasattr(source, name))
+        return cls.model_validate({name: getattr(source, name) for name in names} | given)
 
 
 class IntervalResult(ResultModel):
     """A result, or a part of one, with 90 % intervals."""
 
     interval_source: str = Field(description="What the 90 % intervals rest on.")
-
-
-def _attributes(model: type[BaseModel], source: object) -> dict[str, Any]:
-    found = {}
-    for name in model.model_fields:
-        for attribute in (name, name.replace(UNIT, "")):
-            if hasattr(source, attribute):
-                found[name] = getattr(source, attribute)
-                break
-    return found
 
 
 def _listed(value: Any) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Any, Self
 
 from pydantic import Field, model_validator
 
@@ -10,6 +10,7 @@ from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from knitcore.chart import StitchChart
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Laws, Material, load_library
 
 
@@ -103,3 +104,35 @@ class LawResult(LawConstants):
     shear_stiffening: float = Field(
         0.0, description="Growth of the shear stiffness with the angle squared, 1/rad²."
     )
+
+    @classmethod
+    def of_law(cls, law: ConstitutiveLaw, **more: Any) -> Self:
+        """Name the unit of each constant of a law, and add other fields."""
+        return cls(
+            stiffness_xxxx_n_per_mm=law.stiffness_xxxx,
+            stiffness_yyyy_n_per_mm=law.stiffness_yyyy,
+            stiffness_xxyy_n_per_mm=law.stiffness_xxyy,
+            stiffness_yyxx_n_per_mm=law.stiffness_yyxx,
+            alpha_xx=law.alpha_xx,
+            alpha_yy=law.alpha_yy,
+            beta_xx_n_per_mm=law.beta_xx,
+            beta_yy_n_per_mm=law.beta_yy,
+            shear_modulus_n_per_mm=law.shear_modulus,
+            kappa_xx=law.kappa_xx,
+            kappa_yy=law.kappa_yy,
+            shear_stiffening=law.shear_stiffening,
+            **more,
+        )
+
+
+def moduli_of(law: ConstitutiveLaw) -> dict[str, float]:
+    """Return the fields of :class:`Moduli` of a law."""
+    return {
+        "modulus_course_n_per_mm": law.modulus_course,
+        "modulus_wale_n_per_mm": law.modulus_wale,
+    }
+
+
+def elastic_constants_of(law: ConstitutiveLaw) -> dict[str, float]:
+    """Return the fields of :class:`ElasticConstants` of a law."""
+    return moduli_of(law) | {"poisson_yx": law.poisson_yx, "poisson_xy": law.poisson_xy}

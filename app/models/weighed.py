@@ -12,11 +12,11 @@ from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import CellLines, ChartLines, MaterialName
 from app.models.laws import LawsRequest
-from app.models.posed import Floats
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.garment.shaped import ShapedChart
-from knitcore.shell.cloth import EvenCloth, cloth_of, stitch_corners
+from knitcore.geometry.body import Floats
+from knitcore.shell.cloth import EvenCloth, cloth_of, stitched
 
 LinearDensity = Annotated[
     float,
@@ -87,16 +87,10 @@ def cloth_piece(
     identifier: str,
 ) -> tuple[ClothPiece, Floats]:
     """The stitches of a sheet of rectangles, and their corners; lines follow the columns."""
-    found, stitches = stitch_corners(corners_mm, rectangle_mm, cloth.stitch_mm)
-    rows, columns = stitches.shape
-    small = repeat.repeat()
-    tiled = small.tile(-(-rows // small.rows), -(-columns // small.columns))
-    chart = StitchChart(tiled.purl[:rows, :columns])
-    outline = ShapedChart(chart, stitches).outline
-    row, column = np.indices(found.shape[:2])
-    hidden = 0.01 * np.stack([column, row, 0 * row], axis=-1)
-    corners = np.where(np.isfinite(found), found, hidden).astype(np.float32)
-    return ClothPiece(id=identifier, chart=chart.text, outline=outline), corners
+    laid = stitched(corners_mm, rectangle_mm, cloth.stitch_mm, repeat)
+    outline = ShapedChart(laid.chart, laid.stitches).outline
+    piece = ClothPiece(id=identifier, chart=laid.chart.text, outline=outline)
+    return piece, laid.corners_mm
 
 
 def corner_lists(corners_mm: Array, there: NDArray[np.bool_]) -> list[list[Corner]]:

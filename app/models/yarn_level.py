@@ -16,16 +16,9 @@ from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_stitches, size_in_words
 from knitcore.errors import InputError
 from knitcore.materials import Material
-from knitcore.materials.uncertainty import (
-    YARN_LEVEL_FREE_SIZE_LOG_SD,
-    YARN_LEVEL_SIZE_LOG_SD,
-    Interval,
-    log_interval,
-)
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import Branch, relax
 from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlevel.splines import RelaxedRepeat, has_mirrors
 from knitcore.yarnlibrary.yarns import ChartYarn, yarn_for
 
 LoopLength = Annotated[float, Field(gt=0, le=1000)]
@@ -124,6 +117,11 @@ class YarnResult(ResultModel):
     provenance: str
     estimated: bool
 
+    @classmethod
+    def of_chart(cls, used: ChartYarn) -> YarnResult:
+        """Describe the yarn of a chart."""
+        return cls.of(used.yarn, provenance=used.provenance, estimated=used.estimated)
+
 
 def _lengths(request: YarnLevelRequest, used: ChartYarn, rows: int, columns: int) -> ArrayLike:
     """One loop length, one for every course, or one for every stitch."""
@@ -160,27 +158,6 @@ def relax_requested(
         flat=request.flat,
         cancelled=context.cancelled,
     )
-
-
-def size_log_sd(cell: RelaxedCell) -> float:
-    """Standard deviation of the logarithm of knitted over relaxed sizes."""
-    folded = cell.branch is Branch.FREE and has_mirrors(cell.chart)
-    return YARN_LEVEL_FREE_SIZE_LOG_SD if folded else YARN_LEVEL_SIZE_LOG_SD
-
-
-def size_intervals(cell: RelaxedCell) -> tuple[Interval, Interval]:
-    """90 % intervals of the width and height of a knitted stitch, mm.
-
-    They cover those of other shapes that are as low, for which of them is shown is a rule.
-    """
-    others = cell.other_minima_mm if isinstance(cell, RelaxedRepeat) else ()
-    log_sd = size_log_sd(cell)
-    each = zip((cell.cell_course_mm, cell.cell_wale_mm), *others, strict=True)
-    course, wale = (
-        Interval(log_interval(min(sizes), log_sd).low, log_interval(max(sizes), log_sd).high)
-        for sizes in each
-    )
-    return course, wale
 
 
 Request = TypeVar("Request", bound=YarnLevelRequest)

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Literal
 
 from pydantic import Field
-from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from app.context import Context
 from app.models.base import ResultModel
@@ -19,13 +18,12 @@ from knitcore.yarnlevel.bending import (
     RepeatBending,
     bending_length_mm,
     repeat_bending,
+    weight_n_per_mm2,
 )
 from knitcore.yarnlevel.bent_cell import BendingResponse
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlibrary.store import stored_for
 
-FAR_APART = 1.5
-"""A note is added where the two states differ by more than this factor."""
 _FRICTIONLESS = (
     "Friction and set are left out, so these values are qualitative: measured knits of 187 to "
     "284 g/m² have rigidities of .007 to .10 N·mm."
@@ -110,7 +108,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     shown, stable = found.shown, found.stable
     notes = [_FRICTIONLESS, *_failures(found), *_compared(found)]
     density = request.linear_density_g_per_m
-    weight = None if density is None else 1e-6 * STANDARD_GRAVITY * density * loop / area  # N/mm²
+    weight = None if density is None else weight_n_per_mm2(density, loop, area)
     if not stable.minimum:
         notes.append(
             "Its shape is not quite a minimum, as a slight change lowers the energy a little: "
@@ -142,7 +140,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         stable=shown.minimum,
         provenance="yarn level, linear response of the repeat, relaxed "
         f"{symmetry} the symmetries of its chart{whence}; yarn: {used.provenance}",
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         notes=notes,
     )
 
@@ -163,17 +161,16 @@ def _failures(found: RepeatBending) -> Iterator[str]:
 
 def _compared(found: RepeatBending) -> Iterator[str]:
     """Notes where the state without symmetries differs."""
-    if found.ratios is None or found.unmirrored is None:
+    if found.unmirrored is None:
         return
-    free = found.unmirrored.course.rigidity_n_mm, found.unmirrored.wale.rigidity_n_mm
-    ways = "along the rows", "along the columns"
-    for way, rigidity, ratio in zip(ways, free, found.ratios, strict=True):
-        apart = max(ratio, 1.0 / ratio)
-        if apart > FAR_APART:
-            yield (
-                f"Bent {way}, the rigidity without the symmetries of the chart is {rigidity:.3g} "
-                f"N·mm, which differs by a factor of {apart:.1f}: treat it as a range."
-            )
+    for direction, factor in found.far_apart.items():
+        free = direction.of(found.unmirrored.course, found.unmirrored.wale)
+        way = direction.of("along the rows", "along the columns")
+        yield (
+            f"Bent {way}, the rigidity without the symmetries of the chart is "
+            f"{free.rigidity_n_mm:.3g} N·mm, which differs by a factor of {factor:.1f}: treat it "
+            "as a range."
+        )
 
 
 def _rigidity(value_n_mm: float | None) -> str:

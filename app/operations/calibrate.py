@@ -100,7 +100,16 @@ def _result(request: CalibrateRequest, found: Calibration) -> CalibrateResult:
     """The result, with the errors at all frames, fitted or not."""
     field, direction = load(request.field), request.direction
     errors = compare(field, found.law, direction, edges=Edges.MEASURED)
-    return CalibrateResult.of(found, found.law, comparison=errors.frames)
+    return CalibrateResult.of_law(
+        found.law,
+        parameters=found.parameters,
+        standard_errors=found.standard_errors,
+        frames=found.frames,
+        comparison=errors.frames,
+        force_strain=found.force_strain,
+        force_ratio=found.force_ratio,
+        evaluations=found.evaluations,
+    )
 
 
 @click.argument("more_tests", nargs=-1, metavar="", type=click.Path(path_type=Path))

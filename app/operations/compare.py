@@ -57,7 +57,7 @@ def compare(request: CompareRequest, context: Context) -> CompareResult:
     found = request.pass_to(compared, field, law, model=model)
     return CompareResult.of(
         found,
-        request,
+        edges=request.edges,
         model=model.energy,
         messages=[found.problem] if found.problem else [],
     )

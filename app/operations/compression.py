@@ -99,7 +99,7 @@ def _command(
     means = average_compression(samples)
     alone = means[0] if len(means) == 1 else None
     notes = [] if alone else [f"{known} have no common k and p; ask for one yarn to get one pair."]
-    return CompressionResult.of(
+    return CompressionResult(
         k_n_per_mm3=alone.k_n_per_mm3 if alone else None,
         p=alone.p if alone else None,
         mean={m.yarn: m for m in means},

@@ -10,7 +10,7 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import Ends, ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.posed import Body, PosedView
+from app.models.posed import PosedView
 from app.models.weighed import (
     ClothPiece,
     Corners,
@@ -22,6 +22,7 @@ from app.models.weighed import (
 )
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
+from knitcore.geometry.body import Body
 from knitcore.shell.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
 from knitcore.shell.drape import drape as drape_cloth
 
@@ -76,12 +77,10 @@ def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
     piece, corners = cloth_piece(
         found.corners_mm, (rectangle, rectangle), cloth, repeat, OPERATION.key(request)
     )
-    turn = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
-    rim = 0.5 * request.disc_mm * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     result = DrapeResult.of(
         found,
-        cloth,
         piece=piece,
+        weight_g_per_m2=cloth.weight_g_per_m2,
         coefficient_of_states=(min(found.coefficients), max(found.coefficients)),
         bending_length_course_mm=cloth.bending_length_mm(0),
         bending_length_wale_mm=cloth.bending_length_mm(1),
@@ -90,7 +89,7 @@ def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
         else None,
         notes=notes_of(cloth),
     )
-    return Viewed(result, PosedView(corners, Body.slab(rim, DISC_THICK_MM)).upright())
+    return Viewed(result, PosedView(corners, Body.disc(request.disc_mm, DISC_THICK_MM)).upright())
 
 
 def _lines(r: DrapeResult) -> list[str]:

@@ -112,7 +112,8 @@ def _result(found: YarnEstimate) -> EstimateResult:
     return EstimateResult.of(
         found,
         fabrics={
-            fabric: FabricEstimateResult.of(f, **_values(f)) for fabric, f in found.fabrics.items()
+            fabric: FabricEstimateResult.of(f, law=LawResult.of_law(f.law), **_values(f))
+            for fabric, f in found.fabrics.items()
         },
         interval_source=INTERVAL_SOURCE,
         left_out=left_out(measured) if len(measured) < len(Fabric) else None,

@@ -57,7 +57,7 @@ def report() -> ModelReport:
             for i, fabric in enumerate(Fabric)
         }
 
-    return ModelReport.of(
+    return ModelReport(
         yarns=len(table.modulus),
         modulus_constant=means("modulus"),
         alpha=means("alpha"),

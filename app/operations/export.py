@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 from pathlib import Path
+from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
@@ -11,12 +12,12 @@ from app.cli.options import out_option
 from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
-from app.models.extensions import ExtensionName
 from app.models.gauge import GaugeInput
 from app.models.laws import LawsRequest
 from app.models.uploads import Content
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart, check_stitches, size_in_words
+from knitcore.extensions import IDENTIFIER
 from knitcore.formats.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import DesignLayout
@@ -28,6 +29,10 @@ MAX_STITCHES: dict[str, int] = {
     ExportKind.STL: 2_500,
 }
 """Largest chart over REST, in stitches; the command line accepts larger ones."""
+
+
+ExtensionName = Annotated[str, Field(pattern=f"^{IDENTIFIER.pattern}$")]
+"""The identifier of a format that is not built in."""
 
 
 class ExportRequest(DesignLayout, LawsRequest):
@@ -89,9 +94,9 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
     if limit := MAX_STITCHES.get(request.to):
         check_stitches(chart.stitches, limit, instead=f" for {request.to}, or the command line")
     file = _export(chart, request, context)
-    return ExportResult.of(
-        file,
-        _facts(chart, file),
+    return ExportResult(
+        **dict(_facts(chart, file)),
+        media_type=file.media_type,
         name=_file_name(request.name) + file.suffix,
         content=base64.b64encode(file.content).decode(),
     )
@@ -104,7 +109,7 @@ def _export(chart: StitchChart, request: ExportRequest, context: Context) -> Exp
 
 
 def _facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
-    return ExportFacts.of(file, chart, bytes=len(file.content))
+    return ExportFacts.of(file, rows=chart.rows, columns=chart.columns, bytes=len(file.content))
 
 
 def _file_name(name: str) -> str:

@@ -11,14 +11,10 @@ from knitcore.extensions import ExtensionError, Group, Offer
 from knitcore.extensions import extensions as installed
 from knitcore.formats.export import Exporter
 from knitcore.materials import Material
-from knitcore.patterns import Pattern
-from knitcore.prediction.measures import Measure
 
 KINDS: dict[Group, type[Offer]] = {
-    Group.PATTERNS: Pattern,
     Group.MATERIALS: Material,
     Group.EXPORTERS: Exporter,
-    Group.MEASURES: Measure,
 }
 
 
@@ -39,7 +35,7 @@ class Extensions(ResultModel):
 
 
 def extensions(request: NoRequest, context: Context) -> Extensions:
-    """Patterns, materials, formats and measures that installed packages add."""
+    """Materials and file formats that installed packages add."""
     del request, context
     found = []
     for group, kind in KINDS.items():

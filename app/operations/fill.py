@@ -177,7 +177,8 @@ def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) 
     )
     return FillResult.of(
         found,
-        found.chart,
+        rows=found.chart.rows,
+        columns=found.chart.columns,
         interval_source=f"{INTERVAL_SOURCE} Widened to what a patch does in the finite swatch.",
         chart=found.chart.text,
         patches=found.regions,

@@ -180,7 +180,12 @@ def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atl
 
 
 def _candidate(found: Candidate) -> CandidateResult:
-    return CandidateResult.of(found, found.cost)
+    return CandidateResult.of(
+        found,
+        transfers_per_stitch=found.cost.transfers_per_stitch,
+        crossings_per_stitch=found.cost.crossings_per_stitch,
+        curl=found.cost.curl,
+    )
 
 
 _TARGET = re.compile(

@@ -11,7 +11,7 @@ from app.cli.options import out_option, write_table
 from app.context import Context
 from app.models.base import Floats, RequestModel, ResultModel
 from app.models.checks import CheckedBy
-from app.models.laws import ElasticConstants, LawConstants, LawResult
+from app.models.laws import ElasticConstants, LawConstants, LawResult, elastic_constants_of
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
@@ -110,9 +110,18 @@ def _fit(request: FitRequest, context: Context) -> LawFit:
 def _result(found: LawFit, *, residuals: bool) -> FitResult:
     errors = found.standard_errors
     names = {name: name.removesuffix("_n_per_mm") for name in LawErrors.model_fields}
-    return FitResult.of(
-        found,
+    return FitResult.of_law(
         found.law,
+        **elastic_constants_of(found.law),
+        rms_n_per_mm=found.rms_n_per_mm,
+        rms_course_n_per_mm=found.rms_course_n_per_mm,
+        rms_wale_n_per_mm=found.rms_wale_n_per_mm,
+        largest_strain=found.largest_strain,
+        runs=found.runs,
+        reduction=found.reduction,
+        error_method=found.error_method,
+        notes=found.notes,
+        waist_rms=found.waist_rms,
         standard_errors={name: errors.get(constant) for name, constant in names.items()},
         residuals={d: _points(r) for d, r in found.residuals.items()} if residuals else None,
         curves={d: CurveDocument.from_curve(c) for d, c in found.curves.items()},

@@ -272,9 +272,11 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
     plan = request.garment.plan(material=material, gauges=gauges, linear_density_tex=tex)
     return GarmentResult.of(
         plan,
-        plan.shaped,
-        plan.shaped.chart,
+        rows=plan.shaped.chart.rows,
+        columns=plan.shaped.chart.columns,
         chart=plan.shaped.chart.text,
+        outline=plan.shaped.outline,
+        stitches=plan.shaped.stitches,
         regions=_regions(plan, material, tex),
         gauges=[_gauge(fabric, gauge) for fabric, gauge in gauges.gauges.items()],
         worn=[_worn(place) for place in plan.worn],
@@ -299,8 +301,8 @@ def _regions(plan: GarmentPlan, material: Material, tex: float | None) -> list[R
         results.append(
             RegionResult.of(
                 numbers[region.name],
-                region,
                 fill=region.fill.key,
+                colour=region.colour,
                 columns=columns,
                 rows=rows,
                 width_mm=columns * gauge.stitch_course_mm,
@@ -327,7 +329,9 @@ def _worn(place: Worn) -> WornResult:
     found = place.pressure
     if found is None:
         return WornResult.of(place, strain=None, mmhg=None, kpa=None, warnings=[place.problem])
-    return WornResult.of(found, place)
+    return WornResult.of(
+        place, strain=found.strain, mmhg=found.mmhg, kpa=found.kpa, warnings=found.warnings
+    )
 
 
 def measured_options(asked: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:

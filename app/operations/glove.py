@@ -11,13 +11,14 @@ from pydantic import Field
 from app.cli.options import out_option
 from app.context import Context
 from app.models.base import IntervalResult
-from app.models.posed import Body, PosedView
+from app.models.posed import PosedView
 from app.operations.garment import Glove, KnitterRequest, measured_options, read_measured
 from app.operations.limb import HEADING, LimbPlaceResult
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Fabric
 from knitcore.garment.worn_glove import GloveOnHand, answer_of, glove_on_hand
+from knitcore.geometry.body import Body
 from knitcore.materials.uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN
 

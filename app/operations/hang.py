@@ -6,7 +6,6 @@ from typing import Literal
 
 import numpy as np
 from pydantic import Field
-from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from app.context import Context
 from app.models.base import ResultModel
@@ -66,7 +65,6 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
     result = HangResult.of(
         found,
         id=OPERATION.key(request),
-        weight_g=1000.0 * found.weight_n / STANDARD_GRAVITY,
         corners_mm=corner_lists(found.corners_mm, found.used) if request.corners else None,
         notes=[FRICTIONLESS],
     )

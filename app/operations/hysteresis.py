@@ -131,7 +131,7 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
             )
             for k, rest in enumerate(rests)
         ],
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         notes=[*found.notes, HISTORIES],
     )
 

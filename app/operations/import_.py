@@ -58,8 +58,12 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
     with stored([request.file]) as (path,):
         design = design_in(path)
     chart = StitchChart.parse(design.chart)
-    return ImportResult.of(
-        design, chart, repeat=chart.repeat_cut().key, notes=layout_notes(chart, design)
+    return ImportResult(
+        **dict(design),
+        rows=chart.rows,
+        columns=chart.columns,
+        repeat=chart.repeat_cut().key,
+        notes=layout_notes(chart, design),
     )
 
 

@@ -15,7 +15,7 @@ from app.context import Context
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import to_chart
 from app.models.laws import FabricRequest
-from app.models.posed import Body, PosedView
+from app.models.posed import PosedView
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.chart import check_stitches
@@ -30,6 +30,7 @@ from knitcore.garment.limb import (
     MeasuredLimb,
     on_limb,
 )
+from knitcore.geometry.body import Body
 from knitcore.materials.uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
 from knitcore.prediction.patches import SIDE

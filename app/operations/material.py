@@ -15,7 +15,14 @@ from app.models.base import (
     ResultModel,
 )
 from app.models.charts import MaterialName
-from app.models.laws import ElasticConstants, Extensibility, LawResult, Moduli
+from app.models.laws import (
+    ElasticConstants,
+    Extensibility,
+    LawResult,
+    Moduli,
+    elastic_constants_of,
+    moduli_of,
+)
 from app.operations.registry import Operation
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction, Fabric
@@ -161,7 +168,10 @@ def summary(found: Material, *, added_by_you: bool) -> MaterialSummary:
         found,
         id=found.identifier,
         description=description(found),
-        fabrics={f: FabricSummary.of(record, record.law) for f, record in found.fabrics.items()},
+        fabrics={
+            fabric: FabricSummary.of(record, **moduli_of(record.law))
+            for fabric, record in found.fabrics.items()
+        },
         added_by_you=added_by_you,
     )
 
@@ -174,8 +184,8 @@ def description(found: Material) -> str:
 def _detail(record: FabricRecord) -> FabricDetail:
     return FabricDetail.of(
         record,
-        record.law,
-        law=record.law,
+        **elastic_constants_of(record.law),
+        law=LawResult.of_law(record.law),
         lock_up_strain_course=record.law.lock_up_strain(Direction.COURSE),
         lock_up_strain_wale=record.law.lock_up_strain(Direction.WALE),
         uncertainty_source=record.uncertainty.source,
@@ -186,7 +196,7 @@ def _detail(record: FabricRecord) -> FabricDetail:
 def _curve(law: ConstitutiveLaw, direction: Direction) -> LawCurve:
     end = CURVE_END * min(law.lock_up_strain(direction), 10.0)
     curve = uniaxial_response(law, direction, np.linspace(0.0, end, CURVE_POINTS))
-    return LawCurve.of(strain=np.round(curve.strain, 5), stress_n_per_mm=np.round(curve.stress, 6))
+    return LawCurve(strain=np.round(curve.strain, 5), stress_n_per_mm=np.round(curve.stress, 6))
 
 
 def _table(table: StitchTable, of: Material) -> StitchTableResult:
@@ -200,7 +210,7 @@ def _table(table: StitchTable, of: Material) -> StitchTableResult:
             values[f"extensibility_{d}_mm_per_n"] = 1 / modulus
             values[f"modulus_{d}_interval_n_per_mm"] = (low[code], high[code])
         fractions = dict(zip(PHASES, table.fractions[code].tolist(), strict=True))
-        kinds.append(StitchKind.of(code=code, fractions=fractions, **values))
+        kinds.append(StitchKind(code=code, fractions=fractions, **values))
     errors = in_a_sentence(record.uncertainty.source for record in of.fabrics.values())
     return StitchTableResult(codes=kinds, interval_source=errors)
 

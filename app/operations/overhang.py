@@ -11,7 +11,7 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.posed import Body, PosedView
+from app.models.posed import PosedView
 from app.models.weighed import (
     ClothPiece,
     Corners,
@@ -23,6 +23,7 @@ from app.models.weighed import (
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
+from knitcore.geometry.body import Body
 from knitcore.shell.overhang import overhang as hang_over
 
 TABLE_MM = 40.0
@@ -77,8 +78,8 @@ def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResul
     table = TABLE_MM * np.array([(-1.0, -0.5), (0.0, -0.5), (0.0, 0.5), (-1.0, 0.5)])
     result = OverhangResult.of(
         found,
-        cloth,
         piece=piece,
+        weight_g_per_m2=cloth.weight_g_per_m2,
         angle_deg=math.degrees(found.angle_rad),
         yarn_level_rigidity_n_mm=cloth.rigidity_n_mm[axis],
         corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,

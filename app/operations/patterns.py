@@ -6,7 +6,7 @@ from app.context import Context
 from app.models.base import NoRequest, ResultModel
 from app.models.charts import RepeatText
 from app.operations.registry import Operation
-from knitcore import patterns as library
+from knitcore.patterns import PATTERNS
 
 
 class PatternResult(ResultModel):
@@ -25,12 +25,10 @@ class Patterns(ResultModel):
 
 
 def patterns(request: NoRequest, context: Context) -> Patterns:
-    """Repeats to start from: the four fabrics, ribs, basket and more, and those of extensions."""
+    """Repeats to start from: the four fabrics, ribs, basket and more."""
     del request, context
     return Patterns(
-        patterns=[
-            PatternResult.of(p, id=p.identifier, repeat=p.chart.key) for p in library.patterns()
-        ]
+        patterns=[PatternResult.of(p, id=p.identifier, repeat=p.chart.key) for p in PATTERNS]
     )
 
 

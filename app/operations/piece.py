@@ -102,9 +102,9 @@ def _result(request: PieceRequest, test: PieceTest, material: Material) -> Piece
             found[f"{name}_{letter}_{unit}"] = value
             found[f"{name}_{letter}_interval_{unit}"] = value - margin, value + margin
         edges.append(found)
-    return PieceResult.of(
-        test,
-        test.piece,
+    return PieceResult(
+        share=test.share,
+        area_mm2=test.piece.area_mm2,
         edges=edges,
         shape=_shape(test) if request.fields and test.found else None,
         **of_test(test, material),

@@ -5,9 +5,8 @@ from __future__ import annotations
 from pydantic import Field
 
 from app.context import Context
-from app.models.base import Ends, IntervalResult, Known, ResultModel
+from app.models.base import Ends, IntervalResult, ResultModel
 from app.models.charts import OutlineInput
-from app.models.extensions import ExtensionName
 from app.models.gauge import GaugedRequest
 from app.models.laws import ElasticConstants, Extensibility
 from app.operations.registry import Command, Operation
@@ -15,7 +14,6 @@ from knitcore.chart import size_in_words
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.geometry.laid_out import size_at_rest
-from knitcore.prediction.measures import measure
 from knitcore.prediction.predict import predict as predict_chart
 from knitcore.prediction.swept import worth_relaxing
 from knitcore.segments import segment_map
@@ -26,18 +24,6 @@ class PredictRequest(GaugedRequest):
     inside its outline, its size is that of the whole."""
 
     outline: OutlineInput = None
-    measures: list[ExtensionName] = Field(
-        [], max_length=16, description="Further numbers, by the names of installed extensions."
-    )
-
-
-class MeasureResult(ResultModel):
-    """A number that an extension adds."""
-
-    identifier: str
-    value: Known = Field(description="Null where it has no finite value.")
-    unit: str
-    description: str
 
 
 class SegmentCountsResult(ResultModel):
@@ -80,7 +66,6 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
         "with which these numbers would be more certain; null if there is none."
     )
     notes: list[str]
-    measures: list[MeasureResult] = Field([], description="The measures that were asked for.")
 
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
@@ -96,18 +81,41 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
             f"{chart.columns} x {chart.rows} stitches."
         )
     predicted = predict_chart(chart, material, request.relaxed_size)
+    course, wale = predicted.course, predicted.wale
+    size = size_at_rest(shaped, material, predicted)
     segments = segment_map(chart)
     to_relax = worth_relaxing(chart, material, predicted)
-    return PredictResult.of(
-        chart,
-        size_at_rest(shaped, material, predicted),
-        **predicted.to_dict() | {"notes": [*notes, *predicted.notes]},
+    return PredictResult(
+        rows=chart.rows,
+        columns=chart.columns,
         segments={direction: segments.counts(direction) for direction in Direction},
+        modulus_course_n_per_mm=course.modulus_n_per_mm,
+        modulus_wale_n_per_mm=wale.modulus_n_per_mm,
+        modulus_course_interval_n_per_mm=course.modulus_interval_n_per_mm,
+        modulus_wale_interval_n_per_mm=wale.modulus_interval_n_per_mm,
+        modulus_course_bounds_n_per_mm=course.bounds_n_per_mm,
+        modulus_wale_bounds_n_per_mm=wale.bounds_n_per_mm,
+        shear_modulus_n_per_mm=predicted.shear_modulus_n_per_mm,
+        extensibility_course_mm_per_n=1.0 / course.modulus_n_per_mm,
+        extensibility_wale_mm_per_n=1.0 / wale.modulus_n_per_mm,
+        poisson_yx=course.poisson,
+        poisson_xy=wale.poisson,
+        poisson_yx_interval=course.poisson_interval,
+        poisson_xy_interval=wale.poisson_interval,
+        relaxed_course_mm=course.relaxed_mm,
+        relaxed_wale_mm=wale.relaxed_mm,
+        relaxed_course_interval_mm=course.relaxed_interval_mm,
+        relaxed_wale_interval_mm=wale.relaxed_interval_mm,
+        relaxed_source=predicted.relaxed_source,
+        width_mm=size.width_mm,
+        height_mm=size.height_mm,
+        width_interval_mm=size.width_interval_mm,
+        height_interval_mm=size.height_interval_mm,
+        provenance=predicted.provenance,
+        method=predicted.method,
+        interval_source=predicted.interval_source,
         worth_relaxing=None if to_relax is None else to_relax.text,
-        measures=[
-            MeasureResult.of(each, value=each.value(chart, material, predicted))
-            for each in map(measure, request.measures)
-        ],
+        notes=[*notes, *predicted.notes],
     )
 
 
@@ -129,10 +137,6 @@ def _lines(r: PredictResult) -> list[str]:
         f"stitch at rest  {_relaxed(r)}",
         f"size at rest    {r.width_mm / 10:.1f} x {r.height_mm / 10:.1f} cm",
         f"source          {r.provenance} ({r.method})",
-        *(
-            f"{m.identifier:15} {'none' if m.value is None else f'{m.value:.4g}'} {m.unit}"
-            for m in r.measures
-        ),
     ]
 
 
@@ -152,6 +156,5 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help="Predict moduli, Poisson's ratios and size at rest of CHART.",
-        names={"measures": "--measure"},
     ),
 )

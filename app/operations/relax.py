@@ -14,7 +14,7 @@ from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
 from app.models.gauge import FoundGauge
-from app.models.yarn_level import YarnResult, kept_or_made, relax_requested, size_intervals
+from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
@@ -26,7 +26,7 @@ from knitcore.yarnlevel.hysteresis import History, rest_sizes
 from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, lowest
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlevel.splines import has_mirrors
+from knitcore.yarnlevel.splines import has_mirrors, size_intervals
 from knitcore.yarnlevel.whole import WINDOWS_FROM
 from knitcore.yarnlibrary.yarns import ChartYarn, phase_shares
 
@@ -201,7 +201,8 @@ def _relaxed(
     ]
     return RelaxResult.of(
         cell,
-        request,
+        friction=request.friction,
+        history=request.history,
         rest_sizes=rests,
         unmirrored=unmirrored,
         cell_course_interval_mm=free[0],
@@ -211,7 +212,7 @@ def _relaxed(
         repeat_columns=cell.chart.columns,
         force_course_n=cell.force_n[0],
         force_wale_n=cell.force_n[1],
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         centre_lines_mm=[line.tolist() for line in cell.centre_lines]
         if request.centre_lines
         else None,

@@ -59,8 +59,10 @@ def rs(request: RSRequest, context: Context) -> RSResult:
             found,
             segments={
                 d: RSSegment.of(
-                    s,
                     s.geometry,
+                    rigidity_n_per_mm=s.rigidity_n_per_mm,
+                    modulus_n_per_mm=s.modulus_n_per_mm,
+                    published_n_per_mm=s.published_n_per_mm,
                     modulus_interval_n_per_mm=log_interval(s.modulus_n_per_mm, RS_LOG_SD),
                 )
                 for d, s in segments.items()

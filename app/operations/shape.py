@@ -90,7 +90,9 @@ def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResul
         progress=context.share,
         cancelled=context.cancelled,
     )
-    return ShapeResult.of(found, found.chart, chart=found.chart.text)
+    return ShapeResult.of(
+        found, rows=found.chart.rows, columns=found.chart.columns, chart=found.chart.text
+    )
 
 
 @click.argument("profile", type=click.Path(path_type=Path))

@@ -9,7 +9,6 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
-from scipy.ndimage import distance_transform_edt
 
 from app.cli.options import out_option
 from app.context import Context
@@ -34,6 +33,7 @@ from knitcore.swatch import (
     strain_at_force,
 )
 from knitcore.swatch.margins import StretchMargins, sampled_steps, stretch_margins
+from knitcore.swatch.stitches import stitch_at, stitch_states
 from knitcore.swatch.strip import load_levels
 
 Array = NDArray[np.float32]
@@ -207,13 +207,10 @@ def _last_strain(sheet: Sheet, request: StretchRequest, context: Context) -> flo
             raise InputError("strain", "give either a strain or a force.", "Use one of the two.")
 
 
-def _curve(
-    chart: StitchChart, request: StretchRequest, test: StripTest, margins: StretchMargins
-) -> StretchCurve:
+def _curve(request: StretchRequest, test: StripTest, margins: StretchMargins) -> StretchCurve:
     """The numbers of a test."""
     return StretchCurve.of(
         test,
-        test.sheet.grid,
         interval_source=margins.source,
         force_interval_n=(
             test.force_n / margins.force_factor,
@@ -221,7 +218,7 @@ def _curve(
         ),
         waist_strain_interval=_around(test.waist_strain, margins.waist),
         shear_modulus_assumed=request.shear_modulus_n_per_mm is None,
-        nearest_lock_up=_nearest(chart, test),
+        nearest_lock_up=_nearest(test),
         messages=_messages(test),
     )
 
@@ -251,55 +248,30 @@ def _messages(test: StripTest) -> list[str]:
 def _stitches(
     chart: StitchChart, request: StretchRequest, test: StripTest, margins: StretchMargins
 ) -> Viewed[StretchResult]:
-    shape = (test.steps, chart.rows, chart.columns)
-    ux, uy, xx, yy, used = np.zeros((5, *shape))
-    for step in range(test.steps):
-        at = test.fields(step)
-        for values, nodes in (
-            (ux, at.ux_mm),
-            (uy, at.uy_mm),
-            (xx, at.strain_xx),
-            (yy, at.strain_yy),
-            (used, at.utilisation),
-        ):
-            values[step] = nodes[1::2, 1::2]  # nodes lie on the quarter grid
-    there = test.sheet.grid.cloth[::2, ::2]
-    x = _carried(test.x_mm[1::2, 1::2], ux, xx, there)
-    y = _carried(test.y_mm[1::2, 1::2], uy, yy, there)
-    for values in (xx, yy, used):
-        values[:, ~there] = 0.0
-    fields = {"strain_course": xx, "strain_wale": yy, "utilisation": used}
+    states = stitch_states(test)
+    fields = {
+        "strain_course": states.strain[..., 0],
+        "strain_wale": states.strain[..., 1],
+        "utilisation": states.utilisation,
+    }
     margin = {f"strain_{request.direction}": margins.strain, "utilisation": margins.utilisation}
     shown: dict[str, Any] = {name: _rounded(values) for name, values in fields.items()}
     for name, width in margin.items():
         shown[f"{name}_interval"] = [_rounded(ends) for ends in _around(fields[name], width)]
-    result = StretchResult.of(
-        _curve(chart, request, test, margins),
-        chart,
+    result = StretchResult(
+        **dict(_curve(request, test, margins)),
+        rows=chart.rows,
+        columns=chart.columns,
         id=OPERATION.key(request),
         stitch_fields=shown,
     )
     view = StretchView(
         direction=request.direction,
-        positions_mm=np.stack([x, y], axis=-1).astype(np.float32),
-        strain=np.stack([xx, yy], axis=-1).astype(np.float32),
-        utilisation=used.astype(np.float32),
+        positions_mm=states.positions_mm,
+        strain=states.strain.astype(np.float32),
+        utilisation=states.utilisation.astype(np.float32),
     )
     return Viewed(result, view)
-
-
-def _carried(
-    rest_mm: NDArray[np.float64],
-    moved_mm: NDArray[np.float64],
-    strain: NDArray[np.float64],
-    there: NDArray[np.bool_],
-) -> NDArray[np.float64]:
-    """Positions at each step, extrapolated from the nearest stitch where there is none: the loops
-    at an edge are drawn from the distances to all neighbours.
-    """
-    row, column = distance_transform_edt(~there, return_distances=False, return_indices=True)
-    stretched = (rest_mm - rest_mm[row, column]) * (1 + strain[:, row, column])
-    return np.asarray(rest_mm[row, column] + moved_mm[:, row, column] + stretched)
 
 
 def _rounded(values: NDArray[np.float64]) -> list[list[float]]:
@@ -317,18 +289,12 @@ def _around(
     return values - margin, values + margin
 
 
-def _nearest(chart: StitchChart, test: StripTest) -> NearestLockUp | None:
+def _nearest(test: StripTest) -> NearestLockUp | None:
     spot = test.nearest_lock_up
     if spot is None:
         return None
-    grid = test.sheet.grid
-    column = int(np.searchsorted(grid.column_lines[::2], spot.x_mm))
-    row = int(np.searchsorted(grid.row_lines[::2], spot.y_mm))
-    return NearestLockUp.of(
-        spot,
-        row=min(max(row, 1), chart.rows) - 1,
-        column=min(max(column, 1), chart.columns) - 1,
-    )
+    row, column = stitch_at(test, spot)
+    return NearestLockUp.of(spot, row=row, column=column)
 
 
 @out_option("--out", help="Write fields to FILE.npz or .vtu.", suffixes=(".npz", ".vtu"))
@@ -339,7 +305,7 @@ def _command(request: StretchRequest, context: Context, out: Path | None) -> Str
         from knitcore.swatch.files import write_fields
 
         write_fields(test, out)
-    return _curve(chart, request, test, margins)
+    return _curve(request, test, margins)
 
 
 def _lines(curve: StretchCurve) -> list[str]:

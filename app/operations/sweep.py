@@ -13,7 +13,7 @@ from app.cli.options import loop_lengths
 from app.context import Context
 from app.models.base import EndsOfList, Floats, IntervalResult
 from app.models.friction import RubbedRequest, on_splines
-from app.models.laws import ElasticConstants
+from app.models.laws import ElasticConstants, elastic_constants_of
 from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
@@ -183,16 +183,37 @@ def _result(
         notes.append(f"No law could be fitted: {error}")
     return SweepResult.of(
         main,
-        loop,
-        zero,
-        request,
+        branch=zero.branch,
+        cell_course_mm=zero.cell_course_mm,
+        cell_wale_mm=zero.cell_wale_mm,
+        friction=request.friction,
+        turn=loop and loop.turn,
+        lost_per_cycle_n_per_mm=loop and loop.lost_per_cycle_n_per_mm,
+        lost_share=loop and loop.lost_share,
+        left_strain=loop and loop.left_strain,
         strain_interval=tuple(np.sort([main.strain / FACTOR, main.strain * FACTOR], axis=0)),
         interval_source=YARN_LEVEL_ERRORS,
-        law=None if law is None else SweptLaw.of(law, law.law),
+        law=None if law is None else _swept_law(law),
         converged=main.converged and there == request.points,
         seconds=seconds,
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         notes=notes,
+    )
+
+
+def _swept_law(fitted: SimulatedLaw) -> SweptLaw:
+    law = fitted.law
+    return SweptLaw.of(
+        fitted,
+        **elastic_constants_of(law),
+        stiffness_xxxx=law.stiffness_xxxx,
+        stiffness_yyyy=law.stiffness_yyyy,
+        stiffness_xxyy=law.stiffness_xxyy,
+        stiffness_yyxx=law.stiffness_yyxx,
+        alpha_xx=law.alpha_xx,
+        alpha_yy=law.alpha_yy,
+        beta_xx=law.beta_xx,
+        beta_yy=law.beta_yy,
     )
 
 

@@ -91,7 +91,7 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
         cell_wale_interval_mm=up,
         diameter_interval_mm=across,
         interval_source=YARN_LEVEL_ERRORS,
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         notes=notes,
     )
 

@@ -11,11 +11,12 @@ from pydantic import BaseModel, Field
 from app.context import Context
 from app.models.base import Ends, IntervalResult
 from app.models.charts import ChartInput, to_chart
-from app.models.yarn_level import StitchRequest, YarnResult, size_intervals
+from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words
 from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.splines import size_intervals
 from knitcore.yarnlevel.whole import MAX_ROUNDS, WholeShape, relax_whole
 
 
@@ -128,7 +129,7 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
         cell_course_interval_mm=course,
         cell_wale_interval_mm=wale,
         interval_source=YARN_LEVEL_ERRORS,
-        yarn=YarnResult.of(used, used.yarn),
+        yarn=YarnResult.of_chart(used),
         centre_lines_mm=[line.tolist() for line in found.centre_lines]
         if request.centre_lines
         else None,

@@ -12,9 +12,9 @@ from PIL import Image, ImageDraw
 
 from app.drawing.colours import SKIN, linear
 from app.drawing.fabric import Drawing
-from app.models.posed import Floats
 from app.viewer.camera import FIELD_OF_VIEW, CameraSide, stand
 from knitcore.arrays import Array
+from knitcore.geometry.body import Floats
 from knitcore.geometry.placing import placed_lines
 from knitcore.geometry.tubes import resampled
 

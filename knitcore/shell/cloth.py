@@ -200,6 +200,40 @@ def stitch_corners(
     return found, stitches
 
 
+@dataclass(frozen=True, eq=False)
+class StitchedCloth:
+    """The stitches of a sheet of even cloth in a test, lines following the columns.
+
+    Attributes
+    ----------
+    chart : the repeat, continued over the sheet.
+    stitches : (rows, columns) those within the piece.
+    corners_mm : (rows + 1, columns + 1, 3), float32; a hundredth of a millimetre apart and flat
+        where there is no cloth, so that a picture hides them.
+    """
+
+    chart: StitchChart
+    stitches: NDArray[np.bool_]
+    corners_mm: NDArray[np.float32]
+
+
+def stitched(
+    corners_mm: Array,
+    rectangle_mm: tuple[float, float],
+    stitch_mm: tuple[float, float],
+    repeat: StitchChart,
+) -> StitchedCloth:
+    """Lay the stitches of a repeat on a sheet of rectangles; arguments as of `stitch_corners`."""
+    corners, stitches = stitch_corners(corners_mm, rectangle_mm, stitch_mm)
+    rows, columns = stitches.shape
+    small = repeat.repeat()
+    tiled = small.tile(-(-rows // small.rows), -(-columns // small.columns))
+    row, column = np.indices(corners.shape[:2])
+    hidden = 0.01 * np.stack([column, row, 0 * row], axis=-1)
+    shown = np.where(np.isfinite(corners), corners, hidden).astype(np.float32)
+    return StitchedCloth(StitchChart(tiled.purl[:rows, :columns]), stitches, shown)
+
+
 def stitch_weights_n(
     chart: StitchChart,
     material: Material,

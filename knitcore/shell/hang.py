@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart, as_chart
@@ -51,6 +52,11 @@ class HungPiece(Result):
     lengthening: float
     converged: bool
     used: NDArray[np.bool_]
+
+    @property
+    def weight_g(self) -> float:
+        """Mass of the piece, g."""
+        return 1000.0 * self.weight_n / STANDARD_GRAVITY
 
 
 def hang(

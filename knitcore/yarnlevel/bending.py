@@ -10,14 +10,18 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from knitcore.chart import check_stitches
 from knitcore.choice import Choice
 from knitcore.errors import Cancelled, ConvergenceError, UnravelledError
+from knitcore.fabric import Direction
 from knitcore.yarnlevel.bent_cell import BendingResponse, settled
 from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
 from knitcore.yarnlevel.splines import RelaxedRepeat
 
+FAR_APART = 1.5
+"""Factor between the two states' rigidities from which on a rigidity is a range."""
 MAX_STITCHES = 36
 """Largest repeat; the unknowns fill a dense matrix."""
 ROLLS_FROM = 0.5
@@ -171,6 +175,22 @@ class RepeatBending:
             self.unmirrored.course.rigidity_n_mm / self.mirrored.course.rigidity_n_mm,
             self.unmirrored.wale.rigidity_n_mm / self.mirrored.wale.rigidity_n_mm,
         )
+
+    @property
+    def far_apart(self) -> dict[Direction, float]:
+        """Directions in which the two states' rigidities differ much, and by which factor.
+
+        There the rigidity is a range rather than a value.
+        """
+        apart = {d: max(r, 1.0 / r) for d, r in zip(Direction, self.ratios or (), strict=False)}
+        return {d: factor for d, factor in apart.items() if factor > FAR_APART}
+
+
+def weight_n_per_mm2(
+    linear_density_g_per_m: float, loop_length_mm: float, stitch_area_mm2: float
+) -> float:
+    """Return the weight per area, N/mm², of cloth with so much yarn in a stitch."""
+    return 1e-6 * STANDARD_GRAVITY * linear_density_g_per_m * loop_length_mm / stitch_area_mm2
 
 
 def bending_length_mm(rigidity_n_mm: float, weight_n_per_mm2: float) -> float:

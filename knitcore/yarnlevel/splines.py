@@ -14,6 +14,12 @@ from numpy.typing import ArrayLike
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_stitches, size_in_words
 from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
+from knitcore.materials.uncertainty import (
+    YARN_LEVEL_FREE_SIZE_LOG_SD,
+    YARN_LEVEL_SIZE_LOG_SD,
+    Interval,
+    log_interval,
+)
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
@@ -401,3 +407,24 @@ def _compile() -> None:
         options=Options(iterations=2),
     )  # fmt: skip
     outcome(CellEnergy(cell, yarn, np.array([12.0]), Convention.PUBLISHED), found)
+
+
+def _size_log_sd(cell: RelaxedCell) -> float:
+    """Standard deviation of the logarithm of knitted over relaxed sizes."""
+    folded = cell.branch is Branch.FREE and has_mirrors(cell.chart)
+    return YARN_LEVEL_FREE_SIZE_LOG_SD if folded else YARN_LEVEL_SIZE_LOG_SD
+
+
+def size_intervals(cell: RelaxedCell) -> tuple[Interval, Interval]:
+    """90 % intervals of the width and height of a knitted stitch, mm.
+
+    They cover those of other shapes that are as low, for which of them is shown is a rule.
+    """
+    others = cell.other_minima_mm if isinstance(cell, RelaxedRepeat) else ()
+    log_sd = _size_log_sd(cell)
+    each = zip((cell.cell_course_mm, cell.cell_wale_mm), *others, strict=True)
+    course, wale = (
+        Interval(log_interval(min(sizes), log_sd).low, log_interval(max(sizes), log_sd).high)
+        for sizes in each
+    )
+    return course, wale

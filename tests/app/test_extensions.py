@@ -29,25 +29,19 @@ def run(*arguments: str) -> str:
     return result.stdout
 
 
-def test_the_command_predicts_with_pattern_yarn_and_measures(tmp_path: Path) -> None:
-    asked = ["waffle", "--size", "24x6", "--material", "house-dk", "--measure", "stitches-per-cm2"]
-    found = json.loads(run("predict", *asked, "--json"))
-    assert (found["columns"], found["rows"]) == (24, 6)
-    (measured,) = found["measures"]
-    assert measured["value"] > 0
-    assert "stitches-per-cm2" in run("predict", *asked)
+def test_the_commands_take_its_yarn_and_its_format(tmp_path: Path) -> None:
+    asked = ["moss", "--size", "24x6", "--material", "house-dk"]
+    predicted = json.loads(run("predict", *asked, "--json"))
+    assert (predicted["columns"], predicted["rows"]) == (24, 6)
+    assert predicted["modulus_course_n_per_mm"] > 0
 
     out = tmp_path / "card.txt"
-    run("export", "waffle", "--size", "24x6", "--to", "punchcard", "-o", str(out))
-    assert out.read_text().splitlines()[1] == "oo." * 8
+    run("export", "moss", "--size", "24x6", "--to", "punchcard", "-o", str(out))
+    assert out.read_text().splitlines()[1] == ".o" * 12
 
 
-def test_the_service_has_them(client: TestClient) -> None:
-    assert "waffle" in [p["id"] for p in client.get("/api/v1/patterns").json()["patterns"]]
+def test_the_service_has_its_yarns(client: TestClient) -> None:
     assert "house-dk" in [m["id"] for m in client.get("/api/v1/materials").json()["materials"]]
-    asked = {"chart": "KP", "material": "house-dk", "measures": ["cover-factor"]}
-    (cover,) = client.post("/api/v1/predict", json=asked).json()["measures"]
-    assert cover["value"] is None  # the yarn's diameter is not known
 
 
 def test_a_request_for_its_format_is_a_file(tmp_path: Path) -> None:
@@ -59,17 +53,10 @@ def test_a_request_for_its_format_is_a_file(tmp_path: Path) -> None:
         export(ExportRequest(chart="KP", to="no-such-format"), Context(tmp_path))
 
 
-def test_an_unknown_measure_is_refused(client: TestClient) -> None:
-    refused = client.post(
-        "/api/v1/predict", json={"chart": "KP", "material": "acrylic", "measures": ["x"]}
-    )
-    assert refused.json()["field"] == "measures"
-
-
 def test_the_list_shows_what_is_wrong(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, client: TestClient
 ) -> None:
-    install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.MEASURES: {"gone": "gone:all"}})
+    install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.EXPORTERS: {"gone": "gone:all"}})
     found = {e["name"]: e for e in client.get("/api/v1/extensions").json()["extensions"]}
     assert found["knit-house"]["problem"] is None
     assert "ModuleNotFoundError" in found["gone"]["problem"]

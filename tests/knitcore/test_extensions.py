@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from pathlib import Path
 
 import pytest
 
 from knitcore import InputError, StitchChart, material, predict
-from knitcore.extensions import ExtensionError, ExtensionWarning, Group, extensions, offered
+from knitcore.extensions import (
+    ExtensionError,
+    ExtensionWarning,
+    Group,
+    extensions,
+    offered,
+    running,
+)
 from knitcore.formats.export import Exporter, ExportKind, export_chart
 from knitcore.materials import Material
-from knitcore.patterns import PATTERNS, Pattern, patterns
-from knitcore.prediction.measures import Measure, measure
 from tests.extension_package import install, install_example
 
 BAD = """
-from knitcore.patterns import Pattern
-from knitcore import StitchChart
+from knitcore.formats.export import Exporter
 
 def fails():
     raise OSError("no licence")
@@ -27,10 +30,10 @@ def numbers():
     return [1]
 
 def nameless():
-    return [Pattern("No Name", "No name", StitchChart.parse("K"), "")]
+    return [Exporter("No Name", ".txt", "text/plain", write=str)]
 
-def garter():
-    return [Pattern("garter", "Ours", StitchChart.parse("K/P"), "")]
+def png():
+    return [Exporter("png", ".png", "image/png", write=str)]
 """
 
 
@@ -44,12 +47,8 @@ class TestExample:
     def test_an_extension_is_imported_only_when_needed(self) -> None:
         material("acrylic")
         export_chart(StitchChart.parse("KP"), ExportKind.TEXT, material("acrylic"))
-        assert [e.package for e in extensions(Group.PATTERNS)] == ["knit-house 1.0"]
+        assert [e.package for e in extensions(Group.EXPORTERS)] == ["knit-house 1.0"]
         assert "knit_house" not in sys.modules
-
-    def test_its_pattern_is_the_last_on_the_shelf(self) -> None:
-        assert patterns()[:-1] == PATTERNS
-        assert patterns()[-1].chart.key == "KKK/PPK/PPK"
 
     def test_its_yarn_answers_as_any_other(self) -> None:
         yarn = material("house-dk")
@@ -73,55 +72,38 @@ class TestExample:
         with pytest.raises(InputError, match=r"knitout, .*punchcard"):
             export_chart(StitchChart.parse("KP"), "no-such-format", material("acrylic"))
 
-    def test_its_measures_are_those_of_the_answer(self) -> None:
-        chart, acrylic = StitchChart.of_fabric("garter", rows=4, columns=4), material("acrylic")
-        answer = predict(chart, acrylic)
-        density = measure("stitches-per-cm2").value(chart, acrylic, answer)
-        assert density * answer.relaxed_course_mm * answer.relaxed_wale_mm == pytest.approx(100)
-        cover = measure("cover-factor").value(chart, acrylic, answer)
-        assert 0.5 < cover < 3
-        assert math.isnan(
-            measure("cover-factor").value(chart, material("house-dk"), answer)
-        )  # its diameter is not known
-
-    def test_an_unknown_measure_is_refused_with_the_known_ones(self) -> None:
-        with pytest.raises(InputError, match="cover-factor"):
-            measure("no-such-measure")
-
 
 @pytest.mark.parametrize(
     ("target", "problem"),
     [
         ("bad_knitting:fails", "OSError: no licence"),
-        ("bad_knitting:numbers", "offers a int, not a Pattern"),
+        ("bad_knitting:numbers", "offers a int, not a Exporter"),
         ("bad_knitting:nameless", "'No Name' is not an identifier"),
-        ("bad_knitting:garter", "garter exists already"),
+        ("bad_knitting:png", "png exists already"),
         ("bad_knitting:absent", "AttributeError"),
-        ("no_such_module:patterns", "ModuleNotFoundError"),
+        ("no_such_module:exporters", "ModuleNotFoundError"),
     ],
 )
 def test_a_bad_extension_is_named_and_left_out(
     target: str, problem: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     install_example(monkeypatch, tmp_path / "good")
-    install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.PATTERNS: {"bad-one": target}})
+    install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.EXPORTERS: {"bad-one": target}})
     (tmp_path / "bad" / "bad_knitting.py").write_text(BAD)
     with pytest.warns(ExtensionWarning, match=f"'bad-one' .*{target}.* of bad 2.0 .*{problem}"):
-        found = patterns()
-    assert [p.identifier for p in found[len(PATTERNS) :]] == ["waffle"]
+        offers = offered(Group.EXPORTERS, Exporter, set(ExportKind))
+    assert list(offers) == ["punchcard"]
     sys.modules.pop("bad_knitting", None)
 
 
 def test_an_extension_that_fails_while_it_runs_is_named() -> None:
-    def fail(*_: object) -> float:
+    with (
+        pytest.raises(ExtensionError, match=r"'card' .*exporters.*ZeroDivisionError: oh"),
+        running(Group.EXPORTERS, "card"),
+    ):
         raise ZeroDivisionError("oh")
-
-    chart, acrylic = StitchChart.parse("K"), material("acrylic")
-    with pytest.raises(ExtensionError, match=r"'drape' .*measures.*ZeroDivisionError: oh"):
-        Measure("drape", "", "Fails.", fail).value(chart, acrylic, predict(chart, acrylic))
 
 
 def test_without_extensions_only_built_in_things_are_offered() -> None:
     assert offered(Group.EXPORTERS, Exporter) == {}
     assert offered(Group.MATERIALS, Material) == {}
-    assert offered(Group.PATTERNS, Pattern) == {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -229,7 +230,7 @@ def test_an_operation_is_described_by_its_function() -> None:
 class Found:
     """What a library function returned."""
 
-    modulus_course = 0.5
+    modulus_course_n_per_mm = 0.5
     interval = Interval(1.0, 2.0)
     values = (1.0, 2.0)
     beyond = float("nan")
@@ -301,3 +302,21 @@ def test_published_laws_can_be_chosen_wherever_laws_are_used(name: str) -> None:
     if "laws" in asked and operation.command is not None:
         options = {option for made in command_of(operation, name).params for option in made.opts}
         assert "--laws" in options
+
+
+CONVERSIONS = {
+    "array", "broadcast_to", "isfinite", "round",
+    "bool_", "float32", "float64", "nan", "degrees", "linspace", "mean",
+    "exp", "sort",
+}  # fmt: skip
+"""Names of NumPy with which an operation turns lists into arrays, units into others, and back."""
+
+
+@pytest.mark.parametrize("room", ["operations", "models"])
+def test_an_operation_computes_nothing_itself(room: str) -> None:
+    files = sorted(Path(sys.modules["app"].__path__[0], room).rglob("*.py"))
+    assert files
+    for file in files:
+        text = file.read_text(encoding="utf-8")
+        assert "scipy" not in text, file
+        assert set(re.findall(r"\bnp\.(\w+)", text)) <= CONVERSIONS, file

@@ -14,9 +14,10 @@ from PIL import Image
 from app.context import Context
 from app.drawing.colours import FABRIC_COLOURS, rgb
 from app.drawing.design_view import ViewRequest, build_scene
-from app.models.posed import Body, PosedView
+from app.models.posed import PosedView
 from app.viewer.still import still_png
 from knitcore.fabric import Fabric
+from knitcore.geometry.body import Body
 
 ASKED = {"chart": "\n".join(["KKKK"] * 4), "material": "acrylic", "colour": "fabric"}
 
