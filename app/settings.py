@@ -58,9 +58,6 @@ class Settings(BaseSettings):
         description="Addresses or networks of proxies whose headers about the client are trusted "
         "(X-Forwarded-For, X-Forwarded-Proto).",
     )
-    connections_per_address: int = Field(
-        256, ge=8, description="Open connections of one address; a trusted proxy may have more."
-    )
     data_dir: Path = Field(
         default_factory=lambda: (
             Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "knitcore"
@@ -152,13 +149,6 @@ class Settings(BaseSettings):
             return True
         try:
             return ip_address(self.host).is_loopback
-        except ValueError:
-            return False
-
-    def is_proxy(self, address: str) -> bool:
-        """Whether an address is of a trusted proxy."""
-        try:
-            return any(ip_address(address) in network for network in self.trusted_proxies)
         except ValueError:
             return False
 

@@ -76,11 +76,27 @@ def test_services_wait_for_each_other_and_keep_their_data() -> None:
 
 def test_the_service_has_no_more_rights_than_it_needs() -> None:
     services = COMPOSE["services"]
-    for name in ("app", "scheduler", "worker"):
+    for name in ("proxy", "app", "scheduler", "worker"):
         assert services[name]["read_only"]
         assert services[name]["cap_drop"] == ["ALL"]
-    assert all(port.startswith("127.0.0.1:") for port in services["app"]["ports"])
-    assert [name for name, service in services.items() if "ports" in service] == ["app"]
+    assert all(port.startswith("127.0.0.1:") for port in services["proxy"]["ports"])
+    assert [name for name, service in services.items() if "ports" in service] == ["proxy"]
+
+
+def test_the_service_is_reached_through_its_proxy_only() -> None:
+    services, networks = COMPOSE["services"], COMPOSE["networks"]
+    assert [name for name, service in services.items() if "outside" in service["networks"]] == [
+        "proxy"
+    ]
+    assert networks["front"]["internal"]
+    (front,) = networks["front"]["ipam"]["config"]
+    environment = services["app"]["environment"]
+    assert environment["KNITCORE_TRUSTED_PROXIES"] == f'["{front["subnet"]}"]'
+    proxy = (ROOT / "deploy" / "nginx.conf").read_text()
+    assert f"server app:{environment['KNITCORE_PORT']};" in proxy
+    listens = re.search(r"listen (\d+);", proxy)
+    assert listens is not None
+    assert services["proxy"]["ports"] == [f"127.0.0.1:8737:{listens[1]}"]
 
 
 def _instructions() -> list[tuple[str, str]]:

@@ -11,7 +11,6 @@ import signal
 import socket
 import sys
 from collections.abc import Iterator
-from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING
 
@@ -87,16 +86,12 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
     import uvicorn
 
     from app import memory
-    from app.http.connections import Connection, Door, Socket
     from app.main import create_app
     from app.viewer.incoming import MAX_PICTURE_BYTES
 
     sys.setswitchinterval(SWITCH_S)
     memory.keep_no_large_blocks()
     app = create_app(settings, database)
-    door = Door(
-        _raise_handles() - SPARE_HANDLES, settings.connections_per_address, settings.is_proxy
-    )
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -110,12 +105,12 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
     server = Server(
         uvicorn.Config(
             app,
-            http=partial(Connection, door=door),  # type: ignore[arg-type]
-            ws=Socket,
             proxy_headers=bool(settings.trusted_proxies),
             forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
             server_header=False,
             log_config=None,
+            ws="websockets-sansio",
+            limit_concurrency=_raise_handles() - SPARE_HANDLES,
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
             ws_max_size=MAX_PICTURE_BYTES,
             ws_max_queue=2,

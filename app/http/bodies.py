@@ -30,7 +30,6 @@ MAX_VALUES = MAX_FIELD + 10_000
 """Values in a JSON body, counted by commas and opening brackets: a field on the largest chart that
 has one, and whatever comes with it. Reading and checking them takes some 30 ms. Charts and files
 are one value each."""
-LARGE = {"Connection": "close"}
 
 
 @dataclass(frozen=True)
@@ -119,4 +118,4 @@ def limited(receive: Receive, most_bytes: int, count: Callable[[int], None]) -> 
 
 def _too_large(most_bytes: int) -> HTTPException:
     detail = f"A request has at most {most_bytes} bytes and {MAX_VALUES} values here."
-    return HTTPException(413, detail, LARGE)
+    return HTTPException(413, detail)

@@ -189,8 +189,6 @@ class Guard:
             await send(message)
 
         if answer is not None:
-            if _has_body(scope):  # it will not be read
-                answer.headers["Connection"] = "close"
             await answer(scope, receive, send_with_headers)
             return
         answered = Answer(send_with_headers)
@@ -441,8 +439,3 @@ def with_own_cookie_only(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes
         if own and '"' not in own:
             kept.append((b"cookie", f"{SESSION_COOKIE}={own}".encode("latin-1")))
     return kept
-
-
-def _has_body(scope: Scope) -> bool:
-    headers = Headers(scope=scope)
-    return headers.get("content-length", "0") != "0" or "transfer-encoding" in headers
