@@ -97,8 +97,8 @@ test-kill: $(VENV)/.installed-dev ## Kill the service 50 times while designs are
 test-faults: $(VENV)/.installed-dev ## Full disk, database away for 30 s, clients that vanish, workers that die
 	KNITCORE_OUTAGE_S=30 $(BIN)/pytest tests/app/test_faults.py tests/app/test_job_kinds.py tests/app/compute/test_cluster.py
 
-fuzz: $(VENV)/.installed-dev ## Send 10,000 requests with hostile fields to every operation
-	KNITCORE_FUZZ_REQUESTS=10000 $(BIN)/pytest -s tests/app/http/test_fuzz.py
+fuzz: $(VENV)/.installed-dev ## Send thousands of valid and invalid requests, made from the schema, to every operation
+	KNITCORE_SCHEMA_EXAMPLES=60 $(BIN)/pytest -s -m slow tests/app/http/test_schema.py
 
 frontend-check: frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import shutil
 from collections.abc import Callable
 from contextlib import closing
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from app.compute.cluster import Cluster
 
 MIN_FREE_BYTES = 100_000_000
-MIN_HANDLES = 4_096
 
 
 class Check(BaseModel):
@@ -50,7 +48,7 @@ class Checks(BaseModel):
 
 
 def examine(settings: Settings) -> Checks:
-    """Look at settings, folder, database, limits and cluster; changes nothing."""
+    """Look at settings, folder, database and cluster; changes nothing."""
     found = _examine(settings, partial(_check_database, settings), _cluster_check(settings))
     found.checks.append(_checked("service", partial(_holder, settings)))
     return found
@@ -79,7 +77,6 @@ def _examine(
         "file modes": partial(check_modes, settings.folder),
         "free space": partial(check_space, settings.folder),
         "database": database,
-        "file handles": check_handles,
     }
     if settings.scheduler is not None and cluster is not None:
         checks["cluster"] = cluster
@@ -168,22 +165,6 @@ def _holder(settings: Settings) -> str | None:
     if settings.database_url is None and not settings.database_file.exists():
         return None
     return holder(settings.store_url, settings.process_name)
-
-
-def check_handles() -> None:
-    """Refuse a limit on open files that a few hundred clients reach.
-
-    Raises
-    ------
-    InputError
-    """
-    _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if hard != resource.RLIM_INFINITY and hard < MIN_HANDLES:
-        raise InputError(
-            "nofile",
-            f"this process may open only {hard} files.",
-            f"Raise the limit (ulimit -n, LimitNOFILE) to {MIN_HANDLES} or more.",
-        )
 
 
 def check_cluster(address: str) -> None:

@@ -28,7 +28,7 @@ NO_SETTINGS = frozenset(
         "STUDY_DATA",
         # of tests:
         *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES", "HOSTILE_REQUESTS"),
-        *("FUZZ_REQUESTS", "WORKER_NICENESS"),
+        "WORKER_NICENESS",
     )
 )
 

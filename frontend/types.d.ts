@@ -600,10 +600,6 @@ export interface CurveResult {
   strain_interval: [number[], number[]];
   /** At each strain; at most 10 N/mm. */
   stress_interval_n_per_mm: [number[], number[]];
-  /** The low end of `stress_interval_n_per_mm`, by its earlier name. */
-  stress_low: number[];
-  /** The high end. */
-  stress_high: number[];
   provenance: string;
 }
 

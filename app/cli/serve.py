@@ -110,7 +110,7 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
             server_header=False,
             log_config=None,
             ws="websockets-sansio",
-            limit_concurrency=_raise_handles() - SPARE_HANDLES,
+            limit_concurrency=max(64, _raise_handles() - SPARE_HANDLES),
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
             ws_max_size=MAX_PICTURE_BYTES,
             ws_max_queue=2,

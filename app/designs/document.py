@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import AwareDatetime, BaseModel, Field, model_validator
+from pydantic import AwareDatetime, BaseModel, Field
 
 from app.models.base import RequestModel
 from app.models.charts import ChartText
 from knitcore.chart import MAX_STITCHES_PER_SIDE
-from knitcore.formats.design import FORMAT, VERSION, migrated
+from knitcore.formats.design import FORMAT, VERSION
 from knitcore.formats.layout import DesignLayout
 
 Name = Annotated[
@@ -27,10 +27,7 @@ MAX_RUNS = 20_000
 
 
 class DesignDocument(DesignLayout, RequestModel):
-    """A design as a file holds it; ``knitcore`` reads the same on the command line.
-
-    Documents of older versions are accepted, too, and returned in this version.
-    """
+    """A design as a file holds it; ``knitcore`` reads the same on the command line."""
 
     format: Literal["knitcore-design"] = FORMAT
     version: Literal[2] = VERSION
@@ -38,11 +35,6 @@ class DesignDocument(DesignLayout, RequestModel):
     material: MaterialId
     chart: ChartText
     note: Note = ""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _migrated(cls, data: Any) -> Any:
-        return migrated(data) if isinstance(data, dict) else data
 
 
 class DesignSummary(BaseModel):

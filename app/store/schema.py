@@ -16,6 +16,10 @@ from app.store.tables import metadata
 from knitcore.errors import InputError
 
 MIGRATIONS = Path(__file__).with_name("migrations")
+EARLIER = frozenset(f"{number:04}" for number in range(1, 8))
+"""Schemas from before the first release, which this program cannot bring up to date."""
+LAST_WITH_EARLIER = "5a988aec"
+"""The last commit of this program that can."""
 
 
 def migrate(database: Database, target: str = "head") -> None:
@@ -26,7 +30,8 @@ def migrate(database: Database, target: str = "head") -> None:
     Raises
     ------
     InputError
-        If the database (or the backup that asks for ``target``) was written by a newer program.
+        If the database (or the backup that asks for ``target``) was written by a newer program,
+        or by one from before the first release.
     StoreError
         If the database cannot be reached.
     """
@@ -60,6 +65,13 @@ def check_schema(database: Database, target: str = "head") -> str | None:
     """
     found = revision(database)
     scripts = ScriptDirectory.from_config(_config())
+    if too_old := {found, target} & EARLIER:
+        raise InputError(
+            "database_url",
+            f"the designs have schema {too_old.pop()}, from before the first release.",
+            f"Start Knitcore at commit {LAST_WITH_EARLIER} on them once, which brings them up to "
+            "date.",
+        )
     strange = {found, target} - {s.revision for s in scripts.walk_revisions()} - {None, "head"}
     if strange:
         raise InputError(

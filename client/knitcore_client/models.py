@@ -1677,10 +1677,6 @@ class CurveResult(BaseModel):
     """At each stress."""
     stress_interval_n_per_mm: tuple[list[float], list[float]]
     """At each strain; at most 10 N/mm."""
-    stress_low: list[float]
-    """The low end of `stress_interval_n_per_mm`, by its earlier name."""
-    stress_high: list[float]
-    """The high end."""
     provenance: str
 
 

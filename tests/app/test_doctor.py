@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import json
 import os
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -29,6 +30,7 @@ from app.compute.workers import NotBegunError
 from app.http import observing
 from app.main import create_app
 from app.settings import Settings
+from app.store import schema
 from app.store.database import Database
 from app.store.errors import DamagedError
 from app.store.lock import held
@@ -150,9 +152,6 @@ BROKEN = {
         "file modes", "other users", spoil=_open_to_all, starts=True, ready=True
     ),
     "little room": Broken("free space", "MB left", limits=("MIN_FREE_BYTES",), starts=True),
-    "few file handles": Broken(
-        "file handles", "ulimit", limits=("MIN_HANDLES",), starts=True, ready=True
-    ),
     "no cluster": Broken(
         "cluster", "reached", {"KNITCORE_SCHEDULER": "tcp://127.0.0.1:9"}, starts=True
     ),
@@ -170,7 +169,6 @@ def broken(
         found.spoil(file)
     for name in found.limits:
         monkeypatch.setattr(doctor, name, 1 << 62)
-    monkeypatch.setattr(doctor.resource, "getrlimit", lambda _: (4_096, 4_096))
     monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=1 << 40))
     monkeypatch.setattr(cluster_module, "CONNECT_S", 0.2)
     for name, value in ({"KNITCORE_DATA_DIR": str(tmp_path)} | dict(found.environment)).items():
@@ -296,18 +294,25 @@ def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
         assert client.get("/readyz").status_code == 503
 
 
-def test_a_copy_is_kept_before_a_migration(tmp_path: Path) -> None:
+def test_a_copy_is_kept_before_a_migration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a next migration, which only this test has."""
     file = tmp_path / "knitcore.sqlite3"
     database = Database(f"sqlite:///{file}")
-    migrate(database, "0003")
     migrate(database)
-    head = revision(database)
+    before = revision(database)
+    migrations = shutil.copytree(schema.MIGRATIONS, tmp_path / "migrations")
+    (migrations / "versions" / "next.py").write_text(
+        f"revision, down_revision = 'next', {before!r}\n\ndef upgrade():\n    pass\n"
+    )
+    monkeypatch.setattr(schema, "MIGRATIONS", migrations)
+    migrate(database)
+    assert revision(database) == "next"
     database.close()
     (copy,) = tmp_path.glob("*.before-*")
-    assert copy.name.endswith(f".before-{head}")
+    assert copy.name.endswith(".before-next")
     assert copy.stat().st_mode & 0o077 == 0
     old = Database(f"sqlite:///{copy}")
-    assert revision(old) == "0003"
+    assert revision(old) == before
     old.check_pages()
     old.close()
 

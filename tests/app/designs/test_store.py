@@ -263,7 +263,7 @@ def test_the_secret_of_a_link_is_not_in_the_database(database: Database) -> None
 
 LAYOUT = RIB.model_validate(
     {
-        "version": 1,
+        "version": 2,
         "name": "Shaped",
         "material": "acrylic",
         "chart": "KPKP\nKPKP",

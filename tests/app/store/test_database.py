@@ -14,8 +14,6 @@ from alembic.runtime.migration import MigrationContext
 from sqlalchemy import Connection, event, text
 from sqlalchemy.exc import IntegrityError
 
-from app.jobs.document import JobState
-from app.jobs.store import JobStore
 from app.store.database import Database
 from app.store.errors import StoreError
 from app.store.schema import migrate, revision
@@ -51,27 +49,26 @@ def test_the_migrations_make_the_tables(database: Database) -> None:
         assert compare_metadata(MigrationContext.configure(connection), metadata) == []
 
 
-def test_jobs_of_an_earlier_version_keep_their_requests(database: Database) -> None:
-    migrate(database, "0007")
-    insert = text(
-        "INSERT INTO jobs (id, owner, process, kind, request, key, state, created_at)"
-        " VALUES ('j', 'ada', 'p', 'relax', :request, 'key', 'waiting', 0)"
-    )
-    database.write(lambda c: c.execute(insert, {"request": '{"chart": "KP"}'}))
-    migrate(database)
-    jobs = JobStore(database, "p")
-    assert jobs.request_of("ada", "j") == ("relax", '{"chart": "KP"}')
-    jobs.end("j", JobState.CANCELLED)
-    database.write(lambda c: c.execute(text("DELETE FROM jobs")))
-    with database.read() as connection:
-        assert connection.execute(text("SELECT count(*) FROM job_requests")).scalar() == 0
-
-
 def test_a_database_of_a_newer_program_is_left_alone(database: Database) -> None:
     migrate(database)
     database.write(lambda c: c.execute(text("UPDATE alembic_version SET version_num='9999'")))
     with pytest.raises(InputError, match="newer program"):
         migrate(database)
+
+
+def test_a_database_from_before_the_first_release_is_left_alone(database: Database) -> None:
+    migrate(database)
+    database.write(lambda c: c.execute(text("UPDATE alembic_version SET version_num='0005'")))
+    with pytest.raises(InputError, match="0005, from before") as refused:
+        migrate(database)
+    assert "commit" in refused.value.remedy
+    assert revision(database) == "0005"
+
+
+def test_a_database_of_the_present_schema_opens(database: Database) -> None:
+    """The first migration has the number of the schema that programs wrote before it."""
+    migrate(database)
+    assert revision(database) == "0008"
 
 
 def test_commits_are_flushed_to_disk(database: Database) -> None:
