@@ -92,13 +92,13 @@ test-postgres: $(VENV)/.installed-dev ## Run the tests of the designs on a real 
 	$(BIN)/pytest -m postgres tests/app
 
 test-kill: $(VENV)/.installed-dev ## Kill the service 50 times while designs are edited
-	KNITCORE_KILLS=50 $(BIN)/pytest -s tests/app/designs/test_durability.py
+	KNITCORE_KILLS=50 $(BIN)/pytest -s tests/app/service/designs/test_durability.py
 
 test-faults: $(VENV)/.installed-dev ## Full disk, database away for 30 s, clients that vanish, workers that die
-	KNITCORE_OUTAGE_S=30 $(BIN)/pytest tests/app/test_faults.py tests/app/test_job_kinds.py tests/app/compute/test_cluster.py
+	KNITCORE_OUTAGE_S=30 $(BIN)/pytest tests/app/service/test_faults.py tests/app/service/jobs/test_job_kinds.py tests/app/service/compute/test_cluster.py
 
 fuzz: $(VENV)/.installed-dev ## Send thousands of valid and invalid requests, made from the schema, to every operation
-	KNITCORE_SCHEMA_EXAMPLES=60 $(BIN)/pytest -s -m slow tests/app/http/test_schema.py
+	KNITCORE_SCHEMA_EXAMPLES=60 $(BIN)/pytest -s -m slow tests/app/service/web/test_schema.py
 
 frontend-check: frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test

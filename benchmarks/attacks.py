@@ -35,7 +35,7 @@ import viser
 import websockets.sync.client
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from tests.app.service import Service
+from tests.app.running import Service
 
 PROBE_S, MAX_WAIT_S, MAX_RISE_BYTES = 0.01, 0.1, 300_000_000
 SIDE = 1000

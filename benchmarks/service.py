@@ -34,8 +34,8 @@ import viser
 import websockets
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from app.limits.budgets import BUDGETS
-from tests.app.service import Service
+from app.service.limits.budgets import BUDGETS
+from tests.app.running import Service
 
 USERS = int(os.environ.get("USERS", "50"))
 STROKES_PER_S = 5.0
@@ -46,7 +46,7 @@ P95_MS = float(os.environ.get("P95_MS", "250"))
 SLICE_S = 15.0
 PROBE_S = 0.1
 WARM_UP_S, WARM_UP_TESTS, WARM_UP_SLICES = 10.0, 7, 12
-"""Stretch tests that fill the service's memory of recent results (`app/results/recent.py`)."""
+"""Stretch tests that fill the memory of recent results (`app/service/results/recent.py`)."""
 VIEWS, ROUNDS = BUDGETS.views, int(os.environ.get("ROUNDS", "10"))
 JOBS = "/api/v1/jobs"
 PATIENCE_S = 300.0

@@ -14,7 +14,7 @@ import pathspec
 import pytest
 import yaml
 
-from app.settings import Settings
+from app.service.settings import Settings
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCKERFILE = (ROOT / "Dockerfile").read_text()
@@ -47,7 +47,7 @@ def test_no_secret_has_a_default() -> None:
 
 
 def test_the_cluster_is_the_one_that_the_service_asks() -> None:
-    """The commands themselves are run by tests/app/compute/test_cluster.py."""
+    """The commands themselves are run by tests/app/service/compute/test_cluster.py."""
     services = COMPOSE["services"]
     address = services["app"]["environment"]["KNITCORE_SCHEDULER"]
     name, port = address.removeprefix("tcp://").split(":")
@@ -152,8 +152,9 @@ def test_the_image_runs_as_a_plain_user() -> None:
 def test_nothing_but_the_program_is_sent_to_the_engine() -> None:
     rules = (ROOT / ".dockerignore").read_text()
     ignored = pathspec.GitIgnoreSpec.from_lines(rules.splitlines())
-    kept = "app/main.py app/store/migrations/env.py knitcore/__init__.py frontend/build.mjs"
-    for file in f"{kept} pyproject.toml setup.py README.md LICENSE requirements.lock".split():
+    kept = "app/service/main.py app/service/store/migrations/env.py knitcore/__init__.py"
+    kept += " frontend/build.mjs deploy/nginx.conf pyproject.toml setup.py README.md LICENSE"
+    for file in f"{kept} requirements.lock".split():
         assert (ROOT / file).exists(), file
         assert not ignored.match_file(file), file
     secret = ".env .env.production app/.env frontend/.env.local knitcore.sqlite3 app/x.sqlite3-wal"

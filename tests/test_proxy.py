@@ -18,8 +18,8 @@ import pytest
 import viser
 import websockets
 
-from app.settings import Settings
-from tests.app.service import Service
+from app.service.settings import Settings
+from tests.app.running import Service
 
 NGINX = shutil.which("nginx", path="/usr/sbin:/usr/bin:/usr/local/sbin:/usr/local/bin")
 SHIPPED = Path(__file__).resolve().parent.parent / "deploy" / "nginx.conf"

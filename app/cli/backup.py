@@ -14,8 +14,8 @@ from app.cli.common import emit, json_option, open_database, user_settings
 @json_option
 def command(file: Path, as_json: bool) -> None:
     """Write designs, versions, links, users and own materials to FILE; the service may run."""
-    from app.results.own_materials import FOLDER
-    from app.store.backup import back_up
+    from app.service.results.own_materials import FOLDER
+    from app.service.store.backup import back_up
 
     settings = user_settings()
     with open_database(settings) as database:

@@ -16,7 +16,7 @@ from knitcore.errors import InputError
 @json_option
 def command(as_json: bool) -> None:
     """Check everything the service needs; exit code 1 if a check fails."""
-    from app.doctor import Check, Checks, examine
+    from app.service.doctor import Check, Checks, examine
 
     try:
         found = examine(user_settings())

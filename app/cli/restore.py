@@ -14,8 +14,8 @@ from app.cli.common import emit, json_option, open_database, user_settings
 @json_option
 def command(file: Path, as_json: bool) -> None:
     """Read the backup FILE into the empty data folder or database of the settings."""
-    from app.results.own_materials import FOLDER
-    from app.store.backup import restore
+    from app.service.results.own_materials import FOLDER
+    from app.service.store.backup import restore
 
     settings = user_settings()
     with open_database(settings, migrated=False) as database:

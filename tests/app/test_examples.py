@@ -10,9 +10,9 @@ import jsonschema_rs
 import pytest
 from fastapi.testclient import TestClient
 
-from app.http.schema import documented_operations
 from app.models.uploads import EXAMPLES
 from app.operations.registry import operations
+from app.service.web.schema import documented_operations
 from scripts.any_machine import OTHERS, SIZES, difference
 from scripts.api_examples import ask_everything, patient_client
 

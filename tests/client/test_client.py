@@ -17,10 +17,10 @@ from knitcore_client import AsyncClient, Client, ProblemError
 from knitcore_client.aio import AsyncClient as Awaited
 from knitcore_client.models import JobStatus
 
-from app.main import create_app
 from app.operations.registry import operations
+from app.service.main import create_app
 from scripts.client_code import FOLDER, code
-from tests.app.service import Service
+from tests.app.running import Service
 
 TOKEN = "a-token-of-this-test"
 
