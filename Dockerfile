@@ -25,6 +25,12 @@ RUN /opt/knitcore/bin/pip install --no-deps . \
  && find /opt/knitcore -type d '(' -name tests -o -path '*/site-packages/docs' ')' -prune -exec rm -rf {} + \
  && /opt/knitcore/bin/pip uninstall -y pip
 
+FROM ${BASE} AS proxy
+RUN apt-get update \
+ && apt-get install -y --no-install-recommends nginx-light \
+ && rm -rf /var/lib/apt/lists/*
+COPY deploy/nginx.conf /etc/nginx/nginx.conf
+
 FROM ${BASE}
 LABEL org.opencontainers.image.title="Knitcore" org.opencontainers.image.licenses="MIT"
 RUN apt-get update \

@@ -85,12 +85,12 @@ coverage: $(VENV)/.installed-tests page ## Tell which lines the default suite ru
 	$(BIN)/coverage run -m pytest -n 2 --dist loadgroup -m "not slow"; $(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 
-test-hard: $(VENV)/.installed-tests ## Kill the service 50 times, send 10,000 hostile requests, take disk, database and workers away
+test-hard: $(VENV)/.installed-tests ## Kill the service 50 times, send thousands of hostile requests, take disk, database and workers away
 	dpkg -s postgresql >/dev/null 2>&1 || apt-get install -y --no-install-recommends postgresql
 	$(BIN)/pytest -m postgres tests/app
-	KNITCORE_KILLS=50 KNITCORE_FUZZ_REQUESTS=10000 KNITCORE_OUTAGE_S=30 $(BIN)/pytest -s \
-		tests/app/designs/test_durability.py tests/app/http/test_fuzz.py tests/app/test_faults.py \
-		tests/app/test_job_kinds.py tests/app/compute/test_cluster.py
+	KNITCORE_KILLS=50 KNITCORE_OUTAGE_S=30 KNITCORE_SCHEMA_EXAMPLES=60 $(BIN)/pytest -s \
+		tests/app/running/designs/test_durability.py tests/app/running/test_faults.py \
+		tests/app/running/jobs/test_job_kinds.py tests/app/running/compute/test_cluster.py tests/app/running/web/test_schema.py
 
 frontend-check: types frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test

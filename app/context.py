@@ -7,12 +7,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.results.on_disk import KeptResults
-from app.results.own_materials import KINDS, PREFIX, find_own_material
+from app.service.results.on_disk import KeptResults
+from app.service.results.own_materials import KINDS, PREFIX, find_own_material
 from knitcore.materials import Material, load_material_file, material
 
 if TYPE_CHECKING:
-    from app.results.atlases import Extent
+    from app.service.results.atlases import Extent
     from knitcore.design.atlas import Atlas
 
 
@@ -83,7 +83,7 @@ class Context:
             If there is no such material, or the file cannot be read.
         """
         # most operations need none
-        from app.results.atlases import atlas_of
+        from app.service.results.atlases import atlas_of
         from knitcore.design.atlas import load_atlas
 
         if file is not None:

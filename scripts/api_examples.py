@@ -14,13 +14,13 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
-from app.http.schema import documented_operations
-from app.http.sessions import Sessions
-from app.identity import LOCAL_USER
-from app.jobs.store import OPEN
-from app.main import create_app
 from app.models.uploads import EXAMPLES
-from app.settings import Settings
+from app.service.identity import LOCAL_USER
+from app.service.jobs.store import OPEN
+from app.service.main import create_app
+from app.service.settings import Settings
+from app.service.web.schema import documented_operations
+from app.service.web.sessions import Sessions
 
 FIRST = [
     "POST /api/v1/designs",

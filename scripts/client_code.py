@@ -14,9 +14,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from app.designs.document import DesignDocument
-from app.jobs.kinds import KINDS
 from app.operations.registry import Operation, operations
+from app.service.designs.document import DesignDocument
+from app.service.jobs.kinds import KINDS
 from scripts.page_types import ANSWERED, ASKED, Schema, shapes
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -14,13 +14,13 @@ from typing import Any, Literal
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
-from app.api.views import CameraRequest, MarkRequest
-from app.designs import document as designs
 from app.drawing.design_view import ViewRequest, ViewResult
-from app.http.sessions import SignedIn
-from app.jobs.document import JobPage
 from app.operations.registry import operations
-from app.problems.problem import Problem
+from app.service.api.views import CameraRequest, MarkRequest
+from app.service.designs import document as designs
+from app.service.jobs.document import JobPage
+from app.service.problems import Problem
+from app.service.web.sessions import SignedIn
 from app.viewer.shared import SharedViewRequest
 from knitcore.formats.layout import DesignLayout
 

@@ -18,7 +18,7 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from tests.app.service import Service
+from tests.app.running import Service
 from tests.browser.conftest import CHROMIUM, FLAGS
 from tests.browser.page import wait_for_colour
 

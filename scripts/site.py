@@ -104,9 +104,9 @@ def _cell(text: str) -> str:
 
 def rest_page() -> str:
     """Every operation of the service, from its OpenAPI document, by its own reference."""
-    from app.http.reference import reference
-    from app.main import create_app
-    from app.settings import Settings
+    from app.service.main import create_app
+    from app.service.settings import Settings
+    from app.service.web.reference import reference
 
     with tempfile.TemporaryDirectory() as folder:
         page = reference(create_app(Settings(data_dir=Path(folder))).openapi())

@@ -14,7 +14,7 @@ import pathspec
 import pytest
 import yaml
 
-from app.settings import Settings
+from app.service.settings import Settings
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCKERFILE = (ROOT / "Dockerfile").read_text()
@@ -47,7 +47,7 @@ def test_no_secret_has_a_default() -> None:
 
 
 def test_the_cluster_is_the_one_that_the_service_asks() -> None:
-    """The commands themselves are run by tests/app/compute/test_cluster.py."""
+    """The commands themselves are run by tests/app/running/compute/test_cluster.py."""
     services = COMPOSE["services"]
     address = services["app"]["environment"]["KNITCORE_SCHEDULER"]
     name, port = address.removeprefix("tcp://").split(":")
@@ -76,11 +76,27 @@ def test_services_wait_for_each_other_and_keep_their_data() -> None:
 
 def test_the_service_has_no_more_rights_than_it_needs() -> None:
     services = COMPOSE["services"]
-    for name in ("app", "scheduler", "worker"):
+    for name in ("proxy", "app", "scheduler", "worker"):
         assert services[name]["read_only"]
         assert services[name]["cap_drop"] == ["ALL"]
-    assert all(port.startswith("127.0.0.1:") for port in services["app"]["ports"])
-    assert [name for name, service in services.items() if "ports" in service] == ["app"]
+    assert all(port.startswith("127.0.0.1:") for port in services["proxy"]["ports"])
+    assert [name for name, service in services.items() if "ports" in service] == ["proxy"]
+
+
+def test_the_service_is_reached_through_its_proxy_only() -> None:
+    services, networks = COMPOSE["services"], COMPOSE["networks"]
+    assert [name for name, service in services.items() if "outside" in service["networks"]] == [
+        "proxy"
+    ]
+    assert networks["front"]["internal"]
+    (front,) = networks["front"]["ipam"]["config"]
+    environment = services["app"]["environment"]
+    assert environment["KNITCORE_TRUSTED_PROXIES"] == f'["{front["subnet"]}"]'
+    proxy = (ROOT / "deploy" / "nginx.conf").read_text()
+    assert f"server app:{environment['KNITCORE_PORT']};" in proxy
+    listens = re.search(r"listen (\d+);", proxy)
+    assert listens is not None
+    assert services["proxy"]["ports"] == [f"127.0.0.1:8737:{listens[1]}"]
 
 
 def _instructions() -> list[tuple[str, str]]:
@@ -144,8 +160,9 @@ def test_the_image_runs_as_a_plain_user() -> None:
 def test_nothing_but_the_program_is_sent_to_the_engine() -> None:
     rules = (ROOT / ".dockerignore").read_text()
     ignored = pathspec.GitIgnoreSpec.from_lines(rules.splitlines())
-    kept = "app/main.py app/store/migrations/env.py knitcore/__init__.py frontend/build.mjs"
-    for file in f"{kept} pyproject.toml setup.py README.md LICENSE requirements.lock".split():
+    kept = "app/service/main.py app/service/store/migrations/env.py knitcore/__init__.py"
+    kept += " frontend/build.mjs deploy/nginx.conf pyproject.toml setup.py README.md LICENSE"
+    for file in f"{kept} requirements.lock".split():
         assert (ROOT / file).exists(), file
         assert not ignored.match_file(file), file
     secret = ".env .env.production app/.env frontend/.env.local knitcore.sqlite3 app/x.sqlite3-wal"

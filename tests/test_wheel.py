@@ -13,7 +13,7 @@ from pathlib import Path
 import httpx2 as httpx
 import pytest
 
-from app.version import VERSION
+from app.service import VERSION
 from scripts.client_code import write
 
 ROOT = Path(__file__).resolve().parents[1]

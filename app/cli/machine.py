@@ -19,7 +19,7 @@ def doctor(as_json: bool) -> None:
 
     The exit code is 1 if a check fails.
     """
-    from app.doctor import Check, Checks, examine
+    from app.service.doctor import Check, Checks, examine
 
     try:
         report = examine(user_settings())

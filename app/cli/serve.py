@@ -11,18 +11,17 @@ import signal
 import socket
 import sys
 from collections.abc import Iterator
-from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING
 
 import click
 
 from app.cli.common import json_option, user_settings
-from app.settings import Settings
+from app.service.settings import Settings
 from knitcore.errors import InputError
 
 if TYPE_CHECKING:
-    from app.store.database import Database
+    from app.service.store.database import Database
 
 log = logging.getLogger("knitcore.app")
 
@@ -42,8 +41,8 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     """Start the service and print its address."""
     given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
     settings = Settings.model_validate(user_settings().model_dump() | given).check()
-    from app.http.observing import configure_logging
-    from app.problems.errors import ServiceError
+    from app.service.problems import ServiceError
+    from app.service.web.observing import configure_logging
 
     os.umask(0o077)  # files are readable by this user only
     configure_logging(settings.log_format)
@@ -65,10 +64,10 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
 @contextlib.contextmanager
 def _prepared(settings: Settings, address: str) -> Iterator[Database]:
     """Lock and migrate the data, and report failed checks; yields the database to serve."""
-    from app.doctor import check_folder, examine_start
-    from app.store.database import Database
-    from app.store.lock import held
-    from app.store.schema import migrate
+    from app.service.doctor import check_folder, examine_start
+    from app.service.store.database import Database
+    from app.service.store.lock import held
+    from app.service.store.schema import migrate
 
     check_folder(settings.folder)
     with (
@@ -86,17 +85,13 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
     """Serve a database on an open socket until a signal ends the service."""
     import uvicorn
 
-    from app import memory
-    from app.http.connections import Connection, Door, Socket
-    from app.main import create_app
+    from app.service import memory
+    from app.service.main import create_app
     from app.viewer.incoming import MAX_PICTURE_BYTES
 
     sys.setswitchinterval(SWITCH_S)
     memory.keep_no_large_blocks()
     app = create_app(settings, database)
-    door = Door(
-        _raise_handles() - SPARE_HANDLES, settings.connections_per_address, settings.is_proxy
-    )
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -110,12 +105,12 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
     server = Server(
         uvicorn.Config(
             app,
-            http=partial(Connection, door=door),  # type: ignore[arg-type]
-            ws=Socket,
             proxy_headers=bool(settings.trusted_proxies),
             forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
             server_header=False,
             log_config=None,
+            ws="websockets-sansio",
+            limit_concurrency=max(64, _raise_handles() - SPARE_HANDLES),
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
             ws_max_size=MAX_PICTURE_BYTES,
             ws_max_queue=2,

@@ -11,12 +11,12 @@ import click
 from app.cli.common import emit, json_option, open_database, user_settings
 
 if TYPE_CHECKING:
-    from app.http.tokens import Tokens
+    from app.service.web.tokens import Tokens
 
 
 @contextlib.contextmanager
 def _tokens() -> Iterator[Tokens]:
-    from app.http.tokens import Tokens
+    from app.service.web.tokens import Tokens
 
     with open_database(user_settings()) as database:
         yield Tokens(database)

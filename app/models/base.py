@@ -15,7 +15,6 @@ from pydantic import (
     TypeAdapter,
     ValidationError,
 )
-from pydantic.config import JsonDict
 
 from app.models.refusals import problem_in_words
 from knitcore.errors import InputError
@@ -118,8 +117,6 @@ Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
 field is named after that of the value: ``force_interval_n`` belongs to ``force_n``."""
 EndsOfList = Annotated[tuple[Floats, Floats], BeforeValidator(_ends)]
 """The same of a list of values: the list of low ends, and that of high ends."""
-EARLIER_NAME: JsonDict = {"deprecated": True}
-"""For a field that is kept for programs written before its successor."""
 Known = Annotated[float | None, BeforeValidator(_known)]
 """A number, null where the library's is not finite."""
 KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]

@@ -16,7 +16,7 @@ from app.models.base import IntervalResult
 from app.models.charts import MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from app.results.atlases import EXTENTS, Extent, repeats_of
+from app.service.results.atlases import EXTENTS, Extent, repeats_of
 from knitcore.design.atlas import INTERVAL_SOURCE, VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import improve_atlas

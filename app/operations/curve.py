@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from app.context import Context
-from app.models.base import EARLIER_NAME, EndsOfList, Floats, IntervalResult
+from app.models.base import EndsOfList, Floats, IntervalResult
 from app.models.checks import CheckedBy
 from app.models.gauge import GaugedRequest
 from app.operations.registry import Command, Operation
@@ -38,11 +38,6 @@ class CurveResult(IntervalResult):
     strain: Floats
     strain_interval: EndsOfList = Field(description="At each stress.")
     stress_interval_n_per_mm: EndsOfList = Field(description="At each strain; at most 10 N/mm.")
-    stress_low: Floats = Field(
-        description="The low end of `stress_interval_n_per_mm`, by its earlier name.",
-        json_schema_extra=EARLIER_NAME,
-    )
-    stress_high: Floats = Field(description="The high end.", json_schema_extra=EARLIER_NAME)
     provenance: str
 
 

@@ -24,7 +24,7 @@ from app.models.charts import (
 )
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from app.results.atlases import Extent
+from app.service.results.atlases import Extent
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field

@@ -16,7 +16,7 @@ from app.models.charts import MaterialName, RepeatText
 from app.models.checks import CheckedBy
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from app.results.atlases import EXTENTS, Extent
+from app.service.results.atlases import EXTENTS, Extent
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas, load_atlas
 from knitcore.design.cost import CostLimits
 from knitcore.design.find import Candidate, find_fabric

@@ -5,7 +5,6 @@ from __future__ import annotations
 import click
 
 from app.context import Context
-from app.identity import current_user
 from app.models.base import NoRequest, ResultModel
 from app.operations.material import (
     MaterialDetail,
@@ -15,7 +14,8 @@ from app.operations.material import (
     summary,
 )
 from app.operations.registry import Command, Operation
-from app.results.own_materials import added_by, own_materials
+from app.service.identity import current_user
+from app.service.results.own_materials import added_by, own_materials
 from knitcore.materials import load_library, load_variants, offered_materials
 
 

@@ -1,7 +1,7 @@
 """The registry of operations: one module of this package each.
 
-A module holds one ``OPERATION``. Routes (:mod:`app.api.operations`), commands
-(:mod:`app.cli.commands`), jobs (:mod:`app.jobs.kinds`), the client's methods
+A module holds one ``OPERATION``. Routes (:mod:`app.service.api.operations`), commands
+(:mod:`app.cli.commands`), jobs (:mod:`app.service.jobs.kinds`), the client's methods
 (``scripts/client_code.py``) and the page's types (``scripts/page_types.py``) are made from it, so
 a new operation is one file here and its test.
 """

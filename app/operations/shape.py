@@ -16,7 +16,7 @@ from app.models.base import Known, ResultModel
 from app.models.charts import ChartLines, MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from app.results.atlases import Extent
+from app.service.results.atlases import Extent
 from knitcore.chart import size_in_words
 from knitcore.design.atlas import Atlas
 from knitcore.design.shape import fill_shape

@@ -7,7 +7,7 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import NoRequest, ResultModel
 from app.operations.registry import Operation
-from app.version import VERSION
+from app.service import VERSION
 
 
 class VersionResult(ResultModel):

@@ -13,9 +13,8 @@ from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from starlette.websockets import WebSocketState
 
-from app.identity import current_user
-from app.limits.budgets import InUse, OverBudgetError
-from app.limits.rate import RateLimit
+from app.service.identity import current_user
+from app.service.limits.budgets import InUse, OverBudgetError, RateLimit
 from app.viewer.client import ViewerPage
 from app.viewer.design_id import DesignId, private_name
 from app.viewer.incoming import BURST, PER_S, RefusedMessageError, passed_on

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from app.drawing.fabric import FabricScene
-from app.problems.errors import ServiceError
+from app.service.problems import ServiceError
 from app.viewer.client import with_scripts
 from app.viewer.incoming import WantedPicture
 from app.viewer.views import View, new_view

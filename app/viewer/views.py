@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 import viser
 
 from app.drawing.fabric import Drawing
-from app.limits.budgets import BUDGETS, OverBudgetError
-from app.listeners import Listeners
-from app.problems.errors import ServiceError, UnavailableError
+from app.service.limits.budgets import BUDGETS, OverBudgetError
+from app.service.listeners import Listeners
+from app.service.problems import ServiceError, UnavailableError
 from app.viewer.camera import FARTHEST
 from app.viewer.clicks import Cell, clicked_stitch
 from app.viewer.cloth import UNITS_PER_MM

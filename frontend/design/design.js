@@ -41,7 +41,7 @@ export function contentOf(chart, more = {}) {
 }
 
 /**
- * A document from the content of a file of any version.
+ * A document from the content of a file.
  *
  * @param {unknown} value
  * @returns {DesignDocument}
@@ -52,10 +52,10 @@ export function readDesign(value) {
     throw new DesignError("It is not a design.", `A design says "format": "${FORMAT}".`);
   }
   const { version } = value;
-  if (version !== 1 && version !== 2) {
+  if (version !== 2) {
     throw new DesignError(
       `It is of version ${JSON.stringify(version)}.`,
-      "This page reads versions 1 and 2: load a newer page, or export with an older program.",
+      "This page reads version 2: export it with a program of the same age.",
     );
   }
   return {

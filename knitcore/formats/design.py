@@ -6,14 +6,13 @@
      "chart": "KPKP\\nPKPK", "note": "", "outline": null, "regions": [], "repeats": [], "shelf": []}
 
 Only ``format``, ``version`` and ``chart`` (K/P lines, top row first) are needed; what the rest
-means is in :mod:`knitcore.formats.layout`. The schema is :func:`design_schema`; older versions are
-brought up to date by :data:`MIGRATIONS`.
+means is in :mod:`knitcore.formats.layout`. The schema is :func:`design_schema`.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final, Literal
 
@@ -26,15 +25,6 @@ from knitcore.garment.piece import Piece
 
 FORMAT: Final = "knitcore-design"
 VERSION: Final = 2
-
-
-def _from_version_1(data: dict[str, Any]) -> dict[str, Any]:
-    """Version 2 added regions, repeats and the shelf, which may be left out."""
-    return data | {"version": 2}
-
-
-MIGRATIONS: dict[int | None, Callable[[dict[str, Any]], dict[str, Any]]] = {1: _from_version_1}
-"""From each older version to the next one."""
 
 
 _HEADER = ("format", "version", "name", "material", "note", "chart")
@@ -98,15 +88,14 @@ def read_design(file: Path) -> DesignFile:
 
 
 def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
-    """A design from the content of such a file, of any version up to ours."""
+    """A design from the content of such a file."""
     if not isinstance(content, Mapping) or content.get("format") != FORMAT:
         raise InputError("chart", f"{name} is not a design.", f'A design has "format": "{FORMAT}".')
-    data = migrated(dict(content))
-    if _version(data) != VERSION:
+    data = dict(content)
+    version = data.get("version")
+    if type(version) is not int or version != VERSION:
         raise InputError(
-            "version",
-            f"{name} is of version {data.get('version')!r}.",
-            f"This program reads versions up to {VERSION}.",
+            "version", f"{name} is of version {version!r}.", f"This program reads {VERSION}."
         )
     if not isinstance(data.get("chart"), str):
         raise InputError("chart", f"{name} holds no chart text.", "Export the design again.")
@@ -118,18 +107,6 @@ def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
         raise InputError(where, f"{name}: {first['msg']}.", "See the published schema.") from None
     check_layout(design.to_chart(), design)
     return design
-
-
-def migrated(data: dict[str, Any]) -> dict[str, Any]:
-    """The content of a design file, converted to the newest version."""
-    while (version := _version(data)) in MIGRATIONS:
-        data = MIGRATIONS[version](data)
-    return data
-
-
-def _version(data: Mapping[str, Any]) -> int | None:
-    version = data.get("version")
-    return version if type(version) is int else None
 
 
 def design_schema() -> dict[str, Any]:

@@ -33,7 +33,7 @@ import numpy as np
 import viser
 import websockets
 
-from app.limits.budgets import BUDGETS
+from app.service.limits.budgets import BUDGETS
 from studies.speed.serving import Served, serving
 
 USERS = int(os.environ.get("USERS", "50"))
@@ -45,7 +45,7 @@ P95_MS = float(os.environ.get("P95_MS", "250"))
 SLICE_S = 15.0
 PROBE_S = 0.1
 WARM_UP_S, WARM_UP_TESTS, WARM_UP_SLICES = 10.0, 7, 12
-"""Stretch tests that fill the service's memory of recent results (`app/results/recent.py`)."""
+"""Stretch tests that fill the memory of recent results (`app/service/results/recent.py`)."""
 VIEWS, ROUNDS = BUDGETS.views, int(os.environ.get("ROUNDS", "10"))
 JOBS = "/api/v1/jobs"
 PATIENCE_S = 300.0

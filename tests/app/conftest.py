@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.main import create_app
-from app.settings import Settings
-from app.store.database import Database
-from app.store.schema import migrate
-from app.store.tables import metadata
+from app.service.main import create_app
+from app.service.settings import Settings
+from app.service.store.database import Database
+from app.service.store.schema import migrate
+from app.service.store.tables import metadata
 from tests.app.databases import postgres, postgres_programs
 
 

@@ -12,12 +12,12 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from app.compute.answers import Answers
-from app.compute.compute import Compute
 from app.context import Context
 from app.operations.perform import ViewData, perform
 from app.operations.registry import Operation
-from app.results.recent import RecentResults
+from app.service.compute.answers import Answers
+from app.service.compute.compute import Compute
+from app.service.results.recent import RecentResults
 from knitcore import InputError
 
 
@@ -153,7 +153,7 @@ def killed_in_the_middle(
     It dies when the operation first looks whether it was cancelled; one that is too short to look
     dies before it can answer.
     """
-    from app.jobs.kinds import KINDS  # takes a second, and workers import this module
+    from app.service.jobs.kinds import KINDS  # takes a second, and workers import this module
 
     if run is not KINDS[kind].run:
         return perform(

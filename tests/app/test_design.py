@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from app.context import Context
 from app.operations import find as find_module
-from app.results.atlases import repeats_of
+from app.service.results.atlases import repeats_of
 from knitcore.errors import InputError
 from knitcore.formats.stitch_maps import read_wanted_moduli
 

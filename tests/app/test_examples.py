@@ -10,8 +10,8 @@ import jsonschema_rs
 import pytest
 from fastapi.testclient import TestClient
 
-from app.http.schema import documented_operations
 from app.models.uploads import EXAMPLES
+from app.service.web.schema import documented_operations
 from scripts.api_examples import ask_everything, patient_client
 
 REQUESTS: dict[str, Any] = json.loads((EXAMPLES / "requests.json").read_text())
@@ -76,7 +76,7 @@ def test_answers_are_shown_where_they_have_been_made(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "answers.json").write_text('{"GET /healthz": {"status": "shown"}}')
-    monkeypatch.setattr("app.http.schema.EXAMPLES", tmp_path)
+    monkeypatch.setattr("app.service.web.schema.EXAMPLES", tmp_path)
     with patient_client(tmp_path) as client:
         answers = client.get("/openapi.json").json()["paths"]["/healthz"]["get"]["responses"]
     assert answers["200"]["content"]["application/json"]["example"] == {"status": "shown"}

@@ -66,7 +66,7 @@ SEEDS = [
     b"\x1f\x8b" + bytes(50),
     b"strain,force\n1,2\nx,y\n",
     b"\xff\xfe\x00\x00",
-    b'{"format": "knitcore-design", "version": 1, "chart": ' + b"[" * 2000,
+    b'{"format": "knitcore-design", "version": 2, "chart": ' + b"[" * 2000,
     b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b SYSTEM "file:///etc/passwd">]><a>&b;</a>',
     _png(40, 40),
     _bomb(),

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.api.operations import MAX_LIGHT
 from app.models.charts import size_of
 from app.operations.predict import PredictRequest
+from app.service.api.operations import MAX_LIGHT
 
 SMALL = {"fabric": "garter", "columns": 10, "rows": MAX_LIGHT // 10 - 10}
 LARGE = {"fabric": "garter", "columns": 101, "rows": MAX_LIGHT // 100}

@@ -18,15 +18,14 @@ from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from starlette.websockets import WebSocketDisconnect
 
-from app import doctor
-from app.http.observing import JsonLines, TextLines, configure_logging
-from app.http.tokens import Tokens
-from app.main import THREADS, create_app
-from app.settings import Settings
-from app.store.lock import held
-from app.version import VERSION
+from app.service import VERSION, doctor
+from app.service.main import THREADS, create_app
+from app.service.settings import Settings
+from app.service.store.lock import held
+from app.service.web.observing import JsonLines, TextLines, configure_logging
+from app.service.web.tokens import Tokens
 from knitcore.errors import InputError
-from tests.app.service import Service
+from tests.app.running import Service
 
 
 @pytest.fixture

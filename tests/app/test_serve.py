@@ -46,7 +46,8 @@ def test_it_starts_on_a_free_port_and_stops_on_request() -> None:
 def test_killed_it_leaves_no_worker_behind() -> None:
     code = (
         "import os, asyncio; from tests.app import jobs\n"
-        "from app.compute.compute import Compute; from app.compute.processes import processes\n"
+        "from app.service.compute.compute import Compute\n"
+        "from app.service.compute.processes import processes\n"
         "async def never(): return False\n"
         "pool = Compute(processes(1), timeout_s=60)\n"
         "print(asyncio.run(pool.run(never, jobs.process_id)), flush=True)\n"
@@ -70,7 +71,7 @@ def test_killed_it_leaves_no_worker_behind() -> None:
 def test_killed_while_modules_are_loaded_it_leaves_no_process_behind() -> None:
     code = (
         "import os; from multiprocessing import forkserver\n"
-        "from app.compute.processes import processes\n"
+        "from app.service.compute.processes import processes\n"
         "processes(1); forkserver.ensure_running(); os.kill(os.getpid(), 9)\n"
     )
     process = subprocess.Popen(

@@ -17,7 +17,7 @@ from app.context import Context
 from app.drawing.colours import MAKERS_COLOURS, rgb
 from app.drawing.design_view import ViewRequest, build_scene
 from app.drawing.fabric import RECTANGLE, Box
-from app.listeners import Listeners
+from app.service.listeners import Listeners
 from app.viewer.clicks import Cell, clicked_stitch
 from knitcore.errors import InputError
 from tests.app.test_stretch import ASKED, GARTER

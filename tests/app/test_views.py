@@ -11,9 +11,9 @@ import viser
 import zstandard
 from fastapi.testclient import TestClient
 
-from app.api import views as views_api
 from app.drawing.colours import diverging, fabric_mix, sequential
-from app.limits.budgets import BUDGETS
+from app.service.api import views as views_api
+from app.service.limits.budgets import BUDGETS
 from app.viewer.views import Views
 from tests.app.test_stretch import ASKED, GARTER
 from tests.app.threads import threads_of_no_pool

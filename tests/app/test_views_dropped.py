@@ -13,9 +13,9 @@ import viser
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app import memory
-from app.main import create_app
-from app.settings import Settings
+from app.service import memory
+from app.service.main import create_app
+from app.service.settings import Settings
 from app.viewer.views import Views
 from tests.app.threads import threads_of_no_pool
 

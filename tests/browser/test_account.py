@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from app.http.error_responses import problem_of
-from app.limits.budgets import OverBudgetError
-from tests.app.service import Service
+from app.service.limits.budgets import OverBudgetError
+from app.service.web.errors import problem_of
+from tests.app.running import Service
 from tests.browser.axe import THEMES, violations
 
 TOO_MANY: dict[str, str] = problem_of(OverBudgetError.of("connections", 128, 128)).model_dump()

@@ -57,7 +57,7 @@ def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
 def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> None:
     before = kept_design(flat_studio)
     told = flat_studio.locator("#messages")
-    old = {"format": "knitcore-design", "version": 1, "name": "Old", "material": "cotton"}
+    old = {"format": "knitcore-design", "version": 2, "name": "Old", "material": "cotton"}
     for name, kind, content, message in (
         ("broken.png", "image/png", b"\x89PNG nonsense", "not a picture"),
         ("empty.txt", "text/plain", b"", "is empty"),
@@ -72,10 +72,10 @@ def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> No
     assert kept_design(flat_studio) == before
 
 
-def test_project_files_of_both_versions_open(flat_studio: Page) -> None:
+def test_project_files_open(flat_studio: Page) -> None:
     old = {
         "format": "knitcore-design",
-        "version": 1,
+        "version": 2,
         "name": "Old cuff",
         "material": "cotton",
         "chart": "KPKP\nKPKP",
@@ -93,7 +93,7 @@ def test_project_files_of_both_versions_open(flat_studio: Page) -> None:
         "locked": False,
         "hidden": False,
     }
-    new = old | {"version": 2, "name": "New cuff", "outline": "xxx.\nxxxx", "regions": [region]}
+    new = old | {"name": "New cuff", "outline": "xxx.\nxxxx", "regions": [region]}
     drop(flat_studio, "new.json", "application/json", json.dumps(new).encode())
     expect(flat_studio.locator(".design-name")).to_have_value("New cuff")
     design = kept_design(flat_studio)

@@ -18,9 +18,9 @@ from knitcore_client import AsyncClient, Client, ProblemError
 from knitcore_client.aio import AsyncClient as Awaited
 from knitcore_client.models import JobStatus
 
-from app.main import create_app
 from app.operations.registry import operations
-from tests.app.service import Service
+from app.service.main import create_app
+from tests.app.running import Service
 
 FOLDER = Path(knitcore_client.__file__).parent
 TOKEN = "a-token-of-this-test"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.main import create_app
+from app.service.main import create_app
 
 PAGE = Path(__file__).resolve().parents[2] / "frontend"
 PROGRAMS = Path(sys.executable).parent

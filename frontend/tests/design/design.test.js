@@ -58,16 +58,12 @@ test("a whole document is read, held and written the same", () => {
   assert.deepEqual([format, version, name, material, note], ["knitcore-design", 2, "Cuff", "acrylic", "warm"]);
 });
 
-test("version 1 is brought up to date", () => {
-  const old = { format: "knitcore-design", version: 1, name: "Old", material: "cotton", chart: "KP", note: "" };
-  assert.deepEqual(readDesign(old), { ...old, version: 2, ...contentOf("KP") });
-});
-
 test("what is wrong with a file is said in words", () => {
   /** @type {[object, RegExp][]} */
   const wrong = [
     [{ chart: "KP" }, /not a design/],
     [{ ...WHOLE, version: 3 }, /version 3/],
+    [{ ...WHOLE, version: 1 }, /version 1/],
     [{ ...WHOLE, chart: "KP\nK" }, /rows of K and P/],
     [{ ...WHOLE, chart: "K".repeat(401) }, /401 stitches/],
     [{ ...WHOLE, outline: "xx" }, /outline/],

@@ -33,7 +33,7 @@ def test_transparent_pixels_are_knits(tmp_path: Path) -> None:
 
 def test_design_file(tmp_path: Path) -> None:
     file = tmp_path / "chart.json"
-    file.write_text(json.dumps({"format": "knitcore-design", "version": 1, "chart": CHART.text}))
+    file.write_text(json.dumps({"format": "knitcore-design", "version": 2, "chart": CHART.text}))
     assert read_chart(file) == CHART
 
 
@@ -46,7 +46,7 @@ def test_design_file(tmp_path: Path) -> None:
         ("chart.json", b"{", "not valid JSON"),
         ("chart.json", b"[1]", "not a design"),
         ("chart.json", b'{"format": "knitcore-design", "version": 99}', "version 99"),
-        ("chart.json", b'{"format": "knitcore-design", "version": 1}', "no chart text"),
+        ("chart.json", b'{"format": "knitcore-design", "version": 2}', "no chart text"),
     ],
 )
 def test_files_that_are_not_what_they_claim(

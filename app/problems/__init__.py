@@ -1,1 +1,0 @@
-"""Errors of the service as problem details (RFC 9457): their kinds, what clients read of them."""

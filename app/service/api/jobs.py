@@ -1,0 +1,146 @@
+"""Long computations in the background over REST."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncGenerator
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Path, Request, Response
+from fastapi.responses import StreamingResponse
+
+from app.service.designs.conditions import ConflictError
+from app.service.designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
+from app.service.jobs.document import JobPage, JobState, JobStatus
+from app.service.jobs.kinds import JobRequest, JobResult
+from app.service.jobs.runner import JobRunner
+from app.service.problems import NotFoundError, Problem
+from app.service.web.bodies import OrUndecoded, Undecoded, WorkerRoute
+from app.service.web.events import event_stream
+from app.service.web.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
+
+EVENT_PERIOD_S = 0.25
+
+router = APIRouter(route_class=WorkerRoute, tags=["jobs"], responses=MISSING)
+
+JobId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
+
+
+async def _runner(request: Request) -> JobRunner:
+    runner: JobRunner = request.app.state.jobs
+    return runner
+
+
+Runner = Annotated[JobRunner, Depends(_runner)]
+
+
+@router.post("/jobs", status_code=202, summary="Run an operation in the background")
+async def post_job(
+    body: Annotated[JobRequest, OrUndecoded],
+    runner: Runner,
+    owner: Owner,
+    request: Request,
+    response: Response,
+    retry: RetryOf,
+) -> JobStatus:
+    """Waits for its turn among all users; if the result is known, the job is done at once."""
+    if isinstance(body, Undecoded):
+        kind, wanted = await runner.read(request.is_disconnected, body.content)
+    else:
+        kind, wanted = body.kind, body.request.model_dump_json()
+    status = await runner.submit(owner, kind, wanted, retry(kind, wanted))
+    response.headers["Location"] = f"/api/v1/jobs/{status.id}"
+    return status
+
+
+@router.get("/jobs", summary="Your jobs, latest first")
+async def get_jobs(
+    runner: Runner,
+    owner: Owner,
+    limit: Limit = 50,
+    cursor: Cursor = None,
+) -> JobPage:
+    """Jobs are kept for 30 days."""
+    return await asyncio.to_thread(runner.store.page, owner, limit=limit, cursor=cursor)
+
+
+@router.get("/jobs/{job}", summary="The state of a job")
+async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
+    """State, progress, and the problem if there is one."""
+    return await runner.status(owner, job)
+
+
+@router.get(
+    "/jobs/{job}/events",
+    summary="Follow a job",
+    response_class=StreamingResponse,
+    responses={200: {"content": {"text/event-stream": {}}, "description": "Events `status`."}},
+)
+async def get_job_events(
+    job: JobId, runner: Runner, owner: Owner, request: Request
+) -> StreamingResponse:
+    """Server-sent events, one per change, each as `GET /jobs/{job}` answers; ends with the job."""
+    first = await runner.status(owner, job)
+    states = _states(first, job, request, runner, owner)
+    return event_stream(request, states, EVENT_PERIOD_S)
+
+
+async def _states(
+    status: JobStatus, job: str, request: Request, runner: JobRunner, owner: str
+) -> AsyncGenerator[str | None]:
+    told = ""
+    with contextlib.suppress(NotFoundError):  # deleted while it was followed
+        while not request.app.state.stopping:
+            text = status.model_dump_json()
+            yield None if text == told else f"event: status\ndata: {text}\n\n"
+            told = text
+            if status.state.is_final:
+                return
+            await asyncio.sleep(EVENT_PERIOD_S)
+            status = await runner.status(owner, job)
+
+
+@router.get(
+    "/jobs/{job}/result",
+    summary="The result of a job",
+    response_model=JobResult,
+    responses=TAGGED | {409: {"model": Problem, "description": "The job is not done."}},
+    openapi_extra=ASKED_WITH_TAG,
+)
+async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request) -> Response:
+    """The same JSON that the operation's own address returns; `kind` names the operation."""
+    status = await runner.status(owner, job)
+    if status.state is not JobState.DONE:
+        raise ConflictError(
+            f"The job is {status.state}; it has no result.",
+            field="job",
+            remedy="Follow its events until it is done."
+            if not status.state.is_final
+            else "Run it again.",
+        )
+    body = await asyncio.to_thread(runner.store.result, owner, job)
+    if body is None:
+        raise NotFoundError(
+            "The result is no longer stored.", field="job", remedy="Run the job again."
+        )
+    tag = await asyncio.to_thread(etag_of, body)
+    if is_known(tag, request.headers):
+        return Response(status_code=304, headers={"ETag": tag})
+    answer = await json_response(body, request.headers)
+    answer.headers["ETag"] = tag
+    return answer
+
+
+@router.delete("/jobs/{job}", summary="Cancel a job")
+async def delete_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
+    """Stops a job that waits or runs; a job that has ended stays as it is."""
+    return await runner.cancel(owner, job)
+
+
+@router.post("/jobs/{job}/again", status_code=202, summary="Run a job again")
+async def post_again(job: JobId, runner: Runner, owner: Owner, response: Response) -> JobStatus:
+    """A new job with the same request, for instance after an interruption."""
+    status = await runner.again(owner, job)
+    response.headers["Location"] = f"/api/v1/jobs/{status.id}"
+    return status

@@ -1,0 +1,54 @@
+"""A user's own materials over REST: added, given back as a file, removed."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Path, Request
+from fastapi.concurrency import run_in_threadpool
+
+from app.context import Context
+from app.operations.material import MaterialSummary, summary
+from app.service.designs.parameters import MISSING, Owner
+from app.service.problems import NotFoundError
+from app.service.results.own_materials import keep_material, remove_material
+from app.service.web.bodies import BoundedRoute
+from knitcore.materials.document import MaterialDocument
+
+router = APIRouter(route_class=BoundedRoute, tags=["materials"], responses=MISSING)
+
+
+async def _context(request: Request) -> Context:
+    context: Context = request.app.state.answers.context()
+    return context
+
+
+Here = Annotated[Context, Depends(_context)]
+Identifier = Annotated[str, Path(max_length=200, examples=["acrylic"])]
+
+
+@router.post("/materials", status_code=201, summary="Add a material of your own")
+async def post_material(body: MaterialDocument, owner: Owner, context: Here) -> MaterialSummary:
+    """Everybody on this service can use it. One that you added under its identifier is replaced."""
+    kept = await run_in_threadpool(keep_material, body, owner, context.data_dir)
+    return summary(kept, added_by_you=True)
+
+
+@router.get("/materials/{identifier}/document", summary="A material as a file")
+async def get_material_document(identifier: Identifier, context: Here) -> MaterialDocument:
+    """What `knitcore` reads as a material file, and this service adds as one of your own."""
+    found = await run_in_threadpool(context.material, identifier)
+    plain = found.identifier.removeprefix("own:").rpartition(".")
+    document = MaterialDocument.from_material(found)
+    return document.model_copy(update={"identifier": plain[0] or document.identifier})
+
+
+@router.delete("/materials/{identifier}", status_code=204, summary="Remove a material of your own")
+async def delete_material(identifier: Identifier, owner: Owner, context: Here) -> None:
+    """Designs that use it keep its name and ask for another one."""
+    if not await run_in_threadpool(remove_material, identifier, owner, context.data_dir):
+        raise NotFoundError(
+            f"You added no material {identifier}.",
+            field="identifier",
+            remedy="Ask whoever added it, or choose another one.",
+        )

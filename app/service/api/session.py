@@ -1,0 +1,77 @@
+"""The user of this request, and the browsers that are signed in."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Request, Response
+
+from app.service.designs.parameters import Owner
+from app.service.designs.sharing import Sharing
+from app.service.designs.store import DesignStore
+from app.service.identity import current_session
+from app.service.limits.budgets import BUDGETS, InUse, Use
+from app.service.problems import NotFoundError, Problem
+from app.service.web.security import OPENED_BY, SESSION_COOKIE
+from app.service.web.sessions import Sessions, SignedIn
+from app.service.web.tokens import Login
+
+router = APIRouter(tags=["session"])
+
+SessionId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="Of a session.")]
+
+
+@router.get("/session", summary="Who you are, and where you are signed in")
+def get_session(owner: Owner, request: Request) -> SignedIn:
+    """The user's name, `local` without logins, the browsers that are signed in, and limits."""
+    sessions = Sessions(request.app.state.database).of(owner, current_session.get())
+    return SignedIn(user=owner, sessions=sessions, use=_use(owner, request.app.state))
+
+
+def _use(owner: str, state: Any) -> dict[str, Use]:
+    designs, kept_bytes = DesignStore(state.database).kept(owner)
+    in_use: InUse = state.in_use
+    used = {
+        name: float(in_use.held(name, owner))
+        for name in ("connections", "watchers", "streams", "pictures", "body_bytes")
+    }
+    used |= {
+        "memory_bytes": state.compute.turns.held(owner) * state.settings.worker_memory_bytes,
+        "views": state.views.count(owner),
+        "view_stitches": state.views.stitches(owner),
+        "jobs": state.compute.turns.waiting_of(owner),
+        "cpu_s": round(state.compute.spent.used_s(owner), 1),
+        "designs": designs,
+        "kept_bytes": kept_bytes,
+        "versions": DesignStore(state.database).most_versions(owner),
+        "links": Sharing(state.database).most_given(owner),
+        "job_bytes": state.jobs.store.kept_bytes(owner),
+    }
+    return {name: Use(used=value, most=getattr(BUDGETS, name)) for name, value in used.items()}
+
+
+@router.delete("/session", status_code=204, summary="Sign out")
+def delete_session(owner: Owner, request: Request, response: Response) -> None:
+    """Ends the session of this browser."""
+    _end(request, owner, current_session.get())
+    response.delete_cookie(SESSION_COOKIE, httponly=True, samesite="strict")
+
+
+@router.delete(
+    "/sessions/{session}",
+    status_code=204,
+    summary="End a session",
+    responses={404: {"model": Problem, "description": "It is not one of your sessions."}},
+)
+def end_session(session: SessionId, owner: Owner, request: Request) -> None:
+    """The session of another of your browsers, for instance one on a lost machine."""
+    if not _end(request, owner, session):
+        raise NotFoundError(f"There is no session {session} of yours.", field="session")
+
+
+def _end(request: Request, owner: str, session: str) -> bool:
+    """End a session; False if the user has none of that id."""
+    if session == current_session.get():
+        request.scope.pop(OPENED_BY, None)  # this request is answered after its session
+    login: Login = request.app.state.login
+    return login.end(owner, session)

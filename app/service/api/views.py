@@ -1,0 +1,285 @@
+"""The 3D view of a design."""
+
+from __future__ import annotations
+
+import asyncio
+import contextvars
+from collections.abc import AsyncGenerator, Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from typing import Annotated, Any, TypeVar
+
+from fastapi import APIRouter, Query, Request, Response
+from fastapi.responses import StreamingResponse
+from pydantic import Field
+
+from app.drawing.design_view import (
+    ViewRequest,
+    ViewResult,
+    build_drawing,
+    build_scene,
+    is_large,
+)
+from app.drawing.fabric import Box, Drawing
+from app.models.base import RequestModel
+from app.models.charts import size_of_chart
+from app.models.posed import PosedView
+from app.models.stretched import StretchView
+from app.operations.perform import Reply
+from app.service.compute.compute import Compute
+from app.service.identity import current_user
+from app.service.limits.budgets import InUse
+from app.service.limits.turns import Gate
+from app.service.problems import NotFoundError, Problem
+from app.service.web.bodies import BoundedRoute
+from app.service.web.events import abandoned, event_stream
+from app.service.web.passes import Passes
+from app.service.web.security import OPENED_BY
+from app.viewer.camera import CameraSide
+from app.viewer.design_id import DesignId, private_name
+from app.viewer.scene import round_length_mm
+from app.viewer.share import picture_png
+from app.viewer.shared import (
+    Found,
+    SharedViewRequest,
+    shared_page,
+    shared_recording,
+    shared_solid,
+    shared_still,
+)
+from app.viewer.views import View
+
+EVENT_PERIOD_S = 0.5
+MISSING: dict[int | str, dict[str, Any]] = {
+    404: {"model": Problem, "description": "This view is not open."}
+}
+
+MAX_STILL_HERE = 5_000
+"""Letters of a chart whose still the service draws itself, in 0.1 s; others wait for a worker."""
+
+T = TypeVar("T")
+# Separate threads, so that logins and jobs, which use asyncio's, need not wait for drawings.
+_drawing = ThreadPoolExecutor(4, "drawing")
+_pictures = ThreadPoolExecutor(16, "pictures")  # waiting for browsers, up to 25 s each
+
+router = APIRouter(route_class=BoundedRoute, tags=["views"], responses=MISSING)
+
+
+class BoxInput(RequestModel):
+    """Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise."""
+
+    row0: int = Field(ge=0, lt=100_000)
+    column0: int = Field(ge=0, lt=100_000)
+    row1: int = Field(ge=1, le=100_000)
+    column1: int = Field(ge=1, le=100_000)
+
+
+class MarkRequest(RequestModel):
+    """What to outline."""
+
+    box: BoxInput | None = None
+
+
+class CameraRequest(RequestModel):
+    """From where to look."""
+
+    side: CameraSide
+
+
+@router.put("/views/{design}", summary="Show a design in its 3D view")
+async def put_view(design: DesignId, body: ViewRequest, request: Request) -> ViewResult:
+    """Draw the design's scene; everyone who watches `/view/{design}/` sees it change at once."""
+    state = request.app.state
+    found, name = _found(body, request), private_name(design)
+    context = state.answers.context()
+    passes: Passes = state.passes
+    code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
+    large: Drawing | None = None
+    if found is None and is_large(body):
+        large = await _by_worker(request, build_drawing, body, context.data_dir)
+
+    def draw() -> ViewResult:
+        drawing = large or build_scene(body, found, context).drawing()
+        return ViewResult(
+            stitches=state.views.open(name, drawing.weight).show(drawing),
+            source=drawing.part.shapes.source,
+            scale_mm=round_length_mm(float(drawing.ground.extent_mm[0])),
+            url=f"/view/{design}/#{code}",
+        )
+
+    gate: Gate = state.drawing
+    async with gate.turn(current_user.get()):
+        return await _in(_drawing, draw)
+
+
+@router.put("/views/{design}/mark", status_code=204, summary="Outline stitches")
+async def put_mark(design: DesignId, body: MarkRequest, request: Request) -> None:
+    """Outline stitches on both sides of the fabric; without a box nothing is outlined."""
+    box = body.box.pass_to(Box) if body.box else None
+    await asyncio.to_thread(_view(design, request).writer.mark, box)
+
+
+@router.put("/views/{design}/camera", status_code=204, summary="Look from a side")
+async def put_camera(design: DesignId, body: CameraRequest, request: Request) -> None:
+    """Turn the camera of everybody who watches, so that the whole fabric is seen."""
+    await asyncio.to_thread(_view(design, request).writer.look, body.side)
+
+
+@router.get(
+    "/views/{design}/events",
+    summary="Follow clicks on stitches",
+    response_class=StreamingResponse,
+    responses={
+        200: {"content": {"text/event-stream": {}}, "description": "Events `stitch`."},
+    },
+)
+async def get_view_events(design: DesignId, request: Request) -> StreamingResponse:
+    """Server-sent events, one for each click on a stitch in the view: its row and column from 0.
+
+    Ends with the view.
+    """
+    _view(design, request)
+    return event_stream(request, _clicks(private_name(design), request), EVENT_PERIOD_S)
+
+
+@router.get(
+    "/views/{design}/picture",
+    summary="A picture of the view",
+    response_class=Response,
+    responses={
+        200: {"content": {"image/png": {}}, "description": "A PNG."},
+        409: {"model": Problem, "description": "No browser shows the view, or sends a picture."},
+    },
+)
+async def get_picture(
+    design: DesignId,
+    request: Request,
+    width: Annotated[int, Query(ge=16, le=4096)] = 1600,
+    height: Annotated[int, Query(ge=16, le=4096)] = 1200,
+) -> Response:
+    """As a browser that watches `/view/{design}/` sees it; somebody must be watching."""
+    view = _view(design, request)
+    uses: InUse = request.app.state.in_use
+    with uses.hold("pictures", current_user.get()):
+        content = await _in(_pictures, picture_png, view, width, height)
+    return Response(content, media_type="image/png")
+
+
+def _file(media: str, text: str) -> dict[int | str, dict[str, Any]]:
+    return {200: {"content": {media: {}}, "description": text}}
+
+
+@router.post(
+    "/views/page",
+    summary="A page to share",
+    response_class=Response,
+    responses=_file("text/html", "One file that needs neither the service nor the network."),
+)
+async def post_page(body: SharedViewRequest, request: Request) -> Response:
+    """The fabric to turn with the mouse; animated, its stretch test plays."""
+    return await _shared(shared_page, body, request, "text/html", "html")
+
+
+@router.post(
+    "/views/recording",
+    summary="A recording to share",
+    response_class=Response,
+    responses=_file("application/octet-stream", "A `.viser` file."),
+)
+async def post_recording(body: SharedViewRequest, request: Request) -> Response:
+    """For viser's own player."""
+    return await _shared(shared_recording, body, request, "application/octet-stream", "viser")
+
+
+@router.post(
+    "/views/solid",
+    summary="The yarn as glTF",
+    response_class=Response,
+    responses=_file("model/gltf-binary", "Binary glTF 2.0 in metres."),
+)
+async def post_solid(body: SharedViewRequest, request: Request) -> Response:
+    """The fabric as it lies, relaxed or stretched, with its colours."""
+    return await _shared(shared_solid, body, request, "model/gltf-binary", "glb")
+
+
+@router.post(
+    "/views/still",
+    summary="A picture of a design",
+    response_class=Response,
+    responses=_file("image/png", "A PNG without background."),
+)
+async def post_still(
+    body: ViewRequest,
+    request: Request,
+    width: Annotated[int, Query(ge=16, le=1600)] = 800,
+    height: Annotated[int, Query(ge=16, le=1200)] = 600,
+) -> Response:
+    """The face of the fabric as its view frames it at first; no browser needs to watch.
+
+    Of a chart of more than 40,000 stitches only what the view draws as yarn.
+    """
+    data_dir = request.app.state.answers.context().data_dir
+    draw = partial(shared_still, body, _found(body, request), data_dir, width, height)
+    gate: Gate = request.app.state.drawing
+    if size_of_chart(body.chart) > MAX_STILL_HERE:
+        content = await _by_worker(request, draw)
+    else:
+        async with gate.turn(current_user.get()):
+            content = await _in(_drawing, partial(draw, cancelled=lambda: False))
+    return Response(content, media_type="image/png")
+
+
+async def _shared(
+    make: Callable[..., bytes],
+    body: SharedViewRequest,
+    request: Request,
+    media: str,
+    ending: str,
+) -> Response:
+    data_dir = request.app.state.answers.context().data_dir
+    content = await _by_worker(request, make, body, _found(body, request), data_dir)
+    headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
+    return Response(content, media_type=media, headers=headers)
+
+
+async def _by_worker(request: Request, job: Callable[..., T], *args: Any) -> T:
+    """What a job returns; it is stopped when the browser goes away."""
+    compute: Compute = request.app.state.compute
+    return await compute.run(partial(abandoned, request), job, *args)
+
+
+async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: Any) -> T:
+    """As ``asyncio.to_thread``, with other threads."""
+    context = contextvars.copy_context()
+    loop = asyncio.get_running_loop()
+    return await loop.run_in_executor(threads, context.run, function, *args)
+
+
+def _found(body: ViewRequest, request: Request) -> Found:
+    """What a test or a shape that was computed before shows."""
+    wanted = body.stretch or body.curl
+    answer: Reply | None = request.app.state.recent.get(wanted.id) if wanted else None
+    view = answer.view if answer else None
+    return view if isinstance(view, StretchView | PosedView) else None
+
+
+def _view(design: str, request: Request) -> View:
+    view: View | None = request.app.state.views.get(private_name(design))
+    if view is None:
+        raise NotFoundError(
+            "This view is not open.", field="design", remedy="Show the design first."
+        )
+    return view
+
+
+async def _clicks(name: str, request: Request) -> AsyncGenerator[str | None]:
+    state = request.app.state
+    with state.views.clicks.listen(name) as queue:
+        yield "retry: 2000\n\n"
+        while not state.stopping and state.views.get(name) is not None:
+            try:
+                row, column = await asyncio.wait_for(queue.get(), EVENT_PERIOD_S)
+            except TimeoutError:
+                yield None
+            else:
+                yield f'event: stitch\ndata: {{"row": {row}, "column": {column}}}\n\n'

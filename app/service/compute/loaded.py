@@ -1,0 +1,60 @@
+"""Loads what workers need, and compiles it on the very first start.
+
+Only the process that workers are forked from imports this module, once.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from pathlib import Path
+
+import numpy as np
+
+from app.service.compute.processes import be_nice
+
+SERVICE = os.getppid()
+_loaded = threading.Event()
+
+
+def _end_with_service() -> None:
+    """End this process with the service while it loads; once it waits to fork, it notices alone."""
+    while not _loaded.wait(0.5):
+        if os.getppid() != SERVICE:
+            os._exit(1)
+
+
+def _load() -> None:
+    be_nice()  # the first page comes before this
+    from app.context import Context
+    from app.models.charts import PureFabricChart
+    from app.operations.stretch import StretchRequest, stretch
+    from knitcore.fabric import Fabric
+    from knitcore.materials import material
+    from knitcore.swatch.kernel import respond
+    from knitcore.swatch.models import SheetModel
+
+    stretch(
+        StretchRequest(
+            chart=PureFabricChart(fabric="garter", columns=3, rows=3),
+            material="acrylic",
+            direction="wale",
+            strain=0.1,
+            steps=1,
+        ),
+        Context(Path()),
+    )
+    # cut pieces have another mesh, and other compiled code
+    laws = SheetModel().parameters([material("acrylic").law(Fabric.GARTER)])
+    at_rest = np.eye(2).reshape(1, 4)
+    law_of_point = np.zeros(1, dtype=np.uint8)
+    respond(laws, law_of_point, False, False, at_rest, np.empty((1, 4)), np.empty((1, 4, 4)))
+
+
+_watch = threading.Thread(target=_end_with_service, daemon=True)
+_watch.start()
+try:
+    _load()
+finally:
+    _loaded.set()
+    _watch.join()  # a process that forks should have one thread

@@ -1,0 +1,178 @@
+"""A design in the API: the JSON document, its metadata, and requests that change it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated, Literal
+
+from pydantic import AwareDatetime, BaseModel, Field
+
+from app.models.base import RequestModel
+from app.models.charts import ChartText
+from knitcore.chart import MAX_STITCHES_PER_SIDE
+from knitcore.formats.design import FORMAT, VERSION
+from knitcore.formats.layout import DesignLayout
+
+Name = Annotated[
+    str,
+    Field(
+        min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$", examples=["Cuff with a soft rim"]
+    ),
+]
+MaterialId = Annotated[
+    str, Field(min_length=1, max_length=80, pattern=r"^[^\x00-\x1f]+$", examples=["acrylic"])
+]
+Note = Annotated[str, Field(max_length=20_000, pattern=r"^[^\x00]*$")]
+MAX_RUNS = 20_000
+
+
+class DesignDocument(DesignLayout, RequestModel):
+    """A design as a file holds it; ``knitcore`` reads the same on the command line."""
+
+    format: Literal["knitcore-design"] = FORMAT
+    version: Literal[2] = VERSION
+    name: Name
+    material: MaterialId
+    chart: ChartText
+    note: Note = ""
+
+
+class DesignSummary(BaseModel):
+    """A design in a list."""
+
+    id: str
+    name: str
+    material: str
+    rows: int
+    columns: int
+    revision: int = Field(description="Grows with every change; the ETag is made of it.")
+    created_at: AwareDatetime
+    changed_at: AwareDatetime
+    deleted_at: AwareDatetime | None = None
+
+
+class Design(DesignSummary):
+    """A design with its document."""
+
+    document: DesignDocument
+
+
+class DesignPage(BaseModel):
+    """A part of a list, latest changes first."""
+
+    designs: list[DesignSummary]
+    next_cursor: str | None = Field(description="Send it to get the next page; null at the end.")
+
+
+class DesignPatch(RequestModel):
+    """Fields to change; the others stay."""
+
+    name: Name | None = None
+    material: MaterialId | None = None
+    note: Note | None = None
+
+
+class Run(RequestModel):
+    """Adjacent stitches of one kind in a row."""
+
+    row: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="From 0, the bottom row.")
+    column: int = Field(
+        ge=0, lt=MAX_STITCHES_PER_SIDE, description="First stitch; from 0, at the left."
+    )
+    stitches: str = Field(pattern=r"^[KP]+$", max_length=MAX_STITCHES_PER_SIDE, examples=["KKP"])
+
+
+class Strokes(RequestModel):
+    """Paint: new values of stitches, so that strokes of several people merge."""
+
+    rows: int = Field(ge=1, description="Size of the chart that was painted on.")
+    columns: int = Field(ge=1)
+    runs: list[Run] = Field(min_length=1, max_length=MAX_RUNS)
+
+
+class StitchKinds(BaseModel):
+    """Kinds of the stitches in a box; a material's `stitches` table says what each kind does."""
+
+    row: int = Field(description="Bottom row of the box; from 0, the bottom row of the chart.")
+    column: int = Field(description="Left column of the box; from 0, at the left.")
+    kinds: list[str] = Field(
+        description="A hexadecimal digit for each stitch, bottom row first: its kind, 0 to 15."
+    )
+
+
+class Painted(BaseModel):
+    """The design's state after strokes were kept."""
+
+    revision: int
+    changed_at: AwareDatetime
+    map: StitchKinds = Field(description="What looks different now: the strokes and one around.")
+
+
+class VersionRequest(RequestModel):
+    """A name for the design's present state."""
+
+    name: Name
+
+
+class VersionSummary(BaseModel):
+    """A kept state of a design."""
+
+    number: int = Field(description="From 1, oldest first.")
+    name: str
+    automatic: bool = Field(description="Kept by the service before a restore replaced it.")
+    revision: int
+    created_at: AwareDatetime
+
+
+class Version(VersionSummary):
+    """A kept state with its document."""
+
+    document: DesignDocument
+
+
+class Versions(BaseModel):
+    """All kept states of a design."""
+
+    versions: list[VersionSummary]
+
+
+class ShareMode(StrEnum):
+    """Rights that a link gives."""
+
+    READ = "read"
+    COPY = "copy"
+
+
+class ShareRequest(RequestModel):
+    """A link to give away."""
+
+    mode: ShareMode = ShareMode.READ
+
+
+class Share(BaseModel):
+    """A link that was given away; its secret is shown only once, when it is made."""
+
+    id: str
+    mode: ShareMode
+    created_at: AwareDatetime
+
+
+class NewShare(Share):
+    """A new link with its secret."""
+
+    token: str = Field(description="The design is at /api/v1/shared/{token} for who has this.")
+
+
+class Shares(BaseModel):
+    """The links of a design that are not revoked."""
+
+    shares: list[Share]
+
+
+class SharedDesign(BaseModel):
+    """The design behind a link."""
+
+    mode: ShareMode
+    document: DesignDocument
+    revision: int
+    changed_at: AwareDatetime

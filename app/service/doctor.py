@@ -1,0 +1,180 @@
+"""What an installation needs: for ``knitcore doctor``, at the start, and for ``/readyz``."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel, Field
+
+from app.service.problems import ServiceError
+from app.service.settings import Settings
+from app.service.store.database import Database, sqlite_file
+from app.service.store.file import check_not_lost, check_reserved
+from app.service.store.lock import holder
+from app.service.store.schema import check_schema
+from knitcore.errors import InputError
+
+if TYPE_CHECKING:
+    from app.service.compute.cluster import Cluster
+
+MIN_FREE_BYTES = 100_000_000
+
+
+class Check(BaseModel):
+    """One check and its result."""
+
+    name: str
+    ok: bool
+    problem: str | None = Field(None, description="What is wrong.")
+    remedy: str | None = Field(None, description="The remedy.")
+    note: str | None = Field(None, description="What is good to know.")
+
+
+class Checks(BaseModel):
+    """The results of all checks."""
+
+    checks: list[Check]
+
+    @property
+    def failed(self) -> list[Check]:
+        """The checks that found a problem."""
+        return [check for check in self.checks if not check.ok]
+
+
+def examine(settings: Settings) -> Checks:
+    """Look at settings, folder, database and cluster; changes nothing."""
+    found = _examine(settings, partial(_check_database, settings), _cluster_check(settings))
+    found.checks.append(_checked("service", partial(_holder, settings)))
+    return found
+
+
+def examine_start(settings: Settings, database: Database) -> Checks:
+    """The same for a service that starts, with its own database, whose pages it has looked at."""
+    return _examine(settings, database.check, _cluster_check(settings))
+
+
+def examine_running(settings: Settings, database: Database, cluster: Cluster | None) -> Checks:
+    """The same while the service runs, without a look at every page of the database."""
+    return _examine(settings, database.check, cluster.check if cluster is not None else None)
+
+
+def _cluster_check(settings: Settings) -> Callable[[], None]:
+    return partial(check_cluster, settings.scheduler or "")
+
+
+def _examine(
+    settings: Settings, database: Callable[[], object], cluster: Callable[[], object] | None
+) -> Checks:
+    checks: dict[str, Callable[[], object]] = {
+        "settings": settings.check,
+        "data folder": partial(check_folder, settings.folder),
+        "file modes": partial(check_modes, settings.folder),
+        "free space": partial(check_space, settings.folder),
+        "database": database,
+    }
+    if settings.scheduler is not None and cluster is not None:
+        checks["cluster"] = cluster
+    return Checks(checks=[_checked(name, check) for name, check in checks.items()])
+
+
+def _checked(name: str, check: Callable[[], object]) -> Check:
+    try:
+        note = check()
+    except InputError as error:
+        return Check(
+            name=name, ok=False, problem=f"{error.field}: {error.problem}", remedy=error.remedy
+        )
+    except ServiceError as error:
+        return Check(name=name, ok=False, problem=error.detail, remedy=error.remedy)
+    return Check(name=name, ok=True, note=note if isinstance(note, str) else None)
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a data folder that cannot be written; one that is not there yet can be made.
+
+    Raises
+    ------
+    InputError
+    """
+    place = folder
+    while not place.exists():
+        place = place.parent
+    if not place.is_dir() or not os.access(place, os.W_OK | os.X_OK):
+        raise InputError(
+            "data_dir",
+            f"{folder} cannot be written.",
+            "Set KNITCORE_DATA_DIR to a folder that this user may write.",
+        )
+
+
+def check_modes(folder: Path) -> None:
+    """Refuse data that other users of the machine can read.
+
+    Raises
+    ------
+    InputError
+    """
+    if not folder.is_dir() or not folder.stat().st_mode & 0o077:
+        return
+    for file in sorted(folder.glob("*.sqlite3*")):
+        if file.stat().st_mode & 0o077:
+            raise InputError(
+                "data_dir",
+                f"{file} can be read by other users of this machine.",
+                f"Run: chmod 700 {folder}",
+            )
+
+
+def check_space(folder: Path) -> None:
+    """Refuse a disk that is about to be full.
+
+    Raises
+    ------
+    InputError
+    """
+    if not folder.is_dir():
+        return
+    free = shutil.disk_usage(folder).free
+    if free < MIN_FREE_BYTES:
+        raise InputError(
+            "data_dir",
+            f"The disk of the designs has {free / 1e6:.0f} MB left.",
+            "Free some space; nothing that was saved is lost.",
+        )
+
+
+def _check_database(settings: Settings) -> None:
+    if settings.database_url is None and not settings.database_file.exists():
+        check_not_lost(settings.database_file)
+        return  # it is made by the first start
+    if (file := sqlite_file(settings.store_url)) is not None:
+        check_reserved(file)
+    with closing(Database(settings.store_url)) as database:
+        database.check_pages()
+        check_schema(database)
+
+
+def _holder(settings: Settings) -> str | None:
+    """The service that runs on the data now; a second one would be refused."""
+    if settings.database_url is None and not settings.database_file.exists():
+        return None
+    return holder(settings.store_url, settings.process_name)
+
+
+def check_cluster(address: str) -> None:
+    """Refuse a cluster that does not answer or has no workers.
+
+    Raises
+    ------
+    ClusterError
+    """
+    from app.service.compute.cluster import Cluster  # its library is needed here only
+
+    with closing(Cluster(address)) as cluster:
+        cluster.check()

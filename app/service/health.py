@@ -1,0 +1,82 @@
+"""Health, readiness and metrics."""
+
+from __future__ import annotations
+
+import asyncio
+
+from fastapi import APIRouter, Request, Response
+from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
+from pydantic import BaseModel, Field
+
+from app.service.doctor import examine_running
+from app.service.identity import LOCAL_USER, current_user
+from app.service.problems import Problem, RefusedError, UnavailableError
+
+router = APIRouter(tags=["service"])
+
+PATIENCE_S = 5.0
+NEEDED = frozenset({"database", "free space", "cluster"})
+"""Checks without which the service cannot work."""
+
+
+class Health(BaseModel):
+    """The service answers."""
+
+    status: str = "ok"
+
+
+class Readiness(Health):
+    """The service can work."""
+
+    checks: dict[str, bool] = Field(description="Whether each check passed, by its name.")
+
+
+class NotReadyError(UnavailableError):
+    """The service is up, but something it needs is not."""
+
+    title = "Not ready"
+
+
+@router.get("/healthz", summary="Whether the service is up")
+async def healthz() -> Health:
+    """Depends on nothing else: if this fails, restart the process."""
+    return Health()
+
+
+@router.get(
+    "/readyz",
+    summary="Whether the service can work",
+    responses={503: {"model": Problem, "description": "What is missing."}},
+)
+async def readyz(request: Request) -> Readiness:
+    """The checks of `knitcore doctor` by name: while this fails, send requests elsewhere.
+
+    It fails without database, disk or cluster; `knitcore doctor` reports the rest.
+    """
+    state = request.app.state
+    try:
+        async with asyncio.timeout(PATIENCE_S):
+            found = await asyncio.to_thread(
+                examine_running, state.settings, state.database, state.cluster
+            )
+    except TimeoutError:
+        raise NotReadyError("The database or the cluster does not answer.") from None
+    for check in found.failed:
+        if check.name in NEEDED:
+            raise NotReadyError(check.problem or check.name, remedy=check.remedy)
+    return Readiness(checks={check.name: check.ok for check in found.checks})
+
+
+@router.get("/metrics", summary="Numbers for Prometheus", response_class=Response)
+def metrics(request: Request) -> Response:
+    """Requests, times, jobs, views and the process itself.
+
+    Where users have logins of their own, they need the token of the settings.
+    """
+    if current_user.get() != LOCAL_USER:
+        raise RefusedError(
+            "Numbers about all users are for the operator of the service.",
+            remedy="Send the token of KNITCORE_TOKEN.",
+        )
+    registry = request.app.state.metrics.registry
+    return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)

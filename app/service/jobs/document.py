@@ -1,0 +1,45 @@
+"""Jobs in the API."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from pydantic import AwareDatetime, BaseModel, Field
+
+from app.service.problems import Problem
+
+
+class JobState(StrEnum):
+    """Where a job stands."""
+
+    WAITING = "waiting"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+    INTERRUPTED = "interrupted"
+
+    @property
+    def is_final(self) -> bool:
+        """Whether the job has ended."""
+        return self not in (JobState.WAITING, JobState.RUNNING)
+
+
+class JobStatus(BaseModel):
+    """A job as its owner sees it."""
+
+    id: str
+    kind: str
+    state: JobState
+    progress: float = Field(ge=0, le=1, description="Share done, where the computation reports it.")
+    problem: Problem | None = Field(None, description="Why it failed or was interrupted.")
+    created_at: AwareDatetime
+    started_at: AwareDatetime | None = None
+    finished_at: AwareDatetime | None = None
+
+
+class JobPage(BaseModel):
+    """A part of a list of jobs, latest first."""
+
+    jobs: list[JobStatus]
+    next_cursor: str | None = Field(description="Send it to get the next page; null at the end.")

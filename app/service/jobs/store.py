@@ -1,0 +1,303 @@
+"""Jobs and results in the database, which survive a restart."""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+from collections.abc import Mapping
+from typing import Any
+
+from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
+
+from app.service.designs.idempotency import Retry, once
+from app.service.jobs.document import JobPage, JobState, JobStatus
+from app.service.limits.budgets import BUDGETS, OverBudgetError
+from app.service.problems import NotFoundError, Problem, StoreError
+from app.service.store.database import Database
+from app.service.store.pages import one_page
+from app.service.store.tables import job_requests, jobs, now, results
+
+WAITING, RUNNING = OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
+KEPT_S = 30 * 86_400.0
+ORPHANED_S = 60.0
+"""A process not seen for this long, by the clock of the database, counts as gone; the others take
+over its jobs."""
+INTERRUPTED = Problem(
+    type="interrupted",
+    title="The service stopped in the middle of this job",
+    status=503,
+    detail="The service was stopped or failed while this job ran.",
+    remedy="Run it again.",
+)
+
+
+class JobStore:
+    """Jobs of all owners, and the results by content.
+
+    Parameters
+    ----------
+    database : where they are kept.
+    process : name of this service process; jobs that carry it are run by it.
+    """
+
+    def __init__(self, database: Database, process: str) -> None:
+        self._database = database
+        self.process = process
+
+    def add(
+        self,
+        owner: str,
+        kind: str,
+        request: str,
+        key: str,
+        state: JobState,
+        *,
+        job: str | None = None,
+        retry: Retry | None = None,
+    ) -> JobStatus:
+        """Store a new job, with this id if one is given; it is done if its result is known.
+
+        If the request was sent before, its first job is returned, which has another id.
+
+        Raises
+        ------
+        OverBudgetError
+            If the requests of this owner's open jobs leave no room for it.
+        """
+        at = now()
+        values = {
+            "id": job or secrets.token_urlsafe(16),
+            "owner": owner,
+            "process": self.process,
+            "kind": kind,
+            "size_bytes": len(request),
+            "key": key,
+            "state": state.value,
+            "created_at": at,
+            "seen_at": self._database.clock,
+            "finished_at": at if state.is_final else None,
+        }
+
+        def action(connection: Connection) -> JobStatus:
+            _make_room(connection, owner, len(request))
+            connection.execute(insert(jobs).values(values))
+            connection.execute(insert(job_requests).values(job_id=values["id"], request=request))
+            return _status(_one(connection, owner, str(values["id"])))
+
+        return once(self._database, retry, JobStatus, action)
+
+    def kept_bytes(self, owner: str) -> int:
+        """Size of the requests of an owner's jobs."""
+        with self._database.read() as connection:
+            return _kept_bytes(connection, owner)
+
+    def get(self, owner: str, job: str) -> JobStatus:
+        """A job."""
+        with self._database.read() as connection:
+            return _status(_one(connection, owner, job))
+
+    def request_of(self, owner: str, job: str) -> tuple[str, str]:
+        """Kind and request of a job."""
+        with self._database.read() as connection:
+            kind = _one(connection, owner, job).kind
+            request = select(job_requests.c.request).where(job_requests.c.job_id == job)
+            return kind, connection.execute(request).scalar_one()
+
+    def page(self, owner: str, *, limit: int, cursor: str | None) -> JobPage:
+        """Jobs of an owner, latest first."""
+        mine = select(jobs).where(jobs.c.owner == owner)
+        rows, following = one_page(
+            self._database, mine, jobs.c.created_at, jobs.c.id, limit=limit, cursor=cursor
+        )
+        return JobPage(jobs=[_status(row) for row in rows], next_cursor=following)
+
+    def begin(self, job: str) -> bool:
+        """Mark a waiting job as running; False if it no longer waits."""
+        return self._move(job, (WAITING,), RUNNING, started_at=now())
+
+    def wait_again(self, job: str) -> bool:
+        """Put a running job back in the queue."""
+        return self._move(job, (RUNNING,), WAITING, started_at=None, progress=0.0)
+
+    def end(
+        self,
+        job: str,
+        state: JobState,
+        problem: Problem | None = None,
+        *,
+        progress: float | None = None,
+    ) -> bool:
+        """Close an open job, with the progress it made; False if it was closed before."""
+        packed = None if problem is None else problem.model_dump_json()
+        reached = {} if progress is None else {"progress": progress}
+        return self._move(job, OPEN, state.value, problem=packed, finished_at=now(), **reached)
+
+    def _move(self, job: str, before: tuple[str, ...], after: str, **values: Any) -> bool:
+        change = (
+            update(jobs)
+            .where(jobs.c.id == job, jobs.c.state.in_(before))
+            .values(state=after, **values)
+        )
+        return self._database.write(lambda connection: connection.execute(change).rowcount == 1)
+
+    def adopt(self) -> list[tuple[str, str]]:
+        """After a start: mark running jobs as interrupted; (id, owner) of those waiting."""
+        return self._take(jobs.c.process == self.process)
+
+    def adopt_orphans(self) -> list[tuple[str, str]]:
+        """The same for jobs of processes that are gone."""
+        return self._take(jobs.c.seen_at < self._database.clock - ORPHANED_S)
+
+    def _take(self, which: ColumnElement[bool]) -> list[tuple[str, str]]:
+        def action(connection: Connection) -> list[tuple[str, str]]:
+            connection.execute(
+                update(jobs)
+                .where(which, jobs.c.state == RUNNING)
+                .values(
+                    state=JobState.INTERRUPTED.value,
+                    problem=INTERRUPTED.model_dump_json(),
+                    finished_at=now(),
+                )
+            )
+            waiting = connection.execute(
+                update(jobs)
+                .where(which, jobs.c.state == WAITING)
+                .values(process=self.process, seen_at=self._database.clock)
+                .returning(jobs.c.id, jobs.c.owner, jobs.c.created_at)
+            )
+            rows = sorted(waiting, key=lambda row: row.created_at)
+            return [(row.id, row.owner) for row in rows]
+
+        return self._database.write(action)
+
+    def beat(self, shares: Mapping[str, float]) -> set[str]:
+        """Share the progress of this process's open jobs, and that it is alive.
+
+        Returns those no longer open: they were cancelled through another process, or taken over by
+        one that took this one for dead.
+        """
+
+        def action(connection: Connection) -> set[str]:
+            report = (
+                update(jobs)
+                .where(
+                    jobs.c.id == bindparam("job"),
+                    jobs.c.process == self.process,
+                    jobs.c.state.in_(OPEN),
+                )
+                .values(progress=bindparam("share"), seen_at=self._database.clock)
+                .returning(jobs.c.id)
+            )
+            open_ = (
+                connection.execute(report, {"job": job, "share": share}).scalar()
+                for job, share in shares.items()
+            )
+            return set(shares) - {job for job in open_ if job is not None}
+
+        return self._database.write(action)
+
+    def result(self, owner: str, job: str) -> bytes | None:
+        """The result of a job as compressed JSON, or None if it is not stored."""
+        with self._database.read() as connection:
+            key = _one(connection, owner, job).key
+            body: bytes | None = connection.execute(
+                select(results.c.body).where(results.c.key == key)
+            ).scalar()
+        if body is not None:
+            self._used(key)
+        return body
+
+    def knows(self, key: str) -> bool:
+        """Whether the result of this content is stored; if so, renew its time of use."""
+        with self._database.read() as connection:
+            found = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
+        if found is not None:
+            self._used(key)
+        return found is not None
+
+    def _used(self, key: str) -> None:
+        used = update(results).where(results.c.key == key).values(used_at=now())
+        with contextlib.suppress(StoreError):  # with a full disk it can still be read
+            self._database.write(lambda connection: connection.execute(used))
+
+    def finish(self, job: str, kind: str, key: str, body: bytes) -> bool:
+        """Store a compressed result and close its job, both or neither."""
+
+        def action(connection: Connection) -> bool:
+            done = connection.execute(
+                update(jobs)
+                .where(jobs.c.id == job, jobs.c.state.in_(OPEN))
+                .values(state=JobState.DONE.value, finished_at=now())
+            )
+            # equal jobs of two processes end at once: either result is the right one
+            connection.execute(
+                self._database.insert_new(results).values(
+                    key=key, kind=kind, body=body, size_bytes=len(body), used_at=now()
+                )
+            )
+            return done.rowcount == 1
+
+        return self._database.write(action)
+
+    def tidy(self, most_bytes: int) -> None:
+        """Delete old jobs, and the longest unused results beyond a size."""
+
+        def action(connection: Connection) -> None:
+            connection.execute(jobs.delete().where(jobs.c.finished_at < now() - KEPT_S))
+            newest = func.sum(results.c.size_bytes).over(
+                order_by=(results.c.used_at.desc(), results.c.key)
+            )
+            sizes = select(results.c.key, newest.label("so_far")).subquery()
+            too_many = select(sizes.c.key).where(sizes.c.so_far > most_bytes)
+            connection.execute(results.delete().where(results.c.key.in_(too_many)))
+
+        self._database.write(action)
+
+
+def _kept_bytes(connection: Connection, owner: str) -> int:
+    size = select(func.coalesce(func.sum(jobs.c.size_bytes), 0))
+    return int(connection.execute(size.where(jobs.c.owner == owner)).scalar_one())
+
+
+def _make_room(connection: Connection, owner: str, more: int) -> None:
+    """Delete the jobs of an owner that ended the longest ago, as many as a new request needs.
+
+    Raises
+    ------
+    OverBudgetError
+        If the open jobs alone leave too little room.
+    """
+    if _kept_bytes(connection, owner) + more <= BUDGETS.job_bytes:
+        return
+    ended = jobs.c.finished_at.is_not(None)
+    so_far = func.sum(jobs.c.size_bytes).over(
+        order_by=(ended, jobs.c.finished_at.desc(), jobs.c.id)
+    )
+    sizes = select(jobs.c.id, so_far.label("so_far")).where(jobs.c.owner == owner).subquery()
+    oldest = select(sizes.c.id).where(sizes.c.so_far + more > BUDGETS.job_bytes)
+    connection.execute(jobs.delete().where(jobs.c.id.in_(oldest), ended))
+    if (held := _kept_bytes(connection, owner)) + more > BUDGETS.job_bytes:
+        raise OverBudgetError(
+            f"The requests of your jobs that wait or run have {held / 1e6:.1f} of"
+            f" {BUDGETS.job_bytes / 1e6:g} MB.",
+            field="job_bytes",
+            remedy="Wait until one has ended, or cancel one.",
+        )
+
+
+def _one(connection: Connection, owner: str, job: str) -> Row[Any]:
+    mine = select(jobs).where(jobs.c.id == job, jobs.c.owner == owner)
+    row = connection.execute(mine).one_or_none()
+    if row is None:
+        raise NotFoundError(
+            f"You have no job {job}.",
+            field="job",
+            remedy="Look it up in the list of your jobs.",
+        )
+    return row
+
+
+def _status(row: Row[Any]) -> JobStatus:
+    problem = None if row.problem is None else Problem.model_validate_json(row.problem)
+    progress = 1.0 if row.state == JobState.DONE else row.progress
+    return JobStatus.model_validate({**row._mapping, "problem": problem, "progress": progress})

@@ -1,0 +1,172 @@
+"""Turns: a few places, which many users get one after the other."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections import Counter, OrderedDict, deque
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from app.service.limits.budgets import OverBudgetError
+from app.service.problems import UnavailableError
+
+Place = TypeVar("Place")
+MAX_AT_A_GATE = 100
+Lane = OrderedDict[str, deque["Ticket[Place]"]]
+
+
+@dataclass(eq=False)
+class Ticket(Generic[Place]):
+    """A request that waits for a place."""
+
+    owner: str
+    background: bool
+    place: asyncio.Future[Place]
+
+
+class Turns(Generic[Place]):
+    """Gives places to users in turn; requests that a browser waits for come first.
+
+    Parameters
+    ----------
+    places : the places to give.
+    most_background : how many places background work may hold at once, so that one is left for
+        requests of pages.
+    most_waiting : how many may wait in the foreground; a user with none waiting there may always
+        add one, so that one user cannot fill the queue.
+    most_waiting_each : how many one user may have waiting in the background.
+    most_each : how many places one user may hold at once; None is all of them.
+    """
+
+    def __init__(
+        self,
+        places: list[Place],
+        *,
+        most_background: int,
+        most_waiting: int,
+        most_waiting_each: int,
+        most_each: int | None = None,
+    ) -> None:
+        self._free = list(places)
+        self._count = len(places)
+        self._most_background = most_background
+        self._most_waiting = most_waiting
+        self._most_waiting_each = most_waiting_each
+        self.most_each = most_each or len(places)
+        self._held: Counter[str] = Counter()
+        self._background = 0
+        self._lanes: dict[bool, Lane[Place]] = {False: OrderedDict(), True: OrderedDict()}
+
+    def enter(self, owner: str, *, background: bool) -> Ticket[Place]:
+        """Join the queue.
+
+        Raises
+        ------
+        UnavailableError, OverBudgetError
+            If the queue is full.
+        """
+        self.check_room(owner, background=background)
+        lane = self._lanes[background]
+        ticket = Ticket(owner, background, asyncio.get_running_loop().create_future())
+        lane.setdefault(owner, deque()).append(ticket)
+        self._hand_out()
+        return ticket
+
+    def check_room(self, owner: str, *, background: bool) -> None:
+        """Refuse a request that may not join the queue.
+
+        Raises
+        ------
+        UnavailableError
+            If the queue is full.
+        OverBudgetError
+            If too many of this user wait in the background.
+        """
+        if background and self.waiting_of(owner) >= self._most_waiting_each:
+            raise OverBudgetError.of("jobs", self.waiting_of(owner), self._most_waiting_each)
+        full = self.waiting(background=False) >= self._most_waiting
+        if not background and full and owner in self._lanes[False]:
+            raise UnavailableError("Too many computations are waiting.")
+
+    def leave(self, ticket: Ticket[Place]) -> None:
+        """Give the place back, or leave the queue without one."""
+        if ticket.place.done():
+            self._free.append(ticket.place.result())
+            self._background -= ticket.background
+            self._held -= Counter([ticket.owner])
+        else:
+            ticket.place.cancel()
+            lane = self._lanes[ticket.background]
+            lane[ticket.owner].remove(ticket)
+            if not lane[ticket.owner]:
+                del lane[ticket.owner]
+        self._hand_out()
+
+    @property
+    def taken(self) -> int:
+        """Number of places in use."""
+        return self._count - len(self._free)
+
+    def held(self, owner: str) -> int:
+        """Number of places that a user holds."""
+        return self._held[owner]
+
+    def waiting(self, *, background: bool) -> int:
+        """Number of requests that wait."""
+        return sum(len(tickets) for tickets in self._lanes[background].values())
+
+    def waiting_of(self, owner: str) -> int:
+        """Number of background jobs of a user that wait."""
+        return len(self._lanes[True].get(owner, ()))
+
+    def _hand_out(self) -> None:
+        while self._free and (ticket := self._next()) is not None:
+            self._held[ticket.owner] += 1
+            self._background += ticket.background
+            ticket.place.set_result(self._free.pop())
+
+    def _next(self) -> Ticket[Place] | None:
+        """Take the next in turn out of the queue; None if none of them may have a place now."""
+        for background, lane in self._lanes.items():
+            if background and self._background >= self._most_background:
+                continue
+            for owner, tickets in lane.items():
+                if self._held[owner] < self.most_each:
+                    ticket = tickets.popleft()
+                    if tickets:
+                        lane.move_to_end(owner)
+                    else:
+                        del lane[owner]
+                    return ticket
+        return None
+
+
+class Gate:
+    """Lets one through at a time, users taking turns.
+
+    For threads of the service that compute: Python runs one at a time, so that two would be no
+    faster, and the event loop would wait for both.
+    """
+
+    def __init__(self) -> None:
+        self._turns = Turns(
+            [None], most_background=1, most_waiting=MAX_AT_A_GATE, most_waiting_each=0
+        )
+
+    @contextlib.asynccontextmanager
+    async def turn(self, owner: str) -> AsyncIterator[None]:
+        """Wait for a turn, and hold it while the block runs.
+
+        Raises
+        ------
+        UnavailableError
+            If too many wait.
+        """
+        ticket = self._turns.enter(owner, background=False)
+        try:
+            await asyncio.wait([ticket.place])
+            yield
+        finally:
+            self._turns.leave(ticket)

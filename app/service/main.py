@@ -1,0 +1,249 @@
+"""The application, put together from its parts."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+from collections.abc import AsyncIterator, Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache, partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from anyio.to_thread import current_default_thread_limiter
+from fastapi import FastAPI
+
+from app.context import Context
+from app.operations.predict import PredictRequest, predict
+from app.service import VERSION, health, memory
+from app.service.api import routers
+from app.service.compute.answers import Answers
+from app.service.compute.compute import Compute
+from app.service.compute.processes import processes
+from app.service.compute.workers import Worker
+from app.service.designs.idempotency import forget_old_keys
+from app.service.designs.store import DesignStore
+from app.service.designs.watching import Watched
+from app.service.jobs.runner import JobRunner
+from app.service.jobs.store import JobStore
+from app.service.limits.budgets import BUDGETS, InUse
+from app.service.limits.turns import Gate
+from app.service.problems import PROBLEM_RESPONSES, StoreError
+from app.service.results.recent import RecentResults
+from app.service.settings import Settings
+from app.service.store.database import Database
+from app.service.store.schema import migrate
+from app.service.web.errors import install_problem_handlers
+from app.service.web.observing import Metrics, Observer, configure_logging
+from app.service.web.page import serve_page
+from app.service.web.passes import Passes
+from app.service.web.reference import serve_kinds, serve_reference
+from app.service.web.schema import install_schema
+from app.service.web.security import Guard
+from app.service.web.sessions import Sessions
+from app.service.web.tokens import REMEMBERED_S, Login, Tokens
+from app.viewer import relay
+from app.viewer.client import viewer_page
+from app.viewer.views import Views
+
+if TYPE_CHECKING:
+    from app.service.compute.cluster import Cluster
+
+log = logging.getLogger("knitcore.app")
+
+JANITOR_PERIOD_S = 30.0
+TIDY_PERIOD_S = 3600.0
+THREADS = 8
+"""Threads of the service besides the event loop. Python runs one at a time: with FastAPI's 40, the
+loop could wait for all of them each time it returns from reading or sending."""
+
+
+@contextlib.asynccontextmanager
+async def _running(app: FastAPI) -> AsyncIterator[None]:
+    """Open what the service needs while it runs, and close it at the end."""
+    chosen: Settings = app.state.settings
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
+    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(THREADS, "service"))
+    current_default_thread_limiter().total_tokens = THREADS  # FastAPI's
+    given: Database | None = app.state.database
+    app.state.database = given or await asyncio.to_thread(_open_database, chosen)
+    app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
+    app.state.cluster = _cluster(chosen)
+    app.state.compute = Compute(
+        _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
+    )
+    app.state.large_bodies = Gate()
+    app.state.light_work = Gate()
+    app.state.drawing = Gate()
+    app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
+    app.state.recent = RecentResults()
+    app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
+    app.state.viewer_page = viewer_page()
+    job_store = JobStore(app.state.database, chosen.process_name)
+    app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
+    await app.state.jobs.resume()
+    janitors = [
+        asyncio.create_task(_close_idle_views(app.state.views, chosen.viewer_idle_s)),
+        asyncio.create_task(_tidy_store(app.state.database, job_store, chosen.results_max_bytes)),
+        asyncio.create_task(asyncio.to_thread(_warm_up)),
+    ]
+    if chosen.require_login:
+        ending = _end_jobs_of_the_revoked(Tokens(app.state.database), app.state.jobs)
+        janitors.append(asyncio.create_task(ending))
+    yield
+    for janitor in janitors:
+        janitor.cancel()
+    await app.state.jobs.close()
+    app.state.compute.close()
+    await asyncio.to_thread(app.state.views.close)
+    if given is None:
+        await asyncio.to_thread(app.state.database.close)
+    app.state.database = given
+
+
+def create_app(settings: Settings | None = None, database: Database | None = None) -> FastAPI:
+    """The service, ready for an ASGI server.
+
+    Parameters
+    ----------
+    settings : those of the environment by default.
+    database : of the settings, open and up to date, which the caller closes; opened by the service
+        otherwise.
+
+    Raises
+    ------
+    InputError
+        If the settings would open the service to strangers.
+    """
+    chosen = (settings or Settings()).check()
+    app = FastAPI(
+        title="Knitcore",
+        summary="Design the mechanics of knitted fabric, stitch by stitch.",
+        version=VERSION,
+        lifespan=_running,
+        openapi_url=None,  # app.service.web.schema serves it, packed
+        docs_url=None,  # FastAPI's pages ask other hosts for their scripts
+        redoc_url=None,
+        responses=PROBLEM_RESPONSES,
+        generate_unique_id_function=lambda route: route.name,
+    )
+    app.state.settings = chosen
+    app.state.database = database
+    app.state.stopping = False
+    app.state.in_use = InUse()
+    app.state.watched = Watched()
+    app.state.passes = Passes()
+    app.state.metrics = Metrics(_gauges(app))
+    install_problem_handlers(app)
+    install_schema(app)
+    for router in routers():
+        app.include_router(router, prefix="/api/v1")
+    app.include_router(relay.router)
+    app.include_router(health.router)
+    serve_reference(app)
+    serve_kinds(app)
+    serve_page(app)
+    app.add_middleware(Guard, settings=chosen)
+    app.add_middleware(Observer, metrics=app.state.metrics)
+    return app
+
+
+def _gauges(app: FastAPI) -> dict[str, tuple[str, Callable[[], float]]]:
+    state = app.state
+    return {
+        "views_open": ("3D views kept open.", lambda: len(state.views)),
+        "jobs_waiting": ("Jobs in line.", lambda: state.jobs.counts()["waiting"]),
+        "jobs_running": ("Jobs at work.", lambda: state.jobs.counts()["running"]),
+        "computations_running": (
+            "Computations at work, of requests and of jobs.",
+            lambda: state.compute.turns.taken,
+        ),
+        "computations_waiting": (
+            "Requests that wait for a worker.",
+            lambda: state.compute.turns.waiting(background=False),
+        ),
+    }
+
+
+@cache
+def _warm_up() -> None:
+    """Read the learned answers, which the first prediction would wait a second for."""
+    mixed = PredictRequest(chart="KP/KK", material="acrylic")
+    predict(mixed, Context(Path()))
+
+
+async def _close_idle_views(views: Views, idle_s: float) -> None:
+    while True:
+        await asyncio.sleep(min(JANITOR_PERIOD_S, idle_s))
+        closed = await asyncio.to_thread(views.close_idle)
+        if closed:
+            await asyncio.to_thread(memory.give_back)
+            log.info("closed %d idle 3D views, %d left", closed, len(views))
+
+
+def _cluster(settings: Settings) -> Cluster | None:
+    if settings.scheduler is None:
+        return None
+    from app.service.compute.cluster import Cluster  # its library is needed here only
+
+    return Cluster(settings.scheduler)
+
+
+def _workers(settings: Settings, cluster: Cluster | None) -> list[Worker]:
+    """Where heavy work is done."""
+    if cluster is not None:
+        from app.service.compute.cluster import ClusterWorker
+
+        return [ClusterWorker(cluster) for _ in range(settings.workers)]
+    return list(
+        processes(
+            settings.workers,
+            settings.worker_memory_bytes,
+            idle=settings.worker_priority == "idle",
+            begin=partial(configure_logging, settings.log_format),
+        )
+    )
+
+
+def _most_each(settings: Settings) -> int | None:
+    """Workers that one user may hold, by their memory; no limit on a cluster."""
+    if settings.scheduler is not None or not settings.asks_for_login:
+        return None
+    return max(1, BUDGETS.memory_bytes // settings.worker_memory_bytes)
+
+
+def _open_database(settings: Settings) -> Database:
+    database = Database(settings.store_url)
+    migrate(database)
+    return database
+
+
+def _login(database: Database, settings: Settings) -> Login:
+    token = settings.token.get_secret_value() if settings.token else None
+    return Login(Tokens(database), Sessions(database), token)
+
+
+async def _end_jobs_of_the_revoked(tokens: Tokens, jobs: JobRunner) -> None:
+    """End the jobs of users who no longer have an open token."""
+    while True:
+        await asyncio.sleep(REMEMBERED_S)
+        with contextlib.suppress(StoreError):
+            for user in await asyncio.to_thread(tokens.without_any, jobs.owners()):
+                log.info("the jobs of %s are ended: no token is open any more", user)
+                await jobs.cancel_all(user)
+
+
+async def _tidy_store(database: Database, jobs: JobStore, results_max_bytes: int) -> None:
+    """Delete what can no longer be requested."""
+    while True:
+        try:
+            await asyncio.to_thread(DesignStore(database).forget_deleted)
+            await asyncio.to_thread(forget_old_keys, database)
+            await asyncio.to_thread(Sessions(database).tidy)
+            await asyncio.to_thread(jobs.tidy, results_max_bytes)
+        except StoreError as error:
+            log.warning("could not tidy the store: %s", error)
+        await asyncio.sleep(TIDY_PERIOD_S)

@@ -1,0 +1,231 @@
+"""Settings, from the environment (``KNITCORE_…``) and from a TOML file (``KNITCORE_CONFIG``)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from difflib import get_close_matches
+from functools import cached_property
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field, IPvAnyNetwork, SecretStr
+from pydantic_settings import (
+    BaseSettings,
+    PydanticBaseSettingsSource,
+    SettingsConfigDict,
+    TomlConfigSettingsSource,
+)
+
+from app.service.memory import machine_bytes
+from knitcore.errors import InputError
+
+NO_SETTINGS = frozenset(
+    f"KNITCORE_{name}"
+    for name in (
+        "CONFIG",
+        "STUDY_DATA",
+        # of tests:
+        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES", "HOSTILE_REQUESTS"),
+        "WORKER_NICENESS",
+    )
+)
+
+
+class Settings(BaseSettings):
+    """How the service runs."""
+
+    model_config = SettingsConfigDict(env_prefix="KNITCORE_", frozen=True)
+
+    host: str = Field("127.0.0.1", description="Address to listen on.")
+    port: int = Field(8737, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
+    token: SecretStr | None = Field(
+        None, description="Token that every request must carry; required beyond loopback."
+    )
+    require_login: bool = Field(
+        False,
+        description="Whether every user must bring a token of their own (`knitcore token create`).",
+    )
+    requests_per_s: float = Field(
+        50.0, gt=0, description="Requests per second of one user, where a login is required."
+    )
+    allowed_hosts: tuple[str, ...] = Field(
+        (), description="Host names that a browser may use for this service beyond loopback."
+    )
+    trusted_proxies: tuple[IPvAnyNetwork, ...] = Field(
+        (),
+        description="Addresses or networks of proxies whose headers about the client are trusted "
+        "(X-Forwarded-For, X-Forwarded-Proto).",
+    )
+    data_dir: Path = Field(
+        default_factory=lambda: (
+            Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "knitcore"
+        ),
+        description="Folder where designs and results are kept.",
+    )
+    database_url: SecretStr | None = Field(
+        None, description="postgresql+psycopg://…; an SQLite file in the data folder otherwise."
+    )
+    log_format: Literal["text", "json"] = Field(
+        "text", description="Log lines for people, or one JSON object per line."
+    )
+    workers: int = Field(
+        max(2, min(4, (os.cpu_count() or 2) - 1)),
+        ge=1,
+        description="Processes for heavy work; one is kept free of background jobs.",
+    )
+    scheduler: str | None = Field(
+        None,
+        pattern=r"^(tcp|tls)://\S+:\d+$",
+        description="Dask scheduler that does the heavy work instead, such as tcp://host:8786.",
+    )
+    job_timeout_s: float = Field(120.0, gt=0, description="Longest run of one computation.")
+    background_timeout_s: float = Field(
+        1800.0, gt=0, description="Longest run of one job in the background."
+    )
+    worker_memory_bytes: int = Field(
+        default_factory=lambda: max(4_000_000_000, machine_bytes() // 2),
+        ge=500_000_000,
+        description="Largest memory of a process for heavy work; half of the machine's by default.",
+    )
+    worker_priority: Literal["idle", "low"] = Field(
+        "idle",
+        description="Computations use only idle time (idle, Linux only), or about a tenth of a "
+        "busy core (low).",
+    )
+    results_max_bytes: int = Field(
+        1_000_000_000, ge=0, description="Largest disk space for stored results of jobs."
+    )
+    process_name: str = Field(
+        "main",
+        min_length=1,
+        max_length=80,
+        description="Name of this process, if several share a database; jobs are stored under it.",
+    )
+    max_body_bytes: int = Field(32_000_000, gt=0, description="Largest request body.")
+    max_viewers: int = Field(64, ge=1, description="3D views kept open at once.")
+    viewer_idle_s: float = Field(
+        300.0, gt=0, description="Seconds after which an unwatched view closes."
+    )
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """Given values come first, then the environment, then the file.
+
+        Raises
+        ------
+        InputError
+            If the file that KNITCORE_CONFIG names does not exist, or is not TOML.
+        """
+        named = os.environ.get("KNITCORE_CONFIG")
+        if named is None:
+            return init_settings, env_settings
+        file = Path(named)
+        try:
+            source = TomlConfigSettingsSource(settings_cls, file)
+            readable = file.is_file()
+        except (OSError, ValueError):
+            readable = False
+        if not readable:
+            raise InputError(
+                "KNITCORE_CONFIG",
+                f"{file} is not a TOML file.",
+                "Name a file with lines: port = 8737",
+            )
+        return init_settings, env_settings, source
+
+    @cached_property
+    def is_loopback(self) -> bool:
+        """Whether the service can only be reached from this machine."""
+        if self.host == "localhost":
+            return True
+        try:
+            return ip_address(self.host).is_loopback
+        except ValueError:
+            return False
+
+    @property
+    def asks_for_login(self) -> bool:
+        """Whether requests need a token or a session."""
+        return self.token is not None or self.require_login
+
+    @property
+    def folder(self) -> Path:
+        """The data folder."""
+        return self.data_dir.expanduser()
+
+    @property
+    def database_file(self) -> Path:
+        """The SQLite file of the data folder."""
+        return self.folder / "knitcore.sqlite3"
+
+    @property
+    def store_url(self) -> str:
+        """The database's URL; makes the data folder if the database is a file in it.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be made, or the URL's database is not supported.
+        """
+        if self.database_url is not None:
+            url = self.database_url.get_secret_value()
+            if not url.startswith(("postgresql+psycopg://", "sqlite:///")):
+                raise InputError(
+                    "database_url",
+                    "names a database that is not supported.",
+                    "Use postgresql+psycopg://user:password@host/name, or leave it out.",
+                )
+            return url
+        folder = self.folder
+        try:
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        except OSError as error:
+            raise InputError(
+                "data_dir",
+                f"{folder} cannot be created ({error.strerror}).",
+                "Set KNITCORE_DATA_DIR to a folder that can be written.",
+            ) from error
+        return f"sqlite:///{self.database_file}"
+
+    def check(self) -> Settings:
+        """The settings themselves, if they are safe to serve with.
+
+        Raises
+        ------
+        InputError
+            If a variable of the environment is not a setting, or the service would listen beyond
+            loopback without a token.
+        """
+        _check_names(os.environ)
+        if not self.is_loopback and not self.asks_for_login:
+            raise InputError(
+                "token",
+                f"listening on {self.host} would open the service to other machines unprotected.",
+                "Set KNITCORE_TOKEN to a long random text, or KNITCORE_REQUIRE_LOGIN=true and make "
+                "tokens with `knitcore token create`, or listen on 127.0.0.1.",
+            )
+        if self.token is not None and len(self.token.get_secret_value().strip()) < 16:
+            raise InputError("token", "is too short.", "Use at least 16 characters.")
+        return self
+
+
+def _check_names(environment: Iterable[str]) -> None:
+    """Refuse a misspelt variable: without its login, a service would be open."""
+    known = {f"KNITCORE_{name.upper()}" for name in Settings.model_fields} | NO_SETTINGS
+    for name in sorted(environment):
+        if name.upper().startswith("KNITCORE_") and name.upper() not in known:
+            near = get_close_matches(name.upper(), known, 1)
+            raise InputError(
+                name,
+                "is not a setting.",
+                f"Did you mean {near[0]}?" if near else "Leave it out; docs/serving.md has all.",
+            )

@@ -1,0 +1,282 @@
+"""An SQLite file and the files beside it: made once, watched, and reserved by one service.
+
+SQLite holds its locks by process, not by descriptor: closing *any* descriptor of the file drops the
+locks of every connection that the process has to it (POSIX). Other programs then take themselves
+for the only one, and remove the log in which the newest changes are. Nothing here opens a
+database's file but SQLite.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import sqlite3
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from app.service.problems import DispossessedError, VanishedError
+from knitcore.errors import InputError
+
+BESIDE = ("-wal", "-shm")
+"""Files that SQLite keeps beside its own while it is open: the newest changes, and their index."""
+STOP_FIRST = (
+    "Stop the service (SIGTERM, not a kill: it then saves what was acknowledged) and start it "
+    "again. Remove no file beside the designs while a service runs."
+)
+
+
+class Holder(NamedTuple):
+    """The service that has reserved a file."""
+
+    process: str
+    address: str
+    files: dict[str, int]
+    """Inodes of the files that it uses, by name."""
+
+    @property
+    def text(self) -> str:
+        """In a line of its lock's file for itself, and one for each of its files."""
+        files = "".join(f"\n{inode} {name}" for name, inode in self.files.items())
+        return f"{self.process} {self.address}".strip() + files
+
+    @classmethod
+    def read(cls, text: str) -> Holder:
+        """The holder that a lock's file names."""
+        first, *files = text.splitlines() or [""]
+        process, _, address = first.partition(" ")
+        pairs = (line.partition(" ") for line in files)
+        inodes = {name: int(inode) for inode, _, name in pairs if inode.isdigit()}
+        return cls(process or "unknown", address, inodes)
+
+
+class DatabaseFile:
+    """An SQLite file, made here if it is not there, and never again.
+
+    SQLite would create an empty database in place of a lost one, and would go on writing into
+    deleted files.
+
+    Parameters
+    ----------
+    path : the file.
+
+    Raises
+    ------
+    InputError
+        If it can be neither opened nor made, was lost, or a service has it that lost files.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.lock = _lock_of(path)
+        check_not_lost(path)
+        check_whole(path)
+        _make(path)
+        self._ours = {path: _identity(path)}
+        self._opening = threading.Lock()
+        self._kept: sqlite3.Connection | None = None
+
+    def connect(self) -> sqlite3.Connection:
+        """A connection to the file; a missing one is not created.
+
+        The first call opens one more, which stays open until :meth:`close`: as long as there is
+        one, no process replaces the files beside, and they are known to be ours.
+
+        Raises
+        ------
+        VanishedError, DispossessedError
+        """
+        self.check()
+        with self._opening:
+            if self._kept is None:
+                kept = self._connect()
+                try:
+                    kept.execute("PRAGMA journal_mode=WAL")
+                    kept.execute("SELECT 1 FROM sqlite_master").fetchone()  # opens the log
+                except sqlite3.Error:
+                    kept.close()
+                    raise
+                self._ours |= {place: _identity(place) for place in self._beside}
+                self._kept = kept
+        return self._connect()
+
+    def check(self) -> None:
+        """Refuse to continue without the file or those beside it.
+
+        Raises
+        ------
+        VanishedError
+            If the file itself is gone or was replaced.
+        DispossessedError
+            If this holds for a file beside it.
+        """
+        for place, identity in list(self._ours.items()):
+            found = _identity(place)
+            if found != identity:
+                what = "is gone" if found is None else "was replaced by another"
+                if place == self.path:
+                    raise VanishedError(f"The file of the designs {what}; nothing was changed.")
+                raise DispossessedError(
+                    f"The file {place.name} beside the designs {what}; nothing was changed.",
+                    remedy=STOP_FIRST,
+                )
+
+    def close(self) -> None:
+        """Close the connection that was kept; doing so again has no effect."""
+        if self._kept is not None:
+            self._kept.close()
+            self._kept = None
+        for place in self._beside:
+            self._ours.pop(place, None)
+
+    @contextlib.contextmanager
+    def reserved(self, at: str) -> Iterator[None]:
+        """Reserve the file for this process, which is reached at an address.
+
+        Raises
+        ------
+        InputError
+            If another process has it.
+        """
+        handle = os.open(self.lock, os.O_RDWR | os.O_CREAT, 0o600)
+        try:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                other = _holder(handle)
+                known = f"Open {other.address} in a browser, or stop" if other.address else "Stop"
+                raise InputError(
+                    "data_dir",
+                    f"{self.path.parent} is used by another service (process {other.process}).",
+                    f"{known} that one, set KNITCORE_DATA_DIR to another folder, or share "
+                    "PostgreSQL.",
+                ) from None
+            facts = os.fstat(handle)
+            self._ours[self.lock] = facts.st_dev, facts.st_ino
+            files = {place.name: found[1] for place, found in self._ours.items() if found}
+            os.truncate(handle, 0)
+            os.pwrite(handle, Holder(str(os.getpid()), at, files).text.encode(), 0)
+            yield
+        finally:
+            self._ours.pop(self.lock, None)
+            os.close(handle)  # which unlocks it, as the end of a killed process does
+
+    @property
+    def _beside(self) -> list[Path]:
+        return [self.path.with_name(self.path.name + end) for end in BESIDE]
+
+    def _connect(self) -> sqlite3.Connection:
+        # threads take turns with a connection; the pool sees to that
+        address = f"{self.path.absolute().as_uri()}?mode=rw"
+        return sqlite3.connect(address, uri=True, check_same_thread=False)
+
+
+def holder_of(path: Path) -> Holder | None:
+    """The service that has reserved an SQLite file now; None if there is none."""
+    try:
+        handle = os.open(_lock_of(path), os.O_RDONLY)
+    except FileNotFoundError:
+        return None
+    try:
+        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError:
+        return _holder(handle)
+    finally:
+        os.close(handle)
+    return None
+
+
+def check_not_lost(path: Path) -> None:
+    """Refuse to make a database where a service had one before.
+
+    Raises
+    ------
+    InputError
+    """
+    lock = _lock_of(path)
+    if lock.exists() and not (path.exists() and path.stat().st_size):
+        raise InputError(
+            "data_dir",
+            f"{path} is {'empty' if path.exists() else 'gone'}, although a service used it before.",
+            f"Put it back; or remove it and {lock}, to begin with none or to restore a backup.",
+        )
+
+
+def check_whole(path: Path) -> None:
+    """Refuse a file beside which a running service lost what it works with.
+
+    What was written into it would not reach the service, and what the service wrote last would not
+    be read.
+
+    Raises
+    ------
+    InputError
+    """
+    service = holder_of(path)
+    if service is None:
+        return
+    for name, inode in service.files.items():
+        found = _identity(path.with_name(name))
+        if found is None or found[1] != inode:
+            raise InputError(
+                "data_dir",
+                f"{name} was removed or replaced under the service that runs (process "
+                f"{service.process}).",
+                STOP_FIRST,
+            )
+
+
+def check_reserved(path: Path) -> None:
+    """Refuse a file that is open although the lock of its service is gone.
+
+    Raises
+    ------
+    InputError
+    """
+    log, lock = path.with_name(path.name + BESIDE[0]), _lock_of(path)
+    if log.exists() and not lock.exists():
+        raise InputError(
+            "data_dir",
+            f"{path} is open, or a command on it was killed, but {lock.name} is not there.",
+            STOP_FIRST,
+        )
+
+
+def _lock_of(path: Path) -> Path:
+    return path.with_name(f"{path.name}.lock")
+
+
+def _make(path: Path) -> None:
+    """Make a file that is not there; one that is there is only looked at."""
+    problem: str | None = None
+    try:
+        os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
+    except FileExistsError:
+        if not path.is_file():
+            problem = "it is no file"
+        elif not os.access(path, os.R_OK | os.W_OK):
+            problem = "this user may not write it"
+    except OSError as error:
+        problem = str(error.strerror)
+    if problem is not None:
+        raise InputError(
+            "database_url",
+            f"{path} cannot be opened ({problem}).",
+            "Name a file that can be written, in a folder that exists.",
+        )
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Device and inode of a file; None if there is none."""
+    try:
+        facts = os.stat(path)
+    except OSError:
+        return None
+    return facts.st_dev, facts.st_ino
+
+
+def _holder(handle: int) -> Holder:
+    """The service that wrote itself into a lock's file."""
+    return Holder.read(os.pread(handle, 4_000, 0).decode(errors="replace"))

@@ -1,0 +1,99 @@
+"""The schema of the database, brought up to date by its migrations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from alembic import command
+from alembic.config import Config
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import inspect
+
+from app.service.problems import DamagedError
+from app.service.store.database import Database
+from app.service.store.tables import metadata
+from knitcore.errors import InputError
+
+MIGRATIONS = Path(__file__).with_name("migrations")
+EARLIER = frozenset(f"{number:04}" for number in range(1, 8))
+"""Schemas from before the first release, which this program cannot bring up to date."""
+LAST_WITH_EARLIER = "5a988aec"
+"""The last commit of this program that can."""
+
+
+def migrate(database: Database, target: str = "head") -> None:
+    """Bring the schema to a version, by default this program's; does nothing if it is there.
+
+    An SQLite file is copied first, to one that is named after the new schema.
+
+    Raises
+    ------
+    InputError
+        If the database (or the backup that asks for ``target``) was written by a newer program,
+        or by one from before the first release.
+    StoreError
+        If the database cannot be reached.
+    """
+    found = check_schema(database, target)
+    config = _config()
+    head = ScriptDirectory.from_config(config).get_current_head()
+    if database.file is not None and found not in (None, head) and target == "head":
+        file = database.file.path
+        copy = file.with_name(f"{file.name}.before-{head}")
+        if not copy.exists():
+            database.copy_to(copy)
+
+    def upgrade(connection: object) -> None:
+        config.attributes["connection"] = connection
+        command.upgrade(config, target)
+
+    database.write(upgrade)
+
+
+def check_schema(database: Database, target: str = "head") -> str | None:
+    """The schema's version, or None for an empty database.
+
+    Raises
+    ------
+    InputError
+        As :func:`migrate`.
+    DamagedError
+        If a table of this program's schema is missing.
+    StoreError
+        If the database cannot be reached.
+    """
+    found = revision(database)
+    scripts = ScriptDirectory.from_config(_config())
+    if too_old := {found, target} & EARLIER:
+        raise InputError(
+            "database_url",
+            f"the designs have schema {too_old.pop()}, from before the first release.",
+            f"Start Knitcore at commit {LAST_WITH_EARLIER} on them once, which brings them up to "
+            "date.",
+        )
+    strange = {found, target} - {s.revision for s in scripts.walk_revisions()} - {None, "head"}
+    if strange:
+        raise InputError(
+            "database_url",
+            f"the designs have schema {strange.pop()}, which this program does not know.",
+            "Use the newer program that wrote it, or restore a backup.",
+        )
+    if found == scripts.get_current_head():
+        with database.read() as connection:
+            missing = set(metadata.tables) - set(inspect(connection).get_table_names())
+        if missing:
+            raise DamagedError(f"The database lacks {', '.join(sorted(missing))}.")
+    return found
+
+
+def _config() -> Config:
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    return config
+
+
+def revision(database: Database) -> str | None:
+    """The schema's version, or None for an empty database."""
+    with database.read() as connection:
+        return MigrationContext.configure(connection).get_current_revision()

@@ -1,0 +1,121 @@
+"""Bodies of requests: how much of them is read, and where they are decoded.
+
+One rule for all addresses: the event loop decodes small bodies at once. A large one goes as it came
+to a worker, with its limits on time and memory, where the operation takes it; elsewhere, such as
+a design, it is decoded in its turn, one at a time, and has a lower limit. Decoding in threads
+would not help: Python runs one at a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass
+from typing import Any
+
+from fastapi import Request, Response
+from fastapi.routing import APIRoute
+from pydantic import ValidatorFunctionWrapHandler, WrapValidator
+from starlette.exceptions import HTTPException
+from starlette.types import Message, Receive
+
+from app.models.charts import MAX_FIELD
+from app.service.identity import current_user
+from app.service.limits.turns import Gate
+
+SMALL_BYTES = 64_000
+"""Largest body that is decoded without waiting for a turn."""
+MAX_DECODED_BYTES = 4_000_000
+"""Largest body that the service decodes itself; a design of the largest chart is smaller."""
+MAX_VALUES = MAX_FIELD + 10_000
+"""Values in a JSON body, counted by commas and opening brackets: a field on the largest chart that
+has one, and whatever comes with it. Reading and checking them takes some 30 ms. Charts and files
+are one value each."""
+
+
+@dataclass(frozen=True)
+class Undecoded:
+    """A body as it came, for a worker to decode."""
+
+    content: bytes
+
+
+def _pass_on(value: Any, decode: ValidatorFunctionWrapHandler) -> Any:
+    return value if isinstance(value, Undecoded) else decode(value)
+
+
+OrUndecoded = WrapValidator(_pass_on)
+"""Of the model of a body that a worker decodes if it is large."""
+
+
+class BoundedRoute(APIRoute):
+    """A route whose large bodies are decoded in turn."""
+
+    to_worker = False
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """What handles a request."""
+        handle = super().get_route_handler()
+
+        async def bounded(request: Request) -> Response:
+            length = request.headers.get("content-length", "0")
+            if not self.to_worker and int(length) > MAX_DECODED_BYTES:
+                raise _too_large(MAX_DECODED_BYTES)
+            content = await request.body()
+            if len(content) <= SMALL_BYTES:
+                return await handle(request)
+            if self.to_worker:
+                return await handle(_Uncut(request.scope, request.receive, content))
+            if len(content) > MAX_DECODED_BYTES:
+                raise _too_large(MAX_DECODED_BYTES)
+            gate: Gate = request.app.state.large_bodies
+            async with gate.turn(current_user.get()):
+                return await handle(request)
+
+        return bounded
+
+
+class WorkerRoute(BoundedRoute):
+    """A route whose large bodies are decoded by a worker; the model of its body is marked with
+    ``OrUndecoded``."""
+
+    to_worker = True
+
+
+class _Uncut(Request):
+    """A request whose JSON is not decoded."""
+
+    def __init__(self, scope: Any, receive: Receive, content: bytes) -> None:
+        super().__init__(scope, receive)
+        self._body = content
+
+    async def json(self) -> Undecoded:
+        """The body as it came."""
+        return Undecoded(self._body)
+
+
+def limited(receive: Receive, most_bytes: int, count: Callable[[int], None]) -> Receive:
+    """Receive a body and refuse it once it is too large, whatever its head says.
+
+    Parameters
+    ----------
+    count : called with the bytes of each part; may refuse it.
+    """
+    seen = values = 0
+
+    async def receive_some() -> Message:
+        nonlocal seen, values
+        message = await receive()
+        if message["type"] == "http.request" and (body := message.get("body", b"")):
+            seen += len(body)
+            values += body.count(b",") + body.count(b"[") + body.count(b"{")
+            if seen > most_bytes or values > MAX_VALUES:
+                raise _too_large(most_bytes)
+            count(len(body))
+        return message
+
+    return receive_some
+
+
+def _too_large(most_bytes: int) -> HTTPException:
+    detail = f"A request has at most {most_bytes} bytes and {MAX_VALUES} values here."
+    return HTTPException(413, detail)

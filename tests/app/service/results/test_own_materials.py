@@ -1,0 +1,171 @@
+"""Material files beside the library, offered to every user of the service."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+from app.service.main import create_app
+from app.service.results.own_materials import (
+    added_by,
+    keep_material,
+    own_materials,
+    remove_material,
+)
+from app.service.settings import Settings
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials import MeasuredCurve, material, save_material_file
+from knitcore.materials.document import MaterialDocument
+
+CURVE = MeasuredCurve((0.0, 0.2, 0.4), (0.0, 0.01, 0.03), pulls=4)
+CHART = {"fabric": "garter", "columns": 6, "rows": 6}
+
+
+def save_mine(folder: Path, *, stiffer: float = 1.0) -> Path:
+    """A material file: acrylic's, with a measured curve, under another name."""
+    acrylic = material("acrylic")
+    garter = acrylic.record(Fabric.GARTER)
+    law = replace(garter.law, beta_yy=garter.law.beta_yy * stiffer)
+    fabrics = {**acrylic.fabrics}
+    fabrics[Fabric.GARTER] = replace(garter, law=law, measured={Direction.WALE: CURVE})
+    folder.mkdir(exist_ok=True)
+    path = folder / "mine.yaml"
+    save_material_file(replace(acrylic, identifier="mine", name="Mine", fabrics=fabrics), path)
+    return path
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
+    return tmp_path / "materials"
+
+
+@pytest.fixture
+def own(folder: Path) -> Iterator[TestClient]:
+    """A service with one material of its own; its workers read the same folder."""
+    save_mine(folder)
+    with TestClient(create_app(Settings()), base_url="http://localhost") as client:
+        yield client
+
+
+def identifier(client: TestClient) -> str:
+    first = client.get("/api/v1/materials").json()["materials"][0]
+    assert first["name"] == "Mine"
+    return str(first["id"])
+
+
+def test_an_own_material_is_listed_first_with_its_measured_curve(own: TestClient) -> None:
+    mine = identifier(own)
+    assert mine.startswith("own:mine.")
+    detail = own.get(f"/api/v1/materials/{mine}").json()
+    assert detail["measured"] == {
+        "garter": {
+            "wale": {"strain": [0.0, 0.2, 0.4], "stress_n_per_mm": [0.0, 0.01, 0.03], "pulls": 4}
+        }
+    }
+
+
+def test_charts_are_predicted_stretched_and_kept_with_it(own: TestClient) -> None:
+    mine = identifier(own)
+    answers = [
+        own.post("/api/v1/predict", json={"chart": CHART, "material": name}).json()
+        for name in (mine, "acrylic")
+    ]
+    assert answers[0]["modulus_wale_n_per_mm"] == pytest.approx(answers[1]["modulus_wale_n_per_mm"])
+    pull = {"chart": CHART, "material": mine, "direction": "wale", "strain": 0.3, "steps": 2}
+    stretched = own.post("/api/v1/stretch", json=pull)
+    assert stretched.status_code == 200, stretched.text
+    assert stretched.json()["converged"]
+    design = {"name": "Cuff", "material": mine, "chart": "KP\nKP"}
+    kept = own.post("/api/v1/designs", json=design)
+    assert kept.status_code == 201, kept.text
+    again = own.get(f"/api/v1/designs/{kept.json()['id']}").json()
+    assert mine in str(again)
+
+
+def test_a_changed_file_is_another_material(folder: Path, own: TestClient) -> None:
+    """Nothing that was kept for the old one is taken for the new one's."""
+    old = identifier(own)
+    save_mine(folder, stiffer=2.0)
+    new = identifier(own)
+    assert new != old
+    refused = own.post("/api/v1/predict", json={"chart": CHART, "material": old})
+    assert refused.status_code == 422
+    assert "changed" in refused.json()["detail"]
+    assert refused.json()["remedy"] == "Choose it again."
+    (folder / "mine.yaml").unlink()
+    gone = own.post("/api/v1/predict", json={"chart": CHART, "material": new})
+    assert "gone" in gone.json()["detail"]
+
+
+def test_a_file_without_a_material_is_skipped_and_logged(
+    folder: Path, own: TestClient, caplog: pytest.LogCaptureFixture
+) -> None:
+    (folder / "broken.json").write_text("{")
+    (folder / "notes.txt").write_text("not looked at")
+    with caplog.at_level(logging.WARNING, "knitcore.materials"):
+        assert identifier(own)
+    assert "broken.json" in caplog.text
+    assert "notes.txt" not in caplog.text
+
+
+def test_the_command_line_lists_it(folder: Path) -> None:
+    save_mine(folder)
+    told = CliRunner().invoke(main, ["materials"])
+    assert told.output.startswith("own:mine.")
+    named = CliRunner().invoke(main, ["materials", told.output.split()[0]])
+    assert named.exit_code == 0, named.output
+    assert named.output.startswith("Mine")
+
+
+def test_a_material_is_added_used_given_back_and_removed(own: TestClient) -> None:
+    file = own.get("/api/v1/materials/acrylic/document").json()
+    file |= {"identifier": "aunts-wool", "name": "My aunt's wool"}
+    added = own.post("/api/v1/materials", json=file)
+    assert added.status_code == 201
+    name = added.json()["id"]
+    assert name.startswith("own:aunts-wool.")
+    offered = own.get("/api/v1/materials").json()["materials"]
+    assert [one["id"] for one in offered if one["added_by_you"]] == [name]
+    asked = {"chart": "KP", "material": name}
+    given = {"chart": "KP", "material": "acrylic"}
+    mine, library = (own.post("/api/v1/predict", json=body).json() for body in (asked, given))
+    assert mine["modulus_course_n_per_mm"] == pytest.approx(library["modulus_course_n_per_mm"])
+    assert own.get(f"/api/v1/materials/{name}/document").json() == file
+    assert own.delete(f"/api/v1/materials/{name}").status_code == 204
+    assert own.delete(f"/api/v1/materials/{name}").status_code == 404
+    assert own.post("/api/v1/predict", json=asked).status_code == 422
+
+
+def test_a_replaced_material_answers_those_who_compute_with_it(own: TestClient) -> None:
+    file = own.get("/api/v1/materials/acrylic/document").json() | {"identifier": "mine"}
+    names = [
+        own.post("/api/v1/materials", json=file | {"name": name}).json()["id"]
+        for name in ("First", "Second", "Third")
+    ]
+
+    def predicted(name: str) -> int:
+        return own.post("/api/v1/predict", json={"chart": "KP", "material": name}).status_code
+
+    assert [predicted(name) for name in names] == [422, 200, 200]
+    offered = {one["id"] for one in own.get("/api/v1/materials").json()["materials"]}
+    assert offered.isdisjoint(names[:2])
+    own.delete(f"/api/v1/materials/{names[2]}")
+    assert [predicted(name) for name in names] == [422, 422, 422]
+
+
+def test_only_who_added_a_material_removes_it(folder: Path) -> None:
+    document = MaterialDocument.from_material(material("acrylic"))
+    kept = keep_material(document, "ann", folder.parent)
+    assert added_by("ann", folder.parent) == {kept.identifier}
+    assert added_by("bob", folder.parent) == set()
+    assert not remove_material(kept.identifier, "bob", folder.parent)
+    assert remove_material(kept.identifier, "ann", folder.parent)
+    assert own_materials(folder.parent) == {}

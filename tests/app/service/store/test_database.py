@@ -1,0 +1,171 @@
+"""Durable writes, shared commits, and what happens when the database fails."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.runtime.migration import MigrationContext
+from sqlalchemy import Connection, event, text
+from sqlalchemy.exc import IntegrityError
+
+from app.service.problems import StoreError
+from app.service.store.database import Database
+from app.service.store.schema import migrate, revision
+from app.service.store.tables import metadata
+from knitcore.errors import InputError
+
+
+@pytest.fixture
+def database(tmp_path: Path) -> Any:
+    database = Database(f"sqlite:///{tmp_path / 'knit.sqlite3'}")
+    yield database
+    database.close()
+
+
+def _insert(value: int) -> Any:
+    return lambda c: c.execute(text("INSERT INTO t VALUES (:v)"), {"v": value})
+
+
+def _table(database: Database) -> None:
+    database.write(lambda c: c.execute(text("CREATE TABLE t (v INTEGER PRIMARY KEY)")))
+
+
+def _values(database: Database) -> list[int]:
+    with database.read() as connection:
+        return list(connection.execute(text("SELECT v FROM t ORDER BY v")).scalars())
+
+
+def test_the_migrations_make_the_tables(database: Database) -> None:
+    migrate(database)
+    migrate(database)
+    assert revision(database) is not None
+    with database.read() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), metadata) == []
+
+
+def test_a_database_of_a_newer_program_is_left_alone(database: Database) -> None:
+    migrate(database)
+    database.write(lambda c: c.execute(text("UPDATE alembic_version SET version_num='9999'")))
+    with pytest.raises(InputError, match="newer program"):
+        migrate(database)
+
+
+def test_a_database_from_before_the_first_release_is_left_alone(database: Database) -> None:
+    migrate(database)
+    database.write(lambda c: c.execute(text("UPDATE alembic_version SET version_num='0005'")))
+    with pytest.raises(InputError, match="0005, from before") as refused:
+        migrate(database)
+    assert "commit" in refused.value.remedy
+    assert revision(database) == "0005"
+
+
+def test_a_database_of_the_present_schema_opens(database: Database) -> None:
+    """The first migration has the number of the schema that programs wrote before it."""
+    migrate(database)
+    assert revision(database) == "0008"
+
+
+def test_commits_are_flushed_to_disk(database: Database) -> None:
+    with database.read() as connection:
+        assert connection.exec_driver_sql("PRAGMA journal_mode").scalar() == "wal"
+        assert connection.exec_driver_sql("PRAGMA synchronous").scalar() == 2  # FULL
+        assert connection.exec_driver_sql("PRAGMA foreign_keys").scalar() == 1
+
+
+def test_waiting_changes_share_a_commit_and_fail_alone(database: Database) -> None:
+    _table(database)
+    commits: list[int] = []
+    event.listen(database.engine, "commit", lambda _: commits.append(1))
+    begun, go_on = threading.Event(), threading.Event()
+
+    def first(connection: Connection) -> None:
+        begun.set()
+        go_on.wait(60)
+        _insert(0)(connection)
+
+    async def scenario() -> list[Any]:
+        opening = asyncio.create_task(database.written(first))
+        assert await asyncio.to_thread(begun.wait, 60)
+        rest = [asyncio.create_task(database.written(_insert(n % 10))) for n in range(1, 15)]
+        await asyncio.sleep(0)  # all of them have handed their change in
+        go_on.set()
+        await opening
+        return await asyncio.gather(*rest, return_exceptions=True)
+
+    refused = [isinstance(outcome, IntegrityError) for outcome in asyncio.run(scenario())]
+    assert refused == [False] * 9 + [True] * 5  # 10 to 14 repeat 0 to 4
+    assert _values(database) == list(range(10))
+    assert len(commits) == 2
+
+
+def test_a_change_whose_caller_has_gone_is_not_made(database: Database) -> None:
+    _table(database)
+    begun, go_on = threading.Event(), threading.Event()
+
+    def first(connection: Connection) -> None:
+        begun.set()
+        go_on.wait(60)
+        _insert(1)(connection)
+
+    async def scenario() -> None:
+        opening = asyncio.create_task(database.written(first))
+        assert await asyncio.to_thread(begun.wait, 60)
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(database.written(_insert(2)), 0.05)
+        go_on.set()
+        await opening
+        await database.written(_insert(3))
+
+    asyncio.run(scenario())
+    assert _values(database) == [1, 3]
+
+
+def test_a_full_disk_refuses_only_what_does_not_fit(database: Database) -> None:
+    """The file may not grow beyond some pages, as on a full disk."""
+    database.write(lambda c: c.execute(text("CREATE TABLE big (v BLOB)")))
+
+    @event.listens_for(database.engine, "connect")
+    def _(connection: Any, _record: Any) -> None:
+        connection.execute("PRAGMA max_page_count=40")
+
+    database.engine.dispose()
+
+    def put(size: int) -> None:
+        database.write(
+            lambda c: c.execute(text("INSERT INTO big VALUES (zeroblob(:n))"), {"n": size})
+        )
+
+    put(10_000)
+    with pytest.raises(StoreError, match="disk is full"):
+        put(1_000_000)
+    put(1_000)
+    with database.read() as connection:
+        assert connection.execute(text("SELECT count(*) FROM big")).scalar() == 2
+        assert connection.exec_driver_sql("PRAGMA integrity_check").scalar() == "ok"
+
+
+def test_reasons_reveal_no_addresses() -> None:
+    database = Database("postgresql+psycopg://somebody:secret@127.0.0.1:9/none")
+    with pytest.raises(StoreError) as told:
+        database.write(lambda c: c.execute(text("SELECT 1")))
+    assert "secret" not in str(told.value)
+    assert "127.0.0.1" not in str(told.value)
+    database.close()
+
+
+def test_pending_changes_are_written_before_closing(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path / 'again.sqlite3'}"
+    database = Database(url)
+    _table(database)
+    with ThreadPoolExecutor(8) as threads:
+        list(threads.map(lambda n: database.write(_insert(n)), range(32)))
+    database.close()
+    again = Database(url)
+    assert _values(again) == list(range(32))
+    again.close()

@@ -1,0 +1,203 @@
+"""The locks and files of an SQLite database stay those of the process that has it open."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+from sqlalchemy import text
+
+from app.cli.main import main
+from app.service.doctor import examine, examine_running, examine_start
+from app.service.main import create_app
+from app.service.problems import DispossessedError, StoreError, VanishedError
+from app.service.settings import Settings
+from app.service.store.backup import back_up
+from app.service.store.database import Database
+from app.service.store.file import STOP_FIRST, Holder, check_reserved, holder_of
+from app.service.store.lock import held
+from app.service.store.schema import migrate
+from knitcore.errors import InputError
+
+LOCK_ALONE = """
+import fcntl, sys
+with open(sys.argv[1], "r+b") as file:  # the bytes that every open connection holds (os_unix.c)
+    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 510, 0x40000002)
+"""
+
+
+def _is_locked(file: Path) -> bool:
+    """Whether another process is kept from having the file alone, as for removing its log."""
+    tried = subprocess.run(
+        [sys.executable, "-c", LOCK_ALONE, str(file)], capture_output=True, timeout=60, check=False
+    )
+    assert tried.returncode == 0 or b"BlockingIOError" in tried.stderr
+    return tried.returncode != 0
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "knitcore.sqlite3"
+
+
+@pytest.fixture
+def database(file: Path) -> Iterator[Database]:
+    """A database of a service that runs in this process."""
+    database = Database(f"sqlite:///{file}")
+    migrate(database)
+    with held(database, "main", "http://127.0.0.1:8737/"):
+        yield database
+    database.close()
+
+
+def _beside(file: Path, end: str) -> Path:
+    return file.with_name(f"{file.name}{end}")
+
+
+def _write(database: Database, name: str = "a") -> None:
+    put = text("INSERT INTO service_keys VALUES (:name, '')")
+    database.write(lambda c: c.execute(put, {"name": name}))
+
+
+def test_nothing_that_a_service_does_drops_its_locks(
+    database: Database, file: Path, tmp_path: Path
+) -> None:
+    settings = Settings(data_dir=tmp_path, workers=1)
+
+    def another() -> None:
+        second = Database(f"sqlite:///{file}")
+        second.check()
+        second.close()
+
+    steps: dict[str, Callable[[], object]] = {
+        "a read": database.check,
+        "a write": lambda: _write(database),
+        "its pages": database.check_pages,
+        "a copy": lambda: database.copy_to(tmp_path / "copy"),
+        "a backup": lambda: back_up(database, tmp_path / "backup.gz"),
+        "a migration": lambda: migrate(database),
+        "the start": lambda: examine_start(settings, database),
+        "the doctor": lambda: examine(settings),
+        "readiness": lambda: examine_running(settings, database, None),
+        "its holder": lambda: holder_of(file),
+        "another database": another,
+        "fresh connections": database.engine.dispose,
+    }
+    for name, step in steps.items():
+        step()
+        assert _is_locked(file), name
+    with TestClient(create_app(settings, database), base_url="http://127.0.0.1") as client:
+        assert client.get("/readyz").status_code == 200
+        assert _is_locked(file)
+    assert _is_locked(file), "the application closed a database that was given to it"
+
+
+def test_a_closed_database_is_locked_no_more(file: Path) -> None:
+    database = Database(f"sqlite:///{file}")
+    migrate(database)
+    database.close()
+    assert not _is_locked(file)
+    assert not _beside(file, "-wal").exists()
+    database.close()  # again
+
+
+@pytest.mark.parametrize("end", ["-wal", "-shm", ".lock"])
+@pytest.mark.parametrize("replaced", [False, True])
+def test_a_service_without_its_files_stops_writing(
+    database: Database, file: Path, end: str, replaced: bool
+) -> None:
+    _write(database)
+    with TestClient(
+        create_app(Settings(data_dir=file.parent, workers=1), database),
+        base_url="http://127.0.0.1",
+    ) as client:
+        assert client.get("/readyz").status_code == 200
+        kept = _beside(file, end).rename(file.parent / "kept")
+        if replaced:
+            _beside(file, end).touch()
+        with pytest.raises(DispossessedError, match=f"{end} beside the designs"):
+            _write(database, "b")
+        design = {"name": "x", "material": "acrylic", "chart": "KP"}
+        for answer in (client.get("/readyz"), client.post("/api/v1/designs", json=design)):
+            assert answer.status_code == 503
+            assert answer.json()["remedy"] == STOP_FIRST
+            assert end in answer.json()["detail"]
+        kept.rename(_beside(file, end))
+        assert client.get("/readyz").status_code == 200
+    _write(database, "b")
+
+
+@pytest.mark.parametrize("end", ["-wal", "-shm"])
+def test_a_stop_saves_what_was_acknowledged_before_its_files_vanished(file: Path, end: str) -> None:
+    database = Database(f"sqlite:///{file}")
+    migrate(database)
+    with held(database, "main"):
+        _write(database)
+        _beside(file, end).unlink()
+        with pytest.raises(StoreError):
+            _write(database, "b")
+    database.close()
+    with sqlite3.connect(file) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        assert connection.execute("SELECT name FROM service_keys").fetchall() == [("a",)]
+    connection.close()
+
+
+def test_commands_are_refused_while_a_service_lacks_its_files(
+    database: Database, file: Path
+) -> None:
+    environment = {"KNITCORE_DATA_DIR": str(file.parent)}
+    with database.read():
+        _beside(file, "-wal").rename(file.parent / "kept")
+    for command in (["token", "list"], ["backup", str(file.parent / "b.gz")]):
+        told = CliRunner().invoke(main, command, env=environment)
+        assert told.exit_code != 0
+        assert f"process {os.getpid()}" in told.output
+        assert STOP_FIRST in told.output
+    doctor = CliRunner().invoke(main, ["doctor"], env=environment)
+    assert doctor.exit_code == 1
+    assert "FAIL  database: data_dir: knitcore.sqlite3-wal was removed" in doctor.output
+    assert f"ok    service: Process {os.getpid()} runs on it" in doctor.output
+    (file.parent / "kept").rename(_beside(file, "-wal"))
+
+
+def test_the_doctor_misses_the_lock_of_an_open_database(database: Database, file: Path) -> None:
+    check_reserved(file)
+    kept = _beside(file, ".lock").rename(file.parent / "kept")
+    doctor = CliRunner().invoke(main, ["doctor"], env={"KNITCORE_DATA_DIR": str(file.parent)})
+    assert doctor.exit_code == 1
+    assert "knitcore.sqlite3.lock is not there" in doctor.output
+    kept.rename(_beside(file, ".lock"))
+
+
+def test_a_service_without_its_database_stops(database: Database, file: Path) -> None:
+    kept = file.rename(file.parent / "kept")
+    with pytest.raises(VanishedError, match="is gone"):
+        _write(database)
+    kept.rename(file)
+    _write(database)
+
+
+def test_files_are_made_for_this_user_only(database: Database, file: Path) -> None:
+    made = [file, *(_beside(file, end) for end in ("-wal", "-shm", ".lock"))]
+    assert [place.stat().st_mode & 0o777 for place in made] == [0o600] * 4
+
+
+def test_a_file_that_cannot_be_opened_is_refused_in_words(tmp_path: Path) -> None:
+    for place, why in ((tmp_path, "it is no file"), (tmp_path / "no" / "file", "No such file")):
+        with pytest.raises(InputError, match=rf"cannot be opened \({why}"):
+            Database(f"sqlite:///{place}")
+
+
+def test_the_file_of_a_lock_names_its_holder() -> None:
+    holder = Holder("7", "http://127.0.0.1:1/", {"a b.sqlite3-wal": 42})
+    assert Holder.read(holder.text) == holder
+    assert Holder.read("7 http://127.0.0.1:1/") == ("7", "http://127.0.0.1:1/", {})
+    assert Holder.read("") == ("unknown", "", {})

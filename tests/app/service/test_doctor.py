@@ -1,0 +1,397 @@
+"""Broken set-ups: each is told in words, by the doctor and at the start."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import shutil
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from click.testing import CliRunner, Result
+from fastapi.testclient import TestClient
+
+from app.cli import serve as serve_module
+from app.cli.main import main
+from app.service import doctor
+from app.service.compute import cluster as cluster_module
+from app.service.compute import compute as compute_module
+from app.service.compute.cluster import Cluster, ClusterError
+from app.service.compute.compute import Compute
+from app.service.compute.workers import NotBegunError
+from app.service.main import create_app
+from app.service.problems import DamagedError
+from app.service.settings import Settings
+from app.service.store import schema
+from app.service.store.database import Database
+from app.service.store.lock import held
+from app.service.store.schema import migrate, revision
+from app.service.web import observing
+from knitcore.errors import InputError
+
+
+def _database(folder: Path) -> Path:
+    """A database of some pages, as a service leaves it."""
+    file = folder / "knitcore.sqlite3"
+    database = Database(f"sqlite:///{file}")
+    migrate(database)
+    with held(database, "main"):
+        pass
+    database.close()
+    with sqlite3.connect(file) as connection:
+        connection.execute("PRAGMA journal_mode=DELETE")
+        connection.executemany(
+            "INSERT INTO designs (id, owner, name, material, chart, rows, columns, revision,"
+            " created_at, changed_at) VALUES (?, 'local', 'a', 'acrylic', ?, 1, 1, 1, 0, 0)",
+            [(f"design-{n}", "K" * 3_000) for n in range(60)],
+        )
+    connection.close()
+    return file
+
+
+def _damage(file: Path) -> None:
+    content = bytearray(file.read_bytes())
+    middle = len(content) // 2
+    content[middle : middle + 60_000] = b"\xa5" * 60_000
+    file.write_bytes(content)
+
+
+def _lose(file: Path) -> None:
+    file.unlink()
+
+
+def _open_to_all(file: Path) -> None:
+    file.chmod(0o644)
+    file.parent.chmod(0o755)
+
+
+def _make_newer(file: Path) -> None:
+    with sqlite3.connect(file) as connection:
+        connection.execute("UPDATE alembic_version SET version_num='9999'")
+    connection.close()
+
+
+def _told(folder: Path, **environment: str) -> tuple[int, dict[str, dict[str, str]]]:
+    given = {"KNITCORE_DATA_DIR": str(folder)} | environment
+    result = CliRunner().invoke(main, ["doctor", "--json"], env=given)
+    checks = json.loads(result.stdout)["checks"]
+    assert all(set(check) == {"name", "ok", "problem", "remedy", "note"} for check in checks)
+    return result.exit_code, {check["name"]: check for check in checks if not check["ok"]}
+
+
+def test_a_sound_set_up_passes(tmp_path: Path) -> None:
+    assert _told(tmp_path / "new") == (0, {})
+    assert not (tmp_path / "new").exists()
+    _database(tmp_path)
+    assert _told(tmp_path) == (0, {})
+    text = CliRunner().invoke(main, ["doctor"], env={"KNITCORE_DATA_DIR": str(tmp_path)})
+    assert "ok    database" in text.output
+
+
+def _empty(file: Path) -> None:
+    file.write_bytes(b"")
+
+
+def _drop_a_table(file: Path) -> None:
+    with sqlite3.connect(file) as connection:
+        connection.execute("DROP TABLE sessions")
+    connection.close()
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A set-up with one fault.
+
+    Attributes
+    ----------
+    check : that fails.
+    words : in what is said about it.
+    environment : settings, beside a sound database in a folder of its own.
+    spoil : makes the fault in the database's file.
+    limits : limits of :mod:`app.service.doctor` that are out of reach.
+    starts : whether the service starts and only warns.
+    ready : whether it is ready nevertheless.
+    """
+
+    check: str
+    words: str
+    environment: Mapping[str, str] = field(default_factory=dict)
+    spoil: Callable[[Path], None] | None = None
+    limits: tuple[str, ...] = ()
+    starts: bool = False
+    ready: bool = False
+
+
+def _setting(name: str, value: str, words: str) -> Broken:
+    return Broken("settings", words, {f"KNITCORE_{name}": value})
+
+
+BROKEN = {
+    "a misspelt setting": _setting("PRT", "2", "KNITCORE_PORT"),
+    "a misspelt login": _setting("REQUIRE_LOGGIN", "true", "KNITCORE_REQUIRE_LOGIN"),
+    "a port that is no number": _setting("PORT", "many", "port"),
+    "a list that is not JSON": _setting("ALLOWED_HOSTS", "knit.example.org", "JSON"),
+    "a network without a login": _setting("HOST", "0.0.0.0", "KNITCORE_TOKEN"),
+    "a folder that cannot be": Broken(
+        "data folder", "cannot be written", {"KNITCORE_DATA_DIR": "/dev/null/nowhere"}
+    ),
+    "a damaged database": Broken("database", "damaged", spoil=_damage),
+    "a lost database": Broken("database", "is gone", spoil=_lose),
+    "an emptied database": Broken("database", "is empty", spoil=_empty),
+    "a database without a table": Broken("database", "lacks sessions", spoil=_drop_a_table),
+    "a newer database": Broken("database", "9999", spoil=_make_newer),
+    "files open to all": Broken(
+        "file modes", "other users", spoil=_open_to_all, starts=True, ready=True
+    ),
+    "little room": Broken("free space", "MB left", limits=("MIN_FREE_BYTES",), starts=True),
+    "no cluster": Broken(
+        "cluster", "reached", {"KNITCORE_SCHEDULER": "tcp://127.0.0.1:9"}, starts=True
+    ),
+}
+
+
+@pytest.fixture(params=BROKEN)
+def broken(
+    request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Broken:
+    """Each of them, in the environment."""
+    found = BROKEN[request.param]
+    file = _database(tmp_path)
+    if found.spoil is not None:
+        found.spoil(file)
+    for name in found.limits:
+        monkeypatch.setattr(doctor, name, 1 << 62)
+    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=1 << 40))
+    monkeypatch.setattr(cluster_module, "CONNECT_S", 0.2)
+    for name, value in ({"KNITCORE_DATA_DIR": str(tmp_path)} | dict(found.environment)).items():
+        monkeypatch.setenv(name, value)
+    return found
+
+
+def _serve(monkeypatch: pytest.MonkeyPatch) -> Result:
+    """Start the service as far as it serves."""
+    monkeypatch.setattr(serve_module, "serve_on", lambda *_: None)
+    monkeypatch.setattr(serve_module.os, "umask", lambda _: 0)
+    monkeypatch.setattr(observing, "configure_logging", lambda _: None)
+    port = [] if "KNITCORE_PORT" in os.environ else ["--port", "0"]
+    return CliRunner().invoke(main, ["serve", *port])
+
+
+def test_doctor_start_and_readiness_say_the_same_in_one_line(
+    broken: Broken,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    code, failed = _told(Path(os.environ["KNITCORE_DATA_DIR"]))
+    assert (code, list(failed)) == (1, [broken.check])
+    problem, remedy = failed[broken.check]["problem"], failed[broken.check]["remedy"]
+    assert broken.words in f"{problem} {remedy}"
+    assert remedy
+    assert "\n" not in problem + remedy
+
+    started = _serve(monkeypatch)
+    if broken.starts:
+        assert (started.exit_code, "http://" in started.stdout) == (0, True)
+        assert caplog.messages[-1] == f"{broken.check}: {problem} {remedy}"
+    else:
+        assert (started.exit_code != 0, started.stdout) == (True, "")
+        (line,) = started.stderr.strip().splitlines()
+        assert line.startswith("Error: ")
+        assert problem.removesuffix(".") in line
+        return
+    with TestClient(create_app(Settings(workers=1)), base_url="http://127.0.0.1") as client:
+        answer = client.get("/readyz")
+    if broken.ready:
+        assert (answer.status_code, answer.json()["checks"][broken.check]) == (200, False)
+    else:
+        told = answer.json()
+        assert (answer.status_code, told["detail"], told["remedy"]) == (503, problem, remedy)
+
+
+def test_nothing_is_put_in_the_place_of_a_lost_database(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = _database(tmp_path)
+    file.unlink()
+    monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
+    assert _serve(monkeypatch).exit_code != 0
+    assert not file.exists()
+
+
+def _start(folder: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
+        capture_output=True,
+        text=True,
+        timeout=150,
+        check=False,
+        env=os.environ | {"KNITCORE_DATA_DIR": str(folder)},
+    )
+
+
+def test_a_second_service_on_the_same_data_is_refused(tmp_path: Path) -> None:
+    file = _database(tmp_path)
+    database = Database(f"sqlite:///{file}")
+    with held(database, "main", "http://127.0.0.1:8737/"):
+        done = _start(tmp_path)
+        assert done.returncode == 2
+        assert "another service (process" in done.stderr
+        assert "Open http://127.0.0.1:8737/ in a browser" in done.stderr
+        assert "KNITCORE_DATA_DIR" in done.stderr
+        with pytest.raises(InputError, match="another service"), held(database, "other"):
+            pass
+    with held(database, "main"):  # free again
+        pass
+    database.close()
+
+
+def test_doctor_names_the_service_that_runs(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{_database(tmp_path)}")
+    environment = {"KNITCORE_DATA_DIR": str(tmp_path)}
+    with held(database, "main", "http://127.0.0.1:8737/"):
+        told = CliRunner().invoke(main, ["doctor"], env=environment)
+        named = f"Process {os.getpid()} runs on it, at http://127.0.0.1:8737/."
+        assert (told.exit_code, named in told.output) == (0, True)
+    assert "runs on it" not in CliRunner().invoke(main, ["doctor"], env=environment).output
+    database.close()
+
+
+@pytest.mark.postgres
+def test_two_services_of_one_name_are_refused_on_postgresql(postgres_url: str) -> None:
+    database = Database(postgres_url)
+    second = pytest.raises(InputError, match="KNITCORE_PROCESS_NAME")
+    with held(database, "main"), held(database, "other"), second, held(database, "main"):
+        pass
+    database.close()
+
+
+def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
+    app = create_app(Settings(workers=1, data_dir=tmp_path))
+    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+        assert client.get("/readyz").status_code == 200
+        database = app.state.database
+        assert client.get("/api/v1/designs").status_code == 200
+        file = tmp_path / "knitcore.sqlite3"
+        with contextlib.closing(sqlite3.connect(file, timeout=30)) as own:  # log into the file
+            assert own.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0] == 0
+        database.engine.dispose()  # and nothing in memory
+        with file.open("r+b") as stream:
+            stream.seek(4096)
+            stream.write(b"\xa5" * (file.stat().st_size - 4096))
+        answer = client.get("/api/v1/designs")
+        assert answer.status_code == 503
+        assert "damaged" in answer.json()["detail"]
+        assert "backup" in answer.json()["remedy"]
+        assert client.get("/readyz").status_code == 503
+
+
+def test_a_copy_is_kept_before_a_migration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a next migration, which only this test has."""
+    file = tmp_path / "knitcore.sqlite3"
+    database = Database(f"sqlite:///{file}")
+    migrate(database)
+    before = revision(database)
+    migrations = shutil.copytree(schema.MIGRATIONS, tmp_path / "migrations")
+    (migrations / "versions" / "next.py").write_text(
+        f"revision, down_revision = 'next', {before!r}\n\ndef upgrade():\n    pass\n"
+    )
+    monkeypatch.setattr(schema, "MIGRATIONS", migrations)
+    migrate(database)
+    assert revision(database) == "next"
+    database.close()
+    (copy,) = tmp_path.glob("*.before-*")
+    assert copy.name.endswith(".before-next")
+    assert copy.stat().st_mode & 0o077 == 0
+    old = Database(f"sqlite:///{copy}")
+    assert revision(old) == before
+    old.check_pages()
+    old.close()
+
+
+def test_damage_is_found_page_by_page(tmp_path: Path) -> None:
+    file = _database(tmp_path)
+    _damage(file)
+    database = Database(f"sqlite:///{file}")
+    with pytest.raises(DamagedError):
+        database.check_pages()
+    database.close()
+
+
+class _Nobody:
+    """A place that takes jobs and never begins."""
+
+    share = None
+    cpu_s = None
+
+    async def submit(self, job: object) -> asyncio.Future[int]:
+        self.future: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        return self.future
+
+    def cancel(self) -> None:
+        self.future.cancel()
+
+    def replace(self) -> None:
+        self.future.cancel()
+
+    def close(self) -> None:
+        pass
+
+
+def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a worker that never begins, and for a place that is never free."""
+    monkeypatch.setattr(compute_module, "START_S", 0.1)
+    monkeypatch.setattr(compute_module, "POLL_S", 0.02)
+
+    async def never() -> bool:
+        return False
+
+    async def scenario() -> None:
+        compute = Compute([_Nobody()], timeout_s=0.1)  # type: ignore[list-item]
+        with pytest.raises(NotBegunError, match="No worker began"):
+            await compute.run(never, print)
+        compute.turns.enter("ada", background=False)
+        with pytest.raises(NotBegunError, match="No worker was free"):
+            await compute.run(never, print)
+
+    asyncio.run(scenario())
+
+
+def test_a_cluster_without_workers_is_reported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster_module, "WORKERS_S", 0.2)
+    monkeypatch.setattr(cluster_module, "CONNECT_S", 60.0)
+    file = tmp_path / "scheduler.json"
+    words = ["scheduler", "--host=127.0.0.1", "--port=0", "--no-dashboard"]
+    words += ["--dashboard-address=127.0.0.1:0", f"--scheduler-file={file}"]
+    with (tmp_path / "log").open("w") as log:
+        scheduler = subprocess.Popen([sys.executable, "-m", "dask", *words], stderr=log)
+    try:
+        while not file.exists() or not file.read_text():
+            assert scheduler.poll() is None, (tmp_path / "log").read_text()
+        address = json.loads(file.read_text())["address"]
+        cluster = Cluster(address)
+        with pytest.raises(ClusterError, match="accepts computations"):
+            cluster.begin("a-job", print)
+        cluster.close()
+        settings = Settings(data_dir=tmp_path / "data", scheduler=address)
+        failed = doctor.examine(settings).failed
+        assert [check.name for check in failed] == ["cluster"]
+        with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+            assert client.get("/readyz").status_code == 503
+            wish = {"chart": "KP", "material": "acrylic"}
+            refused = client.post("/api/v1/relax", json=wish)
+            assert refused.status_code == 503
+            assert "accepts computations" in refused.json()["detail"]
+    finally:
+        scheduler.terminate()
+        scheduler.wait(60)

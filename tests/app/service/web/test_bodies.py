@@ -1,0 +1,175 @@
+"""Nothing large that a client sends is decoded by the event loop."""
+
+from __future__ import annotations
+
+import json
+import logging
+from typing import Any
+
+import pytest
+from fastapi.routing import APIRoute
+from fastapi.testclient import TestClient
+
+from app.models.base import RequestModel
+from app.models.charts import MAX_FIELD
+from app.service.api import routers
+from app.service.identity import LOCAL_USER
+from app.service.limits.budgets import BUDGETS, Budgets, InUse
+from app.service.web.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
+
+PADDING = " " * SMALL_BYTES
+WISH = {"chart": "KP\nPK", "material": "acrylic"}
+
+
+def _padded(body: Any) -> bytes:
+    """JSON that is too large to be decoded at once."""
+    return json.dumps(body).encode() + PADDING.encode()
+
+
+def _post(client: TestClient, path: str, content: bytes) -> Any:
+    headers = {"Content-Type": "application/json"}
+    return client.post(f"/api/v1/{path}", content=content, headers=headers)
+
+
+def test_every_address_with_a_body_keeps_the_rule() -> None:
+    routes = [route for router in routers() for route in router.routes]
+    bodies = [route for route in routes if isinstance(route, APIRoute) and route.body_field]
+    assert len(bodies) > 30
+    assert [route.path for route in bodies if not isinstance(route, BoundedRoute)] == []
+
+
+@pytest.fixture
+def sent(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What workers are given."""
+    compute = client.app.state.compute  # type: ignore[attr-defined]
+    given: list[Any] = []
+    run = compute.run
+
+    async def noted(abandoned: Any, job: Any, *args: Any, **turn: Any) -> Any:
+        given.extend(args)
+        return await run(abandoned, job, *args, **turn)
+
+    monkeypatch.setattr(compute, "run", noted)
+    return given
+
+
+def test_a_worker_decodes_a_large_request(client: TestClient, sent: list[Any]) -> None:
+    small = client.post("/api/v1/predict", json=WISH)
+    content = _padded(WISH)
+    large = _post(client, "predict", content)
+    assert content in sent
+    assert not [one for one in sent if isinstance(one, RequestModel)]
+    assert (large.status_code, large.json()) == (200, small.json())
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"chart": "KP"},
+        WISH | {"chart": {"fabric": "rib", "rows": 0, "columns": 2}},
+        WISH | {"nope": 1},
+        WISH | {"material": "nope"},
+    ],
+)
+def test_faults_of_a_large_request_are_told_like_those_of_a_small_one(
+    client: TestClient, body: Any
+) -> None:
+    small = client.post("/api/v1/predict", json=body).json()
+    large = _post(client, "predict", _padded(body)).json()
+    assert large["status"] == 422
+    for one in ("detail", "field", "remedy", "errors"):
+        assert large[one] == small[one]
+
+
+def test_what_is_no_request_is_told_by_the_worker_too(client: TestClient) -> None:
+    problem = _post(client, "predict", _padded([])).json()
+    assert (problem["status"], problem["field"]) == (422, "body")
+    assert "Send a JSON object" in problem["remedy"]
+    problem = _post(client, "predict", b"{" + PADDING.encode()).json()
+    assert (problem["status"], problem["field"]) == (422, "body")
+    assert "not valid JSON" in problem["detail"]
+
+
+def test_a_worker_decodes_a_large_job(client: TestClient, sent: list[Any]) -> None:
+    file = {"name": "a.csv", "content": ""}
+    wish = {"kind": "compression", "request": {"file": file}}
+    content = _padded(wish)
+    made = _post(client, "jobs", content)
+    assert made.status_code == 202
+    assert content in sent
+    assert client.get(made.headers["location"]).json()["kind"] == "compression"
+    wrong = _post(client, "jobs", _padded(wish | {"request": {}}))
+    assert (wrong.status_code, wrong.json()["field"]) == (422, "request.file")
+
+
+def test_a_large_design_is_decoded_in_its_turn(client: TestClient, sent: list[Any]) -> None:
+    body = {"name": "a", "material": "acrylic", "chart": "\n".join(["KP" * 200] * 200)}
+    made = _post(client, "designs", _padded(body))
+    assert (made.status_code, sent) == (201, [])
+    assert client.delete(f"/api/v1/designs/{made.json()['id']}").status_code == 204
+
+
+def test_no_design_is_larger_than_the_service_decodes(client: TestClient) -> None:
+    content = b" " * (MAX_DECODED_BYTES + 1)
+
+    def parts() -> Any:
+        yield content
+
+    headers = {"Content-Type": "application/json"}
+    for sent in (content, parts()):
+        refused = client.post("/api/v1/designs", content=sent, headers=headers)
+        assert (refused.status_code, refused.json()["field"]) == (413, "body")
+
+
+def test_a_field_of_as_many_values_as_a_view_takes_is_read(client: TestClient) -> None:
+    field = {"values": [0.5] * MAX_FIELD, "low": 0.0, "high": 1.0}
+    body = {**WISH, "colour": "field", "field": field}
+    found = client.put("/api/v1/views/a-field-too-large", json=body)
+    assert (found.status_code, found.json()["field"]) == (
+        422,
+        "field",
+    )  # of another size than KP/PK
+
+
+def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
+    """They have few commas, and decoding millions of them takes seconds."""
+    deep = 100
+    nest = b"[" * deep + b"]" * deep
+    body = b"[" + b",".join([nest] * (MAX_VALUES // deep)) + b"]"
+    refused = _post(client, "designs", body)
+    assert (refused.status_code, refused.json()["type"]) == (413, "/problems/refused")
+
+
+def test_open_bodies_of_one_user_are_bounded(client: TestClient) -> None:
+    state = client.app.state  # type: ignore[attr-defined]
+    usual, state.in_use = state.in_use, InUse(Budgets(body_bytes=SMALL_BYTES))
+    try:
+        refused = _post(client, "predict", _padded(WISH))
+        assert (refused.status_code, refused.json()["field"]) == (429, "body_bytes")
+        assert state.in_use.held("body_bytes", LOCAL_USER) == 0
+        assert client.post("/api/v1/predict", json=WISH).status_code == 200
+    finally:
+        state.in_use = usual
+    assert BUDGETS.body_bytes >= 2 * state.settings.max_body_bytes
+
+
+def test_a_client_that_goes_in_the_middle_of_a_body_is_no_error_of_the_service(
+    client: TestClient, caplog: pytest.LogCaptureFixture
+) -> None:
+    coming = iter([{"type": "http.request", "body": b"{", "more_body": True}])
+
+    async def receive() -> Any:
+        return next(coming, {"type": "http.disconnect"})
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    sent: list[Any] = []
+    headers = [(b"host", b"127.0.0.1"), (b"content-length", b"900")]
+    scope = {"type": "http", "method": "POST", "path": "/api/v1/predict", "headers": headers}
+    scope |= {"query_string": b"", "scheme": "http", "http_version": "1.1"}
+    assert client.portal is not None
+    with caplog.at_level(logging.INFO):
+        client.portal.call(client.app, scope, receive, send)
+    assert sent[0]["status"] == 499
+    assert [record.levelname for record in caplog.records] == ["INFO"]

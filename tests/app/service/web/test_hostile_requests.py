@@ -1,0 +1,81 @@
+"""A thousand malformed requests: none is a surprise to the service, and it stays up."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import re
+
+from fastapi.testclient import TestClient
+
+REQUESTS = int(os.environ.get("KNITCORE_HOSTILE_REQUESTS", "1000"))
+PATHS = [
+    "/api/v1/charts/parse",
+    "/api/v1/predict",
+    "/api/v1/designs",
+    "/api/v1/designs/%00",
+    "/api/v1/designs/abcdefgh/strokes",
+    "/api/v1/designs?limit=-1",
+    "/api/v1/designs?cursor=%ff",
+    "/api/v1/jobs",
+    "/api/v1/jobs/abcdefgh/events",
+    "/api/v1/shared/../../etc/passwd",
+    "/api/v1/views/abcdefgh",
+    "/static/../app/service/main.py",
+    "/static/%2e%2e/%2e%2e/etc/passwd",
+    "/view/%2e%2e/",
+    "/" + "a" * 5000,
+]
+BODIES = [
+    b"",
+    b"{",
+    b"null",
+    b"[]",
+    b'"K"',
+    b"NaN",
+    b'{"text": "K"',
+    b'{"text": "\\ud800"}',
+    b'{"name": "\\ud800", "material": "acrylic", "chart": "K"}',
+    b'{"chart": ["K"], "material": {}}',
+    b'{"chart": "' + b"K" * 2000 + b'", "material": "acrylic"}',
+    b"[" * 20_000,
+    b'{"a":' * 5_000,
+    b"\xff\xfe\x00",
+    json.dumps({"rows": 10**30, "columns": -1, "runs": [{}] * 100}).encode(),
+    json.dumps({"kind": "stretch", "request": None}).encode(),
+    b'{"name": "x", "material": "acrylic", "chart": "K", "note": 1e999}',
+]
+HEADERS = [
+    {},
+    {"Content-Type": "application/json"},
+    {"Content-Type": "text/html"},
+    {"Content-Type": "multipart/form-data; boundary="},
+    {"If-Match": '"' * 50},
+    {"Idempotency-Key": "x" * 500},
+    {"Content-Length": "-5"},
+    {"Cookie": "a=b; ;;=; knitcore_session=%%%"},
+    {"X-Request-ID": "a\tb"},
+    {"Accept-Encoding": "gzip;q=nonsense"},
+]
+METHODS = ["GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "HEAD", "BREW"]
+
+
+def test_nothing_surprises_the_service(client: TestClient) -> None:
+    rng = random.Random(8)  # noqa: S311 - repeatable, not secret
+    seen: dict[int, int] = {}
+    known = [re.sub(r"\{\w+\}", "abcdefgh", p) for p in client.get("/openapi.json").json()["paths"]]
+    paths = PATHS + [path for path in known if not path.endswith("/events")]
+    for _ in range(REQUESTS):
+        method, path = rng.choice(METHODS), rng.choice(paths)
+        headers = rng.choice(HEADERS) | rng.choice(HEADERS)
+        answer = client.request(method, path, content=rng.choice(BODIES), headers=headers)
+        seen[answer.status_code] = seen.get(answer.status_code, 0) + 1
+        assert answer.status_code < 500, f"{method} {path[:60]} {headers}"
+        if answer.status_code >= 400 and method != "HEAD":
+            assert answer.headers["content-type"] == "application/problem+json", path[:60]
+            problem = answer.json()
+            assert problem["status"] == answer.status_code
+            assert problem["detail"]
+    assert set(seen) >= {200, 404, 405, 413, 422}
+    assert client.get("/readyz").status_code == 200

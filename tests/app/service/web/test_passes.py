@@ -1,0 +1,73 @@
+"""A pass lets the sandboxed frame of a view in, and nobody else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import viser
+from fastapi.testclient import TestClient
+from starlette.websockets import WebSocketDisconnect
+
+from app.service.identity import current_user
+from app.service.web import tokens
+from app.service.web.passes import Passes
+from tests.app.running.web.test_security import bearing, guarded_service, tokens_of
+
+BODY = {"chart": "KP", "material": "acrylic"}
+FRAME = {"Origin": "null"}
+"""What browsers say of a sandboxed frame, of any site."""
+
+
+def _watch(client: TestClient, host: str, path: str) -> None:
+    address = f"ws://{host}{path}"
+    protocol = [f"viser-v{viser.__version__}"]
+    with client.websocket_connect(address, headers=FRAME, subprotocols=protocol) as socket:
+        assert socket.receive_bytes()
+
+
+def _refused(client: TestClient, host: str, path: str) -> None:
+    with pytest.raises(WebSocketDisconnect) as closed:
+        _watch(client, host, path)
+    assert closed.value.code == 1008
+
+
+def test_a_frame_watches_with_the_pass_of_its_view_only(client: TestClient) -> None:
+    host = "127.0.0.1"
+    url = client.put("/api/v1/views/with-pass", json=BODY).json()["url"]
+    path, code = url.split("/#")
+    assert path == "/view/with-pass"
+    _watch(client, host, f"{path}?pass={code}")
+    for wrong in ("", f"?pass={code[:-1]}", "?pass=", f"?pass={'0' * 64}"):
+        _refused(client, host, path + wrong)
+    _refused(client, host, f"/view/another?pass={code}")
+    body = {"chart": "KP"}
+    asked = client.post(f"/api/v1/charts/parse?pass={code}", json=body, headers=FRAME)
+    assert asked.status_code == 403
+
+
+def test_a_pass_ends_with_the_token_it_was_asked_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tokens, "REMEMBERED_S", 0.0)
+    with guarded_service(require_login=True, data_dir=tmp_path) as lab:
+        made = tokens_of(lab).create("ada")
+        url = lab.put("/api/v1/views/of-ada", json=BODY, headers=bearing(made.token)).json()["url"]
+        path = url.replace("/#", "?pass=")
+        _watch(lab, "knit.example", path)
+        tokens_of(lab).revoke(made.id)
+        _refused(lab, "knit.example", path)
+
+
+def test_passes_are_the_same_for_one_user_and_forgotten_in_turn() -> None:
+    passes = Passes(most=2)
+    first = passes.give("/view/a", None)
+    assert passes.give("/view/a", None) == first != passes.give("/view/b", None)
+    scope = {"type": "websocket", "path": "/view/a", "query_string": f"pass={first}".encode()}
+    opener = passes.holder(scope)
+    assert opener is not None
+    assert opener.user == current_user.get()
+    assert passes.holder(scope | {"type": "http"}) is None
+    for name in "cd":
+        passes.give(f"/view/{name}", None)
+    assert passes.holder(scope) is None

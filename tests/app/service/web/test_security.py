@@ -1,0 +1,407 @@
+from __future__ import annotations
+
+import contextlib
+import json
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import viser
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+from itsdangerous import URLSafeTimedSerializer
+from starlette.websockets import WebSocketDisconnect
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+from websockets.typing import Subprotocol
+
+from app.cli.main import main
+from app.service.limits.budgets import RateLimit
+from app.service.main import create_app
+from app.service.settings import Settings
+from app.service.web.bodies import MAX_VALUES
+from app.service.web.security import LOGIN_FAILURES, PAGE_POLICY, with_own_cookie_only
+from app.service.web.tokens import Tokens
+from app.viewer import relay
+from app.viewer.private_port import RELAY_HEADERS, private_server
+from app.viewer.views import Views
+from knitcore import InputError
+
+TOKEN = "a-long-enough-token"
+
+
+@contextlib.contextmanager
+def guarded_service(**settings: Any) -> Iterator[TestClient]:
+    chosen = Settings(
+        **{"host": "0.0.0.0", "allowed_hosts": ("knit.example",), "workers": 1} | settings
+    )
+    with TestClient(create_app(chosen), base_url="http://knit.example") as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def guarded() -> Iterator[TestClient]:
+    with guarded_service(token=TOKEN) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A service where everybody has a token of their own."""
+    with guarded_service(require_login=True, data_dir=tmp_path_factory.mktemp("lab")) as client:
+        yield client
+
+
+def tokens_of(client: TestClient) -> Tokens:
+    return Tokens(client.app.state.database)  # type: ignore[attr-defined]
+
+
+def bearing(token: str) -> dict[str, str]:
+    return {"Authorization": f"Bearer {token}"}
+
+
+def test_beyond_loopback_a_token_is_demanded() -> None:
+    with pytest.raises(InputError, match="KNITCORE_TOKEN"):
+        create_app(Settings(host="0.0.0.0"))
+    result = CliRunner().invoke(main, ["serve", "--host", "0.0.0.0"])
+    assert result.exit_code == 2
+    assert "KNITCORE_TOKEN" in result.output
+
+
+def test_a_short_token_is_refused() -> None:
+    for token in ("short", " " * 16):
+        with pytest.raises(InputError, match="too short"):
+            create_app(Settings(token=token))
+
+
+def test_without_the_token_nothing_is_served(guarded: TestClient) -> None:
+    for path in (
+        "/",
+        "/api/v1/patterns",
+        "/static/index.html",
+        "/docs",
+        "/openapi.json",
+        "/metrics",
+    ):
+        response = guarded.get(path)
+        assert response.status_code == 401
+        assert response.headers["WWW-Authenticate"].startswith("Bearer")
+        assert guarded.get(response.json()["type"]).status_code == 200
+        assert "token" in response.json()["remedy"]
+    for path in ("/healthz", "/readyz"):
+        assert guarded.get(path).status_code == 200
+
+
+def test_the_token_opens_as_header_and_as_link(guarded: TestClient) -> None:
+    assert guarded.get("/api/v1/patterns", headers=bearing(TOKEN)).status_code == 200
+    wrong = bearing("another-long-token")
+    assert guarded.get("/api/v1/patterns", headers=wrong).status_code == 401
+
+    link = guarded.get(f"/?token={TOKEN}", follow_redirects=False)
+    assert link.status_code == 303
+    assert TOKEN not in link.headers["location"]
+    cookie = link.headers["set-cookie"]
+    assert TOKEN not in cookie
+    assert {"httponly", "samesite=strict"} <= {p.strip().lower() for p in cookie.split(";")}
+    assert guarded.get("/api/v1/patterns").status_code == 200  # by the session
+    guarded.cookies.clear()
+
+
+def test_a_link_with_a_token_leads_nowhere_else(guarded: TestClient) -> None:
+    link = guarded.get(f"http://knit.example//evil.example/?token={TOKEN}", follow_redirects=False)
+    assert link.headers["location"] == "/evil.example/"
+    guarded.cookies.clear()
+
+
+@pytest.mark.parametrize("cookie", ["nonsense", "W10.x.y", "", '"'])
+def test_a_forged_session_opens_nothing(guarded: TestClient, cookie: str) -> None:
+    headers = {"Cookie": f"knitcore_session={cookie}"}
+    assert guarded.get("/api/v1/patterns", headers=headers).status_code == 401
+    forged = URLSafeTimedSerializer("guessed", salt="knitcore session").dumps(["environment", ""])
+    headers = {"Cookie": f"knitcore_session={forged}"}
+    assert guarded.get("/api/v1/patterns", headers=headers).status_code == 401
+
+
+def test_another_token_in_the_settings_ends_sessions(tmp_path: Path) -> None:
+    with guarded_service(token=TOKEN, data_dir=tmp_path) as client:
+        client.get(f"/?token={TOKEN}")
+        cookies = dict(client.cookies)
+        assert client.get("/api/v1/patterns").status_code == 200
+    with guarded_service(token="another-long-enough-one", data_dir=tmp_path) as client:
+        client.cookies.update(cookies)
+        assert client.get("/api/v1/patterns").status_code == 401
+
+
+def test_wrong_tokens_are_slowed_down_and_lock_out_no_user() -> None:
+    with guarded_service(token=TOKEN) as client:
+        answers = [client.get("/api/v1/patterns", headers=bearing(f"guess-{n}")) for n in range(25)]
+        codes = [answer.status_code for answer in answers]
+        assert codes == [401] * LOGIN_FAILURES + [429] * (25 - LOGIN_FAILURES)
+        assert answers[-1].headers["retry-after"] == "10"
+        assert client.get("/api/v1/patterns", headers=bearing(TOKEN)).status_code == 200
+        assert client.get("/api/v1/patterns").status_code == 401  # who has no token is told so
+
+
+def test_wrong_tokens_of_a_neighbour_close_no_session() -> None:
+    with guarded_service(token=TOKEN) as client:
+        client.get(f"/?token={TOKEN}")
+        cookies = dict(client.cookies)
+        client.cookies.clear()
+        for n in range(25):
+            last = client.get("/api/v1/patterns", headers=bearing(f"guess-{n}"))
+        assert last.status_code == 429
+        client.cookies.update(cookies)
+        assert client.get("/api/v1/patterns").status_code == 200
+        wrong = client.get("/api/v1/patterns", headers=bearing("guess"))
+        assert wrong.status_code == 429  # who brings a token is not let in by a session
+
+
+def test_users_see_only_their_own(lab: TestClient) -> None:
+    ada, bob = (bearing(tokens_of(lab).create(name).token) for name in ("ada", "bob"))
+    design = {"name": "secret", "material": "acrylic", "chart": "KP"}
+    made = lab.post("/api/v1/designs", json=design, headers=ada).json()["id"]
+    assert lab.get(f"/api/v1/designs/{made}", headers=ada).status_code == 200
+    for method, path in (
+        ("GET", ""),
+        ("DELETE", ""),
+        ("POST", "/duplicate"),
+        ("POST", "/recover"),
+        ("GET", "/versions"),
+        ("GET", "/shares"),
+    ):
+        answer = lab.request(method, f"/api/v1/designs/{made}{path}", headers=bob)
+        assert answer.status_code == 404
+    assert lab.get("/api/v1/designs", headers=bob).json()["designs"] == []
+
+    wish = {"chart": "KP\nPK", "material": "acrylic", "direction": "wale", "strain": 0.1}
+    body = {"kind": "stretch", "request": wish | {"steps": 1}}
+    job = lab.post("/api/v1/jobs", json=body, headers=ada).json()["id"]
+    for path in ("", "/events", "/result"):
+        assert lab.get(f"/api/v1/jobs/{job}{path}", headers=bob).status_code == 404
+
+    share = lab.post(f"/api/v1/designs/{made}/shares", json={}, headers=ada).json()["token"]
+    assert lab.get(f"/api/v1/shared/{share}", headers=bob).json()["document"]["name"] == "secret"
+    assert lab.get(f"/api/v1/shared/{share}").status_code == 401
+
+
+def test_views_are_private_too(lab: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(relay, "OPENING_S", 0.1)
+    ada, bob = (bearing(tokens_of(lab).create(name).token) for name in ("ada", "bob"))
+    body = {"chart": "KP", "material": "acrylic"}
+    assert lab.put("/api/v1/views/one-name", json=body, headers=ada).status_code == 200
+    with (
+        pytest.raises(WebSocketDisconnect) as closed,
+        lab.websocket_connect("ws://knit.example/view/one-name", headers=bob),
+    ):
+        pass
+    assert closed.value.code == 1013
+    with (
+        pytest.raises(WebSocketDisconnect) as closed,
+        lab.websocket_connect("ws://knit.example/view/one-name"),
+    ):
+        pass
+    assert closed.value.code == 1008
+    with lab.websocket_connect(
+        "ws://knit.example/view/one-name",
+        headers=ada,
+        subprotocols=[f"viser-v{viser.__version__}"],
+    ) as socket:
+        assert socket.receive_bytes()
+
+
+def test_tokens_are_revoked_expire_and_are_kept_as_hashes(
+    lab: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.service.web.tokens.REMEMBERED_S", 0.0)
+    tokens = tokens_of(lab)
+    made, short = tokens.create("eve", "laptop"), tokens.create("eve", days=1e-9)
+    assert lab.get("/api/v1/patterns", headers=bearing(made.token)).status_code == 200
+    assert lab.get("/api/v1/patterns", headers=bearing(short.token)).status_code == 401
+    lab.get(f"/?token={made.token}")
+    assert lab.get("/api/v1/patterns").status_code == 200
+    tokens.revoke(made.id)
+    assert lab.get("/api/v1/patterns", headers=bearing(made.token)).status_code == 401
+    assert lab.get("/api/v1/patterns").status_code == 401  # the session ends with its token
+    lab.cookies.clear()
+    with lab.app.state.database.read() as connection:  # type: ignore[attr-defined]
+        kept = str(connection.exec_driver_sql("SELECT * FROM access_tokens").all())
+    assert "laptop" in kept
+    assert made.token not in kept
+
+
+def test_the_token_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
+    made = CliRunner().invoke(main, ["token", "create", "ada", "--label", "lab", "--json"])
+    token = json.loads(made.stdout)
+    assert len(token["token"]) > 40
+    listed = CliRunner().invoke(main, ["token", "list"])
+    assert token["id"] in listed.stdout
+    assert token["token"] not in listed.stdout
+    assert CliRunner().invoke(main, ["token", "revoke", token["id"]]).exit_code == 0
+    for arguments in (["revoke", token["id"]], ["create", "local"], ["create", "a b"]):
+        assert CliRunner().invoke(main, ["token", *arguments]).exit_code == 2
+
+
+def test_a_client_over_its_rate_learns_when_to_retry(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.service.limits.budgets.time", SimpleNamespace(monotonic=lambda: 100.0))
+    with guarded_service(require_login=True, data_dir=tmp_path, requests_per_s=0.5) as client:
+        ada, bob = (bearing(tokens_of(client).create(name).token) for name in ("ada", "bob"))
+        first = client.get("/api/v1/patterns", headers=ada)
+        assert (first.headers["ratelimit-limit"], first.headers["ratelimit-remaining"]) == (
+            "2",
+            "1",
+        )
+        client.get("/api/v1/patterns", headers=ada)
+        late = client.get("/api/v1/patterns", headers=ada)
+        assert (late.status_code, late.json()["type"]) == (429, "/problems/too-many")
+        assert late.headers["retry-after"] == "2"
+        assert client.get("/api/v1/patterns", headers=bob).status_code == 200
+
+
+def test_a_bucket_fills_again() -> None:
+    limit = RateLimit(per_s=2.0, burst=3)
+    assert [limit.take("ada", at=0.0) for _ in range(4)] == [(2, 0), (1, 0), (0, 0), (0, 0.5)]
+    assert limit.take("bob", at=0.0) == (2, 0)
+    assert limit.take("ada", at=0.5) == (0, 0)
+    assert limit.left("ada", at=100.0) == 3
+
+
+def test_the_raw_port_of_a_view_is_closed_to_others() -> None:
+    """As another page or user of this machine would try it."""
+    views = Views(most=1, idle_s=60)
+    port = views.open("a-design").port
+    try:
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=60)
+        assert refused.value.code == 403
+        refused.value.close()
+        subprotocols = [Subprotocol(f"viser-v{viser.__version__}")]
+        opened = partial(
+            connect, f"ws://127.0.0.1:{port}", subprotocols=subprotocols, open_timeout=60
+        )
+        for headers in ({}, {"X-Knitcore-Relay": "a guess"}, {"Origin": "http://evil.example"}):
+            with pytest.raises(InvalidStatus) as denied, opened(additional_headers=headers):
+                pass
+            assert denied.value.response.status_code == 403
+        with opened(additional_headers=RELAY_HEADERS) as socket:
+            assert socket.recv(timeout=60)
+    finally:
+        views.close()
+
+
+def test_no_view_is_opened_if_the_port_cannot_be_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    import viser.infra._infra as infra
+    import websockets
+
+    monkeypatch.setitem(vars(infra), "websockets", websockets)
+    with pytest.raises(RuntimeError, match="could not be closed"):
+        private_server()
+
+
+def test_two_hosts_are_refused(client: TestClient) -> None:
+    twice = [("Host", "127.0.0.1"), ("Host", "evil.example")]
+    assert client.get("/healthz", headers=twice).status_code == 400
+
+
+def test_unknown_hosts_are_refused(client: TestClient) -> None:
+    assert client.get("/", headers={"Host": "evil.example"}).status_code == 400
+    assert client.get("/", headers={"Host": "["}).status_code == 400
+    assert client.get("/", headers={"Host": "localhost:8737"}).status_code == 200
+
+
+def test_changes_from_another_site_are_refused(client: TestClient) -> None:
+    body = {"text": "KP"}
+    evil = client.post("/api/v1/charts/parse", json=body, headers={"Origin": "http://evil.example"})
+    assert evil.status_code == 403
+    own = client.post("/api/v1/charts/parse", json=body, headers={"Origin": "http://127.0.0.1"})
+    assert own.status_code == 200
+    for none in ("null", "", "http://[", "http://[::1"):
+        strange = client.post("/api/v1/charts/parse", json=body, headers={"Origin": none})
+        assert strange.status_code == 403
+
+
+def test_websockets_from_another_site_are_refused(client: TestClient) -> None:
+    with (
+        pytest.raises(WebSocketDisconnect),
+        client.websocket_connect(
+            "ws://127.0.0.1/view/abcdefgh", headers={"Origin": "http://evil.example"}
+        ),
+    ):
+        pass
+
+
+def test_large_bodies_are_refused(client: TestClient) -> None:
+    response = client.post("/api/v1/charts/parse", content=b"x" * 33_000_000)
+    assert response.status_code == 413
+    assert response.json()["field"] == "body"
+
+
+def test_bodies_that_lie_about_their_size_are_refused(client: TestClient) -> None:
+    def parts() -> Iterator[bytes]:
+        for _ in range(33):
+            yield b"x" * 1_000_000
+
+    response = client.post("/api/v1/charts/parse", content=parts())
+    assert (response.status_code, response.json()["field"]) == (413, "body")
+
+
+def test_bodies_of_more_values_than_can_be_read_at_once_are_refused(client: TestClient) -> None:
+    runs = [
+        {"id": f"r{n}", "name": "r", "colour": "#112233", "runs": [[0, 0, 1]] * 50_000}
+        for n in range(2)
+    ]
+    body = {"name": "a", "material": "acrylic", "chart": "K", "regions": runs}
+    response = client.post("/api/v1/designs", json=body)
+    assert (response.status_code, response.json()["type"]) == (413, "/problems/refused")
+    assert str(MAX_VALUES) in response.json()["detail"]
+
+
+def test_every_response_carries_the_headers(client: TestClient) -> None:
+    for path in ("/", "/api/v1/patterns", "/nowhere"):
+        headers = client.get(path).headers
+        assert "frame-ancestors 'self'" in headers["content-security-policy"]
+        assert headers["x-content-type-options"] == "nosniff"
+    view = client.get("/view/abcdefgh/").headers["content-security-policy"]
+    assert "connect-src 'self' data: blob:" in view  # ?websocket=ws://elsewhere is not obeyed
+    assert "allow-same-origin" not in next(p for p in view.split("; ") if p.startswith("sandbox"))
+
+
+def test_no_text_becomes_a_script_in_a_view(client: TestClient) -> None:
+    """viser can tell its page to run a text as a script; the policy refuses that."""
+    policy = client.get("/view/a-design-of-mine/").headers["content-security-policy"]
+    scripts = next(part for part in policy.split("; ") if part.startswith("script-src"))
+    assert "'unsafe-eval'" not in scripts.split()
+
+
+def test_an_unexpected_error_carries_the_headers_and_no_secret_to_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    app = create_app(Settings(workers=1))
+
+    @app.get("/api/v1/shared/{token}/broken")
+    def broken(token: str) -> None:
+        raise ZeroDivisionError
+
+    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+        answer = client.get("/api/v1/shared/a-secret-link/broken", headers={"X-Request-ID": "r-7"})
+    assert (answer.status_code, answer.json()["type"]) == (500, "/problems/internal")
+    assert answer.headers["X-Request-ID"] == "r-7"
+    assert answer.headers["Content-Security-Policy"] == PAGE_POLICY
+    assert "ZeroDivisionError" in caplog.text
+    assert "a-secret-link" not in caplog.text
+
+
+def test_only_the_own_cookie_is_read() -> None:
+    """Python's reader takes time that grows with the square of a quoted cookie's length."""
+    own, other = b"knitcore_session=abc", b'theme="\\\\\\\\"'
+    kept = with_own_cookie_only([(b"host", b"h"), (b"cookie", other + b"; " + own)])
+    assert kept == [(b"host", b"h"), (b"cookie", own)]
+    for unread in (other, b'knitcore_session="\\\\"'):
+        assert with_own_cookie_only([(b"cookie", unread)]) == []
