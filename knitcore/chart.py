@@ -252,19 +252,20 @@ class StitchChart:
         return showing.captioned(showing.stitches(self.purl), size + cut)
 
 
-def check_stitches(stitches: int, most: int, what: str = "it") -> None:
+def check_stitches(stitches: int, most: int, what: str = "it", instead: str = "") -> None:
     """Refuse more stitches than a computation takes.
 
     Parameters
     ----------
     what : has the stitches, such as "its repeat".
+    instead : another way, which ends the remedy.
 
     Raises
     ------
     InputError
     """
     if stitches > most:
-        remedy = f"Use at most {most}."
+        remedy = f"Use at most {most}{instead}."
         raise InputError("chart", f"{what} has {stitches} stitches.", remedy, most=most)
 
 
