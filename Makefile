@@ -58,7 +58,7 @@ install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the prod
 
 # numba compiles a kernel when it is first called, which takes up to 10 s: best before somebody waits.
 # What it kept of older sources goes first: it fails to load where a class has another name now.
-$(VENV)/.compiled: $(VENV)/.installed $(shell grep -rl knitcore.compiled --include=*.py knitcore) knitcore/warm_up.py
+$(VENV)/.compiled: $(VENV)/.installed $(shell grep -rl knitcore.base.compiled --include=*.py knitcore) knitcore/warm_up.py
 	@find knitcore -name '*.nb[ci]' -delete
 	@$(BIN)/knitcore warm-up 2>/dev/null
 	@touch $@

@@ -13,20 +13,20 @@ import numpy as np
 from scipy.sparse import bsr_matrix
 
 from knitcore import StitchChart, curve, material, relax, strip_test
-from knitcore.dense import eliminate, product, solved, substitute, times
-from knitcore.shell.curl import curl
-from knitcore.shell.factor import SheetFactor
-from knitcore.yarnlevel import kernels
-from knitcore.yarnlevel.bending import repeat_bending
-from knitcore.yarnlevel.cell import plain_cell
-from knitcore.yarnlevel.clasps import knitted_code
-from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.hysteresis import hysteresis
-from knitcore.yarnlevel.splines import COARSE
-from knitcore.yarnlevel.start import start_state
-from knitcore.yarnlevel.whole import relax_whole
-from knitcore.yarnlibrary.yarns import yarn_for
+from knitcore.cloth.space.curl import curl
+from knitcore.linear.dense import eliminate, product, solved, substitute, times
+from knitcore.linear.sheet_factor import SheetFactor
+from knitcore.yarn import kernels
+from knitcore.yarn.library.yarns import yarn_for
+from knitcore.yarn.model.cell import plain_cell
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.energy import CellEnergy
+from knitcore.yarn.model.start_shape import start_state
+from knitcore.yarn.solve.clasps import knitted_code
+from knitcore.yarn.solve.splines import COARSE
+from knitcore.yarn.study.bending import repeat_bending
+from knitcore.yarn.study.hysteresis import hysteresis
+from knitcore.yarn.study.whole_chart import relax_whole
 
 CHART = StitchChart.parse("K/P")
 ACRYLIC = material("acrylic")
@@ -65,8 +65,8 @@ def latter_half(module: str) -> None:
     """Compile what a study needs last whose first functions, of ``module``, another process is
     compiling: numba compiles on one core."""
     for room, functions in (
-        ("knitcore.yarnlevel", _last_of_yarn),
-        ("knitcore.shell", _last_of_shape),
+        ("knitcore.yarn.study", _last_of_yarn),
+        ("knitcore.cloth.space", _last_of_shape),
     ):
         if module.startswith(room):
             functions()

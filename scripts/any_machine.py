@@ -155,7 +155,7 @@ def answered(names: list[str]) -> Iterator[tuple[str, Any]]:
     from app.context import Context
     from app.operations.perform import Viewed
     from app.operations.registry import operations
-    from knitcore.errors import KnitcoreError
+    from knitcore.base.errors import KnitcoreError
 
     with tempfile.TemporaryDirectory() as folder:
         for name in names:

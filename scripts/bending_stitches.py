@@ -7,19 +7,19 @@ repeats are kept in a folder, so an interrupted run can be resumed.
 
 from __future__ import annotations
 
-from knitcore.chart import StitchChart
-from knitcore.yarnlevel.bending import repeat_bending
-from knitcore.yarnlevel.cell import mirrored_cell
-from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlevel.solver import TIGHT, minimise
-from knitcore.yarnlevel.splines import relaxed_repeat
-from knitcore.yarnlibrary.bending_table import document_of
-from knitcore.yarnlibrary.characterise import Document
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.library.bending_table import document_of
+from knitcore.yarn.library.characterise import Document
+from knitcore.yarn.model.cell import mirrored_cell
+from knitcore.yarn.solve.newton import TIGHT, minimise
+from knitcore.yarn.solve.splines import relaxed_repeat
+from knitcore.yarn.study.bending import repeat_bending
+from knitcore.yarn.study.relax import Branch
 from scripts.from_store import FromStore, StoredTask
 
 
 def bend(task: StoredTask) -> Document:
-    """Bending of a repeat (:func:`knitcore.yarnlibrary.bending_table.document_of`).
+    """Bending of a repeat (:func:`knitcore.yarn.library.bending_table.document_of`).
 
     A few steps from the stored shape recover the tension of the yarn and the digits that the store
     leaves out.
@@ -33,7 +33,7 @@ def bend(task: StoredTask) -> Document:
     return document_of(repeat_bending(relaxed))
 
 
-BENDING = FromStore("bending", "bending.json", bend, "knitcore.yarnlevel.bending")
+BENDING = FromStore("bending", "bending.json", bend, "knitcore.yarn.study.bending")
 
 if __name__ == "__main__":
     BENDING.main()

@@ -9,10 +9,10 @@ import csv
 from dataclasses import fields
 from pathlib import Path
 
-from knitcore.fabric import Fabric
+from knitcore.chart.fabric import Fabric
+from knitcore.cloth.space.bending_constants import Bend, computed
 from knitcore.materials.library import load_library
-from knitcore.shell.bends import Bend, computed
-from knitcore.yarnlibrary.store import MATERIALS
+from knitcore.yarn.library.store import MATERIALS
 
 FILE = Path(__file__).parent.parent / "knitcore" / "shell" / "data" / "bends.csv"
 

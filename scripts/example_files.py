@@ -8,12 +8,12 @@ import numpy as np
 from PIL import Image
 
 from app.models.uploads import EXAMPLES
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.cloth.flat import SheetModel
 from knitcore.materials import material
-from knitcore.swatch import SheetModel
+from tests.knitcore.cloth.flat.synthetic import camera_arrays
 from tests.knitcore.measure.synthetic import hanging_yarn, pull, save_photo
 from tests.knitcore.measure.test_compression import squeeze, write
-from tests.knitcore.swatch.synthetic import camera_arrays
 
 WIDTH_MM = 70
 BLACK = 120

@@ -10,18 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from knitcore.arrays import Array
-from knitcore.batch import run_batch
-from knitcore.chart import StitchChart
-from knitcore.yarnlevel.cell import YarnCell
-from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.splines import COARSE, FINE
-from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.characterise import Document
-from knitcore.yarnlibrary.fingerprint import content_key
-from knitcore.yarnlibrary.store import MATERIALS, StoredStitch, stored_charts, stored_stitch
+from knitcore.base.arrays import Array
+from knitcore.base.batch import run_batch
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.library.characterise import Document
+from knitcore.yarn.library.fingerprint import content_key
+from knitcore.yarn.library.store import MATERIALS, StoredStitch, stored_charts, stored_stitch
+from knitcore.yarn.model.cell import YarnCell
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.energy import CellEnergy
+from knitcore.yarn.model.spline import SplineGrid
+from knitcore.yarn.model.yarn_model import YarnModel
+from knitcore.yarn.solve.splines import COARSE, FINE
 from scripts.stored_stitches import DATA, tell
 
 
@@ -95,7 +95,7 @@ class FromStore:
         Raises
         ------
         KnitcoreError
-            As :func:`knitcore.batch.run_batch`.
+            As :func:`knitcore.base.batch.run_batch`.
         """
         tasks, label = {}, {}
         for material, repeats in charts.items():

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore import StitchChart, material, predict, showing
-from knitcore.fabric import Direction
-from knitcore.formats.export import ExportKind, ExportOptions, export_chart
-from knitcore.patterns import PATTERNS
+from knitcore import StitchChart, material, predict
+from knitcore.base import showing
+from knitcore.chart.fabric import Direction
+from knitcore.chart.patterns import PATTERNS
+from knitcore.formats.write.export import ExportKind, ExportOptions, export_chart
 from knitcore.prediction.prediction import Prediction
 
 SIDE = 24

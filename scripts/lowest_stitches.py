@@ -7,11 +7,11 @@ kept in a folder, so an interrupted run can be resumed.
 
 from __future__ import annotations
 
-from knitcore.errors import ConvergenceError, UnravelledError
-from knitcore.yarnlevel.cell import free_cell
-from knitcore.yarnlevel.lowest import followed
-from knitcore.yarnlevel.search import SAME_ENERGY
-from knitcore.yarnlibrary.characterise import Document
+from knitcore.base.errors import ConvergenceError, UnravelledError
+from knitcore.yarn.library.characterise import Document
+from knitcore.yarn.model.cell import free_cell
+from knitcore.yarn.solve.search import SAME_ENERGY
+from knitcore.yarn.study.lowest import followed
 from scripts.from_store import FromStore, StoredTask
 
 
@@ -40,7 +40,7 @@ def follow(task: StoredTask) -> Document:
     }
 
 
-LOWEST = FromStore("lowest", "lowest.json", follow, "knitcore.yarnlevel.lowest")
+LOWEST = FromStore("lowest", "lowest.json", follow, "knitcore.yarn.study.lowest")
 
 if __name__ == "__main__":
     LOWEST.main()

@@ -22,7 +22,7 @@ from app.service.jobs.document import JobPage
 from app.service.problems import Problem
 from app.service.web.sessions import SignedIn
 from app.viewer.shared import SharedViewRequest
-from knitcore.formats.layout import DesignLayout
+from knitcore.formats.designs.layout import DesignLayout
 
 FILE = Path(__file__).resolve().parent.parent / "frontend" / "types.d.ts"
 HEAD = "// Made from the service's models by scripts/page_types.py (`make types`)."

@@ -26,16 +26,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.fit.measured_strip import MeasuredStrip
+from knitcore.fit.pull_fit import Reduction, fit_law
+from knitcore.fit.strip_fit import StripFit, fit_strips
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import FabricRecord, Laws, Material, Origin, load_library, load_variants
+from knitcore.materials.law_uncertainty import Z_SCORE, CurveUncertainty, LawUncertainty
 from knitcore.materials.refitted import COLUMNS, CONSTANTS, CURVE, DEVIATIONS
-from knitcore.materials.uncertainty import Z_SCORE, CurveUncertainty, LawUncertainty
 from knitcore.measure.stretch_test import StretchTest
-from knitcore.measure.uniaxial import Reduction, fit_law
 from knitcore.measure.uniaxial_files import Marks, read_stretch_test
-from knitcore.swatch.measured_strip import MeasuredStrip
-from knitcore.swatch.strip_fit import StripFit, fit_strips
 
 FILE = Path(__file__).parent.parent / "knitcore" / "materials" / "data" / "refitted.csv"
 AXES = {Direction.COURSE: "X", Direction.WALE: "Y"}

@@ -17,15 +17,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.batch import BatchProgress, BatchResult, run_batch
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
+from knitcore.base.batch import BatchProgress, BatchResult, run_batch
+from knitcore.chart.fabric import Direction
+from knitcore.chart.repeats import primitive_repeats, repeats_up_to
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import material
-from knitcore.repeats import primitive_repeats, repeats_up_to
-from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
-from knitcore.yarnlibrary.store import MATERIALS
-from knitcore.yarnlibrary.yarns import yarn_for
+from knitcore.yarn.library.characterise import Document, RepeatTask, characterise_repeat
+from knitcore.yarn.library.store import MATERIALS
+from knitcore.yarn.library.yarns import yarn_for
+from knitcore.yarn.study.relax import Branch
 
 DATA = Path(__file__).parent.parent / "knitcore" / "yarnlibrary" / "data"
 COMMON: dict[str, str] = {
@@ -73,7 +73,7 @@ def build(
     Raises
     ------
     KnitcoreError
-        As :func:`knitcore.batch.run_batch`.
+        As :func:`knitcore.base.batch.run_batch`.
     """
     tasks = _tasks(most_stitches)
     named = {f"{name}.{task.key}": task for name, task in tasks.items()}

@@ -2,19 +2,19 @@
 
 Yarn level and reduced symmetry, for the four pure fabrics of acrylic and cotton as measured:
 relaxed width and height, strain at four stresses, and moduli. Prints rms factors; the logarithms
-are the deviations that :mod:`knitcore.materials.uncertainty` gives these models.
+are the deviations that :mod:`knitcore.materials.law_uncertainty` gives these models.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import material
 from knitcore.mechanics.reduced_symmetry import rs_fabrics
-from knitcore.yarnlibrary.store import stored_stitch
+from knitcore.yarn.library.store import stored_stitch
 
 STRESSES = np.array([0.05, 0.1, 0.2, 0.3])
 YARNS = ("acrylic", "cotton")

@@ -18,19 +18,19 @@ from pathlib import Path
 import numpy as np
 
 from knitcore import predict
-from knitcore.arrays import Array
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel
+from knitcore.fit.calibration import FIELD_NOISE_PERCENT, ForceCurve, calibrate
+from knitcore.fit.field_comparison import Edges, compare
+from knitcore.fit.measured_field import load_field
 from knitcore.materials import Interval, Laws, material, paper_figures
-from knitcore.materials.uncertainty import Z_SCORE, log_interval
-from knitcore.measure.bending import measure_bending
+from knitcore.materials.law_uncertainty import Z_SCORE, log_interval
+from knitcore.measure.bending_modulus import measure_bending
 from knitcore.measure.compression import average_compression, fit_compression
 from knitcore.measure.compression_files import read_compression
 from knitcore.measure.uniaxial_files import read_stretch_test
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure
-from knitcore.swatch.calibration import FIELD_NOISE_PERCENT, ForceCurve, calibrate
-from knitcore.swatch.comparison import Edges, compare
-from knitcore.swatch.measured import load_field
-from knitcore.swatch.models import EnergyModel, SheetModel
 from scripts.refit_laws import carried
 from studies.against_knitted import errors, rms
 from studies.figures import evidence as figures

@@ -21,15 +21,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, least_squares, nnls
 
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.cloth.cut import Cloth, CutPiece, Held
+from knitcore.cloth.cut import cut_test as solve
+from knitcore.cloth.flat import QuarterGrid, Sheet, SheetModel, pull
+from knitcore.cloth.flat.strip import Clamps
+from knitcore.fit.strip_fit import ALPHA_SHARE, SHEAR_STIFFENING
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.stiffening import stiffening
 from knitcore.law.uniaxial import free_transverse_strains
 from knitcore.materials import material
-from knitcore.piece import Cloth, CutPiece, Held, solve
-from knitcore.swatch import QuarterGrid, Sheet, SheetModel, pull
-from knitcore.swatch.strip import Clamps
-from knitcore.swatch.strip_fit import ALPHA_SHARE, SHEAR_STIFFENING
 
 Array = NDArray[np.float64]
 Ends = tuple[str, ...]

@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.chart import StitchChart
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.flat import strip_test
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.atlas_build import predict_repeat
 from knitcore.design.fill import fill_field
 from knitcore.design.shape import fill_shape
-from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
-from knitcore.mechanics.local import local_moduli
-from knitcore.swatch import strip_test
+from knitcore.mechanics.local_moduli import local_moduli
 
 Array = NDArray[np.float64]
 ACRYLIC = material("acrylic")

@@ -24,8 +24,8 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from knitcore import StitchChart, material, predict
-from knitcore.arrays import Array
-from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.base.arrays import Array
+from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import packaged_model
 from knitcore.prediction.mixture import Mixture

@@ -23,10 +23,10 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
-from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import STRESS_GRID, LearnedResponse, packaged_model
 from knitcore.prediction.size import RelaxedSize

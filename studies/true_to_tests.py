@@ -17,14 +17,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.fit.measured_strip import MeasuredStrip
+from knitcore.fit.strip_errors import LOG_WIDTH_READING
+from knitcore.fit.strip_fit import fit_strips
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Laws, material
-from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty
+from knitcore.materials.law_uncertainty import Z_SCORE, LawUncertainty
 from knitcore.measure.uniaxial_files import read_stretch_test
-from knitcore.swatch.measured_strip import MeasuredStrip
-from knitcore.swatch.strip_errors import LOG_WIDTH_READING
-from knitcore.swatch.strip_fit import fit_strips
 
 STRESSES = (0.05, 0.1, 0.2)
 GARTER_WIDTH_MM = 59.5

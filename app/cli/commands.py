@@ -25,7 +25,7 @@ from app.context import Context
 from app.models.base import IntervalResult
 from app.operations.perform import Viewed, carried_out
 from app.operations.registry import Operation
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 
 def command_of(operation: Operation[Any, Any], name: str) -> click.Command:

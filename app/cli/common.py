@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import click
 from pydantic import BaseModel
 
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 if TYPE_CHECKING:
     from app.service.settings import Settings
@@ -83,7 +83,7 @@ class _Compiling(logging.Handler):
 @contextlib.contextmanager
 def telling_what_is_compiled() -> Iterator[None]:
     """Say so if kernels are compiled, since a silent command seems to hang, and do it faster."""
-    log, handler = logging.getLogger("knitcore.compiled"), _Compiling()
+    log, handler = logging.getLogger("knitcore.base.compiled"), _Compiling()
     log.setLevel(logging.DEBUG)
     log.addHandler(handler)
     try:

@@ -31,7 +31,7 @@ from app.models.base import UNIT
 from app.models.charts import IS_REPEAT
 from app.models.refusals import OF_VALUES, problem_in_words, remedy_in_words
 from app.models.uploads import UploadedFile
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 FILE = click.Path(path_type=Path)
 MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from app.cli.common import emit, json_option, user_settings
 from app.models.base import first_fault
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 
 @click.command("doctor")

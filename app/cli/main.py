@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from app.cli.options import CHART_HELP
 from app.models.base import first_fault
 from app.operations.registry import commands, operation_of_command
-from knitcore.errors import KnitcoreError
+from knitcore.base.errors import KnitcoreError
 
 GROUPS = {"measure": "Measure a yarn's bending and its compression."}
 """Groups of commands, which are operations."""

@@ -14,10 +14,10 @@ from typing import Any
 
 import click
 
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.fabric import Fabric
-from knitcore.patterns import PATTERNS
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.patterns import PATTERNS
+from knitcore.chart.stitch_chart import StitchChart
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -94,7 +94,7 @@ def loop_lengths(loop_lengths_mm: str | None) -> dict[str, Any]:
 def write_design_of(chart: str, material: str, name: str, out: Path | None) -> None:
     """Write a chart as a design, if there is a file for it."""
     if out is not None:
-        from knitcore.formats.design import DesignFile, write_design
+        from knitcore.formats.designs.design_file import DesignFile, write_design
 
         design = DesignFile(name=name, material=material, chart=chart)
         out.write_text(write_design(design), encoding="utf-8")
@@ -146,7 +146,7 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     """
     with chart_file(chart) as file:
         if file is not None:
-            from knitcore.formats.chart_files import read_chart  # a fabric needs no readers
+            from knitcore.formats.read.chart_files import read_chart  # a fabric needs no readers
 
             if size is not None:
                 raise InputError("size", "does not go with a file.", "Leave --size out.")

@@ -18,7 +18,7 @@ import click
 
 from app.cli.common import json_option, user_settings
 from app.service.settings import Settings
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 if TYPE_CHECKING:
     from app.service.store.database import Database

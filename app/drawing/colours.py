@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PIL import ImageColor
 
-from knitcore.fabric import PHASES, Fabric
+from knitcore.chart.fabric import PHASES, Fabric
 
 Colours = NDArray[np.uint8]
 

@@ -32,15 +32,15 @@ from app.models.charts import (
 )
 from app.models.posed import PosedView
 from app.models.stretched import StretchView
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.formats.layout import DesignRegion
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.draw.instances import MAX_STITCHES
+from knitcore.draw.lattice import flat_lattice
+from knitcore.draw.placing import PlacedStitches, carried, lying, unstretched
+from knitcore.draw.rectangles import extensibility_rectangles, stitch_labels
+from knitcore.draw.stitches import stitch_shapes
+from knitcore.formats.designs.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
-from knitcore.geometry.instances import MAX_STITCHES
-from knitcore.geometry.lattice import flat_lattice
-from knitcore.geometry.placing import PlacedStitches, carried, lying, unstretched
-from knitcore.geometry.rectangles import extensibility_rectangles, stitch_labels
-from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import Material
 
 MAX_REGIONS = 200

@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.geometry.body import Body
-from knitcore.geometry.instances import MAX_STITCHES
-from knitcore.geometry.lattice import Lattice
-from knitcore.geometry.placing import PlacedStitches
-from knitcore.geometry.stitches import StitchShapes
+from knitcore.base.arrays import Array
+from knitcore.draw.body import Body
+from knitcore.draw.instances import MAX_STITCHES
+from knitcore.draw.lattice import Lattice
+from knitcore.draw.placing import PlacedStitches
+from knitcore.draw.stitches import StitchShapes
 
 Colours = NDArray[np.uint8]
 

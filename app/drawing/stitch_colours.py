@@ -21,14 +21,14 @@ from app.drawing.colours import (
 from app.models.base import RequestModel
 from app.models.charts import MAX_FIELD
 from app.models.stretched import StretchView
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.fabric import PHASES, Direction, Fabric
-from knitcore.formats.layout import Colour as HexColour
-from knitcore.formats.layout import DesignRegion
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import PHASES, Direction, Fabric
+from knitcore.chart.phases import surroundings
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.designs.layout import Colour as HexColour
+from knitcore.formats.designs.layout import DesignRegion
 from knitcore.materials import Material
-from knitcore.mechanics.local import StitchTable, stitch_table
-from knitcore.phases import surroundings
+from knitcore.mechanics.local_moduli import StitchTable, stitch_table
 
 Colours = NDArray[np.uint8]
 

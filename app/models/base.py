@@ -17,7 +17,7 @@ from pydantic import (
 )
 
 from app.models.refusals import problem_in_words
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 T = TypeVar("T")
 UNIT = "_n_per_mm"

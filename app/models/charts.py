@@ -8,8 +8,8 @@ from pydantic import BaseModel, Discriminator, Field, Tag
 
 from app.models.base import RequestModel
 from app.models.checks import CheckedBy
-from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
-from knitcore.fabric import Fabric
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.garment.shaped import outline_marks
 
 MAX_TEXT = 1_200_000

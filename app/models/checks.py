@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel
 
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 if TYPE_CHECKING:
     from app.context import Context

@@ -9,8 +9,8 @@ from pydantic import Field
 from app.models.base import RequestModel, ResultModel
 from app.models.checks import CheckedBy
 from app.models.uploads import UploadedFile, stored
-from knitcore.fabric import Direction
-from knitcore.swatch.measured import MeasuredField, load_field
+from knitcore.chart.fabric import Direction
+from knitcore.fit.measured_field import MeasuredField, load_field
 
 
 class FieldRequest(RequestModel):

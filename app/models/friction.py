@@ -12,13 +12,13 @@ from app.context import Context
 from app.models.base import Ends, ResultModel
 from app.models.checks import with_others
 from app.models.yarn_level import YarnLevelRequest
-from knitcore.chart import check_stitches
-from knitcore.errors import InputError
-from knitcore.yarnlevel.friction import MAX_COEFFICIENT, MAX_STITCHES
-from knitcore.yarnlevel.hysteresis import TAKE_DOWN_N_PER_MM, WORN_N_PER_MM, History
-from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
-from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlibrary.yarn_friction import yarn_friction
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import check_stitches
+from knitcore.yarn.library.yarn_friction import yarn_friction
+from knitcore.yarn.model.friction import MAX_COEFFICIENT, MAX_STITCHES
+from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.study.hysteresis import TAKE_DOWN_N_PER_MM, WORN_N_PER_MM, History
+from knitcore.yarn.study.relax import Branch, RelaxedRepeat
 
 HISTORIES = (
     f"As-knitted: pulled along the columns by {TAKE_DOWN_N_PER_MM:g} N/mm, then released; "

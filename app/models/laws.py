@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
-from knitcore.chart import StitchChart
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Laws, Material, load_library
 

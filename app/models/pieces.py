@@ -12,13 +12,13 @@ from app.context import Context
 from app.models.base import Floats, IntervalResult, RequestModel
 from app.models.charts import MaterialName, RepeatInput, to_repeat
 from app.models.laws import LawsRequest
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
+from knitcore.cloth.cut import Condition, CutPiece, Held, PieceTest, Pulled, Sewn, Traction
+from knitcore.cloth.cut.cut_mesh import DEFAULT_ELEMENTS, size_for
+from knitcore.cloth.cut.outline import MAX_CORNERS
+from knitcore.cloth.flat.strip_uncertainty import interval_source
 from knitcore.materials import Material
-from knitcore.materials.uncertainty import Z_SCORE
-from knitcore.piece import Condition, CutPiece, Held, PieceTest, Pulled, Sewn, Traction
-from knitcore.piece.mesh import DEFAULT_ELEMENTS, size_for
-from knitcore.piece.outline import MAX_CORNERS
-from knitcore.swatch.uncertainty import interval_source
+from knitcore.materials.law_uncertainty import Z_SCORE
 
 T = TypeVar("T")
 MAX_ELEMENT_STEPS = 40_000

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from knitcore.geometry.body import Body, Floats, upright
+from knitcore.draw.body import Body, Floats, upright
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from knitcore.arrays import Array
-from knitcore.fabric import Direction
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction
 
 
 @dataclass(frozen=True, eq=False)

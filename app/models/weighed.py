@@ -12,11 +12,11 @@ from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import CellLines, ChartLines, MaterialName
 from app.models.laws import LawsRequest
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.base.arrays import Array
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of, stitched
+from knitcore.draw.body import Floats
 from knitcore.garment.shaped import ShapedChart
-from knitcore.geometry.body import Floats
-from knitcore.shell.cloth import EvenCloth, cloth_of, stitched
 
 LinearDensity = Annotated[
     float,

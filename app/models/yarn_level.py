@@ -13,13 +13,18 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
-from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_stitches, size_in_words
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import (
+    MAX_STITCHES_PER_SIDE,
+    StitchChart,
+    check_stitches,
+    size_in_words,
+)
 from knitcore.materials import Material
-from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.relax import Branch, relax
-from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlibrary.yarns import ChartYarn, yarn_for
+from knitcore.yarn.library.yarns import ChartYarn, yarn_for
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.study.relax import Branch, relax
 
 LoopLength = Annotated[float, Field(gt=0, le=1000)]
 LoopLengths = list[

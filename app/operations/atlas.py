@@ -17,11 +17,11 @@ from app.models.charts import MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
 from app.service.results.atlases import EXTENTS, Extent, repeats_of
+from knitcore.chart.fabric import Direction
 from knitcore.design.atlas import INTERVAL_SOURCE, VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import improve_atlas
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM
-from knitcore.fabric import Direction
 
 DIGITS = 5
 MAX_STITCHES = 8

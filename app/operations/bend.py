@@ -12,7 +12,8 @@ from app.models.base import ResultModel
 from app.models.laws import LawsRequest
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.registry import Command, Operation
-from knitcore.yarnlevel.bending import (
+from knitcore.yarn.library.store import stored_for
+from knitcore.yarn.study.bending import (
     MAX_STITCHES,
     Curl,
     RepeatBending,
@@ -20,9 +21,8 @@ from knitcore.yarnlevel.bending import (
     repeat_bending,
     weight_n_per_mm2,
 )
-from knitcore.yarnlevel.bent_cell import BendingResponse
-from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlibrary.store import stored_for
+from knitcore.yarn.study.bent_cell import BendingResponse
+from knitcore.yarn.study.relax import relax
 
 _FRICTIONLESS = (
     "Friction and set are left out, so these values are qualitative: measured knits of 187 to "

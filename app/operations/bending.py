@@ -10,7 +10,7 @@ from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.registry import Command, Operation
-from knitcore.measure.bending import measure_bending
+from knitcore.measure.bending_modulus import measure_bending
 
 MAX_PHOTOS = 100
 

@@ -10,7 +10,7 @@ from app.context import Context
 from app.models.base import EndsOfList, Floats
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
 from app.operations.registry import Command, Operation
-from knitcore.piece.standard import biaxial_test
+from knitcore.cloth.cut.standard_tests import biaxial_test
 
 
 class BiaxialRequest(PieceTestRequest):

@@ -11,9 +11,9 @@ from app.models.base import ResultModel
 from app.models.charts import RepeatInput, to_repeat
 from app.models.weighed import FROM_QUARTERS, WeighedRequest
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart
-from knitcore.fabric import Fabric
-from knitcore.shell.border import RULE_ROWS, RULE_STITCHES, advice
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.border import RULE_ROWS, RULE_STITCHES, advice
 
 _RULE = (
     f"Knitters make borders of {RULE_STITCHES[0]} to {RULE_STITCHES[1]} stitches or "

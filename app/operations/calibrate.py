@@ -16,16 +16,16 @@ from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
 from app.models.laws import LawResult, LawsRequest
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.registry import Command, Operation
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
-from knitcore.formats.law_files import LawFile, save_law
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.fit.calibration import Calibration, ForceCurve
+from knitcore.fit.calibration import calibrate as calibrated
+from knitcore.fit.field_comparison import Edges, compare
+from knitcore.fit.pull_fit import Reduction
+from knitcore.fit.strip_fit import fit_tests
+from knitcore.formats.read.law_files import LawFile, save_law
 from knitcore.measure.stretch_test import stated_direction
-from knitcore.measure.uniaxial import Reduction
 from knitcore.measure.uniaxial_files import Marks, read_stretch_test
-from knitcore.swatch.calibration import Calibration, ForceCurve
-from knitcore.swatch.calibration import calibrate as calibrated
-from knitcore.swatch.comparison import Edges, compare
-from knitcore.swatch.strip_fit import fit_tests
 
 
 class CalibrateRequest(FieldRequest, LawsRequest):

@@ -14,18 +14,15 @@ from app.context import Context
 from app.models.base import Positive, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.operations.registry import Command, Operation
-from knitcore.batch import BatchProgress
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.batch import BatchProgress
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import Material
-from knitcore.materials.document import MaterialDocument
-from knitcore.materials.files import save_material_file
-from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM
-from knitcore.yarnlibrary.yarn_material import material_of
-from knitcore.yarnlibrary.yarn_table import (
+from knitcore.materials.material_document import MaterialDocument
+from knitcore.materials.material_files import save_material_file
+from knitcore.yarn.library.law_of_stretches import MAX_STRESS_N_PER_MM
+from knitcore.yarn.library.yarn_material import material_of
+from knitcore.yarn.library.yarn_table import (
     TENSIONS,
     YarnPlan,
     YarnRow,
@@ -34,6 +31,9 @@ from knitcore.yarnlibrary.yarn_table import (
     plan_for_material,
     plan_for_yarn,
 )
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.yarn_model import YarnModel
+from knitcore.yarn.study.relax import Branch
 
 MAX_SETTINGS = 24
 QUANTITIES = ("strain", "transverse_strain", "stress_n_per_mm", "bending_share", "contact_share")

@@ -13,13 +13,13 @@ from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
 from app.models.laws import LawsRequest
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.registry import Command, Operation
-from knitcore.errors import InputError
-from knitcore.fabric import Fabric
-from knitcore.formats.law_files import load_law
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Fabric
+from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel
+from knitcore.fit.field_comparison import Edges
+from knitcore.fit.field_comparison import compare as compared
+from knitcore.formats.read.law_files import load_law
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.swatch.comparison import Edges
-from knitcore.swatch.comparison import compare as compared
-from knitcore.swatch.models import EnergyModel, SheetModel
 
 
 class CompareRequest(FieldRequest, LawsRequest):

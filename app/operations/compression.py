@@ -12,7 +12,7 @@ from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.registry import Command, Operation
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 from knitcore.measure.compression import PROBE_WIDTH_MM, average_compression, fit_compression
 from knitcore.measure.compression_files import read_compression
 

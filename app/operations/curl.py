@@ -17,12 +17,12 @@ from app.models.posed import PosedView
 from app.models.weighed import Corners, TimeLimit, corner_lists
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
-from knitcore.chart import size_in_words
-from knitcore.fabric import Direction
-from knitcore.formats.curled import write_curled_glb, write_curled_npz
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import size_in_words
+from knitcore.cloth.space.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece, Pull
+from knitcore.cloth.space.curl import curl as curl_piece
+from knitcore.formats.write.curled import write_curled_glb, write_curled_npz
 from knitcore.garment.shaped import outline_marks
-from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece, Pull
-from knitcore.shell.curl import curl as curl_piece
 
 FLAT = 0.02
 """Edges that stand out by less than this fraction of the thickness count as flat."""

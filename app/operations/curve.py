@@ -13,8 +13,8 @@ from app.models.base import EndsOfList, Floats, IntervalResult
 from app.models.checks import CheckedBy
 from app.models.gauge import GaugedRequest
 from app.operations.registry import Command, Operation
-from knitcore.errors import check_cancelled
-from knitcore.fabric import Direction
+from knitcore.base.errors import check_cancelled
+from knitcore.chart.fabric import Direction
 from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM, increasing
 from knitcore.prediction.curve import curve as chart_curve
 

@@ -9,7 +9,7 @@ from pydantic import RootModel
 from app.context import Context
 from app.models.base import NoRequest
 from app.operations.registry import Operation
-from knitcore.formats.design import design_schema as schema_of_designs
+from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 
 
 class DesignSchema(RootModel[dict[str, Any]]):

@@ -22,9 +22,9 @@ from app.models.weighed import (
 )
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
-from knitcore.geometry.body import Body
-from knitcore.shell.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
-from knitcore.shell.drape import drape as drape_cloth
+from knitcore.cloth.space.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
+from knitcore.cloth.space.drape import drape as drape_cloth
+from knitcore.draw.body import Body
 
 DISC_THICK_MM = 10.0
 """Of the disc that is shown."""

@@ -20,20 +20,20 @@ from app.operations.estimate_report import (
     text_of_left_out,
 )
 from app.operations.registry import Command, Operation
-from knitcore.errors import InputError
-from knitcore.estimate.estimate import (
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.formats.read.law_files import law_from_mapping, load_law
+from knitcore.materials.estimate.estimate import (
     INTERVAL_SOURCE,
     FabricEstimate,
     MeasuredSwatch,
     YarnEstimate,
     estimate_yarn,
 )
-from knitcore.estimate.material import estimated_material
-from knitcore.estimate.model import left_out
-from knitcore.fabric import Direction, Fabric
-from knitcore.formats.law_files import law_from_mapping, load_law
-from knitcore.materials.document import MaterialDocument
-from knitcore.materials.files import save_material_file
+from knitcore.materials.estimate.estimated_material import estimated_material
+from knitcore.materials.estimate.yarn_statistics import left_out
+from knitcore.materials.material_document import MaterialDocument
+from knitcore.materials.material_files import save_material_file
 
 
 class SwatchInput(RequestModel):

@@ -9,8 +9,8 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import NoRequest, ResultModel
 from app.operations.registry import Operation
-from knitcore.estimate.model import left_out, library_table
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.materials.estimate.yarn_statistics import left_out, library_table
 
 
 class LeftOutResult(ResultModel):

@@ -16,12 +16,12 @@ from app.models.gauge import GaugeInput
 from app.models.laws import LawsRequest
 from app.models.uploads import Content
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart, check_stitches, size_in_words
-from knitcore.extensions import IDENTIFIER
-from knitcore.formats.export import ExportedFile, ExportKind, ExportOptions, export_chart
-from knitcore.formats.knitout import Finish
-from knitcore.formats.layout import DesignLayout
-from knitcore.worked import Construction, Side
+from knitcore.base.extensions import IDENTIFIER
+from knitcore.chart.row_sides import Construction, Side
+from knitcore.chart.stitch_chart import StitchChart, check_stitches, size_in_words
+from knitcore.formats.designs.layout import DesignLayout
+from knitcore.formats.write.export import ExportedFile, ExportKind, ExportOptions, export_chart
+from knitcore.formats.write.knitout import Finish
 
 MAX_STITCHES: dict[str, int] = {
     ExportKind.KNITOUT: 20_000,

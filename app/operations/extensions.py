@@ -7,9 +7,9 @@ from pydantic import Field
 from app.context import Context
 from app.models.base import NoRequest, ResultModel
 from app.operations.registry import Command, Operation
-from knitcore.extensions import ExtensionError, Group, Offer
-from knitcore.extensions import extensions as installed
-from knitcore.formats.export import Exporter
+from knitcore.base.extensions import ExtensionError, Group, Offer
+from knitcore.base.extensions import extensions as installed
+from knitcore.formats.write.export import Exporter
 from knitcore.materials import Material
 
 KINDS: dict[Group, type[Offer]] = {

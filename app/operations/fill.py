@@ -25,12 +25,12 @@ from app.models.charts import (
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
 from app.service.results.atlases import Extent
-from knitcore.chart import StitchChart, size_in_words
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
 from knitcore.design.part_targets import Parts, PartTarget, target_maps, target_parts
-from knitcore.errors import InputError
-from knitcore.formats.stitch_maps import read_wanted_moduli
+from knitcore.formats.write.stitch_maps import read_wanted_moduli
 from knitcore.garment.shaped import outline_marks
 
 Maps = tuple[NDArray[np.float64], NDArray[np.float64], Parts | None]

@@ -17,11 +17,11 @@ from app.models.checks import CheckedBy
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
 from app.service.results.atlases import EXTENTS, Extent
+from knitcore.base.errors import InputError
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas, load_atlas
 from knitcore.design.cost import CostLimits
 from knitcore.design.find import Candidate, find_fabric
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM, Quantity, Target, WornTube
-from knitcore.errors import InputError
 from knitcore.materials import load_library
 
 MAX_MATERIALS = 16

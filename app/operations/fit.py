@@ -14,12 +14,12 @@ from app.models.checks import CheckedBy
 from app.models.laws import ElasticConstants, LawConstants, LawResult, elastic_constants_of
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.registry import Command, Operation
-from knitcore.fabric import Direction
-from knitcore.formats.law_files import LawFile, save_law
-from knitcore.materials.document import CurveDocument
-from knitcore.measure.uniaxial import LawFit, Reduction, Residuals
+from knitcore.chart.fabric import Direction
+from knitcore.fit.pull_fit import LawFit, Reduction, Residuals
+from knitcore.fit.strip_fit import fit_tests
+from knitcore.formats.read.law_files import LawFile, save_law
+from knitcore.materials.material_document import CurveDocument
 from knitcore.measure.uniaxial_files import read_stretch_test
-from knitcore.swatch.strip_fit import fit_tests
 
 PLOTTED_POINTS = 2000
 """Most points of a residual plot: more than a screen resolves."""

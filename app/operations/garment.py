@@ -16,18 +16,18 @@ from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import CellLines, ChartLines, MaterialName, RepeatText
 from app.models.laws import Extensibility, LawsRequest, Moduli
 from app.operations.registry import Command, Operation
-from knitcore.chart import size_in_words
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
-from knitcore.formats.design import DesignFile, write_design
-from knitcore.formats.garment_design import design_of_plan
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import size_in_words
+from knitcore.formats.designs.design_file import DesignFile, write_design
+from knitcore.formats.designs.garment_design import design_of_plan
 from knitcore.garment.gauge import Gauge, GaugeLength, GaugeSet
 from knitcore.garment.glove import Finger, Hand, glove
 from knitcore.garment.plan import GarmentPlan
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
-from knitcore.garment.worn import Fit, Worn
+from knitcore.garment.worn_piece import Fit, Worn
 from knitcore.materials import Material
-from knitcore.materials.uncertainty import log_interval
+from knitcore.materials.law_uncertainty import log_interval
 
 Length = Annotated[float, Field(gt=0, le=5000)]
 Ease = Annotated[float, Field(ge=-0.6, le=1)]

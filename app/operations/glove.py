@@ -16,10 +16,10 @@ from app.operations.garment import Glove, KnitterRequest, measured_options, read
 from app.operations.limb import HEADING, LimbPlaceResult
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
-from knitcore.fabric import Fabric
+from knitcore.chart.fabric import Fabric
+from knitcore.draw.body import Body
 from knitcore.garment.worn_glove import GloveOnHand, answer_of, glove_on_hand
-from knitcore.geometry.body import Body
-from knitcore.materials.uncertainty import in_a_sentence
+from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN
 
 SIMPLE = (

@@ -21,10 +21,10 @@ from app.models.weighed import (
 )
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
+from knitcore.cloth.space.curl import TIME_LIMIT_S
+from knitcore.cloth.space.hang import HungBy
+from knitcore.cloth.space.hang import hang as hang_piece
 from knitcore.garment.shaped import outline_marks
-from knitcore.shell.curl import TIME_LIMIT_S
-from knitcore.shell.hang import HungBy
-from knitcore.shell.hang import hang as hang_piece
 
 
 class HangRequest(WeighedRequest):

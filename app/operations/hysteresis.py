@@ -13,12 +13,12 @@ from app.models.friction import HISTORIES, RestSizeResult, rest_line
 from app.models.laws import LawsRequest
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.registry import Command, Operation
-from knitcore.fabric import Direction
-from knitcore.yarnlevel import hysteresis as loops
-from knitcore.yarnlevel.friction import MAX_COEFFICIENT, MAX_STITCHES
-from knitcore.yarnlevel.hysteresis import DEFAULT_POINTS, MAX_CYCLES
-from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlibrary.yarn_friction import yarn_friction
+from knitcore.chart.fabric import Direction
+from knitcore.yarn.library.yarn_friction import yarn_friction
+from knitcore.yarn.model.friction import MAX_COEFFICIENT, MAX_STITCHES
+from knitcore.yarn.study import hysteresis as loops
+from knitcore.yarn.study.hysteresis import DEFAULT_POINTS, MAX_CYCLES
+from knitcore.yarn.study.relax import relax
 
 
 class HysteresisRequest(StitchRequest, LawsRequest):

@@ -11,10 +11,10 @@ from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartLines, RepeatText
 from app.models.uploads import UploadedFile, stored
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart
-from knitcore.formats.chart_files import read_chart, read_piece
-from knitcore.formats.design import read_design
-from knitcore.formats.layout import DesignLayout, layout_notes, layout_of
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.designs.design_file import read_design
+from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
+from knitcore.formats.read.chart_files import read_chart, read_piece
 
 
 class ImportRequest(RequestModel):

@@ -18,10 +18,12 @@ from app.models.laws import FabricRequest
 from app.models.posed import PosedView
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
-from knitcore.chart import check_stitches
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
-from knitcore.formats.curled import write_curled_glb
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import check_stitches
+from knitcore.cloth.space.limb_tube import TubeOnLimb, worn_tube
+from knitcore.draw.body import Body
+from knitcore.formats.write.curled import write_curled_glb
 from knitcore.garment.limb import (
     LEAST_GIRTH_MM,
     MAX_GIRTHS,
@@ -30,12 +32,10 @@ from knitcore.garment.limb import (
     MeasuredLimb,
     on_limb,
 )
-from knitcore.geometry.body import Body
-from knitcore.materials.uncertainty import in_a_sentence
+from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
 from knitcore.prediction.patches import SIDE
 from knitcore.prediction.predict import predict
-from knitcore.shell.worn import TubeOnLimb, worn_tube
 
 MAX_STITCHES = 40_000
 """Of a chart that is itself the tube."""

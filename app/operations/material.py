@@ -24,14 +24,14 @@ from app.models.laws import (
     moduli_of,
 )
 from app.operations.registry import Operation
-from knitcore.errors import InputError
-from knitcore.fabric import PHASES, Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import PHASES, Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import FabricRecord, Material
-from knitcore.materials.document import CurveDocument
-from knitcore.materials.uncertainty import in_a_sentence
-from knitcore.mechanics.local import StitchTable, stitch_table
+from knitcore.materials.law_uncertainty import in_a_sentence
+from knitcore.materials.material_document import CurveDocument
+from knitcore.mechanics.local_moduli import StitchTable, stitch_table
 
 CURVE_POINTS = 60
 CURVE_END = 0.85

@@ -22,9 +22,9 @@ from app.models.weighed import (
 )
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
-from knitcore.fabric import Direction
-from knitcore.geometry.body import Body
-from knitcore.shell.overhang import overhang as hang_over
+from knitcore.chart.fabric import Direction
+from knitcore.cloth.space.overhang import overhang as hang_over
+from knitcore.draw.body import Body
 
 TABLE_MM = 40.0
 """Of the table that is shown, from its edge to the back."""

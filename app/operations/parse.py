@@ -6,7 +6,7 @@ from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartLines, ChartText, RepeatText
 from app.operations.registry import Operation
-from knitcore.chart import StitchChart
+from knitcore.chart.stitch_chart import StitchChart
 
 
 class ParseRequest(RequestModel):

@@ -6,7 +6,7 @@ from app.context import Context
 from app.models.base import NoRequest, ResultModel
 from app.models.charts import RepeatText
 from app.operations.registry import Operation
-from knitcore.patterns import PATTERNS
+from knitcore.chart.patterns import PATTERNS
 
 
 class PatternResult(ResultModel):

@@ -14,7 +14,7 @@ from pydantic import BaseModel
 from app.context import Context
 from app.models.base import read
 from app.models.checks import all_faults
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 Result = TypeVar("Result", bound=BaseModel)
 T = TypeVar("T")

@@ -16,12 +16,13 @@ from app.models.charts import to_repeat
 from app.models.checks import CheckedBy
 from app.models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
 from app.operations.registry import Command, Operation
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
+from knitcore.cloth.cut import PieceTest, cloth_under, write_piece_test
+from knitcore.cloth.cut import cut_test as solve
+from knitcore.cloth.cut.cut_results import SUFFIXES
+from knitcore.cloth.cut.cut_uncertainty import piece_spreads
 from knitcore.materials import Material
-from knitcore.materials.uncertainty import Z_SCORE
-from knitcore.piece import PieceTest, cloth_under, solve, write_piece_test
-from knitcore.piece.results import SUFFIXES
-from knitcore.piece.uncertainty import piece_spreads
+from knitcore.materials.law_uncertainty import Z_SCORE
 
 
 class PieceRequest(PieceTestRequest):

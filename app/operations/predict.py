@@ -10,13 +10,13 @@ from app.models.charts import OutlineInput
 from app.models.gauge import GaugedRequest
 from app.models.laws import ElasticConstants, Extensibility
 from app.operations.registry import Command, Operation
-from knitcore.chart import size_in_words
-from knitcore.fabric import Direction
+from knitcore.chart.fabric import Direction
+from knitcore.chart.segments import segment_map
+from knitcore.chart.stitch_chart import size_in_words
+from knitcore.draw.laid_out import size_at_rest
 from knitcore.garment.shaped import ShapedChart, outline_marks
-from knitcore.geometry.laid_out import size_at_rest
 from knitcore.prediction.predict import predict as predict_chart
 from knitcore.prediction.swept import worth_relaxing
-from knitcore.segments import segment_map
 
 
 class PredictRequest(GaugedRequest):

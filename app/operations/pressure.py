@@ -15,12 +15,12 @@ from app.models.base import Ends, IntervalResult
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
-from knitcore.formats.law_files import LawFile, law_from_mapping, load_law
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.formats.read.law_files import LawFile, law_from_mapping, load_law
 from knitcore.garment.limb import tube_for, tube_pressure
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.uncertainty import (
+from knitcore.materials.law_uncertainty import (
     Z_SCORE,
     Interval,
     LawUncertainty,

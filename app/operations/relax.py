@@ -16,19 +16,19 @@ from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_spl
 from app.models.gauge import FoundGauge
 from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart, size_in_words
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
-from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS
-from knitcore.phases import pure_fabric
+from knitcore.base.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.chart.phases import pure_fabric
+from knitcore.chart.stitch_chart import StitchChart, size_in_words
+from knitcore.materials.law_uncertainty import YARN_LEVEL_ERRORS
 from knitcore.prediction.swept import size_from_relaxation
-from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.hysteresis import History, rest_sizes
-from knitcore.yarnlevel.lowest import FOLLOWED_UP_TO, lowest
-from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
-from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlevel.splines import has_mirrors, size_intervals
-from knitcore.yarnlevel.whole import WINDOWS_FROM
-from knitcore.yarnlibrary.yarns import ChartYarn, phase_shares
+from knitcore.yarn.library.yarns import ChartYarn, phase_shares
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.solve.splines import has_mirrors, size_intervals
+from knitcore.yarn.study.hysteresis import History, rest_sizes
+from knitcore.yarn.study.lowest import FOLLOWED_UP_TO, lowest
+from knitcore.yarn.study.relax import Branch, RelaxedRepeat
+from knitcore.yarn.study.whole_chart import WINDOWS_FROM
 
 
 class RelaxRequest(RubbedRequest):

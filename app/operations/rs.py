@@ -9,8 +9,8 @@ from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import Moduli
 from app.operations.registry import Command, Operation
-from knitcore.fabric import Direction, Fabric
-from knitcore.materials.uncertainty import RS_ERRORS, RS_LOG_SD, log_interval
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.materials.law_uncertainty import RS_ERRORS, RS_LOG_SD, log_interval
 from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import rs_fabrics
 

@@ -17,11 +17,11 @@ from app.models.charts import ChartLines, MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
 from app.service.results.atlases import Extent
-from knitcore.chart import size_in_words
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import size_in_words
 from knitcore.design.atlas import Atlas
 from knitcore.design.shape import fill_shape
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
 
 
 def _rounded(values: Any) -> Any:

@@ -18,12 +18,10 @@ from app.models.gauge import GaugedRequest
 from app.models.stretched import StretchView
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart, check_stitches
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
-from knitcore.garment.shaped import outline_marks
-from knitcore.law.stiffening import EXTENSION_START
-from knitcore.swatch import (
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart, check_stitches
+from knitcore.cloth.flat import (
     Clamps,
     EnergyModel,
     Sheet,
@@ -32,9 +30,11 @@ from knitcore.swatch import (
     pull,
     strain_at_force,
 )
-from knitcore.swatch.margins import StretchMargins, sampled_steps, stretch_margins
-from knitcore.swatch.stitches import stitch_at, stitch_states
-from knitcore.swatch.strip import load_levels
+from knitcore.cloth.flat.margins import StretchMargins, sampled_steps, stretch_margins
+from knitcore.cloth.flat.strip import load_levels
+from knitcore.draw.strained_stitches import stitch_at, stitch_states
+from knitcore.garment.shaped import outline_marks
+from knitcore.law.stiffening import EXTENSION_START
 
 Array = NDArray[np.float32]
 
@@ -302,7 +302,7 @@ def _command(request: StretchRequest, context: Context, out: Path | None) -> Str
     chart = to_chart(request.chart)
     test, margins = _test(chart, request, context)
     if out is not None:
-        from knitcore.swatch.files import write_fields
+        from knitcore.cloth.flat.field_files import write_fields
 
         write_fields(test, out)
     return _curve(request, test, margins)

@@ -16,20 +16,20 @@ from app.models.friction import RubbedRequest, on_splines
 from app.models.laws import ElasticConstants, elastic_constants_of
 from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError, KnitcoreError
-from knitcore.fabric import Direction
-from knitcore.materials.uncertainty import (
+from knitcore.base.errors import InputError, KnitcoreError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.materials.law_uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_STRAIN_LOG_SD,
     log_interval,
 )
-from knitcore.yarnlevel.hysteresis import Hysteresis, hysteresis, pull
-from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlevel.results import RelaxedCell, Sweep
-from knitcore.yarnlevel.sweep import sweep as swept
-from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_sweeps
-from knitcore.yarnlibrary.yarns import ChartYarn
+from knitcore.yarn.library.law_of_stretches import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_sweeps
+from knitcore.yarn.library.yarns import ChartYarn
+from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
+from knitcore.yarn.study.hysteresis import Hysteresis, hysteresis, pull
+from knitcore.yarn.study.relax import Branch
+from knitcore.yarn.study.sweep import sweep as swept
 
 FACTOR = log_interval(1.0, YARN_LEVEL_STRAIN_LOG_SD).high
 """90 % interval of the strains of knitted cloth, as a factor either way."""

@@ -12,7 +12,7 @@ from app.context import Context
 from app.models.base import EndsOfList, Floats
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
 from app.operations.registry import Command, Operation
-from knitcore.piece.standard import trellis_test
+from knitcore.cloth.cut.standard_tests import trellis_test
 
 
 class TrellisRequest(PieceTestRequest):

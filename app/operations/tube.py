@@ -10,15 +10,15 @@ from app.context import Context
 from app.models.base import Ends, IntervalResult
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.registry import Command, Operation
-from knitcore.materials.uncertainty import (
+from knitcore.materials.law_uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_SIZE_LOG_SD,
     log_interval,
 )
-from knitcore.yarnlevel.bending import MAX_STITCHES
-from knitcore.yarnlevel.lowest import lowest
-from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.tube import MAX_WALES, MIN_WALES, in_the_round
+from knitcore.yarn.study.bending import MAX_STITCHES
+from knitcore.yarn.study.lowest import lowest
+from knitcore.yarn.study.relax import relax
+from knitcore.yarn.study.yarn_tube import MAX_WALES, MIN_WALES, in_the_round
 
 
 class TubeRequest(StitchRequest):

@@ -13,11 +13,11 @@ from app.models.base import Ends, IntervalResult
 from app.models.charts import ChartInput, to_chart
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.registry import Command, Operation
-from knitcore.chart import size_in_words
-from knitcore.materials.uncertainty import YARN_LEVEL_ERRORS
-from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.splines import size_intervals
-from knitcore.yarnlevel.whole import MAX_ROUNDS, WholeShape, relax_whole
+from knitcore.chart.stitch_chart import size_in_words
+from knitcore.materials.law_uncertainty import YARN_LEVEL_ERRORS
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.solve.splines import size_intervals
+from knitcore.yarn.study.whole_chart import MAX_ROUNDS, WholeShape, relax_whole
 
 
 class WholeRequest(StitchRequest):

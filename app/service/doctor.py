@@ -18,7 +18,7 @@ from app.service.store.database import Database, sqlite_file
 from app.service.store.file import check_not_lost, check_reserved
 from app.service.store.lock import holder
 from app.service.store.schema import check_schema
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 if TYPE_CHECKING:
     from app.service.compute.cluster import Cluster

@@ -19,7 +19,7 @@ from pydantic_settings import (
 )
 
 from app.service.memory import machine_bytes
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 NO_SETTINGS = frozenset(
     f"KNITCORE_{name}"

@@ -7,7 +7,7 @@ from enum import StrEnum
 import numpy as np
 import viser
 
-from knitcore.arrays import Array
+from knitcore.base.arrays import Array
 
 FIELD_OF_VIEW = 0.5
 """Vertical, radians: a long lens, so that loops at the edge look like those in the middle."""

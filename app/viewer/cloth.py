@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from app.drawing.colours import linear
 from app.drawing.fabric import FabricScene
-from knitcore.arrays import Array
-from knitcore.geometry.instances import quaternions, stitch_meshes, tube_sizes
-from knitcore.geometry.stitches import StitchShapes
+from knitcore.base.arrays import Array
+from knitcore.draw.instances import quaternions, stitch_meshes, tube_sizes
+from knitcore.draw.stitches import StitchShapes
 
 UNITS_PER_MM = 0.01
 """A scene is drawn in dm: browsers draw nothing that is 1000 units from the camera or farther, and

@@ -13,8 +13,8 @@ from app.drawing.colours import SKIN
 from app.drawing.fabric import Box, Drawing, FabricScene, Ground
 from app.viewer.camera import CameraSide, place_camera
 from app.viewer.cloth import UNITS_PER_MM, ShownStitches
-from knitcore.arrays import Array
-from knitcore.geometry.instances import level_of
+from knitcore.base.arrays import Array
+from knitcore.draw.instances import level_of
 
 STILL_S = 0.4
 """Tubes that a stretch has flattened are drawn again after this time without another change."""

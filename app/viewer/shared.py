@@ -16,7 +16,7 @@ from app.models.posed import PosedView
 from app.models.stretched import StretchView
 from app.viewer.share import page_html, recording
 from app.viewer.still import still_png
-from knitcore.chart import check_stitches
+from knitcore.chart.stitch_chart import check_stitches
 from knitcore.garment.shaped import outline_marks
 
 MAX_SHARED_STITCHES = 40_000

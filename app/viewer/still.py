@@ -13,10 +13,10 @@ from PIL import Image, ImageDraw
 from app.drawing.colours import SKIN, linear
 from app.drawing.fabric import Drawing
 from app.viewer.camera import FIELD_OF_VIEW, CameraSide, stand
-from knitcore.arrays import Array
-from knitcore.geometry.body import Floats
-from knitcore.geometry.placing import placed_lines
-from knitcore.geometry.tubes import resampled
+from knitcore.base.arrays import Array
+from knitcore.draw.body import Floats
+from knitcore.draw.placing import placed_lines
+from knitcore.draw.tubes import resampled
 
 SPACING = 0.5
 """Of the balls that a yarn is drawn as, over its radius."""

@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -86,7 +86,7 @@ class Atlas:
     ----------
     material : its identifier.
     fingerprint : of the material's laws and sizes; an atlas of other laws is not continued.
-    keys : the repeats (see :attr:`~knitcore.chart.StitchChart.key`).
+    keys : the repeats (see :attr:`~knitcore.chart.stitch_chart.StitchChart.key`).
     values : (repeats, len(VALUES)).
     curves : (repeats, 3, 2, stresses), strains at ``STRESS_N_PER_MM``: along a free pull, across
         it, and along a pull with the width held; each course-wise and wale-wise.

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.batch import BatchProgress, run_batch
-from knitcore.chart import StitchChart, as_chart
+from knitcore.base.batch import BatchProgress, run_batch
+from knitcore.base.errors import Cancelled, InputError, KnitcoreError, Progress
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
-from knitcore.errors import Cancelled, InputError, KnitcoreError, Progress
-from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material, as_material
 from knitcore.prediction.learned import SweptChart
 from knitcore.prediction.predict import predict
@@ -59,7 +59,7 @@ def build_atlas(
     repeats : in the order in which they are computed.
     file : where the atlas is kept. Entries of this material are not computed again. While it is
         built, finished parts are kept in a folder next to it, so it can be stopped at any point.
-    workers, scheduler : as :func:`knitcore.batch.run_batch`; by default in this process.
+    workers, scheduler : as :func:`knitcore.base.batch.run_batch`; by default in this process.
     progress : called with the number of repeats done and in all.
     cancelled : asked now and then.
 

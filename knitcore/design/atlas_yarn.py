@@ -13,8 +13,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from knitcore.batch import BatchProgress, run_batch
-from knitcore.chart import StitchChart
+from knitcore.base.batch import BatchProgress, run_batch
+from knitcore.base.errors import Cancelled, Progress
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
 from knitcore.design.atlas_build import (
     entry_of,
@@ -22,13 +24,11 @@ from knitcore.design.atlas_build import (
     material_fingerprint,
     predict_repeat,
 )
-from knitcore.errors import Cancelled, Progress
-from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.prediction.prediction import Source
 from knitcore.prediction.swept import simulated_record, swept_chart
-from knitcore.yarnlibrary.characterise import RepeatTask, characterise_repeat, law_of
-from knitcore.yarnlibrary.yarns import yarn_for
+from knitcore.yarn.library.characterise import RepeatTask, characterise_repeat, law_of
+from knitcore.yarn.library.yarns import yarn_for
 
 Document = dict[str, Any]
 
@@ -51,7 +51,7 @@ def improve_atlas(
     file : the atlas. It is written when the run ends or is stopped, and when a killed run is
         resumed.
     most_stitches : of the largest repeat; small ones come first.
-    workers, scheduler : as :func:`knitcore.batch.run_batch`.
+    workers, scheduler : as :func:`knitcore.base.batch.run_batch`.
     progress : called with the number of repeats done and in all.
     cancelled : asked now and then.
 

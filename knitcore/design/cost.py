@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from knitcore.chart import StitchChart
-from knitcore.segments import segment_map
+from knitcore.chart.segments import segment_map
+from knitcore.chart.stitch_chart import StitchChart
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore.arrays import Array
-from knitcore.fabric import Direction
-from knitcore.materials.uncertainty import Interval
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction
+from knitcore.materials.law_uncertainty import Interval
 
 OFF = 0.10
 """Relative deviation above which a stitch counts as off."""

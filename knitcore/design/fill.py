@@ -1,10 +1,10 @@
 """Fill a field: a chart whose local moduli follow a map of targets.
 
 A map that is (nearly) some chart's own gives that chart back (:mod:`knitcore.design.readback`). Any
-other map is filled by patches (:mod:`knitcore.design.patches`): every region gets the repeat with
-the nearest effective moduli, from an atlas or a mixture of two of its repeats
+other map is filled by patches (:mod:`knitcore.design.region_patches`): every region gets the repeat
+with the nearest effective moduli, from an atlas or a mixture of two of its repeats
 (:mod:`knitcore.design.mixtures`). Patches are fitted to their neighbours
-(:mod:`knitcore.design.placing`), measured in the finite swatch
+(:mod:`knitcore.design.patch_placing`), measured in the finite swatch
 (:mod:`knitcore.design.patch_check`), and chosen again where one misses its target there. The same
 seed gives the same chart.
 """
@@ -17,23 +17,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.bounds import check_range
-from knitcore.chart import StitchChart, check_chart_size
+from knitcore.base.arrays import Array
+from knitcore.base.bounds import check_range
+from knitcore.base.errors import Cancelled, InputError
+from knitcore.chart.stitch_chart import StitchChart, check_chart_size
+from knitcore.cloth.flat.grid import check_cloth
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import entry_of, predict_repeat
 from knitcore.design.explain import OFF, Patch, unreached
 from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
-from knitcore.design.patches import connected, smooth, unevenness, wanted_labels
-from knitcore.design.placing import placed
+from knitcore.design.patch_placing import placed
 from knitcore.design.progress import SearchProgress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
-from knitcore.errors import Cancelled, InputError
+from knitcore.design.region_patches import connected, smooth, unevenness, wanted_labels
 from knitcore.materials import Material
-from knitcore.materials.uncertainty import Interval
-from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
-from knitcore.swatch.grid import check_cloth
+from knitcore.materials.law_uncertainty import Interval
+from knitcore.mechanics.local_moduli import LocalModuli, local_moduli, stitch_table
 
 Labels = NDArray[np.intp]
 

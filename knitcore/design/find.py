@@ -9,15 +9,15 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.base.result import Result
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.cost import CostLimits, KnittingCost
 from knitcore.design.targets import Quantity, Target, WornTube, values_of
-from knitcore.errors import InputError
 from knitcore.materials import Interval, Laws
 from knitcore.materials.library import INCONSISTENT
-from knitcore.result import Result
 
 __all__ = ["Candidate", "FoundFabrics", "Quantity", "Target", "WornTube", "find_fabric"]
 

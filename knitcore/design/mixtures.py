@@ -15,14 +15,14 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.phases import quarter_phases
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import predict_repeat
-from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
 from knitcore.mechanics.lamination import laminated
-from knitcore.phases import quarter_phases
 
 CLOSE = 0.02
 """A mixture nearer than this (in logarithms) is taken at once."""

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import check_chart_size
-from knitcore.errors import InputError
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import check_chart_size
 
 Parts = NDArray[np.intp]
 

@@ -13,14 +13,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.errors import Cancelled
-from knitcore.fabric import Direction
+from knitcore.base.arrays import Array
+from knitcore.base.errors import Cancelled
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.flat import Fields, strip_test
 from knitcore.materials import Material
 from knitcore.mechanics.homogenisation import homogenise
 from knitcore.prediction.quarter_laws import flat_laws
-from knitcore.swatch import Fields, strip_test
 
 SMALL_STRAIN = 0.005
 LOADED = 0.2

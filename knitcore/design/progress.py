@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from knitcore.errors import Cancelled, CancelledError
+from knitcore.base.errors import Cancelled, CancelledError
 
 
 @dataclass

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.mechanics.local import StitchTable
-from knitcore.phases import ABOVE, BELOW, LEFT, RIGHT, surroundings
+from knitcore.base.arrays import Array
+from knitcore.chart.phases import ABOVE, BELOW, LEFT, RIGHT, surroundings
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.mechanics.local_moduli import StitchTable
 
 Odd = NDArray[np.bool_]
 

@@ -18,15 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from knitcore.arrays import Array
-from knitcore.bounds import check_positive, check_range
-from knitcore.chart import StitchChart, check_chart_size
+from knitcore.base.arrays import Array
+from knitcore.base.bounds import check_positive, check_range
+from knitcore.base.errors import Cancelled, InputError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart, check_chart_size
+from knitcore.cloth.flat import strip_test
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.progress import SearchProgress
-from knitcore.errors import Cancelled, InputError
-from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
-from knitcore.swatch import strip_test
 
 FORCES_N_PER_MM = (0.01, 0.05, 0.2)
 """First guesses of the common force, since soft and stiff bands can narrow alike."""

@@ -10,11 +10,11 @@ from typing import Self
 import numpy as np
 from scipy.special import ndtr
 
-from knitcore.arrays import Array
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
 from knitcore.design.atlas import Atlas
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
-from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.mechanics.pressure import MIN_LENGTH, MMHG_PER_KPA
 
 USUAL_LOAD_N_PER_MM = 0.1

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from knitcore.errors import InputError
-from knitcore.fabric import Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.prediction.pure import GAUGE_LOG_SD
 from knitcore.prediction.size import RelaxedSize

@@ -17,12 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore.bounds import check_range
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.bounds import check_range
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.plan import GarmentPlan, Part, make_plan
-from knitcore.garment.worn import Fit, Worn, worn
+from knitcore.garment.worn_piece import Fit, Worn, worn
 from knitcore.materials import Material
 
 CROTCH_ROWS = 2

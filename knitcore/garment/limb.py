@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from knitcore.arrays import Array
-from knitcore.bounds import check_positive
-from knitcore.errors import InputError
+from knitcore.base.arrays import Array
+from knitcore.base.bounds import check_positive
+from knitcore.base.errors import InputError
 from knitcore.law.response import MAX_STRESS_N_PER_MM
-from knitcore.materials.uncertainty import Interval
+from knitcore.materials.law_uncertainty import Interval
 from knitcore.mechanics.pressure import (
     MAX_CIRCUMFERENCE_MM,
     MIN_LENGTH,
@@ -73,8 +73,8 @@ def tube_pressure(along: Along, rest_mm: float, worn_mm: float) -> TubePressure:
     Examples
     --------
     >>> from knitcore.prediction.predict import predict
-    >>> from knitcore.chart import StitchChart
-    >>> from knitcore.fabric import Direction
+    >>> from knitcore.chart.stitch_chart import StitchChart
+    >>> from knitcore.chart.fabric import Direction
     >>> from knitcore.materials import material
     >>> rib = predict(StitchChart.parse("KP"), material("acrylic")).along(Direction.COURSE)
     >>> tube_pressure(rib, 150, 190).kpa.high > tube_pressure(rib, 150, 170).kpa.high

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import runs
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.base.arrays import runs
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.shaped import ShapedChart
 from knitcore.prediction.size import RelaxedSize
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.regions import (
     Region,
@@ -21,7 +21,7 @@ from knitcore.garment.regions import (
     yarn_use,
 )
 from knitcore.garment.shaped import ShapedChart
-from knitcore.garment.worn import Worn
+from knitcore.garment.worn_piece import Worn
 from knitcore.materials import Material
 
 FABRIC_COLOURS = {

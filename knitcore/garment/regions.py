@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.bounds import check_positive
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.base.bounds import check_positive
+from knitcore.base.errors import InputError
+from knitcore.chart.phases import quarter_phases
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import Gauge
 from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
-from knitcore.materials.loops import loop_lengths_mm
-from knitcore.materials.uncertainty import log_interval
-from knitcore.phases import quarter_phases
+from knitcore.materials.law_uncertainty import log_interval
+from knitcore.materials.loop_lengths import loop_lengths_mm
 from knitcore.prediction.predict import predict
 
 MISFIT = 0.10

@@ -8,11 +8,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore import showing
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.base import showing
+from knitcore.base.errors import InputError
+from knitcore.chart.phases import continued
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.inscribed import largest_rectangle
-from knitcore.phases import continued
 
 INSIDE, OUTSIDE = "x", "."
 
@@ -83,7 +83,7 @@ class ShapedChart:
         return tuple(zip(first.tolist(), last.tolist(), strict=True))
 
     def continued(self) -> StitchChart:
-        """The chart :func:`~knitcore.phases.continued` beyond its outline."""
+        """The chart :func:`~knitcore.chart.phases.continued` beyond its outline."""
         return continued(self.chart, self.stitch)
 
     def rectangle_inside(self) -> StitchChart:

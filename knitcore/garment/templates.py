@@ -8,12 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from knitcore.bounds import check_range
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.bounds import check_range
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.plan import GarmentPlan, Part, make_plan
-from knitcore.garment.worn import Fit, Worn, worn
+from knitcore.garment.worn_piece import Fit, Worn, worn
 from knitcore.materials import Material
 
 MAX_CHANGE = 2

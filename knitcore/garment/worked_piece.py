@@ -1,6 +1,7 @@
 """Rows of a piece as they are worked, with increases and decreases at their edges.
 
-They are a type of their own, never mixed with the face grid; :mod:`knitcore.worked` has the rule.
+They are a type of their own, never mixed with the face grid; :mod:`knitcore.chart.row_sides` has
+the rule.
 """
 
 from __future__ import annotations
@@ -10,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore.chart import StitchChart, check_chart_size
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
+from knitcore.chart.row_sides import Construction, Side, side_of_row
+from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
-from knitcore.worked import Construction, Side, side_of_row
 
 
 @dataclass(frozen=True)

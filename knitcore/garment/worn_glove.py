@@ -16,9 +16,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.glove import CROTCH_ROWS, GloveLayout, Hand, glove
 from knitcore.garment.limb import LimbPlace, place_on

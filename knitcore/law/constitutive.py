@@ -23,9 +23,9 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.arrays import Array
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
 from knitcore.law.stiffening import CoupledStiffening, StiffeningForm, shear_response
 
 DEFAULT_SHEAR_MODULUS_N_PER_MM = 0.01

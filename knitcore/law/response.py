@@ -9,8 +9,8 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.arrays import Array
-from knitcore.fabric import Direction
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress, held_strains_at_stress
 

@@ -24,7 +24,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.arrays import Array
+from knitcore.base.arrays import Array
 
 EXTENSION_START = 0.98
 """s above which the full form is continued by its osculating quadratic."""

@@ -1,11 +1,6 @@
 """Materials: yarns, their fabrics and laws; the paper's tables, and users' own files."""
 
-from knitcore.materials.figures import Figure, FigureTable, paper_figures
-from knitcore.materials.files import (
-    load_material_file,
-    material_from_mapping,
-    save_material_file,
-)
+from knitcore.materials.law_uncertainty import Interval, LawUncertainty
 from knitcore.materials.library import (
     as_material,
     load_library,
@@ -14,8 +9,13 @@ from knitcore.materials.library import (
     offered_materials,
 )
 from knitcore.materials.material import FabricRecord, Laws, Material, Origin, Yarn
-from knitcore.materials.measured import MeasuredCurve
-from knitcore.materials.uncertainty import Interval, LawUncertainty
+from knitcore.materials.material_files import (
+    load_material_file,
+    material_from_mapping,
+    save_material_file,
+)
+from knitcore.materials.measured_curves import MeasuredCurve
+from knitcore.materials.printed_figures import Figure, FigureTable, paper_figures
 
 __all__ = [
     "FabricRecord",

@@ -13,9 +13,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.figures import Figure
+from knitcore.materials.printed_figures import Figure
 
 MODULUS_TOLERANCE = 0.01
 """Largest relative deviation of a law's Young's moduli from those stated for it."""

@@ -9,15 +9,15 @@ from functools import cache
 from statistics import median
 from types import MappingProxyType
 
-from knitcore.errors import InputError
-from knitcore.extensions import Group, offered
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.base.extensions import Group, offered
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.consistency import LAW_QUANTITIES, consistent_law
-from knitcore.materials.figures import Figure, paper_figures, read_packaged
+from knitcore.materials.law_uncertainty import DEFAULT_POISSON_SD, LawUncertainty, log_deviation
 from knitcore.materials.material import MM_PER_INCH, FabricRecord, Laws, Material, Origin, Yarn
+from knitcore.materials.printed_figures import Figure, paper_figures, read_packaged
 from knitcore.materials.refitted import refitted
-from knitcore.materials.uncertainty import DEFAULT_POISSON_SD, LawUncertainty, log_deviation
 
 SIMULATION = "simulation"
 NEEDLE_2_MM = "needle-2.0mm"
@@ -95,7 +95,7 @@ def material(identifier: str, laws: Laws | str | None = None) -> Material:
 
     Examples
     --------
-    >>> from knitcore.fabric import Direction, Fabric
+    >>> from knitcore.chart.fabric import Direction, Fabric
     >>> round(material("acrylic").law(Fabric.GARTER).modulus_course, 2)
     0.13
     >>> round(material("acrylic", laws="published").law(Fabric.GARTER).modulus_course, 2)
@@ -143,7 +143,7 @@ def offered_materials() -> dict[str, Material]:
 
     Warns
     -----
-    knitcore.extensions.ExtensionWarning
+    knitcore.base.extensions.ExtensionWarning
         Of every extension that cannot be used.
     """
     return offered(Group.MATERIALS, Material, {*load_library(), *load_variants()})

@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
 
-from knitcore import showing
-from knitcore.choice import Choice
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base import showing
+from knitcore.base.choice import Choice
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.figures import Figure
-from knitcore.materials.measured import MeasuredCurve
-from knitcore.materials.uncertainty import LawUncertainty
+from knitcore.materials.law_uncertainty import LawUncertainty
+from knitcore.materials.measured_curves import MeasuredCurve
+from knitcore.materials.printed_figures import Figure
 
 MM_PER_INCH = 25.4
 

@@ -15,9 +15,9 @@ from functools import cache
 from types import MappingProxyType
 
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.figures import read_packaged
+from knitcore.materials.law_uncertainty import CurveUncertainty, LawUncertainty
 from knitcore.materials.material import FabricRecord, Origin
-from knitcore.materials.uncertainty import CurveUncertainty, LawUncertainty
+from knitcore.materials.printed_figures import read_packaged
 
 CONSTANTS = tuple(field.name for field in fields(ConstitutiveLaw))
 CURVE = tuple(field.name for field in fields(CurveUncertainty))

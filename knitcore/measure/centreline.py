@@ -17,8 +17,8 @@ from skimage.measure import label, regionprops
 from skimage.morphology import isotropic_opening, skeletonize
 from skimage.transform import rescale
 
-from knitcore.arrays import Array
-from knitcore.errors import InputError
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
 
 Mask = NDArray[np.bool_]
 

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import curve_fit
 
-from knitcore.arrays import Array
-from knitcore.bounds import check_range
-from knitcore.errors import InputError
+from knitcore.base.arrays import Array
+from knitcore.base.bounds import check_range
+from knitcore.base.errors import InputError
 from knitcore.measure.compression_files import CompressionTest
 
 PROBE_WIDTH_MM = 5.0

@@ -14,8 +14,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from knitcore.arrays import Array
-from knitcore.errors import InputError
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
 from knitcore.measure.tables import numbers, read_table, rows_by_label
 from knitcore.measure.workbooks import MAX_BYTES, Cell, Worksheet, is_workbook, read_workbook
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from knitcore.arrays import Array
-from knitcore.bounds import check_positive
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
+from knitcore.base.arrays import Array
+from knitcore.base.bounds import check_positive
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
 
 MIN_POINTS = 20
 """With fewer points a linear part cannot be distinguished from a stiffening one."""

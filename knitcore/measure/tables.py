@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.errors import InputError
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
 from knitcore.measure.workbooks import is_workbook, read_workbook
 
 if TYPE_CHECKING:

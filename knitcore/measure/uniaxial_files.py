@@ -24,8 +24,8 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.errors import InputError
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
 from knitcore.measure.stretch_test import (
     MIN_POINTS,
     StretchRun,

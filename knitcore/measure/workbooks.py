@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 Cell = str | float
 Worksheet = list[list[Cell]]

@@ -21,7 +21,7 @@ from enum import StrEnum
 
 from scipy.optimize import brentq
 
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 
 class Parity(StrEnum):

@@ -21,14 +21,14 @@ import skfem
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart, as_chart
-from knitcore.fabric import PHASES, Direction
+from knitcore.base.arrays import Array
+from knitcore.base.result import Result
+from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.phases import quarter_phases
+from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.materials import Material, as_material
 from knitcore.mechanics.lamination import SheetGrid, coarsened
 from knitcore.mechanics.periodic_mesh import PeriodicMesh
-from knitcore.phases import quarter_phases
-from knitcore.result import Result
 
 MAX_CELLS = 1024
 """Quarter cells solved as they are: a repeat of 16 x 16. Larger grids are first coarsened."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore.arrays import Array
+from knitcore.base.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 import skfem
 
-from knitcore.arrays import Array
+from knitcore.base.arrays import Array
 
 
 class PeriodicMesh:

@@ -19,12 +19,12 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
-from knitcore.bounds import check_positive
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
+from knitcore.base.bounds import check_positive
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.uniaxial import uniaxial_response
-from knitcore.materials.uncertainty import Interval
+from knitcore.materials.law_uncertainty import Interval
 
 MMHG_PER_KPA = 760.0 / 101.325
 NEAR_LOCK_UP = 0.8

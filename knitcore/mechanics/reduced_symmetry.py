@@ -31,9 +31,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.bounds import check_positive
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.bounds import check_positive
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import paper_figures
 from knitcore.mechanics.elastica import Parity
 

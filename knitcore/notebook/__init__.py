@@ -8,8 +8,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from knitcore.notebook.figures import figure
-    from knitcore.notebook.space import view
+    from knitcore.notebook.figure_in_space import view
+    from knitcore.notebook.test_figures import figure
 
 __all__ = ["figure", "view"]
 

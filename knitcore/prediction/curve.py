@@ -7,17 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore import showing
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
+from knitcore.base import showing
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.base.result import Result
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material
-from knitcore.materials.uncertainty import in_a_sentence
+from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Source
 from knitcore.prediction.size import RelaxedSize
-from knitcore.result import Result
 
 DEFAULT_STRESS_N_PER_MM = tuple(float(s) for s in np.linspace(0.0, 0.3, 31))
 MAX_STRESS_N_PER_MM = 100.0

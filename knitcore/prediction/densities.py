@@ -25,9 +25,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import PHASES
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import PHASES
+from knitcore.chart.stitch_chart import StitchChart
 
 _LAGS = ((0, 2), (0, 3), (0, 4), (2, 0), (3, 0), (4, 0), (1, 2), (2, 1), (2, 2))
 """Rows up and columns right. Those of (0, 1), (1, 0) and (1, 1) follow from the shares."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
+from knitcore.base.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,9 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import PHASES, Direction
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material, Origin
 from knitcore.prediction.densities import Densities, densities
 from knitcore.prediction.gaussian_process import KernelModel, KernelSettings, Samples

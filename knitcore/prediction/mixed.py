@@ -8,12 +8,12 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.response import Response
 from knitcore.materials import Interval, Material
-from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.densities import Densities
 from knitcore.prediction.learned import LearnedResponse, SweptChart
 from knitcore.prediction.mixture import Mixture

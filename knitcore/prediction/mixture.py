@@ -13,10 +13,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.fabric import PHASES, Direction
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import (
     free_strains_at_stress,
@@ -24,8 +24,8 @@ from knitcore.law.uniaxial import (
     held_strains_at_stress,
 )
 from knitcore.materials import FabricRecord, Material, Origin
-from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.yarns import yarn_for
+from knitcore.yarn.library.yarns import yarn_for
+from knitcore.yarn.model.yarn_model import YarnModel
 
 USUAL_STRESS_N_PER_MM = 2e-5
 """B / L³ of a yarn without known B: about the middle of the library."""

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import PHASES
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import PHASES
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material, Origin
 from knitcore.prediction.densities import densities_of
 from knitcore.prediction.learned import packaged_model

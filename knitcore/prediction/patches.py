@@ -24,9 +24,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.response import Response, response_through
 from knitcore.materials import Interval, Material
 from knitcore.prediction.densities import Densities, densities, densities_of

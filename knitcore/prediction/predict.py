@@ -19,10 +19,10 @@ repeat may take, and no nearer to another of its shapes than the learned predict
 
 from __future__ import annotations
 
-from knitcore.chart import StitchChart, as_chart
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
+from knitcore.chart.phases import pure_fabric
+from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.materials import Material, as_material
-from knitcore.phases import pure_fabric
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import SweptChart, packaged_model
 from knitcore.prediction.mixed import predict_mixed

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore import showing
-from knitcore.arrays import Array
-from knitcore.errors import InputError
-from knitcore.fabric import Direction
+from knitcore.base import showing
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
 from knitcore.law.response import Response
-from knitcore.materials.uncertainty import Interval, log_interval, normal_interval
+from knitcore.materials.law_uncertainty import Interval, log_interval, normal_interval
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 SHOWN_STRESS_N_PER_MM = 0.2

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.response import free_response, held_response, stiffened
 from knitcore.law.uniaxial import free_transverse_strains
 from knitcore.materials import FabricRecord, Interval, Material, Origin
-from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.prediction import Along, Prediction, Source
 
 CURL = (

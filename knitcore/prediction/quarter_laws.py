@@ -33,14 +33,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import PHASES, Direction
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.phases import pure_fabric, quarter_phases
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.stiffening import stiffening
 from knitcore.materials import FabricRecord, Material
-from knitcore.materials.uncertainty import Z_SCORE
-from knitcore.phases import pure_fabric, quarter_phases
+from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.mixture import law_strains
 from knitcore.prediction.neighbourhood import sizes_and_folds
 from knitcore.prediction.patches import Patches

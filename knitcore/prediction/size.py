@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from knitcore.bounds import check_positive
-from knitcore.fabric import Direction
+from knitcore.base.bounds import check_positive
+from knitcore.chart.fabric import Direction
 
 
 class KnownBy(StrEnum):

@@ -15,13 +15,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import FabricRecord, Material, Origin
-from knitcore.materials.uncertainty import LawUncertainty
+from knitcore.materials.law_uncertainty import LawUncertainty
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import STRESS_GRID, SweptChart, follows, packaged_model
 from knitcore.prediction.mixture import Mixture

@@ -12,16 +12,16 @@ from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 
-from knitcore.chart import StitchChart
-from knitcore.errors import KnitcoreError
+from knitcore.base.errors import KnitcoreError
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import material
-from knitcore.yarnlevel.cell import mirrored_cell
-from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.splines import COARSE
-from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
-from knitcore.yarnlibrary.fingerprint import content_key
-from knitcore.yarnlibrary.store import stored_charts
-from knitcore.yarnlibrary.yarns import yarn_for
+from knitcore.yarn.library.characterise import Document, RepeatTask, characterise_repeat
+from knitcore.yarn.library.fingerprint import content_key
+from knitcore.yarn.library.store import stored_charts
+from knitcore.yarn.library.yarns import yarn_for
+from knitcore.yarn.model.cell import mirrored_cell
+from knitcore.yarn.solve.splines import COARSE
+from knitcore.yarn.study.relax import relax
 from scripts.training.charts import YARN_POINTS, anchor_charts, drawn_charts, training_charts
 from scripts.training.command import resumable
 from scripts.training.entries import FILE, read_library, update_library

@@ -1,7 +1,7 @@
 """Charts and yarns from which the behaviour of mixed charts is learned.
 
-The packaged store (:mod:`knitcore.yarnlibrary.store`) holds every repeat of up to 8 stitches. These
-are too small for textures side by side, isolated purls, long diagonals and wide blocks:
+The packaged store (:mod:`knitcore.yarn.library.store`) holds every repeat of up to 8 stitches.
+These are too small for textures side by side, isolated purls, long diagonals and wide blocks:
 :func:`training_charts` lists such repeats of up to 25 stitches in a cell, in an order such that any
 first part of the list is a fair sample of all kinds. :data:`YARN_POINTS` are yarns that span the
 dimensionless numbers of the library's materials.
@@ -15,8 +15,8 @@ from itertools import chain, zip_longest
 
 import numpy as np
 
-from knitcore.chart import StitchChart
-from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.model.yarn_model import YarnModel
 
 MAX_STITCHES = 36
 """Largest repeat."""

@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TypeVar
 
-from knitcore.batch import run_batch
-from knitcore.yarnlibrary.characterise import Document
+from knitcore.base.batch import run_batch
+from knitcore.yarn.library.characterise import Document
 from scripts.stored_stitches import tell
 
 Task = TypeVar("Task")
@@ -28,7 +28,7 @@ def resumable(
     ----------
     prog : the command, as help shows it.
     keep : folder of finished results, unless an option names another.
-    function, tasks : see :func:`knitcore.batch.run_batch`.
+    function, tasks : see :func:`knitcore.base.batch.run_batch`.
     pack : packs the results of a folder and returns how many there are.
     """
     parser = argparse.ArgumentParser(prog=prog)

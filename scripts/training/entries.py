@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarn.model.yarn_model import YarnModel
 
 FILE = Path(__file__).parent / "library.json.xz"
 

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve, cholesky
 from scipy.optimize import linprog, minimize
 
-from knitcore.arrays import Array
-from knitcore.chart import StitchChart
-from knitcore.fabric import PHASES, Direction, Fabric
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import PHASES, Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import FabricRecord, Material, Yarn, load_library
-from knitcore.materials.uncertainty import COVERAGE, Z_SCORE
+from knitcore.materials.law_uncertainty import COVERAGE, Z_SCORE
 from knitcore.prediction.densities import FEATURES, Densities, densities
 from knitcore.prediction.gaussian_process import (
     KernelModel,
@@ -32,8 +32,8 @@ from knitcore.prediction.gaussian_process import (
 from knitcore.prediction.learned import STRESS_GRID, follows
 from knitcore.prediction.mixture import Mixture, yarn_numbers
 from knitcore.prediction.swept import STRESS, of_law, over_mixture, simulated_record
-from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.store import MATERIALS, stored_charts, stored_stitch
+from knitcore.yarn.library.store import MATERIALS, stored_charts, stored_stitch
+from knitcore.yarn.model.yarn_model import YarnModel
 from scripts.training.entries import TrainingEntry, training_entries
 
 FILE = Path(__file__).parents[2] / "knitcore" / "answer" / "data" / "learned.npz"

@@ -13,19 +13,19 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from knitcore.chart import StitchChart
-from knitcore.errors import KnitcoreError
-from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
-from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.results import Branch
-from knitcore.yarnlevel.search import RELAXED
-from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.characterise import Document
-from knitcore.yarnlibrary.fingerprint import content_key
+from knitcore.base.errors import KnitcoreError
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.library.characterise import Document
+from knitcore.yarn.library.fingerprint import content_key
+from knitcore.yarn.model.relaxed_cell import Branch
+from knitcore.yarn.model.yarn_model import YarnModel
+from knitcore.yarn.solve.search import RELAXED
+from knitcore.yarn.study.lowest import can_be_followed, without_mirrors
+from knitcore.yarn.study.relax import relax
 from scripts.training.command import resumable
 from scripts.training.entries import FILE, training_entries, update_library
 
-SOLVERS = ("knitcore.yarnlevel.relax", "knitcore.yarnlevel.lowest")
+SOLVERS = ("knitcore.yarn.study.relax", "knitcore.yarn.study.lowest")
 """The modules that relax."""
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from knitcore.chart import StitchChart
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.curl import curl
 from knitcore.materials import material
-from knitcore.shell.curl import curl
 
 Array = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from knitcore.arrays import Array
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import Interval, material
-from knitcore.materials.uncertainty import Z_SCORE, log_interval
-from knitcore.measure.bending import MeasuredBending
+from knitcore.materials.law_uncertainty import Z_SCORE, log_interval
+from knitcore.measure.bending_modulus import MeasuredBending
 from knitcore.measure.compression import CompressionSample
 from studies.figures.plot import (
     FABRICS,

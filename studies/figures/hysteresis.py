@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from knitcore.chart import StitchChart
-from knitcore.fabric import Fabric
-from knitcore.yarnlevel.hysteresis import hysteresis
-from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.samples import sample
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.model.paper_samples import sample
+from knitcore.yarn.study.hysteresis import hysteresis
+from knitcore.yarn.study.relax import relax
 from studies.figures.plot import FABRICS, MUTED, chart, name_fabrics, save
 
 COEFFICIENT, STRAIN, TOP_N_PER_MM = 0.26, 0.5, 0.2

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from knitcore.estimate.mixed_model import leave_one_out
-from knitcore.estimate.model import library_table, mask_of
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.law.least_squares import fit_direction
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import material
-from knitcore.measure.elastica import heavy_elastica
-from knitcore.measure.law_fit import fit_direction
+from knitcore.materials.estimate.mixed_model import leave_one_out
+from knitcore.materials.estimate.yarn_statistics import library_table, mask_of
+from knitcore.measure.heavy_elastica import heavy_elastica
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure
 from studies.figures.plot import FABRICS, INKS, MUTED, chart, diagonal, logarithmic, save
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from knitcore import StitchChart, predict
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import material
 from knitcore.mechanics.reduced_symmetry import MATERIALS, rs_fabrics

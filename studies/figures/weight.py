@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from knitcore.chart import StitchChart
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.border import advice
+from knitcore.cloth.space.drape import drape
+from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of
+from knitcore.cloth.space.hang import HungBy, hang
+from knitcore.cloth.space.overhang import overhang
 from knitcore.materials import material
-from knitcore.shell.border import advice
-from knitcore.shell.cloth import EvenCloth, cloth_of
-from knitcore.shell.drape import drape
-from knitcore.shell.hang import HungBy, hang
-from knitcore.shell.overhang import overhang
 from studies.figures.curl import FONT, IMAGES, SIDE, drawn, save
 
 DENSITY_G_PER_M = 0.5

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.fit.measured_strip import MeasuredStrip
+from knitcore.fit.strip_fit import flattening
 from knitcore.materials import material
 from knitcore.measure.uniaxial_files import read_stretch_test
-from knitcore.swatch.measured_strip import MeasuredStrip
-from knitcore.swatch.strip_fit import flattening
 
 
 @pytest.mark.parametrize("fabric", Fabric)

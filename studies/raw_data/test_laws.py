@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from knitcore.fabric import Direction
-from knitcore.measure.uniaxial import Reduction
-from knitcore.swatch.strip_fit import fit_tests
+from knitcore.chart.fabric import Direction
+from knitcore.fit.pull_fit import Reduction
+from knitcore.fit.strip_fit import fit_tests
 
 X = Direction.COURSE
 

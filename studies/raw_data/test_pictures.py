@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.cloth.flat import EnergyModel, QuarterGrid, Sheet, SheetModel, pull
+from knitcore.fit.calibration import ForceCurve, calibrate
+from knitcore.fit.field_comparison import Edges, compare
+from knitcore.fit.measured_field import MeasuredField, load_field
+from knitcore.fit.pull_fit import Reduction
+from knitcore.fit.strip_fit import fit_tests
 from knitcore.materials import material
-from knitcore.measure.uniaxial import Reduction
 from knitcore.measure.uniaxial_files import Marks, read_stretch_test
-from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, pull
-from knitcore.swatch.calibration import ForceCurve, calibrate
-from knitcore.swatch.comparison import Edges, compare
-from knitcore.swatch.measured import MeasuredField, load_field
-from knitcore.swatch.strip_fit import fit_tests
 
 GARTER = material("acrylic:published").law(Fabric.GARTER)
 

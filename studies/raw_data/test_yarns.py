@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from knitcore.measure.bending import measure_bending
+from knitcore.measure.bending_modulus import measure_bending
 from knitcore.measure.compression import average_compression, fit_compression
 from knitcore.measure.compression_files import read_compression
 

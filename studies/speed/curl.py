@@ -14,9 +14,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from knitcore.chart import StitchChart
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.curl import curl
 from knitcore.materials import material
-from knitcore.shell.curl import curl
 
 GOALS_S = {30: 2.0, 60: 8.0, 100: 30.0}
 BORDER = 4

@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 
 from knitcore import StitchChart, predict
-from knitcore.fabric import Fabric
-from knitcore.formats.chart_files import read_piece
-from knitcore.formats.export import FORMATS, ExportKind, ExportOptions, export_chart
-from knitcore.formats.garment_design import design_of_plan
+from knitcore.chart.fabric import Fabric
+from knitcore.formats.designs.garment_design import design_of_plan
+from knitcore.formats.read.chart_files import read_piece
+from knitcore.formats.write.export import FORMATS, ExportKind, ExportOptions, export_chart
 from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.glove import Hand, glove
 from knitcore.materials import material

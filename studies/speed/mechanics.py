@@ -8,10 +8,10 @@ from collections.abc import Callable
 import numpy as np
 
 from knitcore import StitchChart, predict
-from knitcore.fabric import Direction
+from knitcore.chart.fabric import Direction
 from knitcore.materials import load_library, load_variants, material
 from knitcore.mechanics.homogenisation import homogenise
-from knitcore.mechanics.local import local_moduli
+from knitcore.mechanics.local_moduli import local_moduli
 from knitcore.mechanics.reduced_symmetry import MATERIALS, rs_fabrics
 
 

@@ -16,12 +16,12 @@ from pathlib import Path
 
 import numpy as np
 
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.flat import EnergyModel, QuarterGrid, Sheet, SheetModel, pull, strip_test
+from knitcore.cloth.flat.strip import load_levels
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import material
-from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, pull, strip_test
-from knitcore.swatch.strip import load_levels
 
 SCRIPT = ConstitutiveLaw(
     0.240872, 0.0599528, 0.0362245, 0.0362245, 1.16995, 0.802057, 0.0223765, 0.0219965, 0.01

@@ -16,19 +16,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction, Fabric
-from knitcore.yarnlevel.cell import mirrored_cell, plain_cell
-from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.growth import Start, grow
-from knitcore.yarnlevel.published.relax import relax_published
-from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.samples import load_samples, sample
-from knitcore.yarnlevel.solver import Options
-from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.splines import ROUGH_FROM
-from knitcore.yarnlevel.sweep import sweep
-from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.model.cell import mirrored_cell, plain_cell
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.paper_samples import load_samples, sample
+from knitcore.yarn.model.spline import SplineGrid
+from knitcore.yarn.model.yarn_model import YarnModel
+from knitcore.yarn.paper.bezier_relax import relax_published
+from knitcore.yarn.solve.growth import Start, grow
+from knitcore.yarn.solve.newton import Options
+from knitcore.yarn.solve.splines import ROUGH_FROM
+from knitcore.yarn.study.relax import relax
+from knitcore.yarn.study.sweep import sweep
 
 AUTHORS_POINT_S = 250.0
 FAR = {

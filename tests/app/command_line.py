@@ -9,7 +9,7 @@ from typing import Any
 from click.testing import CliRunner
 
 from app.cli.main import main
-from knitcore.compiled import COMPILING
+from knitcore.base.compiled import COMPILING
 
 
 def run(*arguments: str | float | Path) -> Any:

@@ -9,10 +9,10 @@ from fastapi.testclient import TestClient
 
 from app.context import Context
 from app.operations.bend import BendRequest, BendResult, bend
-from knitcore.chart import StitchChart
-from knitcore.errors import ConvergenceError
+from knitcore.base.errors import ConvergenceError
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import material
-from knitcore.yarnlibrary.yarns import yarn_for
+from knitcore.yarn.library.yarns import yarn_for
 from tests.app.command_line import run
 
 

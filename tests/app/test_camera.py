@@ -7,7 +7,7 @@ import pytest
 
 from app.viewer.camera import ASPECT, FIELD_OF_VIEW, CameraSide, stand
 from app.viewer.cloth import UNITS_PER_MM
-from knitcore.chart import MAX_STITCHES_PER_SIDE
+from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE
 
 
 @pytest.mark.parametrize("side", CameraSide)

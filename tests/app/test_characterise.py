@@ -18,7 +18,7 @@ from pydantic import ValidationError
 from app.cli.main import main
 from app.context import Context
 from app.operations.characterise import CharacteriseRequest, characterise
-from knitcore.errors import CancelledError
+from knitcore.base.errors import CancelledError
 from tests.knitcore.test_batch import cluster  # noqa: F401 - a fixture
 
 YARN = [

@@ -4,7 +4,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from knitcore import StitchChart
-from knitcore.patterns import PATTERNS
+from knitcore.chart.patterns import PATTERNS
 
 
 def test_a_text_is_read_and_its_repeat_found(client: TestClient) -> None:

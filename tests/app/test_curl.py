@@ -17,9 +17,9 @@ from app.context import Context
 from app.drawing.design_view import ViewRequest, build_scene
 from app.drawing.solid import solid_glb
 from app.operations.curl import CurlRequest, curl
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.formats.design import DesignFile, write_design
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.designs.design_file import DesignFile, write_design
 
 STRIP = {"fabric": "stockinette", "columns": 12, "rows": 3}
 FIELDS = {

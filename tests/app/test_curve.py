@@ -10,8 +10,8 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from app.context import Context
 from app.operations.curve import CurveRequest, curve
-from knitcore.errors import CancelledError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import CancelledError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import material
 from tests.app.command_line import run

@@ -13,8 +13,8 @@ from app.cli.main import main
 from app.context import Context
 from app.operations import find as find_module
 from app.service.results.atlases import repeats_of
-from knitcore.errors import InputError
-from knitcore.formats.stitch_maps import read_wanted_moduli
+from knitcore.base.errors import InputError
+from knitcore.formats.write.stitch_maps import read_wanted_moduli
 
 WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.135, "tolerance": 0.05, "weight": 1.0}
 

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import load_material_file, material
 from tests.app.command_line import run
 from tests.knitcore.measure.synthetic import write_csv

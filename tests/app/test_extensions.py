@@ -13,8 +13,8 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from app.context import Context
 from app.operations.export import ExportRequest, export
-from knitcore.errors import InputError
-from knitcore.extensions import Group
+from knitcore.base.errors import InputError
+from knitcore.base.extensions import Group
 from tests.extension_package import install, install_example
 
 

@@ -11,10 +11,10 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from knitcore.cloth.flat import SheetModel
 from knitcore.materials import material
-from knitcore.swatch import SheetModel
 from tests.app.command_line import run
-from tests.knitcore.swatch.synthetic import camera_arrays
+from tests.knitcore.cloth.flat.synthetic import camera_arrays
 
 FABRIC = ["--material", "acrylic", "--fabric", "garter", "--direction", "wale"]
 

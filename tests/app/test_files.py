@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.operations.export import MAX_STITCHES
-from knitcore.formats.export import FORMATS, ExportKind
+from knitcore.formats.write.export import FORMATS, ExportKind
 from tests.app.command_line import run
 
 CHART = "KPKK\nPPKP\nKKPP"

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from knitcore.formats.design import read_design
+from knitcore.formats.designs.design_file import read_design
 
 REQUESTS = (
     {"template": "glove"},

@@ -26,7 +26,7 @@ from app.operations.compare import CompareRequest, compare
 from app.operations.compression import CompressionRequest, compression
 from app.operations.fit import FitRequest, fit
 from app.operations.import_ import ImportRequest, import_
-from knitcore.errors import InputError, KnitcoreError
+from knitcore.base.errors import InputError, KnitcoreError
 
 FILES = int(os.environ.get("KNITCORE_HOSTILE_FILES", "40"))
 

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from knitcore.fabric import Direction
-from knitcore.formats.law_files import load_law
+from knitcore.chart.fabric import Direction
+from knitcore.formats.read.law_files import load_law
 from tests.app.command_line import run
 from tests.knitcore.measure.synthetic import LAW, hanging_yarn, save_photo, write_csv, write_h5
 from tests.knitcore.measure.test_compression import WORKBOOK, squeeze, write

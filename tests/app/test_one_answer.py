@@ -21,20 +21,20 @@ from knitcore import Direction, Fabric, RelaxedSize, StitchChart, curve, predict
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.targets import Quantity, Target, WornTube, values_of
-from knitcore.formats import report
-from knitcore.formats.chart_key import ChartStyle
-from knitcore.formats.drawing import Label, Page
-from knitcore.formats.layout import DesignRegion
-from knitcore.formats.pattern import pattern_pages
-from knitcore.formats.stitch_values import write_vtu
-from knitcore.formats.yarn_mesh import course_centre_lines
+from knitcore.draw.laid_out import laid_corners_mm, mean_stitch_mm
+from knitcore.formats.designs.layout import DesignRegion
+from knitcore.formats.write import report
+from knitcore.formats.write.chart_key import ChartStyle
+from knitcore.formats.write.drawn_page import Label, Page
+from knitcore.formats.write.pattern import pattern_pages
+from knitcore.formats.write.stitch_values import write_vtu
+from knitcore.formats.write.yarn_mesh import course_centre_lines
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
 from knitcore.garment.shaped import ShapedChart, outline_marks
-from knitcore.geometry.laid_out import laid_corners_mm, mean_stitch_mm
 from knitcore.materials import Interval, Material, material
 from knitcore.prediction.prediction import Prediction
-from knitcore.yarnlibrary.store import stored_charts
+from knitcore.yarn.library.store import stored_charts
 from tests.app.command_line import run
 
 LOADS = [0.01, 0.05, 0.2]

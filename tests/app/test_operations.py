@@ -24,7 +24,7 @@ from app.service.settings import Settings
 from app.service.store.lock import held
 from app.service.web.observing import JsonLines, TextLines, configure_logging
 from app.service.web.tokens import Tokens
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 from tests.app.running import Service
 
 

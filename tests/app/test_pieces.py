@@ -18,8 +18,8 @@ from app.operations.bias import BiasRequest, bias
 from app.operations.biaxial import BiaxialRequest, biaxial
 from app.operations.piece import PieceRequest, piece
 from app.operations.trellis import TrellisRequest, trellis
-from knitcore.errors import CancelledError, InputError
-from knitcore.fabric import Fabric
+from knitcore.base.errors import CancelledError, InputError
+from knitcore.chart.fabric import Fabric
 from knitcore.materials import material
 
 PIECE: dict[str, Any] = {

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.arrays import Array
-from knitcore.geometry.body import Body
+from knitcore.base.arrays import Array
+from knitcore.draw.body import Body
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
 RING = np.stack([np.sin(ANGLES), np.zeros(12), np.cos(ANGLES)], axis=-1)

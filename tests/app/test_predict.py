@@ -68,7 +68,7 @@ def test_every_pure_fabric_has_its_table_values(material: str, fabric: Fabric) -
 
 def test_a_chart_file_and_a_material_file_work(tmp_path: Path) -> None:
     from knitcore.materials import material
-    from knitcore.materials.files import save_material_file
+    from knitcore.materials.material_files import save_material_file
 
     chart, yarn = tmp_path / "rib.txt", tmp_path / "mine.json"
     chart.write_text("KPKP\n" * 4)

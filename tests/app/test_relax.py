@@ -14,8 +14,8 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from app.models.yarn_level import size_intervals
 from knitcore import StitchChart, relax
-from knitcore.yarnlevel.samples import sample
-from knitcore.yarnlevel.splines import RelaxedRepeat
+from knitcore.yarn.model.paper_samples import sample
+from knitcore.yarn.solve.splines import RelaxedRepeat
 from tests.app.command_line import run
 
 FIELDS = {

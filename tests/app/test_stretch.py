@@ -13,8 +13,8 @@ from app.cli.main import main
 from app.context import Context
 from app.models.stretched import StretchView
 from app.operations.stretch import StretchRequest, stretch
-from knitcore.chart import StitchChart
-from knitcore.formats.design import DesignFile
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.designs.design_file import DesignFile
 
 GARTER = {"fabric": "garter", "columns": 9, "rows": 6}
 ASKED = {"chart": GARTER, "material": "acrylic", "direction": "wale", "strain": 0.4, "steps": 4}

@@ -12,10 +12,10 @@ from click.testing import CliRunner
 
 from app.cli.main import main
 from knitcore import warm_up
-from knitcore.compiled import COMPILING
+from knitcore.base.compiled import COMPILING
 
 KERNEL = """
-from knitcore.compiled import compiled
+from knitcore.base.compiled import compiled
 
 @compiled
 def twice(x):
@@ -24,10 +24,10 @@ def twice(x):
 CALL = """
 import contextlib, gc, sys
 import kernel
-import knitcore.compiled
+import knitcore.base.compiled
 from app.cli.common import telling_what_is_compiled
 
-knitcore.compiled.TELL_AFTER_S = 0.0
+knitcore.base.compiled.TELL_AFTER_S = 0.0
 told = telling_what_is_compiled() if sys.argv[1] == "command" else contextlib.nullcontext()
 with told:
     assert kernel.twice(21) == 42
@@ -94,8 +94,8 @@ class Names(event.Listener):
 
 event.register("numba:compile", Names())
 import knitcore
-from knitcore.shell.curl import curl
-from knitcore.yarnlibrary.yarns import yarn_for
+from knitcore.cloth.space.curl import curl
+from knitcore.yarn.library.yarns import yarn_for
 
 chart, acrylic = knitcore.StitchChart.parse("K/P"), knitcore.material("acrylic")
 if sys.argv[1] == "yarn":
@@ -113,13 +113,13 @@ print(*compiled)
     [
         (
             "yarn",
-            "knitcore.yarnlevel.kernels.curve",
+            "knitcore.yarn.kernels.curve_samples",
             {"yarnlevel.kernels.rod.rod_hessian", "yarnlevel.kernels.scatter.scatter_local",
              "dense.eliminate", "dense.substitute", "dense.solved", "yarnlevel.clasps._crossings"},
         ),
         (
             "shape",
-            "knitcore.shell.kernels",
+            "knitcore.cloth.space.sheet_kernels",
             {f"gridsolver.elimination.{name}" for name in ("eliminate", "forward", "backward")},
         ),
     ],

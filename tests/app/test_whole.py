@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from app.cli.main import main
 from app.context import Context
 from app.operations.whole import WholeRequest, whole
-from knitcore.errors import CancelledError
+from knitcore.base.errors import CancelledError
 from tests.app.command_line import run
 
 REQUEST = WholeRequest(chart="K", material="acrylic", tolerance=0.1)

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from knitcore.formats.chart_files import read_piece
-from knitcore.formats.design import design_from_mapping
+from knitcore.formats.designs.design_file import design_from_mapping
+from knitcore.formats.read.chart_files import read_piece
 from tests.browser.axe import violations
 
 

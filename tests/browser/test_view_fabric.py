@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from knitcore.geometry.instances import COARSE_LEVELS
+from knitcore.draw.instances import COARSE_LEVELS
 from tests.browser.conftest import (
     CHART,
     COLUMNS,

@@ -2,9 +2,9 @@
 
 import pytest
 
-from knitcore.chart import StitchChart
-from knitcore.yarnlibrary.bending_table import document_of
-from knitcore.yarnlibrary.store import stored_stitch
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.library.bending_table import document_of
+from knitcore.yarn.library.store import stored_stitch
 from scripts.bending_stitches import bend
 from scripts.from_store import StoredTask
 

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from knitcore.chart import StitchChart
-from knitcore.yarnlibrary.store import stored_stitch
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.library.store import stored_stitch
 from scripts.from_store import StoredTask
 from scripts.lowest_stitches import LOWEST, follow
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from knitcore import StitchChart
-from knitcore.fabric import Direction
+from knitcore.chart.fabric import Direction
 from scripts.training.build import characterise, pack, tasks
 from scripts.training.charts import YARN_POINTS, training_charts
 from scripts.training.entries import RawCurve, read_library, training_entries

@@ -13,7 +13,7 @@ from app.service.designs.parameters import MISSING, Owner
 from app.service.problems import NotFoundError
 from app.service.results.own_materials import keep_material, remove_material
 from app.service.web.bodies import BoundedRoute
-from knitcore.materials.document import MaterialDocument
+from knitcore.materials.material_document import MaterialDocument
 
 router = APIRouter(route_class=BoundedRoute, tags=["materials"], responses=MISSING)
 

@@ -29,10 +29,10 @@ def _load() -> None:
     from app.context import Context
     from app.models.charts import PureFabricChart
     from app.operations.stretch import StretchRequest, stretch
-    from knitcore.fabric import Fabric
+    from knitcore.chart.fabric import Fabric
+    from knitcore.cloth.flat.grid_kernel import respond
+    from knitcore.cloth.flat.sheet_models import SheetModel
     from knitcore.materials import material
-    from knitcore.swatch.kernel import respond
-    from knitcore.swatch.models import SheetModel
 
     stretch(
         StretchRequest(

@@ -9,9 +9,9 @@ from pydantic import AwareDatetime, BaseModel, Field
 
 from app.models.base import RequestModel
 from app.models.charts import ChartText
-from knitcore.chart import MAX_STITCHES_PER_SIDE
-from knitcore.formats.design import FORMAT, VERSION
-from knitcore.formats.layout import DesignLayout
+from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE
+from knitcore.formats.designs.design_file import FORMAT, VERSION
+from knitcore.formats.designs.layout import DesignLayout
 
 Name = Annotated[
     str,

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from app.service.designs.document import Run, StitchKinds
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.phases import surroundings
+from knitcore.base.errors import InputError
+from knitcore.chart.phases import surroundings
+from knitcore.chart.stitch_chart import StitchChart
 
 
 def paint(chart: str, rows: int, columns: int, runs: Iterable[Run]) -> str:

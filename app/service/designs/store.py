@@ -40,8 +40,8 @@ from app.service.problems import NotFoundError
 from app.service.store.database import Database
 from app.service.store.pages import one_page
 from app.service.store.tables import design_versions, designs, now
-from knitcore.chart import StitchChart
-from knitcore.formats.layout import DesignLayout, check_layout
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.designs.layout import DesignLayout, check_layout
 
 DELETED_KEPT_S = 30 * 86_400.0
 """How long a deleted design can be recovered."""

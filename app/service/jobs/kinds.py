@@ -13,8 +13,8 @@ from pydantic import Discriminator, Field, create_model
 
 from app.models.base import RequestModel, ResultModel, read
 from app.operations.registry import Operation, operations
-from knitcore.extensions import Group, extensions
-from knitcore.yarnlibrary import fingerprint
+from knitcore.base.extensions import Group, extensions
+from knitcore.yarn.library import fingerprint
 
 KINDS: dict[str, Operation[Any, Any]] = {
     name: operation for name, operation in operations().items() if operation.job

@@ -8,19 +8,19 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
-from knitcore.chart import StitchChart
+from knitcore.base.errors import InputError
+from knitcore.chart.repeats import known_larger_repeats, repeats_up_to, striped_repeats
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import build_atlas, material_fingerprint
-from knitcore.errors import InputError
 from knitcore.materials import Material
-from knitcore.repeats import known_larger_repeats, repeats_up_to, striped_repeats
-from knitcore.yarnlibrary.fingerprint import code_version
+from knitcore.yarn.library.fingerprint import code_version
 
 log = logging.getLogger("knitcore.atlas")
 
 FOLDER = "atlases"
 """Of the data folder; it may be emptied at any time."""
-DECIDING = ("knitcore.design.atlas_build", "knitcore.repeats")
+DECIDING = ("knitcore.design.atlas_build", "knitcore.chart.repeats")
 """Modules whose code and data decide an atlas."""
 
 Extent = Literal["small", "all"]

@@ -1,6 +1,6 @@
 """Results in files of the data folder, named by everything that determines them.
 
-A name is the digest of all inputs and of the code (:mod:`knitcore.yarnlibrary.fingerprint`), so a
+A name is the digest of all inputs and of the code (:mod:`knitcore.yarn.library.fingerprint`), so a
 result is never found for other inputs, nor after the solver or the operation has changed. Files
 appear as a whole or not at all, so any number of processes may share the folder.
 """
@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from knitcore.yarnlibrary.fingerprint import SOLVERS, content_key
+from knitcore.yarn.library.fingerprint import SOLVERS, content_key
 
 log = logging.getLogger("knitcore.kept")
 

@@ -17,11 +17,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 from knitcore.materials import Material, load_material_file
 
 if TYPE_CHECKING:
-    from knitcore.materials.document import MaterialDocument
+    from knitcore.materials.material_document import MaterialDocument
 
 FOLDER = "materials"
 REPLACED = "replaced"

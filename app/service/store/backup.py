@@ -22,7 +22,7 @@ from app.service.results.own_materials import KINDS
 from app.service.store.database import Database
 from app.service.store.schema import migrate, revision
 from app.service.store.tables import metadata
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 FORMAT = "knitcore-backup"
 VERSION = 1

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.service.problems import DispossessedError, VanishedError
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 BESIDE = ("-wal", "-shm")
 """Files that SQLite keeps beside its own while it is open: the newest changes, and their index."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from app.service.store.database import Database, sqlite_file
 from app.service.store.file import holder_of
 from app.service.store.name_lock import NameLock
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ from typing import Any
 from sqlalchemy import Column, Row, Select, tuple_
 
 from app.service.store.database import Database
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 
 def one_page(

@@ -13,7 +13,7 @@ from sqlalchemy import inspect
 from app.service.problems import DamagedError
 from app.service.store.database import Database
 from app.service.store.tables import metadata
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 MIGRATIONS = Path(__file__).with_name("migrations")
 EARLIER = frozenset(f"{number:04}" for number in range(1, 8))

@@ -26,7 +26,7 @@ from app.service.problems import (
     Problem,
     ServiceError,
 )
-from knitcore.errors import (
+from knitcore.base.errors import (
     CancelledError,
     ConvergenceError,
     InputError,

@@ -14,7 +14,7 @@ from app.models.uploads import EXAMPLES
 from app.service.problems import PROBLEM_TYPE
 from app.service.web.errors import problem_of
 from app.service.web.packed import tagged
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 FIRST_PROBLEM = 400
 EXAMPLE = problem_of(

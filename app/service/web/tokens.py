@@ -15,7 +15,7 @@ from app.service.identity import LOCAL_USER
 from app.service.store.database import Database
 from app.service.store.tables import access_tokens, hash_of, now, service_keys
 from app.service.web.sessions import SESSION_S, Sessions
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
 REMEMBERED_S = 5.0

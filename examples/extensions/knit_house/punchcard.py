@@ -1,7 +1,7 @@
 """A file format: punch cards of 24 stitches for hand-operated machines."""
 
-from knitcore.errors import InputError
-from knitcore.formats.export import Exporter, ExportOptions
+from knitcore.base.errors import InputError
+from knitcore.formats.write.export import Exporter, ExportOptions
 from knitcore.garment.piece import Piece
 from knitcore.materials import Material
 

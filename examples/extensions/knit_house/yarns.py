@@ -3,10 +3,10 @@
 The bending moduli and loop lengths are made up for the example.
 """
 
-from knitcore.estimate.estimate import estimate_yarn
-from knitcore.estimate.material import estimated_material
-from knitcore.fabric import Fabric
+from knitcore.chart.fabric import Fabric
 from knitcore.materials import Material
+from knitcore.materials.estimate.estimate import estimate_yarn
+from knitcore.materials.estimate.estimated_material import estimated_material
 
 LAB = {"house-dk": ("House DK", 0.05, 11.5), "house-sport": ("House Sport", 0.03, 10.0)}
 """Name, bending modulus in N·mm², mm of yarn per stitch."""

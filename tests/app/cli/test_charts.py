@@ -21,9 +21,9 @@ from app.cli.main import main
 from app.cli.options import resolve_chart
 from app.models.charts import PureFabricChart, to_chart, to_repeat
 from app.operations.registry import operations
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.fabric import Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from tests.app.command_line import run
 
 EXAMPLE_OF_EACH = ("chart.txt", "KKP/PPK", "- for standard input", "rib with --size 31x20")

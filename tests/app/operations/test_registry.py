@@ -24,7 +24,7 @@ from app.models.gauge import GaugeInput
 from app.models.uploads import UploadedFile, stored
 from app.operations.registry import Command, Operation, commands, operations
 from app.operations.stretch import StretchResult
-from knitcore.fabric import Direction
+from knitcore.chart.fabric import Direction
 from knitcore.materials import Interval
 
 MACHINERY = {"__init__", "perform", "registry"}

@@ -35,7 +35,7 @@ from app.service.store.database import Database
 from app.service.store.lock import held
 from app.service.store.schema import migrate, revision
 from app.service.web import observing
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 
 def _database(folder: Path) -> Path:

@@ -16,8 +16,8 @@ from app.drawing.colours import FABRIC_COLOURS, rgb
 from app.drawing.design_view import ViewRequest, build_scene
 from app.models.posed import PosedView
 from app.viewer.still import still_png
-from knitcore.fabric import Fabric
-from knitcore.geometry.body import Body
+from knitcore.chart.fabric import Fabric
+from knitcore.draw.body import Body
 
 ASKED = {"chart": "\n".join(["KKKK"] * 4), "material": "acrylic", "colour": "fabric"}
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import cache
 
+from knitcore.chart.repeats import repeats_up_to
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.materials import material
-from knitcore.repeats import repeats_up_to
 
 REPEATS = repeats_up_to(2, 3)
 

@@ -12,17 +12,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart, predict
-from knitcore.batch import run_batch
+from knitcore.base.batch import run_batch
+from knitcore.base.errors import CancelledError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.repeats import repeats_up_to
 from knitcore.design.atlas import CURVES, FORMAT, VALUES, Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import AT_ONCE, build_atlas, parts_folder
 from knitcore.design.cost import CostLimits, knitting_cost
 from knitcore.design.find import Quantity, Target, WornTube, find_fabric
-from knitcore.errors import CancelledError
-from knitcore.fabric import Direction
 from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import material
 from knitcore.mechanics.pressure import limb_pressure
-from knitcore.repeats import repeats_up_to
 from tests.knitcore.design.atlases import REPEATS, acrylic_atlas
 
 ACRYLIC = material("acrylic")

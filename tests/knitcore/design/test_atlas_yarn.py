@@ -7,7 +7,9 @@ from typing import Any
 import pytest
 
 from knitcore import Fabric, InputError
-from knitcore.chart import StitchChart
+from knitcore.base.errors import CancelledError
+from knitcore.chart.repeats import repeats_up_to
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import (
@@ -16,11 +18,9 @@ from knitcore.design.atlas_yarn import (
     yarn_level_folder,
     yarn_level_tasks,
 )
-from knitcore.errors import CancelledError
 from knitcore.materials import material
-from knitcore.repeats import repeats_up_to
-from knitcore.yarnlibrary.characterise import RepeatTask
-from knitcore.yarnlibrary.store import stored_stitch
+from knitcore.yarn.library.characterise import RepeatTask
+from knitcore.yarn.library.store import stored_stitch
 
 WOOL = material("glove-wool")
 """Not in the packaged store, so its atlas is a composite to begin with."""

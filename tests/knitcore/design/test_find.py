@@ -2,11 +2,11 @@
 
 import pytest
 
-from knitcore.chart import StitchChart
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.find import find_fabric
 from knitcore.design.targets import Quantity, Target, WornTube
-from knitcore.errors import InputError
 from knitcore.materials import material
 
 REPEATS = [StitchChart.parse(text) for text in ("K", "K\nP", "KP", "KP\nPK", "KKP\nPPK")]

@@ -5,12 +5,12 @@ import math
 import pytest
 
 from knitcore import StitchChart
+from knitcore.base.errors import CancelledError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.repeats import repeats_up_to
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.mixtures import Mixer
-from knitcore.errors import CancelledError
-from knitcore.fabric import Direction
 from knitcore.materials import material
-from knitcore.repeats import repeats_up_to
 
 ACRYLIC = material("acrylic")
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from knitcore import Fabric, InputError, StitchChart
+from knitcore.base.errors import CancelledError
+from knitcore.chart.fabric import Direction
+from knitcore.cloth.flat import strip_test
 from knitcore.design.shape import ShapedSwatch, fill_shape
-from knitcore.errors import CancelledError
-from knitcore.fabric import Direction
 from knitcore.materials import material
-from knitcore.swatch import strip_test
 from tests.knitcore.design.atlases import acrylic_atlas
 
 ACRYLIC = material("acrylic")

@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
-from knitcore.formats.layout import layout_of, piece_of
-from knitcore.formats.written import write_rows
-from knitcore.formats.written_reader import read_piece_rows, read_rows
+from knitcore.chart.row_sides import Construction, Side
+from knitcore.formats.designs.layout import layout_of, piece_of
+from knitcore.formats.read.written_reader import read_piece_rows, read_rows
+from knitcore.formats.write.written_pattern import write_rows
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
-from knitcore.worked import Construction, Side
 from tests.knitcore.pieces import pieces
 
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.fabric import Direction
-from knitcore.formats.design import design_from_mapping
-from knitcore.formats.garment_design import design_of_plan
-from knitcore.formats.knitout_reader import verified
-from knitcore.formats.layout import layout_notes
-from knitcore.formats.written import write_rows
-from knitcore.formats.written_reader import read_piece_rows
+from knitcore.chart.fabric import Direction
+from knitcore.formats.designs.design_file import design_from_mapping
+from knitcore.formats.designs.garment_design import design_of_plan
+from knitcore.formats.designs.layout import layout_notes
+from knitcore.formats.read.knitout_reader import verified
+from knitcore.formats.read.written_reader import read_piece_rows
+from knitcore.formats.write.written_pattern import write_rows
 from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.glove import CROTCH_ROWS, Hand, glove
 from knitcore.garment.piece import Piece
@@ -27,7 +27,7 @@ from knitcore.garment.regions import (
 from knitcore.garment.shaped import ShapedChart
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worked_piece import piece_rows
-from knitcore.garment.worn import Fit, worn
+from knitcore.garment.worn_piece import Fit, worn
 from knitcore.materials import material
 
 WOOL = material("glove-wool:published")

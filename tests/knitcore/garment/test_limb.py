@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.limb import PLACES, on_limb, tube_for, tube_pressure
 from knitcore.materials import material
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure

@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
-from knitcore.fabric import Fabric
-from knitcore.formats.design import DesignFile, design_from_mapping
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.phases import LEFT, RIGHT, surroundings
+from knitcore.formats.designs.design_file import DesignFile, design_from_mapping
 from knitcore.garment.shaped import ShapedChart
-from knitcore.phases import LEFT, RIGHT, surroundings
 from tests.knitcore.charts import stitch_charts
 
 

@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
+from knitcore.chart.row_sides import Construction, Side
 from knitcore.garment.piece import MAIN_YARN
 from knitcore.garment.worked_piece import PieceRow, piece_from_rows, piece_rows
-from knitcore.worked import Construction, Side
 from tests.knitcore.charts import stitch_charts
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.response import (
     MAX_STRESS_N_PER_MM,
     free_response,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import Transverse
 from knitcore.law.stiffening import StiffeningForm
 from knitcore.law.uniaxial import uniaxial_response

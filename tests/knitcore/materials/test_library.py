@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import Laws, Origin, load_library, load_variants, material, paper_figures
 
 IDENTIFIERS = (

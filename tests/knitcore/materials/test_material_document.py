@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 import yaml
 
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import (
     MeasuredCurve,
     load_library,

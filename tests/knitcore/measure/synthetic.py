@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
-from knitcore.fabric import Direction
+from knitcore.chart.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
-from knitcore.measure.elastica import heavy_elastica
+from knitcore.measure.heavy_elastica import heavy_elastica
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import openpyxl
 import pytest
 
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 from knitcore.measure import workbooks
 from knitcore.measure.workbooks import is_workbook, read_workbook
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 from knitcore.mechanics.elastica import (
     EnergyForm,
     Parity,

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from knitcore.chart import StitchChart
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import load_library, material
 from knitcore.mechanics.homogenisation import MAX_CELLS, homogenise, modulus_of, phase_grid
 from knitcore.mechanics.lamination import SheetGrid, coarsened

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import (
     SegmentGeometry,

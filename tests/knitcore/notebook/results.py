@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from knitcore import Direction, StitchChart
-from knitcore.shell.curl import CurledPiece
-from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.results import Branch, RelaxedCell, Sweep
-from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.cloth.space.curl import CurledPiece
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.relaxed_cell import Branch, RelaxedCell, Sweep
+from knitcore.yarn.model.yarn_model import YarnModel
 
 YARN = YarnModel(
     bending_modulus_n_mm2=0.045,

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from knitcore import StitchChart, predict
-from knitcore.fabric import Direction
+from knitcore.chart.fabric import Direction
 from knitcore.materials import material
 
 LOADS = [0.05, 0.1, 0.2]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from knitcore import RelaxedSize, StitchChart, curve, predict
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import material
 

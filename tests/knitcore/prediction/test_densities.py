@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from knitcore import StitchChart
-from knitcore.fabric import PHASES
+from knitcore.chart.fabric import PHASES
 from knitcore.prediction.densities import densities
 from tests.knitcore.charts import stitch_charts
 

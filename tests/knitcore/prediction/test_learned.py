@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from knitcore import StitchChart
-from knitcore.fabric import PHASES, Direction
+from knitcore.chart.fabric import PHASES, Direction
 from knitcore.materials import material
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import LearnedResponse, learned, packaged_model

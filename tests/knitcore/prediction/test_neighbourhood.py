@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 
 from knitcore import StitchChart
-from knitcore.fabric import PHASES
+from knitcore.chart.fabric import PHASES
 from knitcore.materials import material
 from knitcore.prediction import neighbourhood
 from knitcore.prediction.learned import learned

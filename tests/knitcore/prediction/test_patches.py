@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from knitcore import RelaxedSize, StitchChart, predict
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import material
 from knitcore.prediction.prediction import Prediction
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from knitcore import RelaxedSize, StitchChart, predict
-from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import Transverse
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import Laws, load_library, load_variants, material

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from knitcore import StitchChart, material, predict
-from knitcore.fabric import PHASES, Direction, Fabric
+from knitcore.chart.fabric import PHASES, Direction, Fabric
+from knitcore.cloth.flat import chart_sheet
 from knitcore.prediction.quarter_laws import quarter_laws
-from knitcore.swatch import chart_sheet
 
 
 def test_patches_of_a_repeat_go_on_through_the_piece() -> None:

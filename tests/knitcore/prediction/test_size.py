@@ -7,7 +7,7 @@ import math
 import pytest
 
 from knitcore import RelaxedSize
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 
 @pytest.mark.parametrize("size", [0.0, -1.0, 500.1, math.nan, math.inf])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from knitcore import Direction, RelaxedSize, StitchChart, predict
-from knitcore.fabric import Fabric
+from knitcore.chart.fabric import Fabric
 from knitcore.materials import Material, material
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import packaged_model
@@ -22,7 +22,7 @@ from knitcore.prediction.swept import (
     swept_chart,
     worth_relaxing,
 )
-from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
+from knitcore.yarn.library.store import StoredStitch, stored_stitch
 from scripts.training.learned import simulated_materials
 
 

@@ -29,7 +29,7 @@ from app.service.jobs.store import JobStore
 from app.service.store.database import Database
 from app.service.store.schema import migrate
 from knitcore import InputError
-from knitcore.fabric import Direction
+from knitcore.chart.fabric import Direction
 from tests.app import jobs
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from knitcore.formats import design, layout
+from knitcore.formats.designs import design_file as design
+from knitcore.formats.designs import layout
 
 SCRIPT = Path(__file__).resolve().parents[3] / "frontend" / "design" / "design.js"
 

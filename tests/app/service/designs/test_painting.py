@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from app.service.designs.document import Run
 from app.service.designs.painting import kinds_around, paint
-from knitcore.chart import StitchChart
-from knitcore.phases import surroundings
+from knitcore.chart.phases import surroundings
+from knitcore.chart.stitch_chart import StitchChart
 
 SIDES = st.integers(1, 9)
 

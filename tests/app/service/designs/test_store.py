@@ -16,7 +16,7 @@ from app.service.designs.store import DesignStore
 from app.service.limits.budgets import Budgets, OverBudgetError
 from app.service.problems import NotFoundError
 from app.service.store.database import Database
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 RIB = DesignDocument(name="Cuff", material="acrylic", chart="KPKP\nKPKP", note="soft")
 

@@ -28,8 +28,8 @@ from app.service.problems import NotFoundError, StoreError
 from app.service.settings import Settings
 from app.service.store.database import Database
 from app.service.store.schema import migrate
-from knitcore.extensions import Group
-from knitcore.yarnlibrary import fingerprint
+from knitcore.base.extensions import Group
+from knitcore.yarn.library import fingerprint
 from tests.app.jobs import WORK, Task, answers
 from tests.app.running import Service
 from tests.extension_package import install

@@ -9,7 +9,7 @@ import pytest
 from app.context import Context
 from app.service.results import atlases
 from app.service.results.atlases import FOLDER
-from knitcore.chart import StitchChart
+from knitcore.chart.stitch_chart import StitchChart
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from app.cli.main import main
 from app.service.results.on_disk import KeptResults
-from knitcore.yarnlibrary import fingerprint
+from knitcore.yarn.library import fingerprint
 
 
 class Answer(BaseModel):

@@ -20,9 +20,9 @@ from app.service.results.own_materials import (
     remove_material,
 )
 from app.service.settings import Settings
-from knitcore.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import MeasuredCurve, material, save_material_file
-from knitcore.materials.document import MaterialDocument
+from knitcore.materials.material_document import MaterialDocument
 
 CURVE = MeasuredCurve((0.0, 0.2, 0.4), (0.0, 0.01, 0.03), pulls=4)
 CHART = {"fabric": "garter", "columns": 6, "rows": 6}

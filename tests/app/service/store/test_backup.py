@@ -19,7 +19,7 @@ from app.service.jobs.store import JobStore
 from app.service.store.backup import back_up, restore
 from app.service.store.database import Database
 from app.service.store.schema import migrate
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 RIB = DesignDocument(name="Cuff “42”", material="acrylic", chart="KPKP\nKPKP", note="ä\n✓")
 

@@ -18,7 +18,7 @@ from app.service.problems import StoreError
 from app.service.store.database import Database
 from app.service.store.schema import migrate, revision
 from app.service.store.tables import metadata
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 
 @pytest.fixture

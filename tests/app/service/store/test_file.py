@@ -24,7 +24,7 @@ from app.service.store.database import Database
 from app.service.store.file import STOP_FIRST, Holder, check_reserved, holder_of
 from app.service.store.lock import held
 from app.service.store.schema import migrate
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 
 LOCK_ALONE = """
 import fcntl, sys

@@ -27,7 +27,7 @@ from app.service.store import name_lock
 from app.service.store.database import Database
 from app.service.store.lock import held, holder
 from app.service.store.schema import migrate
-from knitcore.errors import InputError
+from knitcore.base.errors import InputError
 from tests.app.databases import control
 from tests.app.jobs import WORK, Task, answers
 

@@ -10,7 +10,7 @@ from fastapi.testclient import TestClient
 
 from app.models.charts import CellLines, ChartLines, RepeatText
 from app.operations.registry import operations
-from knitcore.formats.layout import Motif
+from knitcore.formats.designs.layout import Motif
 
 Schema = dict[str, Any]
 NAMED_ELSEWHERE = {"interval_source", "intervals"}

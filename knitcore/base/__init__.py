@@ -1,0 +1,1 @@
+"""Ground floor: arrays, checks, errors, compiled functions, batches, extensions."""

@@ -1,0 +1,1 @@
+"""Charts of knit and purl stitches: segments, phases, repeats, patterns, fabrics."""

@@ -1,0 +1,55 @@
+"""Named repeats that knitters know, as seen from the face."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from knitcore.chart.stitch_chart import StitchChart
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A named repeat with a short description."""
+
+    identifier: str
+    name: str
+    chart: StitchChart
+    note: str
+
+
+def _pattern(identifier: str, name: str, rows: str, note: str) -> Pattern:
+    return Pattern(identifier, name, StitchChart.parse(rows.replace(" ", "\n")), note)
+
+
+def rib(knits: int, purls: int) -> StitchChart:
+    """One repeat of a knits x purls rib."""
+    return StitchChart.parse("K" * knits + "P" * purls)
+
+
+def welt(knits: int, purls: int) -> StitchChart:
+    """One repeat of garter welts: rows of knits and rows of purls, the knits at the bottom."""
+    return StitchChart.parse("\n".join(["P"] * purls + ["K"] * knits))
+
+
+PATTERNS = (
+    _pattern("stockinette", "Stockinette", "K", "Even segments both ways: the stiffest; it curls."),
+    _pattern("garter", "Garter", "P K", "Odd segments wale-wise: stretches along the wales."),
+    _pattern("rib", "1×1 rib", "KP", "Odd segments course-wise: the softest along the course."),
+    _pattern("seed", "Seed", "KP PK", "Odd segments both ways: soft both ways, lies flat."),
+    Pattern("rib-2-2", "2×2 rib", rib(2, 2), "Pulls in more and stretches more than 1×1."),
+    Pattern("rib-3-1", "3×1 rib", rib(3, 1), "A wide face with a narrow hinge."),
+    Pattern("rib-3-3", "3×3 rib", rib(3, 3), "Folds deeply; draws in strongly."),
+    Pattern(
+        "welt-2-2", "2-row welts", welt(2, 2), "Ridges that shorten the cloth along the wales."
+    ),
+    _pattern("basket", "Basket 2×2", "PPKK PPKK KKPP KKPP", "Blocks of two; thick and springy."),
+    _pattern("moss", "Moss", "PK PK KP KP", "Seed, with each row knitted twice."),
+    _pattern("broken-rib", "Broken rib", "KK KP", "Rib every other row; lies flat."),
+    _pattern(
+        "diamonds",
+        "Diamonds",
+        "KKKKPKKK KKKPKPKK KKPKKKPK KPKKKKKP PKKKKKKK KPKKKKKP KKPKKKPK KKKPKPKK",
+        "Purl lines on stockinette; soft along the lines.",
+    ),
+)
+"""All patterns, in the order in which they are shown."""

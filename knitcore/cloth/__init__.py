@@ -1,0 +1,1 @@
+"""Finite pieces of cloth: flat between clamps, cut along an outline, in space."""

@@ -1,0 +1,224 @@
+"""Results of tests of a swatch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from knitcore.base import showing
+from knitcore.base.arrays import Array
+from knitcore.base.result import Result
+from knitcore.chart.fabric import PHASES, Direction
+from knitcore.cloth.flat.fields import (
+    Fields,
+    cell_strains,
+    node_fields,
+    triangle_utilisation,
+    utilisation,
+)
+from knitcore.cloth.flat.grid_sheet import Sheet, State
+from knitcore.cloth.flat.load_path import Path as LoadPath
+from knitcore.law.stiffening import EXTENSION_START
+
+
+@dataclass(frozen=True, repr=False)
+class LockUp(Result):
+    """The place in a swatch that is nearest to its lock-up.
+
+    Attributes
+    ----------
+    utilisation : alpha * strain there; 1 is the lock-up.
+    step : index of the load step.
+    x_mm, y_mm : rest position of the quarter cell.
+    direction : which of the cell's two fibres.
+    fabric : the cell's phase.
+    """
+
+    utilisation: float
+    step: int
+    x_mm: float
+    y_mm: float
+    direction: Direction
+    fabric: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SwatchTest(Result):
+    """The load steps of a test that converged.
+
+    Attributes
+    ----------
+    sheet : grid, laws and model that were solved.
+    states : node positions at each step.
+    energy_n_mm : stored energy per step.
+    iterations : linear systems solved per step.
+    converged : whether all requested steps converged.
+    problem : why the test ended early, else None.
+    seconds : wall-clock time of the solution.
+    """
+
+    sheet: Sheet
+    states: tuple[State, ...]
+    energy_n_mm: Array
+    iterations: tuple[int, ...]
+    converged: bool
+    problem: str | None
+    seconds: float
+
+    not_listed: ClassVar = ("states",)
+
+    @classmethod
+    def of(cls, sheet: Sheet, path: LoadPath, **more: Any) -> Self:
+        """The result of a path on a sheet; ``more`` are fields of this kind of test."""
+        return cls(
+            sheet=sheet,
+            states=path.states,
+            energy_n_mm=path.energies,
+            iterations=path.iterations,
+            converged=path.problem is None,
+            problem=path.problem,
+            seconds=path.seconds,
+            **more,
+        )
+
+    def write(self, path: Path | str) -> None:
+        """Write the fields by the file's suffix: ``.npz`` (all steps) or ``.vtu`` (the last step).
+
+        Raises
+        ------
+        InputError
+            If the suffix is neither of these, or there is no step to write.
+        """
+        from knitcore.cloth.flat.field_files import write_fields
+
+        write_fields(self, path)
+
+    @property
+    def steps(self) -> int:
+        """Number of load steps that converged."""
+        return len(self.states)
+
+    @property
+    def dofs(self) -> int:
+        """Displacement unknowns."""
+        return self.sheet.grid.dofs
+
+    @property
+    def x_mm(self) -> Array:
+        """Rest positions of the nodes, (rows + 1, columns + 1)."""
+        return self.sheet.grid.corners[:, 0].reshape(self._shape)
+
+    @property
+    def y_mm(self) -> Array:
+        """Rest positions of the nodes, (rows + 1, columns + 1)."""
+        return self.sheet.grid.corners[:, 1].reshape(self._shape)
+
+    @property
+    def ux_mm(self) -> Array:
+        """Course-wise displacements, (steps, rows + 1, columns + 1); NaN without fabric."""
+        return self._displacements(0)
+
+    @property
+    def uy_mm(self) -> Array:
+        """Wale-wise displacements, (steps, rows + 1, columns + 1); NaN without fabric."""
+        return self._displacements(1)
+
+    def fields(self, step: int = -1) -> Fields:
+        """All fields at the nodes after a load step (the last one by default)."""
+        return node_fields(self.sheet, self.states[step])
+
+    @property
+    def utilisation(self) -> Array:
+        """Largest alpha * strain of any quarter cell, per step."""
+        return np.array([self._utilisation(state).max() for state in self.states])
+
+    def is_past_the_law(self, step: int = -1) -> bool:
+        """Whether some triangle of a quarter cell is past 98 % of its lock-up, where ``full`` only
+        extrapolates its law: force and strains are then not physical.
+        """
+        used = triangle_utilisation(self.sheet, cell_strains(self.sheet, self.states[step]))
+        return bool(used.max() > EXTENSION_START + 1e-6)
+
+    @property
+    def nearest_lock_up(self) -> LockUp | None:
+        """The quarter cell nearest to its lock-up in the last step (None without steps)."""
+        if not self.states:
+            return None
+        used = self._utilisation(self.states[-1])
+        axis, row, column = np.unravel_index(int(np.argmax(used)), used.shape)
+        grid = self.sheet.grid
+        return LockUp(
+            utilisation=float(used[axis, row, column]),
+            step=self.steps - 1,
+            x_mm=float(grid.column_lines[column : column + 2].mean()),
+            y_mm=float(grid.row_lines[row : row + 2].mean()),
+            direction=Direction.COURSE if axis == 0 else Direction.WALE,
+            fabric=PHASES[grid.law_of_cell[row, column] % len(PHASES)].value,
+        )
+
+    def _net_html(self) -> str:
+        """The deformed net of the last step, drawn every few cells."""
+        if not self.states:
+            return ""
+        points = np.stack([self.x_mm + self.ux_mm[-1], self.y_mm + self.uy_mm[-1]], axis=-1)
+        step = max(1, max(self._shape) // 24)
+        across = points.transpose(1, 0, 2)
+        lines = [line[np.isfinite(line).all(axis=1)] for line in (*points[::step], *across[::step])]
+        return showing.net([line for line in lines if len(line) > 1], "The deformed swatch")
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return self.sheet.grid.rows + 1, self.sheet.grid.columns + 1
+
+    def _displacements(self, axis: int) -> Array:
+        rest = self.sheet.grid.corners[:, axis]
+        rest = np.where(self.sheet.grid.used_corners, rest, np.nan)
+        moved = [(s.corners[:, axis] - rest).reshape(self._shape) for s in self.states]
+        return np.array(moved).reshape(-1, *self._shape)
+
+    def _utilisation(self, state: State) -> Array:
+        return utilisation(self.sheet, cell_strains(self.sheet, state))
+
+
+@dataclass(frozen=True, eq=False)
+class StripTest(SwatchTest):
+    """A simulated strip test (geometry after ISO 20932-1), not a certified test.
+
+    Attributes
+    ----------
+    direction : of the pull.
+    strain : clamp-to-clamp engineering strain per step.
+    force_n : force on a clamp per step.
+    stress_n_per_mm : force per initial width.
+    waist_strain : change of width half-way between the clamps, over the initial width there.
+    width_mm, length_mm : initial size across and along the pull; of a shaped piece its mean width.
+    """
+
+    direction: Direction
+    strain: Array
+    force_n: Array
+    stress_n_per_mm: Array
+    waist_strain: Array
+    width_mm: float
+    length_mm: float
+
+    def __repr__(self) -> str:
+        size = f"{self.width_mm:.3g} x {self.length_mm:.3g} mm"
+        end = (
+            f", {self.force_n[-1]:.3g} N at a strain of {self.strain[-1]:.3g}" if self.steps else ""
+        )
+        return f"StripTest({size} pulled {self.direction}-wise, {self.steps} steps{end})"
+
+    def _repr_html_(self) -> str:
+        strain, stress = (np.append(0.0, a) for a in (self.strain, self.stress_n_per_mm))
+        drawn = [(f"pulled {self.direction}-wise", strain, stress, None)]
+        curve = showing.curves(drawn, "strain", "stress, N/mm") if self.steps else ""
+        told = f"{self.width_mm:.0f} mm wide, {self.length_mm:.0f} mm between the clamps"
+        if self.steps:
+            end = f"at a strain of {self.strain[-1]:.2f}: {self.force_n[-1]:.3g} N"
+            told = f"{told}; {end}, waist {self.waist_strain[-1]:+.3f}"
+        net = self._net_html()
+        return showing.captioned(showing.beside(curve, net), told, self.problem or "")

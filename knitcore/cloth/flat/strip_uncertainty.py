@@ -1,0 +1,348 @@
+"""Uncertainty of a strip test: intervals of force, strain and lock-up utilisation.
+
+The clamps prescribe the stretch, so a common factor on the stiffness changes the force but no
+strain. Strains change where one fabric is stiffer *relative to its neighbours* than expected, or
+along its courses but not its wales. To first order (delta method) a parameter p of the laws moves
+nodes by
+
+    du/dp = -K⁻¹ dR/dp
+
+with the tangent K and the internal forces R of the equilibrium, and variances of independent
+parameters add up. The parameters are
+
+- the logarithm of each fabric's scale of stress along course and wale (C_aaaa and beta together),
+  as uncertain as the curve at the test's stress;
+- each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
+- the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
+- the model's own error, where fabrics are mixed: for the force that of the chart's answer
+  (:mod:`knitcore.prediction.quarter_laws`), for strains one for each fabric separately.
+
+The lock-up (1 / alpha) is itself uncertain, and its utilisation with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import PHASES, Direction
+from knitcore.cloth.flat.fields import cell_strains, corner_means, stiffening_of, utilisation
+from knitcore.cloth.flat.grid_kernel import Nodes
+from knitcore.cloth.flat.grid_sheet import Sheet
+from knitcore.cloth.flat.sheet_models import Coupling
+from knitcore.cloth.flat.strip import Clamps, clamp_edges, clamp_mask, waist_strain
+from knitcore.cloth.flat.strip_results import StripTest
+from knitcore.fit.calibration import LOG_SHEAR_PRIOR
+from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
+from knitcore.law.stiffening import StiffeningForm
+from knitcore.linear.grid_factor import GridFactor
+from knitcore.materials.law_uncertainty import (
+    Z_SCORE,
+    Interval,
+    LawUncertainty,
+    in_a_sentence,
+    log_interval,
+)
+from knitcore.materials.material import FabricRecord, Material
+from knitcore.prediction.quarter_laws import SPREAD_AT
+
+MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
+"""The composite's own error, for stitches of mixed quarters and of one fabric."""
+MODEL_ERRORS = "the mixture's own error, as for the chart's moduli"
+SHEAR_ASSUMED = (
+    f"an assumed shear modulus, within a factor of {np.exp(Z_SCORE * LOG_SHEAR_PRIOR[1]):.0f}"
+)
+LOG_SHEAR_STIFFENING = 1.0
+"""Standard deviation of the logarithm of the growth of the shear stiffness, found on one jersey. To
+first order 90 % are -2.6 to 10.6 rad⁻²; the yarn level, without friction, has -2.5."""
+STEP = 1e-3
+"""Step of a parameter, for differences of forces."""
+
+
+@dataclass(frozen=True, eq=False)
+class StepSpread:
+    """Standard deviations at one load step.
+
+    Attributes
+    ----------
+    force_n : interval of the force (90 %).
+    force_log_sd : of the logarithm of force and stress.
+    waist_sd : of the waist strain.
+    strain_xx_sd, strain_yy_sd, utilisation_sd : (rows + 1, columns + 1) at the cells' corners, as
+        :class:`knitcore.cloth.flat.fields.Fields` has the values; NaN without cloth.
+    """
+
+    force_n: Interval
+    force_log_sd: float
+    waist_sd: float
+    strain_xx_sd: Array
+    strain_yy_sd: Array
+    utilisation_sd: Array
+
+
+@dataclass(frozen=True, eq=False)
+class LawParameter:
+    """An uncertain parameter of the laws.
+
+    Attributes
+    ----------
+    up, down : (laws,), the kernel's laws with this one raised and lowered by ``STEP``; 0 for
+        laws without it.
+    sd : of the parameter.
+    model_sd : of the composite's error in it, which counts for strains.
+    """
+
+    up: NDArray[np.void]
+    down: NDArray[np.void]
+    sd: float
+    model_sd: float
+
+
+class StripSpread:
+    """Intervals of a strip test of a chart.
+
+    Parameters
+    ----------
+    test : the test.
+    material : with the uncertainty of its laws.
+    clamps : as in the test.
+
+    Raises
+    ------
+    InputError
+        If the sheet may wrinkle (``tension_field``): its forces are not linear in the laws.
+
+    Examples
+    --------
+    >>> from knitcore import StitchChart
+    >>> from knitcore.materials import material
+    >>> from knitcore.cloth.flat import strip_test
+    >>> chart = StitchChart.of_fabric("garter", rows=4, columns=6)
+    >>> test = strip_test(chart, material("acrylic"), "wale", 0.3, steps=3)
+    >>> force = StripSpread(test, material("acrylic")).at(-1).force_n
+    >>> bool(force.low < test.force_n[-1] < force.high)
+    True
+    """
+
+    def __init__(
+        self, test: StripTest, material: Material, clamps: Clamps = Clamps.CLAMPED
+    ) -> None:
+        if test.sheet.model.tension_field:
+            raise InputError(
+                "tension_field", "there are no intervals for a sheet that wrinkles.", "Turn it off."
+            )
+        grid = test.sheet.grid
+        fixed = clamp_mask(grid, test.direction, clamps) | ~grid.used_corners[:, None]
+        self.test = test
+        self._fixed = fixed
+        self._factor = GridFactor(grid.columns, grid.rows, fixed.ravel())
+        self._model_sd = model_log_sd(test.sheet)
+        self._material = material
+        self._lock_up_sd = _lock_up_sd(test.sheet, material)
+
+    def at(self, step: int) -> StepSpread:
+        """The standard deviations at a load step (negative ones count from the last)."""
+        test, sheet = self.test, self.test.sheet
+        grid, state, axis = sheet.grid, test.states[step], test.direction.axis
+        lin = sheet.linearise(state)
+        self._factor.factorise(lin.tangent.matrix)
+        pulled = grid.edge(clamp_edges(test.direction)[1])
+        slope = self._utilisation_slope(step)
+        force_variance = waist_variance = 0.0
+        variances = np.zeros((3, grid.rows + 1, grid.columns + 1))
+        for parameter in law_parameters(
+            sheet, self._material, self._model_sd, float(test.stress_n_per_mm[step])
+        ):
+            raised = sheet.law_force(parameter.up, state)
+            lowered = sheet.law_force(parameter.down, state)
+            change = lin.with_force(
+                Nodes(*((u - d) / (2 * STEP) for u, d in zip(raised, lowered, strict=True)))
+            )
+            condensed = change.condensed_force()
+            free = np.where(self._fixed, 0.0, -condensed)
+            corner_step = self._factor.solve(free).reshape(condensed.shape)
+            held = condensed[pulled, axis].sum() + lin.apply(corner_step)[pulled, axis].sum()
+            force_variance += (parameter.sd * held / test.force_n[step]) ** 2
+            waist = waist_strain(grid, state.corners + corner_step, test.direction)
+            full_sd = math.hypot(parameter.sd, parameter.model_sd)
+            waist_variance += (full_sd * (waist - test.waist_strain[step])) ** 2
+            strains = sheet.strain_change(state, change.newton_step(corner_step))
+            used = (slope * strains).sum(axis=0)
+            for name, cells in enumerate((*strains, used)):
+                variances[name] += (full_sd * corner_means(grid, cells)) ** 2
+        locks = self._lock_up_sd[grid.law_of_cell]
+        used = utilisation(sheet, cell_strains(sheet, state))
+        direct = np.where(used[0] >= used[1], used[0] * locks[..., 0], used[1] * locks[..., 1])
+        variances[2] += corner_means(grid, direct) ** 2
+        force_log_sd = math.hypot(math.sqrt(force_variance), self._force_model_sd(step))
+        return StepSpread(
+            log_interval(float(test.force_n[step]), force_log_sd),
+            force_log_sd,
+            math.sqrt(waist_variance),
+            *np.sqrt(variances),
+        )
+
+    def _force_model_sd(self, step: int) -> float:
+        """The model's own error of the log force: by the chart's answer, at the step's stress."""
+        spread = self.test.sheet.stress_log_sd
+        if spread is None:
+            return self._model_sd
+        stress = float(self.test.stress_n_per_mm[step])
+        return float(np.interp(stress, SPREAD_AT, spread[self.test.direction.axis]))
+
+    def _utilisation_slope(self, step: int) -> Array:
+        """d utilisation / d (strain course-wise, wale-wise) of every cell, (2, rows, columns)."""
+        sheet = self.test.sheet
+        strains = cell_strains(sheet, self.test.states[step])
+        used = utilisation(sheet, strains)
+        stiff = stiffening_of(sheet, sheet.grid.law_of_cell)
+        form = StiffeningForm(sheet.model.energy.value)
+        (xx, xy), (yx, yy) = stiff.argument_slopes(*strains.mean[:2], form)
+        course = used[0] >= used[1]
+        return np.stack([np.where(course, xx, yx), np.where(course, xy, yy)])
+
+
+def model_log_sd(sheet: Sheet) -> float:
+    """The composite's own error in a sheet, by its share of stitches with mixed quarters."""
+    grid = sheet.grid
+    codes, there = grid.law_of_cell % len(PHASES), grid.cloth[::2, ::2]
+    quarters = np.stack([codes[i::2, j::2][there] for i in (0, 1) for j in (0, 1)])
+    pure = float(np.mean(np.ptp(quarters, axis=0) == 0))
+    if len(np.unique(codes[grid.cloth])) == 1:
+        return 0.0
+    return pure * MODEL_LOG_SD["patchwork"] + (1 - pure) * MODEL_LOG_SD["flat"]
+
+
+def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
+    """Standard deviation of ln(lock-up strain), course-wise and wale-wise, (laws, 2)."""
+    found = np.zeros((len(sheet.laws), 2))
+    for code in _codes(sheet):
+        spread = _record(material, code).uncertainty
+        found[code] = [spread.curve(direction).log_lock_up for direction in Direction]
+    return found
+
+
+def law_parameters(
+    sheet: Sheet, material: Material, model_sd: float, stress_n_per_mm: float
+) -> list[LawParameter]:
+    """The uncertain parameters of a sheet's laws, one by one, and of the assumed shear modulus.
+
+    ``stress_n_per_mm`` is the approximate stress of the cloth.
+    """
+    found = []
+    for code in _codes(sheet):
+        record = _record(material, code)
+        law, spread = record.law, record.uncertainty
+        for direction in Direction:
+            step = _varied(sheet, [code], partial(_stress_scaled, direction))
+            sd = float(spread.log_stress(direction, stress_n_per_mm))
+            found.append(LawParameter(*step, sd, model_sd))
+        sd = _coupling_sd(law, sheet.model.rule, spread)
+        found.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
+        if sheet.model.shear_modulus is None and spread.log_shear is not None:
+            found.append(LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0))
+            growth = _varied(sheet, [code], _stiffer_in_shear)
+            found.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
+    assumed = _of_assumed_shear(sheet, material)
+    if assumed:
+        found.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
+    return found
+
+
+def interval_source(sheet: Sheet, material: Material) -> str:
+    """What the intervals of a test of a sheet rest on, in words."""
+    said = [_record(material, code).uncertainty.source for code in _codes(sheet)]
+    said += [SHEAR_ASSUMED] if _of_assumed_shear(sheet, material) else []
+    said += [MODEL_ERRORS] if model_log_sd(sheet) else []
+    return in_a_sentence(said)
+
+
+def _codes(sheet: Sheet) -> list[int]:
+    """Codes of the laws that the cloth of a sheet follows."""
+    codes: list[int] = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]).tolist()
+    return codes
+
+
+def _record(material: Material, code: int) -> FabricRecord:
+    """The pure fabric whose law, perhaps fitted to an answer, has this code."""
+    return material.record(PHASES[code % len(PHASES)])
+
+
+def _of_assumed_shear(sheet: Sheet, material: Material) -> list[int]:
+    """Codes of the laws whose shear modulus is the assumed one."""
+    return [
+        code
+        for code in _codes(sheet)
+        if sheet.model.shear_modulus is None
+        and _record(material, code).uncertainty.log_shear is None
+        and sheet.laws[code].shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
+    ]
+
+
+def _varied(
+    sheet: Sheet, codes: list[int], vary: Callable[[ConstitutiveLaw, float], ConstitutiveLaw]
+) -> tuple[NDArray[np.void], NDArray[np.void]]:
+    """The kernel's records of these laws with a parameter raised and lowered; 0 for the others."""
+    tables = []
+    for step in (STEP, -STEP):
+        table = np.zeros_like(sheet.parameters)
+        table[codes] = sheet.model.parameters([vary(sheet.laws[code], step) for code in codes])
+        tables.append(table)
+    return tables[0], tables[1]
+
+
+def _stress_scaled(direction: Direction, law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """The law for a step of ln(stress scale) in one direction, with ν_xy ν_yx fixed."""
+    factor, axis = math.exp(step), "xx" if direction is Direction.COURSE else "yy"
+    stiffness, stiffening = f"stiffness_{axis * 2}", f"beta_{axis}"
+    coupling = law.stiffness_xxyy * math.sqrt(factor)
+    return replace(
+        law,
+        stiffness_xxyy=coupling,
+        stiffness_yyxx=coupling,
+        **{name: getattr(law, name) * factor for name in (stiffness, stiffening)},
+    )
+
+
+def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """By r = C_xxyy / sqrt(C_xxxx C_yyyy), Young's moduli fixed."""
+    r = law.stiffness_xxyy / math.sqrt(law.stiffness_xxxx * law.stiffness_yyyy)
+    grown = (1 - r**2) / (1 - (r + step) ** 2)
+    xxxx, yyyy = law.stiffness_xxxx * grown, law.stiffness_yyyy * grown
+    coupling = (r + step) * math.sqrt(xxxx * yyyy)
+    return replace(
+        law,
+        stiffness_xxxx=xxxx,
+        stiffness_yyyy=yyyy,
+        stiffness_xxyy=coupling,
+        stiffness_yyxx=coupling,
+    )
+
+
+def _sheared(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """By the logarithm of the shear modulus."""
+    return replace(law, shear_modulus=law.shear_modulus * math.exp(step))
+
+
+def _stiffer_in_shear(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """By the logarithm of the growth of the shear stiffness."""
+    return replace(law, shear_stiffening=law.shear_stiffening * math.exp(step))
+
+
+def _coupling_sd(measured: ConstitutiveLaw, rule: Coupling, spread: LawUncertainty) -> float:
+    """Standard deviation of r, from those of the Poisson ratios that the model's rule uses."""
+    nu_yx, nu_xy = measured.poisson_yx, measured.poisson_xy
+    if rule is Coupling.GEOMETRIC and nu_yx * nu_xy > 0:  # r = sqrt(nu_yx nu_xy)
+        aspect = math.sqrt(nu_yx / nu_xy)
+    else:
+        aspect = math.sqrt(measured.stiffness_xxxx / measured.stiffness_yyyy)
+    if rule is Coupling.SCRIPT:  # r = nu_xy aspect
+        return spread.poisson_xy * aspect
+    return math.hypot(spread.poisson_yx / aspect, spread.poisson_xy * aspect) / 2

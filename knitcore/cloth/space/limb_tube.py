@@ -1,0 +1,121 @@
+"""A piece closed to a tube and worn on a limb whose girth changes along its length.
+
+Around the limb a line of stitches (a row, or a column) is as long as the limb's girth there, or as
+at rest where that is more. Along the limb nothing holds it, so that it shortens as the answer says
+of a strip free to narrow (:mod:`knitcore.garment.limb`). Sizes at rest are those of every stitch's
+surroundings, and so is the law (:meth:`knitcore.prediction.patches.Patches.lines`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.base.result import Result
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.garment.limb import LimbPlace, MeasuredLimb, place_on
+from knitcore.materials import Material
+from knitcore.prediction.neighbourhood import neighbourhood_sizes
+from knitcore.prediction.predict import patches_of
+
+LEAST_AROUND = 4
+"""Stitches that can close to a tube."""
+SIDES = 72
+"""Of the limb's surface."""
+BARE = 0.12
+"""So many girths of the limb are seen beyond either end of the tube."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TubeOnLimb(Result):
+    """A tube on a limb, in space: the limb's axis along y (x if the columns run around it).
+
+    Attributes
+    ----------
+    corners_mm : (rows + 1, columns + 1, 3) corners of the stitches, the middle of the chart in
+        front (z), the seam behind. The face is outside.
+    places : of every line of stitches around the limb, from where the tube begins.
+    length_mm, relaxed_length_mm : of the tube along the limb's surface, worn and unworn.
+    limb_mm : (rings, sides, 3) the limb under it and a little beyond, closed around.
+    """
+
+    corners_mm: Array
+    places: tuple[LimbPlace, ...]
+    length_mm: float
+    relaxed_length_mm: float
+    limb_mm: Array
+
+
+def worn_tube(
+    chart: StitchChart, material: Material, limb: MeasuredLimb, around: Direction = Direction.COURSE
+) -> TubeOnLimb:
+    """The whole chart as a tube on a limb.
+
+    Parameters
+    ----------
+    chart : the tube, cut open; its lowest row (left column) is where the limb begins.
+    limb : beyond its ends it goes on with its last girth.
+    around : which direction runs around the limb: rows, or columns.
+
+    Raises
+    ------
+    InputError
+        If the chart is too narrow for a tube, or the material lacks a fabric.
+    """
+    by_row = around is Direction.COURSE
+    count = chart.columns if by_row else chart.rows
+    if count < LEAST_AROUND:
+        raise InputError(
+            "chart",
+            "is too narrow for a tube around a limb.",
+            f"Give at least {LEAST_AROUND} stitches, or let the other direction run around it.",
+        )
+    sizes = neighbourhood_sizes(chart, material)
+    if not by_row:
+        sizes = sizes.transpose(1, 0, 2)[..., ::-1]
+    rests, heights = sizes[..., 0].sum(axis=1), sizes[..., 1].mean(axis=1)
+    predictions = patches_of(chart, material).lines(around)
+    places, along_mm = [], [0.0]
+    for line, (rest, height) in enumerate(zip(rests.tolist(), heights.tolist(), strict=True)):
+        prediction = predictions[line % len(predictions)].along(around)
+        at = along_mm[-1] + 0.5 * height
+        place = place_on(prediction, at, float(np.interp(at, limb.at_mm, limb.girths_mm)), rest)
+        places.append(place)
+        along_mm.append(along_mm[-1] + height * (1.0 + place.axial_strain))
+    rings = _between(np.array([max(p.rest_mm, p.girth_mm) for p in places])) / (2.0 * np.pi)
+    shares = np.cumsum(sizes[..., 0], axis=1) / rests[:, None]
+    angles = 2.0 * np.pi * _between(np.pad(shares, ((0, 0), (1, 0)))) - np.pi
+    bare = BARE * places[-1].girth_mm
+    reached = np.array([-bare, *along_mm, along_mm[-1] + bare])
+    radius = limb.girth_mm(reached) / (2.0 * np.pi)
+    level = _levels(reached, radius)[:, None]
+    corners = _turned(rings[:, None], angles, level[1:-1])
+    sides = np.linspace(-np.pi, np.pi, SIDES, endpoint=False)[None]
+    skin = _turned(radius[:, None], sides, level)
+    if not by_row:
+        corners, skin = (points[..., [1, 0, 2]] for points in (corners, skin))
+        corners = corners.transpose(1, 0, 2)
+    return TubeOnLimb(corners, tuple(places), along_mm[-1], float(heights.sum()), skin)
+
+
+def _between(lines: Array) -> Array:
+    """Values at the borders of lines, from those of the lines."""
+    return np.concatenate([lines[:1], 0.5 * (lines[1:] + lines[:-1]), lines[-1:]])
+
+
+def _levels(along_mm: Array, radius_mm: Array) -> Array:
+    """Places on the limb's axis, from the middle, of places along its surface."""
+    flat = np.square(np.diff(along_mm)) - np.square(np.diff(radius_mm))
+    level = np.concatenate([[0.0], np.cumsum(np.sqrt(np.maximum(flat, 0.0)))])
+    return np.asarray(level - 0.5 * level[-1])
+
+
+def _turned(radius_mm: Array, angles: Array, level_mm: Array) -> NDArray[np.float64]:
+    """Points around the axis; angle 0 is in front."""
+    x, z = radius_mm * np.sin(angles), radius_mm * np.cos(angles)
+    return np.stack(np.broadcast_arrays(x, level_mm, z), axis=-1).astype(float)

@@ -1,0 +1,83 @@
+"""Points on and above a curled piece."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import RectBivariateSpline
+from scipy.sparse import csr_array, eye_array, kron, vstack
+from scipy.sparse.linalg import splu
+
+from knitcore.base.arrays import Array
+
+
+def corners_of(stitches: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(rows + 1, columns + 1) whether a stitch (rows, columns) has this corner."""
+    around = np.pad(stitches, 1)
+    return np.asarray(around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1])
+
+
+def filled(corners_mm: Array, used: NDArray[np.bool_]) -> Array:
+    """Corners (rows + 1, columns + 1, 3), those that no stitch has in line with those beside them,
+    as nearly as can be: with the least squares of second differences along rows and columns.
+    """
+    if used.all():
+        return corners_mm
+    second = [line[2:] - 2.0 * line[1:-1] + line[:-2] for line in map(_unit, used.shape)]
+    rows, columns = map(_unit, used.shape)
+    both = vstack([kron(second[0], columns), kron(rows, second[1])], format="csc")
+    found, there = corners_mm.reshape(-1, 3).copy(), used.ravel()
+    missing = both[:, ~there]
+    found[~there] = -splu((missing.T @ missing).tocsc()).solve(
+        missing.T @ (both[:, there] @ found[there])
+    )
+    return found.reshape(corners_mm.shape)
+
+
+def _unit(count: int) -> csr_array:
+    return eye_array(count, format="csr")
+
+
+def _halved(lines: Array) -> Array:
+    """A single strip as two, since a spline of degree 1 has no slope."""
+    if len(lines) > 2:
+        return lines
+    return np.stack([lines[0], 0.5 * (lines[0] + lines[1]), lines[1]])
+
+
+class Surface:
+    """A smooth surface through the corners of the stitches.
+
+    Parameters
+    ----------
+    corners_mm : (rows + 1, columns + 1, 3)
+    """
+
+    def __init__(self, corners_mm: Array) -> None:
+        rows, columns = (n - 1 for n in corners_mm.shape[:2])
+        self._size = columns, rows
+        corners_mm = _halved(_halved(corners_mm).swapaxes(0, 1)).swapaxes(0, 1)
+        up = np.linspace(0.0, rows, len(corners_mm))
+        along = np.linspace(0.0, columns, corners_mm.shape[1])
+        kx, ky = min(3, len(up) - 1), min(3, len(along) - 1)
+        self._parts = [
+            RectBivariateSpline(up, along, corners_mm[..., m], kx=kx, ky=ky) for m in range(3)
+        ]
+
+    def at(self, across: Array, up: Array, height_mm: Array) -> Array:
+        """Points (…, 3), mm, at places counted in stitches from the lower left corner.
+
+        Beyond the edges the surface is continued straight.
+        """
+        inside = np.clip(across, 0.0, self._size[0]), np.clip(up, 0.0, self._size[1])
+        along, rising = self._of(*inside, 0, 1), self._of(*inside, 1, 0)
+        beyond = across - inside[0], up - inside[1]
+        normal = np.cross(along, rising)
+        normal /= np.maximum(np.linalg.norm(normal, axis=-1), 1e-12)[..., None]
+        found = self._of(*inside, 0, 0) + along * beyond[0][..., None]
+        return np.asarray(found + rising * beyond[1][..., None] + normal * height_mm[..., None])
+
+    def _of(self, across: Array, up: Array, by_up: int, by_across: int) -> Array:
+        return np.stack(
+            [part.ev(up, across, dx=by_up, dy=by_across) for part in self._parts], axis=-1
+        )

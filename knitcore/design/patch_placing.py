@@ -1,0 +1,162 @@
+"""Put repeats into patches, and fit the patches to each other stitch by stitch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from knitcore.base.arrays import Array
+from knitcore.chart.phases import surroundings
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.mechanics.local_moduli import StitchTable, windows_of
+
+Grid = NDArray[np.bool_]
+Look = Callable[[float], None]
+
+BORDER = 2
+"""Stitches on each side of a border that may be turned singly."""
+_SWEEPS = 6
+_ENOUGH = 1e-12
+
+
+def placed(
+    patches: NDArray[np.intp],
+    repeats: list[StitchChart],
+    wanted: Array,
+    table: StitchTable,
+    *,
+    kept: StitchChart,
+    stitch: Grid,
+    scattered: bool,
+    seed: int,
+    look: Look,
+) -> StitchChart:
+    """The chart of patches that each hold a repeat, fitted to their neighbours.
+
+    Parameters
+    ----------
+    patches : (rows, columns) number of each stitch's patch; a number without a repeat means that
+        the stitch stays as it is in ``kept``.
+    repeats : of each patch.
+    wanted : (2, rows, columns) logarithms of the wanted moduli, NaN where there is no target.
+    table : of the material.
+    kept : stitches of the chart where there is no repeat.
+    stitch : (rows, columns), where there are stitches.
+    scattered : single stitches may be turned at the borders of patches.
+    seed : of the order in which patches and stitches are tried.
+    look : called from time to time with the share done; may raise to stop.
+    """
+    rng = np.random.default_rng(seed)
+    local = _LocalCost(wanted, table, stitch)
+    purl = kept.purl.copy()
+    for patch, repeat in enumerate(repeats):
+        purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
+    if patches.max() > 0:
+        _shift(purl, patches, repeats, local, rng, look)
+        if scattered:
+            _turn(purl, patches, patches < len(repeats), local, rng, look)
+    return StitchChart(purl)
+
+
+class _LocalCost:
+    """Squared deviations of local moduli from the map, by windows."""
+
+    def __init__(self, wanted: Array, table: StitchTable, stitch: Grid) -> None:
+        self._stitch = stitch
+        have = table.log_moduli[:, None, None]
+        self._cost = np.nansum((have - wanted[..., None]) ** 2, axis=0)
+
+    def around(self, purl: Grid, rows: slice, columns: slice) -> float:
+        """Cost of all stitches whose surroundings a change inside the window can alter."""
+        (row, far_row), (column, far_column) = (
+            windows_of(s, n) for s, n in zip((rows, columns), purl.shape, strict=True)
+        )
+        far = far_row, far_column
+        codes = surroundings(StitchChart(purl[far]), stitch=self._stitch[far])[
+            row.start - far_row.start : row.stop - far_row.start,
+            column.start - far_column.start : column.stop - far_column.start,
+        ]
+        costs = self._cost[row, column]
+        return float(np.take_along_axis(costs, codes[..., None].astype(np.intp), axis=2).sum())
+
+
+def _shift(
+    purl: Grid,
+    patches: NDArray[np.intp],
+    repeats: list[StitchChart],
+    local: _LocalCost,
+    rng: np.random.Generator,
+    look: Look,
+) -> None:
+    """Shift or turn every patch so that it fits its neighbours, until nothing improves."""
+    boxes = ndimage.find_objects(patches + 1)
+    for sweep in range(_SWEEPS):
+        improved = False
+        for count, patch in enumerate(rng.permutation(len(repeats)).tolist()):
+            look(0.5 * (sweep + count / len(repeats)) / _SWEEPS)
+            rows, columns = boxes[patch]
+            cells = patches == patch
+            best = purl[cells]
+            least = local.around(purl, rows, columns)
+            for image in _images(repeats[patch]):
+                purl[cells] = _tiled(image, purl)[cells]
+                cost = local.around(purl, rows, columns)
+                if cost < least - _ENOUGH:
+                    best, least, improved = purl[cells], cost, True
+            purl[cells] = best
+        if not improved:
+            return
+
+
+def _turn(
+    purl: Grid,
+    patches: NDArray[np.intp],
+    free: Grid,
+    local: _LocalCost,
+    rng: np.random.Generator,
+    look: Look,
+) -> None:
+    """Turn single free stitches, and pairs of them, near borders where that lowers the cost."""
+    edge = np.zeros(purl.shape, dtype=bool)
+    edge[:, :-1] |= patches[:, :-1] != patches[:, 1:]
+    edge[:-1] |= patches[:-1] != patches[1:]
+    near = np.argwhere(ndimage.binary_dilation(edge, iterations=BORDER) & free)
+    for sweep in range(_SWEEPS):
+        improved = False
+        for count, (row, column) in enumerate(rng.permutation(near).tolist()):
+            if count % 200 == 0:
+                look(0.5 + 0.5 * (sweep + count / len(near)) / _SWEEPS)
+            for height, width in ((1, 1), (1, 2), (2, 1)):
+                rows = slice(row, min(row + height, purl.shape[0]))
+                columns = slice(column, min(column + width, purl.shape[1]))
+                if not free[rows, columns].all():
+                    continue
+                before = local.around(purl, rows, columns)
+                purl[rows, columns] ^= True
+                if local.around(purl, rows, columns) < before - _ENOUGH:
+                    improved = True
+                    break
+                purl[rows, columns] ^= True
+        if not improved:
+            return
+
+
+def _tiled(repeat: StitchChart, purl: Grid) -> Grid:
+    rows, columns = purl.shape
+    return repeat.resized(rows, columns).purl
+
+
+def _images(repeat: StitchChart) -> list[StitchChart]:
+    """All shifts of a repeat and of its mirror, with knits and purls as they are and swapped."""
+    grids = [repeat.purl, repeat.purl[:, ::-1]]
+    images = [
+        StitchChart(np.roll(grid, (down, across), axis=(0, 1)) ^ swapped)
+        for grid in grids
+        for down in range(repeat.rows)
+        for across in range(repeat.columns)
+        for swapped in (False, True)
+    ]
+    return list(dict.fromkeys(images))

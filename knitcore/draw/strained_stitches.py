@@ -1,0 +1,71 @@
+"""Values of a strip test at the stitches of its chart, which lie on the quarter grid's nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
+
+from knitcore.base.arrays import Array
+from knitcore.cloth.flat.strip_results import LockUp, StripTest
+
+
+@dataclass(frozen=True, eq=False)
+class StitchStates:
+    """The state of every stitch at every step of a test; row 0 is the bottom row.
+
+    Attributes
+    ----------
+    positions_mm : (steps, rows, columns, 2) centres, float32; where there is no stitch they are
+        extrapolated from the nearest one, because a loop at an edge is drawn from the distances to
+        all its neighbours.
+    strain : (steps, rows, columns, 2) course-wise and wale-wise, 0 where there is no stitch.
+    utilisation : (steps, rows, columns) alpha times strain, 1 at the lock-up; 0 where there is no
+        stitch.
+    """
+
+    positions_mm: Array
+    strain: Array
+    utilisation: Array
+
+
+def stitch_states(test: StripTest) -> StitchStates:
+    """Read positions, strains and utilisation at the centres of the stitches."""
+    there = test.sheet.grid.cloth[::2, ::2]
+    ux, uy, xx, yy, used = np.zeros((5, test.steps, *there.shape))
+    for step in range(test.steps):
+        at = test.fields(step)
+        for values, nodes in (
+            (ux, at.ux_mm),
+            (uy, at.uy_mm),
+            (xx, at.strain_xx),
+            (yy, at.strain_yy),
+            (used, at.utilisation),
+        ):
+            values[step] = nodes[1::2, 1::2]
+    x = _carried(test.x_mm[1::2, 1::2], ux, xx, there)
+    y = _carried(test.y_mm[1::2, 1::2], uy, yy, there)
+    for values in (xx, yy, used):
+        values[:, ~there] = 0.0
+    positions = np.stack([x, y], axis=-1).astype(np.float32)
+    return StitchStates(positions, np.stack([xx, yy], axis=-1), used)
+
+
+def stitch_at(test: StripTest, spot: LockUp) -> tuple[int, int]:
+    """Return row and column, from 0 at the bottom left, of the stitch that a place lies in."""
+    grid = test.sheet.grid
+    rows, columns = grid.cloth[::2, ::2].shape
+    column = int(np.searchsorted(grid.column_lines[::2], spot.x_mm))
+    row = int(np.searchsorted(grid.row_lines[::2], spot.y_mm))
+    return min(max(row, 1), rows) - 1, min(max(column, 1), columns) - 1
+
+
+def _carried(
+    rest_mm: Array, moved_mm: Array, strain: Array, there: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """Positions at each step, extrapolated from the nearest stitch where there is none."""
+    row, column = distance_transform_edt(~there, return_distances=False, return_indices=True)
+    stretched = (rest_mm - rest_mm[row, column]) * (1 + strain[:, row, column])
+    return np.asarray(rest_mm[row, column] + moved_mm[:, row, column] + stretched)

@@ -1,0 +1,1 @@
+"""Constants of laws from measured tests and displacement fields."""

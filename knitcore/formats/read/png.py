@@ -1,0 +1,120 @@
+"""Charts as pictures with one pixel per stitch: a purl is dark, as the dot of a printed chart.
+
+A piece with an outline or with yarns of its own is a picture with a palette, its "no stitch"
+transparent and its yarns light where they knit and dark where they purl; the names of the yarns are
+in
+the file. Any other picture is read by its brightness.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, PngImagePlugin, UnidentifiedImageError
+
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
+from knitcore.garment.piece import Piece, PieceYarn
+from knitcore.garment.shaped import ShapedChart
+
+TEXT_KEY = "knitcore-yarns"
+MAX_YARNS = 127
+_LIGHT, _DARK = 170.0, 84.0
+"""Least brightness of knits, and greatest of purls."""
+
+
+def write_png(chart: StitchChart | Piece) -> bytes:
+    """The picture, the top row of the chart at its top.
+
+    Raises
+    ------
+    InputError
+        If there are more yarns than a palette holds.
+    """
+    buffer = io.BytesIO()
+    if isinstance(chart, Piece) and not chart.is_plain:
+        _save_piece(chart, buffer)
+        return buffer.getvalue()
+    purl = chart.chart.purl if isinstance(chart, Piece) else chart.purl
+    image = Image.fromarray(np.where(purl[::-1], 0, 255).astype(np.uint8)).convert("1")
+    image.save(buffer, format="PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def _save_piece(piece: Piece, buffer: io.BytesIO) -> None:
+    if len(piece.yarns) > MAX_YARNS:
+        raise InputError(
+            "yarns", f"{len(piece.yarns)} are too many.", f"Use at most {MAX_YARNS} yarns."
+        )
+    index = np.where(piece.shaped.stitch, 1 + 2 * piece.yarn_of + piece.chart.purl, 0)
+    image = Image.fromarray(index[::-1].astype(np.uint8), mode="P")
+    palette = [(255, 255, 255)]
+    for yarn in piece.yarns:
+        palette += [_shade(yarn.colour, knit=True), _shade(yarn.colour, knit=False)]
+    image.putpalette([channel for colour in palette for channel in colour])
+    said = PngImagePlugin.PngInfo()
+    yarns = [[yarn.name, yarn.colour] for yarn in piece.yarns]
+    said.add_itxt(TEXT_KEY, json.dumps(yarns, ensure_ascii=False))
+    image.save(buffer, format="PNG", transparency=0, pnginfo=said)
+
+
+def _shade(colour: str, *, knit: bool) -> tuple[int, int, int]:
+    """A yarn's colour, bright enough to be read as a knit or dark enough to be read as a purl."""
+    rgb = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)], dtype=np.float64)
+    bright = float(rgb @ (0.299, 0.587, 0.114))
+    if knit and bright < _LIGHT:
+        rgb += (255 - rgb) * (_LIGHT - bright) / (255 - bright)
+    elif not knit and bright > _DARK:
+        rgb *= _DARK / bright
+    red, green, blue = (int(channel) for channel in rgb.round())
+    return red, green, blue
+
+
+def read_png_piece(file: Path) -> Piece:
+    """The chart of a picture: dark pixels are purls, light or transparent ones knits.
+
+    It has an outline and yarns if :func:`write_png` wrote them.
+
+    Raises
+    ------
+    InputError
+        If it is not a PNG, or too large.
+    """
+    try:
+        with Image.open(file, formats=["PNG"]) as image:
+            check_chart_size(image.height, image.width)  # before any pixel is decoded
+            said = image.info.get(TEXT_KEY) if image.mode == "P" else None
+            if isinstance(said, str):
+                return _piece(np.asarray(image)[::-1].astype(np.intp), said, file.name)
+            flat = Image.new("RGBA", image.size, "white")
+            flat.alpha_composite(image.convert("RGBA"))
+            return Piece.plain(StitchChart(np.asarray(flat.convert("L"))[::-1] < 128))
+    except Image.DecompressionBombError:
+        raise InputError(
+            "chart",
+            f"{file.name} has more pixels than any chart has stitches.",
+            f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
+        ) from None
+    except InputError:
+        raise
+    except (UnidentifiedImageError, OSError, SyntaxError, ValueError):
+        raise InputError(
+            "chart", f"{file.name} is not a readable PNG.", "Export it again as PNG."
+        ) from None
+
+
+def _piece(index: NDArray[np.intp], said: str, name: str) -> Piece:
+    damaged = InputError("chart", f"{name} is damaged.", "Export it again as PNG.")
+    try:
+        yarns = tuple(PieceYarn(str(yarn), str(colour)) for yarn, colour in json.loads(said))
+    except (ValueError, TypeError):
+        raise damaged from None
+    if index.max() > 2 * len(yarns):
+        raise damaged
+    stitch = index > 0
+    purl = stitch & (index % 2 == 0)
+    return Piece(ShapedChart(StitchChart(purl), stitch), yarns, np.maximum(index - 1, 0) // 2)

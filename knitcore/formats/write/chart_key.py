@@ -1,0 +1,161 @@
+"""The key of a drawn chart (symbols, yarns, repeats, a note), and the style of the drawing."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.base.bounds import check_range
+from knitcore.chart.row_sides import Construction, Side
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.write.drawn_page import Dots, Label, Rectangle, Shape
+from knitcore.garment.piece import Piece, yarn_name
+
+MARGIN_MM = 12.0
+KEY_MM = 24.0
+KEY_LINE_MM = 5.0
+NOTE_CHARACTERS, NOTE_LINES = 110, 14
+REGIONS_IN_A_LINE, REGION_MM = 4, 46.0
+TINT = 0.55
+"""Share of a yarn's colour in its stitches; the rest is white."""
+INK, TENTH, GRID, FAINT = "#222222", "#55504a", "#b5b0a8", "#cfc9c0"
+HEAVY, NO_STITCH = "#b3322b", "#d9d5ce"
+SMALL_MM = 2.5
+"""Smallest type: 7 pt, readable at arm's length."""
+
+
+@dataclass(frozen=True)
+class RepeatMark:
+    """A linked repeat: its entry in the key, and its copies as (row, column, rows, columns)."""
+
+    words: str
+    places: tuple[tuple[int, int, int, int], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RegionMark:
+    """A named part of a chart: ``cells`` are True (rows, columns) where a stitch belongs to it."""
+
+    name: str
+    colour: str
+    cells: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class ChartStyle:
+    """How a chart is drawn.
+
+    Attributes
+    ----------
+    construction : flat (numbers on both sides) or round (numbers at the right).
+    first_side : the side of row 1 in flat knitting.
+    aspect : height over width of a stitch, from the gauge.
+    yarn_facts : of each yarn, printed after its name in the key, such as its length.
+    repeats : linked repeats of the chart; without them the chart's own smallest repeat is marked.
+    note : printed below the key.
+    title : name of the design, printed above the chart.
+    regions : named parts, whose borders are drawn in their colours.
+    """
+
+    construction: Construction = Construction.FLAT
+    first_side: Side = Side.RS
+    aspect: float = 0.75
+    yarn_facts: tuple[str, ...] = ()
+    repeats: tuple[RepeatMark, ...] = ()
+    note: str = ""
+    title: str = ""
+    regions: tuple[RegionMark, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_range("aspect", self.aspect, 0.2, 5, what="the aspect ratio of a stitch")
+
+
+def is_coloured(piece: Piece) -> bool:
+    """Whether its yarns are distinguished by colour."""
+    return len(piece.yarns) > 1
+
+
+def key_height(piece: Piece, style: ChartStyle) -> float:
+    """Room that the key takes below a chart."""
+    yarns = len(piece.yarns) if is_coloured(piece) else 0
+    lines = yarns + len(style.repeats) + len(_region_lines(style)) + len(_note_lines(style))
+    return KEY_MM + KEY_LINE_MM * lines
+
+
+def _region_lines(style: ChartStyle) -> list[tuple[RegionMark, ...]]:
+    """The regions, as many to a line as there is room for."""
+    starts = range(0, len(style.regions), REGIONS_IN_A_LINE)
+    return [style.regions[k : k + REGIONS_IN_A_LINE] for k in starts]
+
+
+def _note_lines(style: ChartStyle) -> list[str]:
+    wrapped = [
+        line for part in style.note.splitlines() for line in textwrap.wrap(part, NOTE_CHARACTERS)
+    ]
+    return wrapped[:NOTE_LINES]
+
+
+def multiple_words(repeat: StitchChart, edge_columns: int, edge_rows: int) -> str:
+    """How many stitches and rows a repeat takes, with those that are left at the edges."""
+    stitches = f"multiple of {repeat.columns}" + (f" + {edge_columns}" if edge_columns else "")
+    rows = f"multiple of {repeat.rows}" + (f" + {edge_rows}" if edge_rows else "")
+    return f"{stitches} sts, {rows} rows"
+
+
+def tinted(colour: str) -> str:
+    """A yarn's colour as its stitches are printed."""
+    channels = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    mixed = (round(255 - (255 - channel) * TINT) for channel in channels)
+    return "#{:02x}{:02x}{:02x}".format(*mixed)
+
+
+def key_shapes(piece: Piece, style: ChartStyle, y: float) -> Iterator[Shape]:
+    """The key, its first line at a height ``y`` on the page."""
+    flat = style.construction is Construction.FLAT
+    knit = "knit on RS, purl on WS" if flat else "knit"
+    purl = "purl on RS, knit on WS" if flat else "purl"
+    for index, (dot, words) in enumerate(((False, knit), (True, purl))):
+        top = y + 5.5 * index
+        yield Rectangle(MARGIN_MM, top - 3.0, 4.0, 4.0, fill="#ffffff", stroke=GRID)
+        if dot:
+            yield Dots(((MARGIN_MM + 2.0, top - 1.0),), 0.9, INK)
+        yield Label(MARGIN_MM + 6.0, top, words)
+    x = MARGIN_MM + 50.0
+    if not piece.is_rectangle:
+        yield Rectangle(x, y - 3.0, 4.0, 4.0, fill=NO_STITCH)
+        yield Label(x + 6.0, y, "no stitch")
+    elif not style.repeats and piece.chart.repeat_cut() != piece.chart:
+        yield Rectangle(x, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
+        yield Label(x + 6.0, y, "repeat")
+    reading = (
+        "odd rows from right to left, even rows from left to right"
+        if flat and style.first_side is Side.RS
+        else "even rows from right to left, odd rows from left to right"
+        if flat
+        else "every round from right to left"
+    )
+    yield Label(MARGIN_MM, y + 11.0, f"Seen from the right side; read {reading}.", SMALL_MM)
+    y += 17.0
+    for index, yarn in enumerate(piece.yarns if is_coloured(piece) else ()):
+        yield Rectangle(MARGIN_MM, y - 3.0, 4.0, 4.0, fill=tinted(yarn.colour), stroke=GRID)
+        facts = style.yarn_facts[index : index + 1]
+        said = f"{yarn_name(index)}: {yarn.name} ({yarn.colour})"
+        yield Label(MARGIN_MM + 6.0, y, ", ".join([said, *facts]))
+        y += KEY_LINE_MM
+    for mark in style.repeats:
+        yield Rectangle(MARGIN_MM, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
+        yield Label(MARGIN_MM + 6.0, y, mark.words)
+        y += KEY_LINE_MM
+    for regions in _region_lines(style):
+        for index, region in enumerate(regions):
+            x = MARGIN_MM + index * REGION_MM
+            yield Rectangle(x, y - 3.0, 4.0, 4.0, stroke=region.colour, line_width=0.6)
+            yield Label(x + 6.0, y, textwrap.shorten(region.name, 22, placeholder="…"))
+        y += KEY_LINE_MM
+    for line in _note_lines(style):
+        yield Label(MARGIN_MM, y, line, 2.8)
+        y += KEY_LINE_MM

@@ -1,0 +1,367 @@
+"""All files that a chart can be written to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import nullcontext
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+from knitcore.base.errors import InputError
+from knitcore.base.extensions import Group, offered, running
+from knitcore.chart.row_sides import Construction, Side
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.draw.laid_out import mean_stitch_mm
+from knitcore.formats.designs import design_file as design
+from knitcore.formats.designs.layout import DesignLayout, layout_fields, piece_of, region_cells
+from knitcore.formats.read import knitout_reader, knitspeak, png
+from knitcore.formats.write import chart_drawing, pattern, report, stitch_values, yarn_mesh
+from knitcore.formats.write import written_pattern as written
+from knitcore.formats.write.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
+from knitcore.formats.write.drawn_page import Page, to_long_svg, to_pdf
+from knitcore.formats.write.knitout import Finish
+from knitcore.garment.piece import Piece
+from knitcore.garment.regions import yarn_use
+from knitcore.materials import Material
+from knitcore.prediction.size import RelaxedSize
+
+
+class ExportKind(StrEnum):
+    """Formats for export."""
+
+    KNITOUT = "knitout"
+    KNITSPEAK = "knitspeak"
+    PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
+    PATTERN = "pattern"
+    PATTERN_SVG = "pattern-svg"
+    REPORT = "report"
+    TEXT = "text"
+    WRITTEN = "written"
+    DESIGN = "design"
+    GLB = "glb"
+    STL = "stl"
+    VTU = "vtu"
+    CSV = "csv"
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """How a chart is worked and finished, where that matters.
+
+    Attributes
+    ----------
+    construction : flat or round, for charts and written rows.
+    first_side : the side of row 1 in flat knitting.
+    finish : how a knitout program ends.
+    name : of the design.
+    note : printed on charts, and kept in the project file.
+    layout : outline, regions and their yarns, and what else the project file keeps.
+    linear_density_tex : of the yarns, for their mass.
+    photo : a PNG picture of the cloth, for the first page of a pattern.
+    gauge : relaxed size of the mean stitch, if known.
+    """
+
+    construction: Construction = Construction.FLAT
+    first_side: Side = Side.RS
+    finish: Finish = Finish.WASTE
+    name: str = "Untitled"
+    note: str = ""
+    layout: DesignLayout = field(default_factory=DesignLayout)
+    linear_density_tex: float | None = None
+    photo: bytes | None = None
+    gauge: RelaxedSize | None = None
+
+
+@dataclass(frozen=True)
+class ExportedFile:
+    """The content of a file, and the checks made.
+
+    Attributes
+    ----------
+    kind : the format's name.
+    content : the bytes.
+    suffix, media_type : of the file.
+    notes : for the user.
+    transfers : loops moved between beds, of a knitout program.
+    carriers : yarn carriers, of a knitout program.
+    """
+
+    kind: str
+    content: bytes
+    suffix: str
+    media_type: str
+    notes: tuple[str, ...] = ()
+    transfers: int | None = None
+    carriers: int | None = None
+
+
+@dataclass(frozen=True)
+class Exporter:
+    """A format: built in, or that of an extension (:mod:`knitcore.base.extensions`).
+
+    Attributes
+    ----------
+    identifier : the name of the format.
+    suffix, media_type : of its files, such as ``.txt`` and ``text/plain; charset=utf-8``.
+    write : the content of a file, or the file with notes of its own; may raise InputError for a
+        piece that the format cannot hold.
+    notes : for the user, about every file.
+    holds_outlines : whether it can hold "no stitch"; other charts are refused.
+    holds_yarns : whether it can hold several yarns; they are left out otherwise, with a note.
+    """
+
+    identifier: str
+    suffix: str
+    media_type: str
+    write: Callable[[Piece, Material, ExportOptions], bytes | ExportedFile]
+    notes: tuple[str, ...] = ()
+    holds_outlines: bool = True
+    holds_yarns: bool = True
+
+
+def exporters() -> dict[str, Exporter]:
+    """Formats of extensions.
+
+    Warns
+    -----
+    knitcore.base.extensions.ExtensionWarning
+        Of every extension that cannot be used.
+    """
+    return offered(Group.EXPORTERS, Exporter, set(ExportKind))
+
+
+def export_chart(
+    chart: StitchChart,
+    kind: ExportKind | str,
+    material: Material,
+    options: ExportOptions | None = None,
+) -> ExportedFile:
+    """A chart as a file.
+
+    Parameters
+    ----------
+    chart : the face grid.
+    kind : the format, or the name of an extension's.
+    material : gives the stitches their size and their values.
+    options : see :class:`ExportOptions`.
+
+    Raises
+    ------
+    InputError
+        If there is no such format, the chart is too wide for the machine or too large for a mesh,
+        or has an outline that this format cannot hold.
+    ExtensionError
+        If an extension's format fails.
+    KnitoutMismatchError
+        If a knitout program does not knit its chart on the virtual machine.
+    """
+    options = options or ExportOptions()
+    piece = replace(piece_of(chart, options.layout), gauge=options.gauge)
+    exporter = FORMATS.get(kind) or _of_extension(kind)
+    if not exporter.holds_outlines and not piece.is_rectangle:
+        known = ", ".join(name for name, built_in in FORMATS.items() if built_in.holds_outlines)
+        raise InputError(
+            "to",
+            f"{kind} cannot hold an outline: the cells outside it would become stitches.",
+            f"Export {known}, or a rectangular part.",
+        )
+    with nullcontext() if kind in FORMATS else running(Group.EXPORTERS, kind):
+        content = exporter.write(piece, material, options)
+    if isinstance(content, ExportedFile):
+        return content
+    notes = exporter.notes
+    if not exporter.holds_yarns and len(piece.yarns) > 1:
+        notes = (*notes, f"{kind} has no colours: the yarns are left out.")
+    return ExportedFile(kind, bytes(content), exporter.suffix, exporter.media_type, notes)
+
+
+def _of_extension(kind: str) -> Exporter:
+    found = exporters()
+    if kind not in found:
+        known = ", ".join([*FORMATS, *found])
+        raise InputError("to", f"{kind!r} is not a format.", f"Use one of {known}.")
+    return found[kind]
+
+
+def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    program = knitout_reader.verified(piece, finish=options.finish)
+    notes = ["Knitted on a virtual V-bed machine: the face is this chart."]
+    if not piece.is_rectangle:
+        notes.append(f"{program.shaping_transfers} further transfers shape the edges.")
+    if program.carriers > 1:
+        yarns = "; ".join(f"{y.name} ({y.colour})" for y in piece.yarns)
+        notes.append(f"Intarsia with {program.carriers} carriers: {yarns}.")
+    return ExportedFile(
+        ExportKind.KNITOUT,
+        program.text.encode(),
+        FORMATS[ExportKind.KNITOUT].suffix,
+        _TEXT,
+        tuple(notes),
+        transfers=program.transfers,
+        carriers=program.carriers,
+    )
+
+
+def _report(piece: Piece, material: Material, options: ExportOptions) -> bytes:
+    style = _style(piece, material, options)
+    return report.design_report(piece, material, options.name, style, options.layout.regions)
+
+
+def _pattern(piece: Piece, material: Material, options: ExportOptions) -> tuple[Page, ...]:
+    style = _style(piece, material, options)
+    facts = _yarn_facts(piece, material, options)
+    return pattern.pattern_pages(piece, material, style, facts, options.photo)
+
+
+def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> bytes:
+    return knitspeak.write_knitspeak(
+        piece.chart, options.construction, first_side=options.first_side
+    ).encode()
+
+
+def _design(piece: Piece, material: Material, options: ExportOptions) -> bytes:
+    document = design.DesignFile(
+        name=options.name,
+        material=material.identifier,
+        chart=piece.chart.text,
+        note=options.note,
+        **layout_fields(options.layout),
+    )
+    return design.write_design(document).encode()
+
+
+def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartStyle:
+    width, height = mean_stitch_mm(piece.shaped, material, piece.gauge)
+    aspect = min(max(float(height / width), 0.2), 5.0)
+    facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
+    marks = tuple(
+        RepeatMark(
+            f"{repeat.name}: "
+            + multiple_words(
+                StitchChart.parse(repeat.motif), repeat.edge_columns, repeat.edge_rows
+            ),
+            tuple((p.row, p.column, p.rows, p.columns) for p in repeat.placements),
+        )
+        for repeat in options.layout.repeats
+        if repeat.placements
+    )
+    regions = tuple(
+        RegionMark(region.name, region.colour, region_cells(region, *piece.chart.purl.shape))
+        for region in options.layout.regions
+        if not region.hidden
+    )
+    return ChartStyle(
+        options.construction,
+        options.first_side,
+        aspect,
+        facts,
+        marks,
+        options.note,
+        options.name,
+        regions,
+    )
+
+
+def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tuple[str, ...]:
+    """Stitches, length and mass of each yarn, as far as the material knows its loops."""
+    facts = []
+    for index in range(len(piece.yarns)):
+        cells = piece.cells(index)
+        said = f"{int(cells.sum())} sts"
+        try:
+            use = yarn_use(
+                piece.shaped, material, linear_density_tex=options.linear_density_tex, cells=cells
+            )
+        except InputError:  # the material has no loop length, so only stitches are given
+            facts.append(said)
+            continue
+        mass = "" if use.mass_g is None else f", {use.mass_g:.1f} g"
+        facts.append(f"{said}, {use.length_m:.1f} m{mass}")
+    return tuple(facts)
+
+
+_TEXT = "text/plain; charset=utf-8"
+_LOCAL = ("Local values come from the quarter-cell composite: the stretched, flat fabric.",)
+_DRAWN = ("Loops are drawn schematically; the yarn was not simulated.",)
+
+_BUILT_IN = (
+    Exporter(ExportKind.KNITOUT, ".k", _TEXT, _knitout),
+    Exporter(
+        ExportKind.KNITSPEAK, ".ks", _TEXT, _knitspeak, holds_outlines=False, holds_yarns=False
+    ),
+    Exporter(ExportKind.PNG, ".png", "image/png", lambda p, _, __: png.write_png(p)),
+    Exporter(
+        ExportKind.SVG,
+        ".svg",
+        "image/svg+xml",
+        lambda p, m, o: chart_drawing.chart_svg(p, _style(p, m, o)).encode(),
+    ),
+    Exporter(
+        ExportKind.PDF,
+        ".pdf",
+        "application/pdf",
+        lambda p, m, o: chart_drawing.chart_pdf(p, _style(p, m, o)),
+    ),
+    Exporter(
+        ExportKind.PATTERN,
+        ".pdf",
+        "application/pdf",
+        lambda p, m, o: to_pdf(_pattern(p, m, o), o.name),
+    ),
+    Exporter(
+        ExportKind.PATTERN_SVG,
+        ".svg",
+        "image/svg+xml",
+        lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name).encode(),
+    ),
+    Exporter(ExportKind.REPORT, ".pdf", "application/pdf", _report),
+    Exporter(
+        ExportKind.TEXT,
+        ".txt",
+        _TEXT,
+        lambda p, _, __: f"{p.chart.text}\n".encode(),
+        holds_outlines=False,
+        holds_yarns=False,
+    ),
+    Exporter(
+        ExportKind.WRITTEN,
+        ".txt",
+        _TEXT,
+        lambda p, _, o: written.write_rows(p, o.construction, first_side=o.first_side).encode(),
+    ),
+    Exporter(ExportKind.DESIGN, ".json", "application/json", _design),
+    Exporter(
+        ExportKind.GLB,
+        ".glb",
+        "model/gltf-binary",
+        lambda p, m, _: yarn_mesh.write_glb(p, m),
+        _DRAWN,
+        holds_yarns=False,
+    ),
+    Exporter(
+        ExportKind.STL,
+        ".stl",
+        "model/stl",
+        lambda p, m, _: yarn_mesh.write_stl(p, m),
+        _DRAWN,
+        holds_yarns=False,
+    ),
+    Exporter(
+        ExportKind.VTU,
+        ".vtu",
+        "application/xml",
+        lambda p, m, _: stitch_values.write_vtu(p, m),
+        _LOCAL,
+    ),
+    Exporter(
+        ExportKind.CSV,
+        ".csv",
+        "text/csv; charset=utf-8",
+        lambda p, m, _: stitch_values.write_csv(p, m).encode(),
+        _LOCAL,
+    ),
+)
+FORMATS = {exporter.identifier: exporter for exporter in _BUILT_IN}
+"""Built-in formats by name."""

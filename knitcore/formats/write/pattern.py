@@ -1,0 +1,455 @@
+"""A design as a pattern to knit from: what one needs, the parts, the rows, the chart, the evidence.
+
+The same pages are written as PDF and as SVG. Sizes are those of the cloth at rest, with intervals.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from PIL import Image, ImageChops
+
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.row_sides import Construction
+from knitcore.draw.laid_out import SizeAtRest, laid_sizes_mm, size_at_rest
+from knitcore.formats.write.chart_drawing import A4_MM, chart_pages
+from knitcore.formats.write.chart_key import (
+    GRID,
+    MARGIN_MM,
+    SMALL_MM,
+    ChartStyle,
+    RegionMark,
+    is_coloured,
+    tinted,
+)
+from knitcore.formats.write.drawn_page import Label, Page, Photo, Rectangle, Shape
+from knitcore.formats.write.written_pattern import written_sections
+from knitcore.garment.piece import Piece, yarn_name
+from knitcore.materials import Interval, Material
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Along, Prediction, Source
+
+TITLE_MM, HEADING_MM, BODY_MM = 9.0, 5.0, 3.2
+LINE = 1.45
+"""Distance of lines over the size of their type."""
+FOOT_MM = 16.0
+PHOTO_MM = (A4_MM[0] - 2 * MARGIN_MM, 100.0)
+MAX_PHOTO_BYTES, MAX_PHOTO_PIXELS = 4_000_000, 4096
+MAX_SECTIONS = 24
+"""Rows of designs with more borders between regions are written without sections."""
+PULL_N_PER_MM = 0.05
+_FAINT = 16
+"""Differences of a channel, of 255, that are still the ground of a photo."""
+_EM = 0.5
+"""Mean width of a letter over the size of its type."""
+
+_ABBREVIATIONS = {
+    "k": "knit",
+    "p": "purl",
+    "st": "stitch",
+    "sts": "stitches",
+    "rep": "repeat",
+    "rnd": "round",
+    "RS": "right side of the fabric",
+    "WS": "wrong side of the fabric",
+    "k2tog": "knit two stitches together",
+    "k3tog": "knit three stitches together",
+    "p2tog": "purl two stitches together",
+    "p3tog": "purl three stitches together",
+    "ssk": "slip two stitches as if to knit, one at a time, and knit them together",
+    "ssp": "slip two stitches as if to knit, put them back, and purl them together",
+    "m1": "make one: lift the strand between two stitches and knit it twisted",
+    "m1p": "make one: lift the strand between two stitches and purl it twisted",
+}
+
+_RESTS_ON: dict[Source | None, tuple[str, ...]] = {
+    None: (
+        "Sizes are computed stitch by stitch from the fabrics of this yarn. Where fabrics meet "
+        "they are partly assumed, because such borders were not knitted and measured.",
+    ),
+    Source.MEASURED: ("This fabric was knitted in this yarn, measured at rest and stretched.",),
+    Source.ESTIMATED: (
+        "This fabric was not knitted and stretched in this yarn: size and stretch are estimated "
+        "from the yarn's tests and from other yarns.",
+    ),
+    Source.SWEPT: (
+        "Size and stretch were computed from the yarn, loop by loop; nothing was knitted.",
+    ),
+    Source.LEARNED: (
+        "Size and stretch are computed from stockinette, garter, rib and seed of this yarn, "
+        "corrected by simulations of other charts; this chart was not knitted.",
+    ),
+    Source.LEARNED_OF_SIZE: (
+        "The size at rest is your own gauge. The stretch is computed from stockinette, garter, rib "
+        "and seed of this yarn, corrected by simulations of other charts.",
+    ),
+}
+"""What the numbers of an answer rest on, in a knitter's words; None for a piece with an outline."""
+
+
+def pattern_pages(
+    piece: Piece,
+    material: Material,
+    style: ChartStyle,
+    yarn_facts: Sequence[str] = (),
+    photo: bytes | None = None,
+) -> tuple[Page, ...]:
+    """The pattern as A4 pages.
+
+    Parameters
+    ----------
+    piece : what is knitted.
+    material : gives sizes and stretch.
+    style : how it is worked, its title, note, regions and linked repeats.
+    yarn_facts : of each yarn, such as its length.
+    photo : a PNG picture of the cloth for the first page.
+
+    Raises
+    ------
+    InputError
+        If the photo is no PNG or too large, the material lacks a fabric that the chart needs, or
+        the piece cannot be worked in the round.
+    """
+    flow = _Flow()
+    facts = _Facts.of(piece, material)
+    flow.title(style.title or "Untitled")
+    flow.text(f"{piece.shaped.stitches} stitches in {piece.chart.rows} rows; {facts.finished}.")
+    if photo is not None:
+        flow.photo(photo, "The cloth as it was computed, not a photograph.")
+    _materials(flow, piece, material, yarn_facts)
+    _gauge(flow, facts)
+    if style.note:
+        flow.heading("Notes")
+        for paragraph in style.note.splitlines():
+            flow.text(paragraph, bullet=True)
+    _parts(flow, facts, style.regions)
+    opening, sections = written_sections(
+        piece,
+        style.construction,
+        first_side=style.first_side,
+        breaks=_breaks(piece, style.regions),
+    )
+    _abbreviations(flow, [*opening, *(line for lines in sections for line in lines)])
+    _instructions(flow, piece, style, opening, sections)
+    _finishing(flow, facts, style)
+    _evidence(flow, facts)
+    told = flow.pages()
+    plain = replace(style, note="")  # printed above
+    pages = [*told, *chart_pages(piece, plain, first=len(told) + 1)]
+    return tuple(
+        _footed(page, f"{style.title or 'Untitled'}, page {number} of {len(pages)}")
+        for number, page in enumerate(pages, start=1)
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Facts:
+    """What is known of the cloth.
+
+    Attributes
+    ----------
+    answer : None for a piece with an outline, which has no answer of its own.
+    size : of the whole.
+    sizes_mm : (rows, columns, 2) width and height of the stitches, laid flat at rest.
+    """
+
+    piece: Piece
+    answer: Prediction | None
+    size: SizeAtRest
+    sizes_mm: Array
+
+    @classmethod
+    def of(cls, piece: Piece, material: Material) -> _Facts:
+        shaped = piece.shaped
+        answer = predict(shaped.rectangle_inside(), material, piece.gauge)
+        size = size_at_rest(shaped, material, answer)
+        own = answer if piece.is_rectangle else None
+        return cls(piece, own, size, laid_sizes_mm(shaped, material, piece.gauge))
+
+    @property
+    def finished(self) -> str:
+        """The finished size in words."""
+        most = "" if self.piece.is_rectangle else " at the widest and highest"
+        return f"{self.size.width_mm / 10:.1f} × {self.size.height_mm / 10:.1f} cm at rest{most}"
+
+
+class _Flow:
+    """Text and pictures one below the other, on as many pages as they take."""
+
+    def __init__(self) -> None:
+        self._pages: list[list[Shape]] = [[]]
+        self._y = MARGIN_MM
+
+    def pages(self) -> list[Page]:
+        return [Page(*A4_MM, tuple(shapes)) for shapes in self._pages]
+
+    def title(self, text: str) -> None:
+        for line in _wrapped(text, TITLE_MM, A4_MM[0] - 2 * MARGIN_MM):
+            self._y += TITLE_MM
+            self.draw(Label(MARGIN_MM, self._y, line, TITLE_MM, bold=True))
+        self._y += 3.0
+
+    def heading(self, text: str) -> None:
+        """A heading, which stays with the lines below it."""
+        self._room(HEADING_MM * 2 + 3 * BODY_MM * LINE)
+        self._y += HEADING_MM * 1.6
+        self.draw(Label(MARGIN_MM, self._y, text, HEADING_MM, bold=True))
+        self._y += 1.5
+
+    def subheading(self, text: str) -> None:
+        self._room(4 * BODY_MM * LINE)
+        self._y += BODY_MM * 0.6
+        self.text(text, bold=True)
+
+    def text(
+        self, text: str, *, bold: bool = False, colour: str | None = None, bullet: bool = False
+    ) -> None:
+        """A paragraph; a box of a colour, or a bullet, in front of it if asked for."""
+        indent = 6.0 if colour else 3.0 if bullet else 0.0
+        for index, line in enumerate(_wrapped(text, BODY_MM, A4_MM[0] - 2 * MARGIN_MM - indent)):
+            self._room(BODY_MM * LINE)
+            self._y += BODY_MM * LINE
+            if colour and not index:
+                self._patch(colour)
+            if bullet and not index:
+                self.draw(Label(MARGIN_MM, self._y, "•", BODY_MM))
+            self.draw(Label(MARGIN_MM + indent, self._y, line, BODY_MM, bold=bold))
+
+    def row(
+        self,
+        cells: Sequence[str],
+        places: Sequence[float],
+        *,
+        bold: bool = False,
+        colour: str | None = None,
+    ) -> None:
+        """Cells of a table, each at its place; a box in front of them if a colour is given."""
+        self._room(BODY_MM * LINE)
+        self._y += BODY_MM * LINE
+        if colour:
+            self._patch(colour)
+            places = (places[0] + 6.0, *places[1:])
+        for text, place in zip(cells, places, strict=True):
+            self.draw(Label(MARGIN_MM + place, self._y, text, BODY_MM, bold=bold))
+
+    def photo(self, png: bytes, caption: str) -> None:
+        """A picture as large as its box allows, and a line below it."""
+        png, (width, height) = _photo(png)
+        scale = min(PHOTO_MM[0] / width, PHOTO_MM[1] / height)
+        self._y += 4.0
+        left = (A4_MM[0] - scale * width) / 2
+        self.draw(Photo(left, self._y, scale * width, scale * height, png))
+        self._y += scale * height + 4.0
+        self.draw(Label(A4_MM[0] / 2, self._y, caption, SMALL_MM, "middle"))
+
+    def draw(self, shape: Shape) -> None:
+        self._pages[-1].append(shape)
+
+    def _patch(self, colour: str) -> None:
+        self.draw(Rectangle(MARGIN_MM, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
+
+    def _room(self, height: float) -> None:
+        if self._y + height > A4_MM[1] - FOOT_MM:
+            self._pages.append([])
+            self._y = MARGIN_MM
+
+
+def _wrapped(text: str, size: float, width: float) -> list[str]:
+    return textwrap.wrap(text, int(width / (_EM * size))) or [""]
+
+
+def _photo(png: bytes) -> tuple[bytes, tuple[int, int]]:
+    """The picture on white paper without its empty edges, and its size in pixels."""
+    if len(png) > MAX_PHOTO_BYTES:
+        raise InputError(
+            "photo", f"it has {len(png)} bytes.", f"Send at most {MAX_PHOTO_BYTES:,} bytes."
+        )
+    try:
+        with Image.open(io.BytesIO(png), formats=["PNG"]) as image:
+            if max(image.size) > MAX_PHOTO_PIXELS:  # before any pixel is decoded
+                raise InputError(
+                    "photo",
+                    f"it has {image.width}x{image.height} pixels.",
+                    f"Use at most {MAX_PHOTO_PIXELS} a side.",
+                )
+            flat = Image.new("RGBA", image.size, "white")
+            flat.alpha_composite(image.convert("RGBA"))
+    except InputError:
+        raise
+    except (Image.DecompressionBombError, OSError, SyntaxError, ValueError):
+        raise InputError("photo", "it is not a readable PNG.", "Send a PNG picture.") from None
+    shown = _without_empty_edges(flat.convert("RGB"))
+    buffer = io.BytesIO()
+    shown.save(buffer, "PNG")
+    return buffer.getvalue(), shown.size
+
+
+def _without_empty_edges(image: Image.Image) -> Image.Image:
+    """The part of a picture that differs from its corner, with a small margin."""
+    ground = Image.new("RGB", image.size, image.getpixel((0, 0)))
+    box = ImageChops.difference(image, ground).point(lambda value: 255 * (value > _FAINT)).getbbox()
+    if box is None:
+        return image
+    left, top, right, bottom = box
+    width, height = image.size
+    rim = round(0.03 * max(width, height))
+    return image.crop(
+        (max(left - rim, 0), max(top - rim, 0), min(right + rim, width), min(bottom + rim, height))
+    )
+
+
+def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequence[str]) -> None:
+    flow.heading("Materials")
+    yarn = material.yarn
+    told = ", ".join(part for part in (yarn.product, yarn.fibre) if part)
+    flow.text(f"{material.name}{f' ({told})' if told else ''}.")
+    for index, own in enumerate(piece.yarns):
+        facts = yarn_facts[index] if index < len(yarn_facts) else ""
+        name = f"{yarn_name(index)}: {own.name}" if is_coloured(piece) else own.name
+        flow.text(": ".join(filter(None, (name.capitalize(), facts))), colour=tinted(own.colour))
+    flow.text("Lengths are for the stitches alone: add tails, cast-on and a swatch.")
+    flow.text("Needles of the size that gives the gauge below.")
+
+
+def _gauge(flow: _Flow, facts: _Facts) -> None:
+    flow.heading("Gauge and size")
+    stitch = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
+    of = "of the whole cloth at rest."
+    if facts.answer is None:
+        of = "at rest, the mean of all parts; each has its own below."
+    flow.text(f"{_per_10_cm(*stitch)} {of}")
+    places = (0.0, 62.0, 124.0)
+    flow.row(("", "along the rows", "along the columns"), places, bold=True)
+    size = facts.size
+    width = _interval(size.width_mm, size.width_interval_mm, 0.1, "cm", 1)
+    height = _interval(size.height_mm, size.height_interval_mm, 0.1, "cm", 1)
+    flow.row(("Finished size", width, height), places)
+    if facts.answer is not None:
+        pulled = [_pulled(facts.answer.along(direction)) for direction in Direction]
+        flow.row((f"Stretch under {PULL_N_PER_MM * 100:g} N on 10 cm", *pulled), places)
+    flow.text("In brackets are 90 % intervals: nine pieces in ten should lie inside.")
+
+
+def _pulled(along: Along) -> str:
+    low, high = along.strain_interval(PULL_N_PER_MM)
+    strain = float(along.strain(PULL_N_PER_MM))
+    return _interval(strain, Interval(float(low), float(high)), 100.0, "%", 0)
+
+
+def _per_10_cm(width_mm: float, height_mm: float) -> str:
+    return f"{100 / width_mm:.1f} stitches and {100 / height_mm:.1f} rows to 10 cm"
+
+
+def _interval(value: float, ends: Interval, scale: float, unit: str, digits: int) -> str:
+    low, middle, high = (f"{x * scale:.{digits}f}" for x in (ends.low, value, ends.high))
+    return f"{middle} {unit} ({low} to {high})"
+
+
+def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
+    """Each region: where it lies, its gauge, and its size at its widest row and highest column."""
+    inside = facts.piece.shaped.stitch
+    known = [(region, region.cells & inside) for region in regions]
+    shown = [(region, cells) for region, cells in known if cells.any()]
+    if not shown:
+        return
+    flow.heading("Parts")
+    places = (0.0, 54.0, 104.0, 150.0)
+    flow.row(("", "where", "gauge, 10 cm", "size at rest"), places, bold=True)
+    for region, cells in shown:
+        rows, columns = np.nonzero(cells)
+        width, height = facts.sizes_mm[cells].mean(axis=0).tolist()
+        first, last = (facts.piece.chart.columns - c for c in (columns.max(), columns.min()))
+        where = f"rows {rows.min() + 1}–{rows.max() + 1}, sts {first}–{last}"
+        across = width * cells.sum(axis=1).max() / 10
+        up = height * cells.sum(axis=0).max() / 10
+        gauge = f"{100 / width:.1f} sts, {100 / height:.1f} rows"
+        cells_told = (_short(region.name), where, gauge, f"{across:.1f} × {up:.1f} cm")
+        flow.row(cells_told, places, colour=region.colour)
+    flow.text(
+        "Stitches are counted from the right edge; sizes are of each part's widest row and "
+        "highest column, beside its neighbours. By itself, its fabric has another gauge."
+    )
+
+
+def _short(name: str, most: int = 26) -> str:
+    return name if len(name) <= most else f"{name[: most - 1]}…"
+
+
+def _breaks(piece: Piece, regions: Sequence[RegionMark]) -> list[int]:
+    """Rows at which a region begins or has ended, in rising order."""
+    breaks: set[int] = set()
+    for region in regions:
+        rows = np.flatnonzero((region.cells & piece.shaped.stitch).any(axis=1))
+        if len(rows):
+            breaks |= {int(rows[0]), int(rows[-1]) + 1}
+    inner = sorted(breaks - {0, piece.chart.rows})
+    return inner if len(inner) <= MAX_SECTIONS else []
+
+
+def _abbreviations(flow: _Flow, lines: Sequence[str]) -> None:
+    """Those that the rows use."""
+    words = {word for line in lines for word in re.findall(r"[A-Za-z]+\d?[a-z]*", line)}
+    written = words | {re.sub(r"\d+$", "", word) for word in words}
+    used = {short for short in _ABBREVIATIONS if {short, short.capitalize()} & written}
+    flow.heading("Abbreviations")
+    told = (f"{short}: {_ABBREVIATIONS[short]}" for short in _ABBREVIATIONS if short in used)
+    flow.text("; ".join(told) + ". A number after k or p is a number of stitches.")
+    if any("*" in line for line in lines):
+        flow.text("Work the stitches after * once, then repeat them as often as stated.")
+
+
+def _instructions(
+    flow: _Flow,
+    piece: Piece,
+    style: ChartStyle,
+    opening: Sequence[str],
+    sections: Sequence[Sequence[str]],
+) -> None:
+    flow.heading("Instructions")
+    for line in opening:
+        flow.text(line)
+    edges = pairwise([0, *_breaks(piece, style.regions), piece.chart.rows])
+    row = "Row" if style.construction is Construction.FLAT else "Round"
+    for (start, stop), lines in zip(edges, sections, strict=True):
+        if len(sections) > 1:
+            here = [r.name for r in style.regions if r.cells[start:stop].any()]
+            span = f"{row} {start + 1}" if stop == start + 1 else f"{row}s {start + 1}–{stop}"
+            flow.subheading(f"{span}: {', '.join(map(_short, here)) or 'between the parts'}")
+        for line in lines:
+            flow.text(re.sub(r"(?<=\d)-(?=\d)", "–", line))
+
+
+def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
+    flow.heading("Finishing")
+    flow.text("Bind off as loosely as the cloth stretches, and weave in the ends.")
+    flow.text(
+        f"Wash the piece and let it dry lying flat, without pulling it: {facts.finished}. "
+        "The sizes of this pattern are those of cloth at rest, not of cloth pinned out."
+    )
+    if style.construction is Construction.ROUND:
+        flow.text("In the round the width is the circumference.")
+
+
+def _evidence(flow: _Flow, facts: _Facts) -> None:
+    flow.heading("Where the numbers come from")
+    source = None if facts.answer is None else facts.answer.provenance
+    for sentence in (*_RESTS_ON[source], *(() if facts.answer is None else facts.answer.notes)):
+        flow.text(sentence, bullet=True)
+    for sentence in (
+        "The report of this design has all numbers, their intervals and methods.",
+        "Knit a swatch. If its gauge differs from this pattern's, trust the swatch.",
+    ):
+        flow.text(sentence, bullet=True)
+
+
+def _footed(page: Page, text: str) -> Page:
+    foot = Label(A4_MM[0] / 2, A4_MM[1] - 6.0, text, SMALL_MM, "middle")
+    return replace(page, shapes=(*page.shapes, foot))

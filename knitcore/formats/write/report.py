@@ -1,0 +1,250 @@
+"""A design on paper: its numbers with intervals, maps, curves, assumptions, and the chart."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from knitcore.base.arrays import runs
+from knitcore.chart.fabric import Direction
+from knitcore.chart.segments import segment_map
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.draw.laid_out import SizeAtRest, size_at_rest
+from knitcore.formats.designs.layout import DesignRegion
+from knitcore.formats.write.chart_drawing import A4_MM, chart_pages
+from knitcore.formats.write.chart_key import MARGIN_MM, ChartStyle, tinted
+from knitcore.formats.write.drawn_page import Label, Lines, Page, Rectangle, Shape, to_pdf
+from knitcore.formats.write.extensibility_drawing import field_shapes, region_fields
+from knitcore.garment.piece import Piece
+from knitcore.materials import Interval, Material
+from knitcore.mechanics.local_moduli import local_moduli
+from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Along, Prediction
+
+# Cividis at five points: perceptually uniform, and the same for colour-blind readers.
+_CIVIDIS = np.array([[0, 32, 76], [65, 77, 107], [124, 123, 120], [187, 173, 108], [255, 234, 70]])
+_DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
+_LEVELS, _NO_STITCH = 32, -1
+MAX_REGIONS = 12
+"""Most lines in the table of regions, as fit a page."""
+LOCAL_ASSUMPTIONS = (
+    "A region has the moduli of the repeat that fills it, or of the largest rectangle inside it; "
+    "intervals cover 90 %.",
+    "Maps and small rectangles show single stitches of flat cloth, without the folds of ribs and "
+    "welts, by the quarter-cell composite.",
+    "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
+)
+"""What the numbers of a piece with an outline take for granted."""
+_LINE_CHARACTERS = 112
+_MAP_MM = (84.0, 62.0)
+
+
+def design_report(
+    chart: StitchChart | Piece,
+    material: Material,
+    name: str,
+    style: ChartStyle,
+    regions: Sequence[DesignRegion] = (),
+) -> bytes:
+    """A PDF: mechanics, then the extensibility field if there are regions, then the chart.
+
+    A piece that is not a rectangle has no modulus of its own; those of its regions are given.
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    piece = Piece.of(chart)
+    pages = []
+    found = predict(piece.shaped.rectangle_inside(), material, piece.gauge)
+    size = size_at_rest(piece.shaped, material, found)
+    if piece.is_rectangle:
+        shapes = [
+            *_numbers(piece.chart, material, name, found, size),
+            *_maps(piece, material, style.aspect, 73.0),
+        ]
+        shapes += [*_plot(found), *_assumptions(assumptions(found), 228.0)]
+        pages.append(Page(*A4_MM, tuple(shapes)))
+    if regions or not piece.is_rectangle:
+        pages.append(
+            Page(*A4_MM, tuple(_regions(piece, material, name, style.aspect, regions, size)))
+        )
+    return to_pdf([*pages, *chart_pages(piece, style, first=len(pages) + 1)], name)
+
+
+def assumptions(found: Prediction) -> list[str]:
+    """How an answer was found and what it takes for granted, in sentences."""
+    return [
+        f"Law: {found.method}.",
+        f"Shear modulus {found.shear_modulus_n_per_mm:.2g} N/mm: an assumption unless calibrated.",
+        "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
+        *found.notes,
+    ]
+
+
+def _regions(
+    piece: Piece,
+    material: Material,
+    name: str,
+    aspect: float,
+    regions: Sequence[DesignRegion],
+    at_rest: SizeAtRest,
+) -> Iterator[Shape]:
+    """Regions with their moduli, the maps of all stitches, and the extensibility field."""
+    yield Label(MARGIN_MM, 16.0, f"{name}: regions", 6.0)
+    shaped = piece.shaped
+    size = f"{piece.chart.columns} stitches × {piece.chart.rows} rows, {shaped.stitches} stitches"
+    yield Label(MARGIN_MM, 22.0, f"{size}, {_in_cm(at_rest)}", 3.4)
+    yield Label(MARGIN_MM, 26.0, f"{material.name} ({material.identifier})", 3.0)
+    places = (MARGIN_MM, 62.0, 84.0, 124.0, 164.0)
+    head = (
+        "region",
+        "stitches",
+        "Y course, N/mm",
+        "Y wale, N/mm",
+        "1/Y course × wale, mm/N",
+    )
+    for x, text in zip(places, head, strict=True):
+        yield Label(x, 30.0, text, 3.0)
+    yield Lines(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
+    y = 37.0
+    fields = region_fields(piece, regions, material)
+    for part in fields[:MAX_REGIONS]:
+        yield Rectangle(MARGIN_MM, y - 2.6, 3.0, 3.0, fill=tinted(part.colour))
+        both = [part.answer.along(direction) for direction in Direction]
+        cells = (
+            f"    {part.name[:28]}",
+            str(part.stitches),
+            *(_value(one.modulus_n_per_mm, one.modulus_interval_n_per_mm) for one in both),
+            " × ".join(f"{1 / one.modulus_n_per_mm:.2f}" for one in both),
+        )
+        for x, text in zip(places, cells, strict=True):
+            yield Label(x, y, text, 3.0)
+        y += 5.0
+    if (left_out := len(fields) - MAX_REGIONS) > 0:
+        yield Label(MARGIN_MM, y, f"… and {left_out} more, in the maps only.", 3.0)
+    yield from _maps(piece, material, aspect, y + 5.0)
+    top = y + 86.0
+    yield Label(MARGIN_MM, top - 2.0, "extensibility, 1/Y course wide and 1/Y wale high", 3.0)
+    yield from field_shapes(
+        piece,
+        regions,
+        fields,
+        material,
+        aspect=aspect,
+        left=MARGIN_MM,
+        top=top,
+        width=A4_MM[0] - 2 * MARGIN_MM,
+        height=A4_MM[1] - top - 44.0,
+    )
+    yield from _assumptions(LOCAL_ASSUMPTIONS, A4_MM[1] - 30.0)
+
+
+def _in_cm(size: SizeAtRest) -> str:
+    return f"{size.width_mm / 10:.1f} × {size.height_mm / 10:.1f} cm at rest"
+
+
+def _numbers(
+    chart: StitchChart, material: Material, name: str, found: Prediction, at_rest: SizeAtRest
+) -> Iterator[Shape]:
+    yield Label(MARGIN_MM, 16.0, name, 6.0)
+    size = f"{chart.columns} stitches × {chart.rows} rows, {_in_cm(at_rest)}"
+    yield Label(MARGIN_MM, 22.0, f"{size}, in {material.name} ({material.identifier})", 3.4)
+    segments = segment_map(chart)
+    course, wale = (segments.counts(d) for d in Direction)
+    yield Label(
+        MARGIN_MM,
+        27.0,
+        f"segments: course-wise {course.even} even, {course.odd} odd; "
+        f"wale-wise {wale.even} even, {wale.odd} odd",
+    )
+    rows = [("", "along the rows (course)", "along the columns (wale)")]
+    for label, value in _NUMBERS:
+        along_rows, along_columns = (_value(*value(found.along(d))) for d in Direction)
+        rows.append((label, along_rows, along_columns))
+    for index, cells in enumerate(rows):
+        for x, text in zip((MARGIN_MM, 62.0, 128.0), cells, strict=True):
+            yield Label(x, 36.0 + 5.2 * index, text, 3.2)
+    yield Lines(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
+    yield Label(MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {found.provenance}.", 3.0)
+
+
+_NUMBERS: tuple[tuple[str, Callable[[Along], tuple[float, Interval]]], ...] = (
+    ("Young's modulus, N/mm", lambda a: (a.modulus_n_per_mm, a.modulus_interval_n_per_mm)),
+    ("extensibility, mm/N", lambda a: (1 / a.modulus_n_per_mm, a.extensibility_interval_mm_per_n)),
+    ("contraction when pulled this way", lambda a: (a.poisson, a.poisson_interval)),
+    ("stitch at rest, mm", lambda a: (a.relaxed_mm, a.relaxed_interval_mm)),
+)
+
+
+def _value(value: float, interval: Interval) -> str:
+    return f"{value:.3g}  ({interval.low:.3g} to {interval.high:.3g})"
+
+
+def _maps(piece: Piece, material: Material, aspect: float, top: float) -> Iterator[Shape]:
+    """Local moduli as two maps with one logarithmic scale."""
+    chart, stitch = piece.chart, piece.shaped.stitch
+    local = local_moduli(piece.shaped.continued(), material)
+    logs = {d: np.log(local.table.modulus_n_per_mm(d)[local.codes]) for d in Direction}
+    low = float(min(m[stitch].min() for m in logs.values()))
+    high = max(float(max(m[stitch].max() for m in logs.values())), low + 1e-9)
+    cell = min(_MAP_MM[0] / chart.columns, _MAP_MM[1] / (chart.rows * aspect))
+    high_mm = cell * aspect
+    for direction, left in zip(Direction, (MARGIN_MM, 108.0), strict=True):
+        yield Label(left, top, f"local modulus along the {direction}, N/mm", 3.0)
+        level = ((logs[direction] - low) / (high - low) * (_LEVELS - 1)).round().astype(int)
+        level[~stitch] = _NO_STITCH
+        for row in range(chart.rows):
+            y = top + 2.5 + high_mm * (chart.rows - 1 - row)
+            for start, stop, value in runs(level[row]):
+                if value != _NO_STITCH:
+                    width = cell * (stop - start)
+                    yield Rectangle(left + cell * start, y, width, high_mm, fill=_colour(value))
+    for step in range(_LEVELS):
+        yield Rectangle(MARGIN_MM + 2.0 * step, top + 68.0, 2.0, 3.0, fill=_colour(step))
+    yield Label(MARGIN_MM, top + 75.0, f"{np.exp(low):.3g}", 2.8)
+    end = MARGIN_MM + 2.0 * _LEVELS
+    yield Label(end, top + 75.0, f"{np.exp(high):.3g} N/mm (logarithmic)", 2.8, "end")
+
+
+def _colour(level: int) -> str:
+    place = np.linspace(0, _LEVELS - 1, len(_CIVIDIS))
+    rgb = [round(float(np.interp(level, place, channel))) for channel in _CIVIDIS.T]
+    return "#{:02x}{:02x}{:02x}".format(*rgb)
+
+
+def _plot(found: Prediction) -> Iterator[Shape]:
+    """Stress over strain, both directions."""
+    yield Label(MARGIN_MM, 158.0, "stress (N/mm) over strain, pulled one way, free the other", 3.0)
+    left, top, width, height = MARGIN_MM + 10.0, 162.0, 150.0, 52.0
+    stress = np.array(DEFAULT_STRESS_N_PER_MM)
+    strains = {d: found.along(d).strain(stress) for d in Direction}
+    widest, tallest = max(float(strain[-1]) for strain in strains.values()), float(stress[-1])
+    yield Rectangle(left, top, width, height, stroke="#b5b0a8")
+    for share in (0.0, 0.5, 1.0):
+        x, y = left + width * share, top + height * (1 - share)
+        yield Label(x, top + height + 4.0, f"{widest * share:.2f}", 2.8, "middle")
+        yield Label(left - 1.5, y + 1.0, f"{tallest * share:.2f}", 2.8, "end")
+    for index, (direction, strain) in enumerate(strains.items()):
+        across, up = left + width * strain / widest, top + height * (1 - stress / tallest)
+        lines = np.stack([across[:-1], up[:-1], across[1:], up[1:]], axis=1).tolist()
+        drawn = tuple((a, b, c, d) for a, b, c, d in lines)
+        ink = _DIRECTION_INK[direction]
+        yield Lines(drawn, ink, 0.5)
+        line = top + 5.0 + 5.0 * index
+        yield Lines(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
+        yield Label(left + 13.0, line, f"{direction} ({found.provenance})", 2.8)
+
+
+def _assumptions(said: Sequence[str], top: float) -> Iterator[Shape]:
+    yield Label(MARGIN_MM, top, "Method and assumptions", 3.4)
+    y = top + 6.0
+    for note in said:
+        for line in textwrap.wrap(note, _LINE_CHARACTERS):
+            if y < A4_MM[1] - 8.0:
+                yield Label(MARGIN_MM, y, line, 2.8)
+            y += 4.2

@@ -1,1 +1,0 @@
-"""A sparse Cholesky factorisation for quarter grids, by nested dissection."""

@@ -1,0 +1,1 @@
+"""Linear algebra with one order of sums: dense kernels and sparse Cholesky factors."""

@@ -1,0 +1,143 @@
+"""Order of elimination by nested dissection: a sheet is cut in two, each half again, cuts last.
+
+What is left of a half never touches the other, so only the cuts fill up. Where folded fabric
+touches cannot be known from the chart, so the cuts are found in the pattern itself: its slowest
+wave halves it, and a least vertex cover of what crosses the halves is the cut (König's theorem).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import maximum_bipartite_matching
+
+from knitcore.base.arrays import Array
+from knitcore.base.compiled import compiled
+from knitcore.linear.fronts import Front, elimination, work
+
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+_LEAF = 12
+"""Blocks that are not divided any more."""
+_SWEEPS = 60
+"""Averages over the blocks around, which leave the slowest wave of a pattern."""
+_STALE = 1.1
+"""An order is found again where its work has grown by this factor."""
+
+
+class Dissection:
+    """The fronts of a pattern that changes little from step to step, as yarn touches and parts."""
+
+    def __init__(self) -> None:
+        self._touching: Bools | None = None
+        self._order: Ints | None = None
+        self._fronts: tuple[Front, ...] = ()
+        self._fresh = 0.0
+
+    def fronts(self, touching: Bools) -> tuple[Front, ...]:
+        """The fronts of a symmetric pattern (blocks, blocks)."""
+        if self._touching is None or not np.array_equal(self._touching, touching):
+            self._touching = touching
+            if self._order is not None:
+                self._fronts = elimination(touching, self._order)
+            if self._order is None or work(self._fronts) > _STALE * self._fresh:
+                self._order = dissected(touching)
+                self._fronts = elimination(touching, self._order)
+                self._fresh = work(self._fronts)
+        return self._fronts
+
+
+def dissected(touching: Bools) -> Ints:
+    """Order of elimination of the blocks of a symmetric pattern (blocks, blocks)."""
+    return np.concatenate(_parts(touching, np.arange(len(touching))))
+
+
+def _parts(touching: Bools, of: Ints) -> list[Ints]:
+    if len(of) <= _LEAF:
+        return [of]
+    sub = touching[np.ix_(of, of)]
+    halves = [_halved(sub, begin) for begin in (np.arange(len(of), dtype=float), _steps(sub))]
+    one, two, cut = min(halves, key=lambda parts: len(parts[2]))
+    if not (len(one) and len(two)):
+        return [of]
+    return [*_parts(touching, of[one]), *_parts(touching, of[two]), of[cut]]
+
+
+def _halved(touching: Bools, begin: Array) -> tuple[Ints, Ints, Ints]:
+    """Two parts of a pattern (n, n) that do not touch, and the cut between them."""
+    order = np.argsort(_slowest_wave(touching, begin, _SWEEPS), kind="stable")
+    one, two = np.sort(order[: len(order) // 2]), np.sort(order[len(order) // 2 :])
+    rows, columns = vertex_cover(touching[np.ix_(one, two)])
+    return one[~rows], two[~columns], np.concatenate([one[rows], two[columns]])
+
+
+def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:
+    """Least set of rows and columns that together hold every True of a matrix."""
+    partner = maximum_bipartite_matching(csr_array(crossing), perm_type="column")
+    matched = partner >= 0
+    row_of = np.full(crossing.shape[1], -1)
+    row_of[partner[matched]] = np.flatnonzero(matched)
+    # alternating paths from the rows without a partner
+    rows, columns = ~matched, np.zeros(crossing.shape[1], bool)
+    new = rows.copy()
+    while new.any():
+        reached = crossing[new].any(axis=0) & ~columns
+        columns |= reached
+        new = np.zeros_like(rows)
+        new[row_of[reached & (row_of >= 0)]] = True
+        new &= ~rows
+        rows |= new
+    return ~rows, columns
+
+
+@compiled
+def _steps(touching: Bools) -> Array:
+    """(n,) steps to each block of a pattern from the one farthest from the first."""
+    n = touching.shape[0]
+    begin = 0
+    queue, steps = np.empty(n, np.int64), np.empty(n)
+    for _ in range(2):
+        for i in range(n):
+            steps[i] = -1.0
+        steps[begin] = 0.0
+        queue[0] = begin
+        count = 1
+        for k in range(n):
+            if k == count:
+                break
+            i = queue[k]
+            for j in range(n):
+                if touching[i, j] and steps[j] < 0.0:
+                    steps[j] = steps[i] + 1.0
+                    queue[count] = j
+                    count += 1
+        begin = queue[count - 1]
+    return steps
+
+
+@compiled
+def _slowest_wave(touching: Bools, begin: Array, sweeps: int) -> Array:
+    """About the Fiedler vector of a pattern (n, n), in arithmetic that is the same everywhere."""
+    n = touching.shape[0]
+    degree = np.empty(n)
+    links = 0.0
+    for i in range(n):
+        degree[i] = 0.0
+        for j in range(n):
+            degree[i] += touching[i, j]
+        links += degree[i]
+    wave, mean = begin.copy(), np.empty(n)
+    for _ in range(sweeps):
+        centre = 0.0
+        for i in range(n):
+            centre += degree[i] * wave[i] / links
+        for i in range(n):
+            total = 0.0
+            for j in range(n):
+                if touching[i, j]:
+                    total += wave[j] - centre
+            mean[i] = total / degree[i]
+        wave, mean = mean, wave
+    return wave

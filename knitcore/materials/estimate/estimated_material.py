@@ -1,0 +1,60 @@
+"""A material of an estimate, to save and to design with."""
+
+from __future__ import annotations
+
+import math
+
+from knitcore.chart.fabric import Direction
+from knitcore.materials import FabricRecord, LawUncertainty, Material, Origin, Yarn
+from knitcore.materials.estimate.estimate import FabricEstimate, YarnEstimate
+from knitcore.materials.law_uncertainty import Z_SCORE
+
+MEASURED_LOG_SD = 0.1
+"""Relative standard deviation of the moduli of a measured swatch: the paper's median."""
+
+
+def estimated_material(found: YarnEstimate, identifier: str, name: str = "") -> Material:
+    """The material of an estimate; its intervals become the uncertainty of its laws.
+
+    Parameters
+    ----------
+    found : of :func:`knitcore.materials.estimate.estimate.estimate_yarn`.
+    identifier : by which commands and files refer to it.
+    name : for people; the identifier if left out.
+    """
+    return Material(
+        identifier,
+        name or identifier,
+        Yarn(bending_modulus_n_mm2=found.bending_modulus_n_mm2),
+        {fabric: _record(f, found.product_setting) for fabric, f in found.fabrics.items()},
+        note="Estimated from the library's yarns: see the intervals of `knitcore estimate`.",
+    )
+
+
+def _record(found: FabricEstimate, setting: str) -> FabricRecord:
+    deviations = {
+        d: MEASURED_LOG_SD
+        if found.measured
+        else math.log(found.modulus[d].high / found.modulus[d].value) / Z_SCORE
+        for d in Direction
+    }
+    return FabricRecord(
+        fabric=found.fabric,
+        law=found.law,
+        stitch_course_mm=found.stitch_course_mm,
+        stitch_wale_mm=found.stitch_wale_mm,
+        stitch_size_source="the library's mean proportion of stitch to loop length",
+        uncertainty=LawUncertainty(
+            log_modulus_course=deviations[Direction.COURSE],
+            log_modulus_wale=deviations[Direction.WALE],
+            poisson_yx=0.02 if found.measured else 0.1,
+            poisson_xy=0.02 if found.measured else 0.2,
+            source="assumed: the paper's median"
+            if found.measured
+            else "yarns of the library left out",
+        ),
+        origin=Origin.FITTED if found.measured else Origin.ESTIMATED,
+        loop_length_mm=found.loop_length_mm,
+        setting=setting,
+        measured=found.curves,
+    )

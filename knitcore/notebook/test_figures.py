@@ -1,0 +1,90 @@
+"""Stress-strain curves as plotly figures."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from knitcore.base.arrays import Array
+from knitcore.base.showing import INKS
+from knitcore.chart.fabric import Direction
+from knitcore.cloth.flat.strip_figures import plotly_objects, stress_strain_figure
+from knitcore.cloth.flat.strip_results import StripTest
+from knitcore.prediction.curve import ChartCurve
+from knitcore.prediction.prediction import SHOWN_STRESS_N_PER_MM, Prediction
+from knitcore.yarn.model.relaxed_cell import Sweep
+
+
+@singledispatch
+def figure(of: object) -> Any:
+    """The stress-strain curves of an answer, a curve, a sweep or a strip test, for plotly.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Raises
+    ------
+    TypeError
+        For anything else.
+    ModuleNotFoundError
+        If plotly is not installed.
+    """
+    raise TypeError(f"a {type(of).__name__} has no stress-strain curve")
+
+
+@figure.register
+def _(of: Prediction) -> Any:
+    stress = np.linspace(0.0, SHOWN_STRESS_N_PER_MM, 61)
+    drawn = _empty(f"{of.provenance}, with 90 % intervals")
+    for direction, ink in zip(Direction, INKS, strict=True):
+        along = of.along(direction)
+        _add(drawn, str(direction), along.strain(stress), stress, ink)
+        _add_band(drawn, *along.strain_interval(stress), stress, ink)
+    return drawn
+
+
+@figure.register
+def _(of: ChartCurve) -> Any:
+    drawn = _empty(f"{of.provenance}, with its 90 % interval")
+    _add(drawn, str(of.provenance), of.strain, of.stress_n_per_mm, INKS[0])
+    _add_band(drawn, of.strain_low, of.strain_high, of.stress_n_per_mm, INKS[0])
+    return drawn
+
+
+@figure.register
+def _(of: Sweep) -> Any:
+    drawn = _empty(f"pulled {of.direction}-wise at the yarn level")
+    _add(drawn, str(of.direction), of.strain, of.stress_n_per_mm, INKS[0])
+    return drawn
+
+
+@figure.register
+def _(of: StripTest) -> Any:
+    return stress_strain_figure(of)
+
+
+def _empty(title: str) -> Any:
+    go = plotly_objects()
+    drawn = go.Figure()
+    drawn.update_layout(title=title, xaxis_title="strain", yaxis_title="stress (N/mm)")
+    return drawn
+
+
+def _add(drawn: Any, name: str, strain: Array, stress: Array, ink: str) -> None:
+    drawn.add_scatter(x=strain, y=stress, name=name, line={"color": ink})
+
+
+def _add_band(drawn: Any, low: Array, high: Array, stress: Array, ink: str) -> None:
+    drawn.add_scatter(
+        x=np.append(low, high[::-1]),
+        y=np.append(stress, stress[::-1]),
+        fill="toself",
+        fillcolor=ink,
+        opacity=0.2,
+        line={"width": 0},
+        hoverinfo="skip",
+        showlegend=False,
+    )

@@ -1,0 +1,1 @@
+"""The yarn level: stitches as elastic yarn in contact."""

@@ -1,0 +1,134 @@
+"""Keys of results, made from everything that determines them: inputs, code and data.
+
+Modules are followed along their imports; comments, docstrings and layout do not count. Data files
+count where a module names them.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+"""Folder of the packages."""
+SOLVERS = ("knitcore.yarn.library.characterise",)
+"""The module that relaxes, stretches and fits a law; it imports all others that do."""
+_FILE_NAME = re.compile(r"[\w-]+\.\w+")
+
+
+@cache
+def code_version(*modules: str) -> str:
+    """Digest of the code of modules, of their imports from these packages, and of their data.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If there is no source of a module.
+
+    Examples
+    --------
+    >>> len(code_version("knitcore.chart.stitch_chart"))
+    16
+    """
+    for name in modules:
+        if _file(name) is None:
+            raise ModuleNotFoundError(f"there is no source of {name}", name=name)
+    digest = hashlib.sha256()
+    data: set[Path] = set()
+    for name, source in sorted(reached(modules).items()):
+        data.update(_named_data(name, source))
+        digest.update(f"{name}\0{source.digest}\0".encode())
+    for file in sorted(data):
+        digest.update(file.name.encode() + b"\0" + file.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def content_key(content: Mapping[str, Any], modules: tuple[str, ...] = SOLVERS) -> str:
+    """The key of a result, from its inputs (JSON) and the modules that compute it.
+
+    Examples
+    --------
+    >>> content_key({"a": 1, "b": 2}) == content_key({"b": 2, "a": 1})
+    True
+    """
+    text = json.dumps(content, sort_keys=True, allow_nan=False)
+    return hashlib.sha256(f"{code_version(*modules)}\0{text}".encode()).hexdigest()[:32]
+
+
+@dataclass(frozen=True)
+class ModuleCode:
+    """What decides in a module: its imports, the file names in it, a digest of its code."""
+
+    imports: frozenset[str]
+    files: frozenset[str]
+    digest: str
+
+
+def reached(modules: tuple[str, ...]) -> dict[str, ModuleCode]:
+    """Modules and all that they import from these packages, by name."""
+    packages = {name.partition(".")[0] for name in modules}
+    packages.add("knitcore")
+    found: dict[str, ModuleCode] = {}
+    waiting = list(modules)
+    while waiting:
+        name = waiting.pop()
+        file = _file(name)
+        if name in found or file is None:
+            continue
+        found[name] = _read(file.read_text(encoding="utf-8"))
+        waiting += [n for n in found[name].imports if n.partition(".")[0] in packages]
+    return found
+
+
+@cache
+def _read(text: str) -> ModuleCode:
+    tree = ast.parse(text)
+    constants = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
+    return ModuleCode(
+        imports=frozenset(_imports(tree)),
+        files=frozenset(c for c in constants if isinstance(c, str) and _FILE_NAME.fullmatch(c)),
+        digest=hashlib.sha256(ast.dump(_without_docstrings(tree)).encode()).hexdigest(),
+    )
+
+
+def _file(module: str) -> Path | None:
+    path = ROOT.joinpath(*module.split("."))
+    candidates = (path.with_suffix(".py"), path / "__init__.py")
+    return next((file for file in candidates if file.is_file()), None)
+
+
+def _imports(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{name.name}" for name in node.names)
+        elif isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+
+
+def _named_data(module: str, source: ModuleCode) -> Iterator[Path]:
+    """Files in the data folders around a module that it names."""
+    parts = module.split(".")
+    folders = [ROOT.joinpath(*parts[:k], "data") for k in range(1, len(parts))]
+    for name in source.files:
+        yield from (folder / name for folder in folders if (folder / name).is_file())
+
+
+def _without_docstrings(tree: ast.Module) -> ast.Module:
+    """The same tree, in place, without strings used as statements."""
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list):
+            node.body = [  # type: ignore[attr-defined]
+                part
+                for part in body
+                if not (isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant))
+            ]
+    return tree

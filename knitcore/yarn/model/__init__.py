@@ -1,0 +1,1 @@
+"""The yarn, its cell and its energy."""

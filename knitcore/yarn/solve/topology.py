@@ -1,0 +1,126 @@
+"""Length of a step for which yarn cannot pass through yarn.
+
+Between two states every point moves along a straight line. Consecutive samples of a course are at
+most a spacing h apart at either end of the step, hence also in between. Where two stretches of
+yarn meet, some sample of one lies within 0.75 h of some sample of the other; so if the vector
+between any two samples changes by less than its length minus 0.75 h, nothing meets on the way.
+Pairs beyond the reach of the list are covered by a bound: their distance shrinks by no more than
+the strain of the cell times itself plus twice the largest displacement. A step that passes keeps
+the topology. Stretches of one yarn nearer than 2.1 r along it are exempt: they would need a kink
+to cross.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from knitcore.base.arrays import Array
+from knitcore.base.threads import on_halves
+from knitcore.yarn.kernels.structures import Pairs
+from knitcore.yarn.model.cell import YarnCell
+from knitcore.yarn.model.energy import PAIRS_TO_SHARE
+from knitcore.yarn.model.neighbours import extremes, pair_distances, part_apart
+
+CROSSING = 0.75
+"""Two polylines that meet have samples within h / sqrt(2) of each other; the rest is for the bend
+of the yarn between its samples."""
+SAFETY = 0.95
+"""Part of the free distance that a step may use."""
+
+
+@dataclass(frozen=True, eq=False)
+class Clearance:
+    """The distances at a state, and the step they allow.
+
+    Parameters
+    ----------
+    cell : the cell.
+    state, curve : where the step begins.
+    pairs : all pairs of samples nearer than ``reach_mm``.
+    reach_mm : reach of that list.
+    touch_mm : 2r; unlisted pairs must stay beyond it, so that the energy of the step is complete.
+    """
+
+    cell: YarnCell
+    state: Array
+    curve: Array
+    pairs: Pairs
+    reach_mm: float
+    touch_mm: float
+
+    @property
+    def min_distance_mm(self) -> float:
+        """Smallest distance between samples of different stretches of yarn."""
+        least, _ = self._extremes(self.curve, self.state[-2:])
+        return min(least, self.reach_mm)
+
+    @property
+    def distances_mm(self) -> Array:
+        """Of the listed pairs."""
+        course, wale = self.state[-2:]
+        shape = self.cell.rows, self.cell.wales
+        found = pair_distances(self.curve, (course, wale), self.cell.place, shape, self.pairs)
+        return np.asarray(found)
+
+    def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> tuple[float, float]:
+        """Fraction (at most 1) of the way to another state that is certified, and the most by
+        which an unlisted pair gets nearer on the whole way, mm.
+
+        ``pair_cap_mm`` also bounds the change of the vector between any listed pair.
+        """
+        approach = self._approach_mm(state, curve)
+        allowed = min(1.0, (self.reach_mm - self.touch_mm) / max(approach, 1e-300))
+        if not len(self.pairs):
+            return allowed, approach
+        moved, by = curve - self.curve, state[-2:] - self.state[-2:]
+        _, shift = self._extremes(moved, by)
+        allowed = min(allowed, pair_cap_mm / max(shift, 1e-300))
+        used = CROSSING * self._spacing(curve, allowed), SAFETY
+        curves, cells = (self.curve, moved), (tuple(self.state[-2:]), tuple(by))
+        place, shape = self.cell.place, (self.cell.rows, self.cell.wales)
+        parts = on_halves(
+            lambda of: part_apart(curves, cells, place, shape, of, used, shift, allowed),
+            self.pairs, PAIRS_TO_SHARE,
+        )  # fmt: skip
+        return float(min(parts)), approach
+
+    def _approach_mm(self, state: Array, curve: Array) -> float:
+        """Most by which an unlisted pair gets nearer on the way to another state."""
+        old, new = self.state[-2:], state[-2:]
+        strain = float(np.abs(new / old - 1.0).max())
+        moved = curve[:, 0] - self.curve[:, 0]
+        moved = moved - moved.mean(axis=0) * np.array([1.0, 1.0, 0.0])
+        # the rest of the affine change of the cell: the same in every image
+        drift = (new - old) / old
+        moved[:, 0] -= drift[0] * (self.curve[:, 0, 0] - self.curve[:, 0, 0].mean())
+        moved[:, 1] -= drift[1] * (self.curve[:, 0, 1] - self.curve[:, 0, 1].mean())
+        far = 2.0 * float(np.sqrt(np.einsum("im,im->i", moved, moved).max()))
+        return far + strain * self.reach_mm
+
+    def _extremes(self, curve: Array, size: Array) -> tuple[float, float]:
+        """Least and greatest length of the vectors of the listed pairs, mm.
+
+        There may be millions: their lengths are not kept.
+        """
+        shape, sizes = (self.cell.rows, self.cell.wales), (size[0], size[1])
+        parts = on_halves(
+            lambda of: extremes(curve, sizes, self.cell.place, shape, of),
+            self.pairs, PAIRS_TO_SHARE,
+        )  # fmt: skip
+        least, greatest = zip(*parts, strict=True)
+        return min(least), max(greatest)
+
+    def _spacing(self, curve: Array, fraction: float) -> float:
+        """Largest distance of consecutive samples up to a fraction of the step, mm.
+
+        Positions are linear in the fraction, so the spacing is convex in it. Speeds between the
+        samples hardly exceed those at the samples; five per cent are added for that.
+        """
+        here, there = (
+            float(np.sqrt(np.einsum("im,im->i", c[:, 1], c[:, 1]).max()))
+            for c in (self.curve, curve)
+        )
+        largest = max(here, (1.0 - fraction) * here + fraction * there)
+        return 1.05 * largest / self.cell.grid.samples

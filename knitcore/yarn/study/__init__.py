@@ -1,0 +1,1 @@
+"""Questions to the yarn level, one file each."""

@@ -1,0 +1,189 @@
+"""Stretch a relaxed repeat course-wise or wale-wise, out and back, in any branch.
+
+At every size of the stretched direction the other one is free of force. The force is the partial
+derivative of the energy with respect to the size at the minimum, so no energies are differenced.
+Each point is computed twice, on the way out and on the way back, and the lower state is kept. The
+sweep has jumped where the kept state changes from one way to the other, or where the shape changes
+abruptly while the force falls or the change of energy differs from the work done.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from knitcore.base.arrays import Array, sum_in_order
+from knitcore.base.errors import (
+    Cancelled,
+    ConvergenceError,
+    UnravelledError,
+    check_cancelled,
+)
+from knitcore.chart.fabric import Direction
+from knitcore.yarn.model.input_checks import check_at_rest, check_stretch
+from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
+from knitcore.yarn.paper.stretch import PublishedStretch
+from knitcore.yarn.solve.search import SAME_ENERGY
+from knitcore.yarn.solve.spline_stretch import SplineStretch
+from knitcore.yarn.solve.splines import RelaxedRepeat
+from knitcore.yarn.study.jumps import find_jumps
+
+DEFAULT_POINTS = 25
+_OFF_WORK = 0.1
+"""A change of energy that misses the work done by this part of it may be a jump."""
+_LOWER = 1e-6
+"""How much lower, relatively, the way back must be to replace the way out."""
+
+
+class Stretch(Protocol):
+    """Stretching of a branch's states along a direction."""
+
+    @property
+    def note(self) -> str:
+        """Note on the yarn that is held besides its length; empty if none is."""
+        ...
+
+    def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:
+        """The equilibrium at a size, from the last states on the way to it (none: from rest).
+
+        Raises
+        ------
+        ConvergenceError, UnravelledError
+            If the yarn locks or unravels before it gets there.
+        """
+        ...
+
+
+def sweep(
+    zero: RelaxedCell,
+    direction: Direction | str,
+    max_strain: float,
+    *,
+    points: int = DEFAULT_POINTS,
+    max_stress_n_per_mm: float | None = None,
+    back: bool = True,
+    slide_quenching: bool | None = None,
+    cancelled: Cancelled | None = None,
+) -> Sweep:
+    """Stretch in one direction, the other free of force.
+
+    Where the yarn locks or unravels, the stretch ends, with a note.
+
+    Parameters
+    ----------
+    zero : the relaxed repeat, free of force.
+    direction : course or wale.
+    max_strain : largest strain, above 0.
+    points : number of strains, the first of them 0.
+    max_stress_n_per_mm : stop the way out beyond this nominal stress.
+    back : also go back from the end and keep the lower state of each strain.
+    slide_quenching : keep the yarn from sliding where it touches at rest; by default only in the
+        published branch, and there as the paper did, for seed along the course.
+    cancelled : called before every point; True stops with CancelledError.
+
+    Raises
+    ------
+    InputError
+        If a size of the repeat is held, the strain, the stress or the number of points cannot be
+        used, or the cell is too large for slide quenching.
+    CancelledError
+        If ``cancelled`` says so.
+    """
+    along = Direction.parse(direction)
+    check_stretch(max_strain, points, max_stress_n_per_mm)
+    check_at_rest(zero, "zero")
+    if isinstance(zero, RelaxedRepeat):
+        stretch: Stretch = SplineStretch.of(zero, along, bool(slide_quenching), cancelled)
+    else:
+        stretch = PublishedStretch.of(zero, along, slide_quenching)
+    return follow(
+        stretch, zero, along, np.linspace(0.0, max_strain, points),
+        max_stress_n_per_mm=max_stress_n_per_mm, back=back, cancelled=cancelled,
+    )  # fmt: skip
+
+
+def follow(
+    stretch: Stretch, zero: RelaxedCell, along: Direction, strain: Array, *,
+    max_stress_n_per_mm: float | None = None, back: bool = True, cancelled: Cancelled | None = None,
+) -> Sweep:  # fmt: skip
+    """The sweep of a relaxed state at given strains (see :func:`sweep`)."""
+    rest, width = zero.cell_mm(along), zero.cell_mm(along.other)
+    notes = [*zero.notes, *filter(None, [stretch.note])]
+    best: list[RelaxedCell] = []
+    for target in rest * (1.0 + strain):
+        check_cancelled(cancelled)
+        try:
+            best.append(_timed(stretch, best[-2:], float(target)))
+        except (ConvergenceError, UnravelledError) as error:
+            reached = best[-1].cell_mm(along) / rest - 1.0 if best else 0.0
+            notes.append(
+                f"Stopped between strain {reached:.3g} and {target / rest - 1.0:.3g}: {error} "
+                "Ask for less, or for more points."
+            )
+            break
+        stress = best[-1].force_n[along.axis] / width
+        if max_stress_n_per_mm is not None and stress > max_stress_n_per_mm:
+            break
+    other: set[int] = set()
+    for i in range(len(best) - 2, -1, -1) if back else ():
+        check_cancelled(cancelled)
+        try:
+            returned = _timed(stretch, best[i + 1 : i + 2], best[i].cell_mm(along))
+        except (ConvergenceError, UnravelledError) as error:
+            notes.append(f"The way back stopped at point {i}: {error}")
+            break
+        ratio = returned.energy_n_mm / best[i].energy_n_mm
+        if ratio < 1.0 - SAME_ENERGY:
+            other.add(i)
+        if ratio < 1.0 - _LOWER:
+            best[i] = returned
+    if 0 in other:
+        notes.append("The way back ends in a state lower than that at rest.")
+    # above a run of lower states the two ways agree, so the kept states jump only below it
+    jumps = {i for i in other if i > 0 and i - 1 not in other} | _abrupt(best, along)
+    if jumps:
+        notes.append(f"{len(jumps)} jump(s): the shape changes abruptly, there or on the way back.")
+    stress_n_per_mm = np.array([cell.force_n[along.axis] / width for cell in best])
+    return Sweep(along, zero, tuple(best), stress_n_per_mm, tuple(sorted(jumps)), tuple(notes))
+
+
+def _timed(stretch: Stretch, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:
+    began = time.process_time()
+    found = stretch.reach(known, size_mm)
+    return replace(found, seconds=time.process_time() - began)
+
+
+def _abrupt(cells: list[RelaxedCell], along: Direction) -> set[int]:
+    """Steps whose shape changes far more than around them, confirmed by force or work.
+
+    Where two states cross in energy the work balances, but the force falls; where a stretch is
+    coarse the work is missed, but the shape changes steadily.
+    """
+    changed = find_jumps(
+        [c.centre_lines for c in cells],
+        float(np.mean(cells[0].loop_lengths_mm)) if cells else 0.0,
+    )
+    force = [c.force_n[along.axis] for c in cells]
+    falls = {i for i in range(1, len(cells)) if force[i] < force[i - 1]}
+    return set(changed) & (falls | _off_work(cells, along))
+
+
+def _off_work(cells: list[RelaxedCell], along: Direction) -> set[int]:
+    jumps = set()
+    scale = max((c.energy_n_mm for c in cells), default=0.0)
+    for i in range(1, len(cells)):
+        before, after = cells[i - 1], cells[i]
+        work = sum_in_order(
+            0.5
+            * (before.force_n[way.axis] + after.force_n[way.axis])
+            * (after.cell_mm(way) - before.cell_mm(way))
+            for way in (along, along.other)
+        )
+        missed = abs(after.energy_n_mm - before.energy_n_mm - work)
+        if missed > _OFF_WORK * abs(work) and missed > SAME_ENERGY * scale:
+            jumps.add(i)
+    return jumps

@@ -1,1 +1,0 @@
-"""The yarn level: a stitch as a curve that bends and touches itself."""

@@ -1,0 +1,165 @@
+"""Batches: the same results here and on a cluster, and nothing done twice."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from knitcore.base.batch import BatchProgress, run_batch
+from knitcore.base.errors import CancelledError, InputError
+
+TASKS = {f"number-{n}": n for n in range(6)}
+
+
+def square(number: int) -> dict[str, int]:
+    return {"square": number * number, "process": os.getpid()}
+
+
+def refuse_three(number: int) -> dict[str, float]:
+    if number == 3:
+        raise InputError("number", "it is 3.", "Give another.")
+    return {"value": float("nan") if number == 4 else 1.0}
+
+
+def die_once(marker: str) -> dict[str, bool]:
+    """The first process that comes here is killed; the next one finds the mark it left."""
+    if marker and not Path(marker).exists():
+        Path(marker).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"alive": True}
+
+
+def always_die(_: int) -> dict[str, bool]:
+    os.kill(os.getpid(), signal.SIGKILL)
+    raise AssertionError
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_every_task_has_its_result_in_order(workers: int) -> None:
+    seen: list[BatchProgress] = []
+    found = run_batch(square, TASKS, workers=workers, progress=seen.append)
+    assert list(found.results) == list(TASKS)
+    assert [document["square"] for document in found.results.values()] == [0, 1, 4, 9, 16, 25]
+    assert (os.getpid() in {d["process"] for d in found.results.values()}) == (workers == 1)
+    assert [p.done for p in seen] == [0, 1, 2, 3, 4, 5, 6]
+
+
+def test_a_failure_costs_one_task_and_gives_its_reason() -> None:
+    found = run_batch(refuse_three, TASKS, workers=1)
+    assert set(found.failures) == {"number-3", "number-4"}
+    assert "Give another" in found.failures["number-3"]
+    assert len(found.results) == 4
+
+
+def test_a_stopped_batch_resumes(tmp_path: Path) -> None:
+    done = 0
+
+    def count(progress: BatchProgress) -> None:
+        nonlocal done
+        done = progress.done
+
+    with pytest.raises(CancelledError, match="3 of 6"):
+        run_batch(
+            square,
+            TASKS,
+            workers=1,
+            keep=tmp_path,
+            progress=count,
+            cancelled=lambda: done == 3,
+        )
+    assert len(list(tmp_path.iterdir())) == 3
+    (tmp_path / "number-0.json").write_text(json.dumps({"square": "kept"}))
+    (tmp_path / "number-1.json").write_text('{"square"')  # as a full disk would leave it
+    found = run_batch(square, TASKS, workers=1, keep=tmp_path)
+    assert [d["square"] for d in found.results.values()] == ["kept", 1, 4, 9, 16, 25]
+    assert not list(tmp_path.glob("*.part"))
+
+
+def test_a_process_that_dies_costs_a_second_try(tmp_path: Path) -> None:
+    tasks = {"a": "", "b": str(tmp_path / "mark"), "c": ""}
+    assert set(run_batch(die_once, tasks, workers=2).results) == {"a", "b", "c"}
+
+
+def test_a_task_that_kills_every_process_is_given_up() -> None:
+    found = run_batch(always_die, {"a": 1, "b": 2}, workers=2)
+    assert set(found.failures) == {"a", "b"}
+    assert "lost 3 times" in found.failures["a"]
+
+
+@pytest.mark.parametrize(
+    ("changed", "field"),
+    [
+        ({"tasks": {"../a": 1}}, "tasks"),
+        ({"workers": 0}, "workers"),
+        ({"scheduler": "somewhere"}, "scheduler"),
+        ({"scheduler": "tcp://127.0.0.1:9"}, "scheduler"),
+    ],
+)
+def test_impossible_batches_are_refused_before_any_work(
+    changed: dict[str, object], field: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("knitcore.base.batch.CONNECT_S", 1)
+    arguments: dict[str, object] = {"tasks": TASKS} | changed
+    with pytest.raises(InputError) as caught:
+        run_batch(square, **arguments)  # type: ignore[arg-type]
+    assert caught.value.field == field
+
+
+def dask(name: str, *arguments: str) -> "subprocess.Popen[str]":
+    return subprocess.Popen(
+        [sys.executable, "-m", f"distributed.cli.dask_{name}", *arguments],
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+    )
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[tuple[str, list["subprocess.Popen[str]"]]]:
+    """A scheduler and two workers, each a process of its own, on the loopback address."""
+    file = tmp_path / "scheduler.json"
+    here = ("--no-dashboard", "--host", "127.0.0.1")
+    processes = [dask("scheduler", *here, "--port", "0", "--scheduler-file", str(file))]
+    try:
+        deadline = time.monotonic() + 60
+        while not (file.exists() and file.read_text().endswith("}")):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        address = json.loads(file.read_text())["address"]
+        worker = ("worker", address, *here, "--no-nanny", "--nthreads", "1")
+        processes += [dask(*worker, "--local-directory", str(tmp_path)) for _ in range(2)]
+        yield address, processes[1:]
+    finally:
+        for process in processes:
+            process.kill()
+            process.communicate()
+
+
+def slow_square(number: int) -> dict[str, int]:
+    time.sleep(0.5)
+    return square(number)
+
+
+@pytest.mark.slow
+def test_a_cluster_gives_the_same_though_a_worker_is_killed(
+    cluster: tuple[str, list["subprocess.Popen[str]"]],
+) -> None:
+    from distributed import Client  # takes a second
+
+    address, workers = cluster
+    with Client(address, timeout=60, set_as_default=False) as client:
+        client.wait_for_workers(len(workers), timeout=60)
+
+    def kill_one(progress: BatchProgress) -> None:
+        if progress.done == 1:
+            workers[0].kill()
+
+    found = run_batch(slow_square, TASKS, scheduler=address, progress=kill_one)
+    assert [document["square"] for document in found.results.values()] == [0, 1, 4, 9, 16, 25]
+    assert not found.failures

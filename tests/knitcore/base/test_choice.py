@@ -1,0 +1,25 @@
+"""Every input that is a choice among names: unknown ones are refused with those that are known."""
+
+from __future__ import annotations
+
+import pytest
+
+from knitcore import InputError
+from knitcore.base.choice import Choice
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.cloth.flat import Clamps
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.study.relax import Branch
+
+
+@pytest.mark.parametrize("kind", [Direction, Fabric, Clamps, Convention, Branch])
+def test_names_are_read_and_others_refused(kind: type[Choice]) -> None:
+    assert [kind.parse(str(member)) for member in kind] == list(kind)
+    with pytest.raises(InputError) as refused:
+        kind.parse("sideways")
+    assert refused.value.field == kind.__name__.lower()
+    assert all(member in refused.value.remedy for member in kind)
+
+
+def test_a_fabric_may_be_written_in_capitals() -> None:
+    assert Fabric.parse(" Garter ") is Fabric.GARTER

@@ -1,0 +1,101 @@
+"""Results as plain values and as short texts."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from knitcore import Direction, InputError, StitchChart, curve, predict, strip_test
+from knitcore.base.arrays import Array
+from knitcore.base.result import Result
+from knitcore.cloth.space.curl import CurledPiece
+from knitcore.materials import Interval
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Made(Result):
+    """A result of every kind of field."""
+
+    chart: StitchChart
+    direction: Direction
+    values: Array
+    interval: Interval
+    share: float
+    inner: Result | None
+    function: object = math.sin
+
+    also_listed = ("total",)
+
+    @property
+    def total(self) -> float:
+        return float(self.values.sum())
+
+
+def _made(inner: Result | None = None) -> Made:
+    chart, values = StitchChart.parse("KP/PK"), np.arange(300.0)
+    return Made(chart, Direction.WALE, values, Interval(1.0, 2.0), math.nan, inner)
+
+
+def test_a_result_becomes_plain_values() -> None:
+    plain = _made(_made()).to_dict()
+    assert json.loads(json.dumps(plain, allow_nan=False)) == plain
+    assert plain["chart"] == "KP/PK"
+    assert (plain["direction"], plain["interval"], plain["share"]) == ("wale", [1.0, 2.0], None)
+    assert plain["values"][-1] == 299.0
+    assert plain["total"] == plain["inner"]["total"] == 44850.0
+    assert "function" not in plain
+
+
+def test_its_text_gives_shapes_instead_of_numbers() -> None:
+    text = repr(_made(_made()))
+    assert "values=<300>" in text
+    assert "chart=<2 x 2 stitches>" in text
+    assert len(text) < 200
+
+
+def test_predictions_and_curves_become_plain_values() -> None:
+    rib = predict("KKPP", "acrylic")
+    plain = rib.to_dict()
+    assert json.loads(json.dumps(plain, allow_nan=False)) == plain
+    assert plain["modulus_wale_n_per_mm"] == rib.wale.modulus_n_per_mm
+    assert plain["relaxed_course_interval_mm"] == [*rib.course.relaxed_interval_mm]
+    drawn = curve("KKPP", "acrylic", "wale", [0.0, 0.1])
+    assert drawn.to_dict()["strain"] == drawn.strain.tolist()
+
+
+def test_a_strip_test_is_written_and_shown_in_brief(tmp_path: Path) -> None:
+    test = strip_test("KP/PK", "acrylic", "wale", 0.2, steps=2)
+    plain = test.to_dict()
+    assert json.loads(json.dumps(plain, allow_nan=False)) == plain
+    assert plain["force_n"] == test.force_n.tolist()
+    for name in ("x.npz", "x.vtu"):
+        test.write(tmp_path / name)
+    assert len(meshio.read(tmp_path / "x.vtu").cells[0].data) == 16
+    with pytest.raises(InputError, match="suffix"):
+        test.write(tmp_path / "x.xlsx")
+
+
+def test_a_curled_piece_is_written_and_shown_in_brief(tmp_path: Path) -> None:
+    corners = np.zeros((3, 4, 3))
+    corners[..., 0], corners[..., 1] = np.meshgrid(np.arange(4.0), np.arange(3.0))
+    stitches = np.array([[True, True, False], [True, True, True]])
+    chart = StitchChart.parse("KKP/KKK")
+    piece = CurledPiece(
+        chart, corners, corners, 1.0, 3.0, 2.0, 0.0, 0.0, 0.0, 0.0, True, 0.0, 0.0, stitches
+    )
+    assert len(repr(piece)) < 400
+    for name in ("x.npz", "x.vtu"):
+        piece.write(tmp_path / name)
+    mesh = meshio.read(tmp_path / "x.vtu")
+    assert len(mesh.cells[0].data) == 5
+    assert mesh.cell_data["purl"][0].tolist() == [0, 0, 0, 0, 1]
+    with np.load(tmp_path / "x.npz") as stored:
+        assert np.array_equal(stored["purl"], chart.purl)
+    with pytest.raises(InputError, match="suffix"):
+        piece.write(tmp_path / "x.obj")

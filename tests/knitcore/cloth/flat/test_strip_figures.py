@@ -1,0 +1,42 @@
+"""The figures show the fields of the test."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.flat import strip_test
+from knitcore.cloth.flat.strip_figures import (
+    displacement_figure,
+    strain_crosses_figure,
+    stress_strain_figure,
+)
+from knitcore.materials import material
+
+TEST = strip_test(
+    StitchChart.of_fabric("garter", rows=5, columns=8),
+    material("acrylic:published"),
+    "wale",
+    0.4,
+    steps=2,
+)
+
+
+def test_the_displacement_is_drawn_on_the_deformed_shape() -> None:
+    carpet, contour = displacement_figure(TEST).data
+    assert np.asarray(carpet.y).max() == pytest.approx(1.4 * TEST.y_mm.max())
+    assert np.asarray(contour.z).max() == pytest.approx(TEST.ux_mm[-1].max())
+
+
+def test_crosses_show_extension_along_the_pull() -> None:
+    extension = strain_crosses_figure(TEST).data[0]
+    arms = np.asarray(extension.y).reshape(-1, 3)
+    lengths = arms[:, 1] - arms[:, 0]
+    assert np.abs(lengths).max() > 0
+
+
+def test_the_measured_curve_stands_beside_the_simulated_one() -> None:
+    simulated, measured = stress_strain_figure(TEST, [0.1, 0.2], [0.01, 0.02]).data
+    assert simulated.y[-1] == pytest.approx(TEST.stress_n_per_mm[-1])
+    assert measured.name == "measured"

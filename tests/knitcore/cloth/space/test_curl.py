@@ -1,0 +1,236 @@
+"""Shapes that a knitter knows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from knitcore.base.errors import CancelledError, InputError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.curl import UNBALANCED_NOTE, CurledPiece, Pull, curl
+from knitcore.cloth.space.sheet_shape import settle
+from knitcore.cloth.space.stitch_sheet import sheet_of
+from knitcore.materials import material
+from knitcore.prediction.predict import predict
+
+ACRYLIC = material("acrylic")
+
+
+def _piece(repeat: str, across: int, up: int) -> CurledPiece:
+    piece = curl(StitchChart.parse(repeat).tile(up, across), ACRYLIC)
+    assert piece.converged
+    return piece
+
+
+def test_the_sides_of_stockinette_roll_to_the_back_and_its_ends_to_the_front() -> None:
+    piece = _piece("K", 12, 12)
+    assert piece.curl_course_mm < 0.0 < piece.curl_wale_mm
+    tall, wide = _piece("K", 6, 20), _piece("K", 16, 4)
+    assert tall.curl_course_mm < -0.5 * tall.thickness_mm
+    assert wide.curl_wale_mm > 0.5 * wide.thickness_mm
+
+
+def test_reverse_stockinette_rolls_the_other_way() -> None:
+    tall = _piece("P", 6, 20)
+    assert tall.curl_course_mm > 0.5 * tall.thickness_mm
+
+
+@pytest.mark.parametrize("fabric", [Fabric.GARTER, Fabric.RIB, Fabric.SEED])
+def test_balanced_fabrics_lie_flat_at_their_size(fabric: Fabric) -> None:
+    piece = curl(StitchChart.of_fabric(fabric, rows=16, columns=16), ACRYLIC)
+    record = ACRYLIC.record(fabric)
+    assert piece.converged
+    assert piece.depth_mm < 0.1
+    assert piece.width_mm == pytest.approx(16 * record.stitch_course_mm, rel=1e-3)
+    assert piece.height_mm == pytest.approx(16 * record.stitch_wale_mm, rel=1e-3)
+
+
+def test_a_strip_rolls_up_into_scrolls_as_tight_as_it_can() -> None:
+    """From both ends: each holds half of its length, π R² = length times thickness."""
+    piece = _piece("K", 30, 2)
+    length = float(np.ptp(piece.flat_mm[..., 0]))
+    expected = np.sqrt(0.5 * length * piece.thickness_mm / np.pi)
+    assert 0.5 * piece.depth_mm == pytest.approx(expected, rel=0.2)
+
+
+def _block(knits: int) -> str:
+    wide = "K" * knits + "P" * knits
+    return "/".join([wide] * knits + [wide[::-1]] * knits)
+
+
+@pytest.mark.parametrize(
+    ("repeat", "up", "across"),
+    [
+        ("KKPP", 20, 6),
+        ("KKKPPP", 20, 4),
+        ("KKKKKKPPPPPP", 20, 3),
+        ("K/K/P/P", 6, 16),
+        ("K/K/K/P/P/P", 4, 16),
+        (_block(3), 3, 3),
+        (_block(4), 3, 3),
+    ],
+    ids=["2x2 rib", "3x3 rib", "6x6 rib", "2-2 welt", "3-3 welt", "3x3 basket", "4x4 basket"],
+)
+def test_folds_are_as_wide_and_high_as_the_relaxed_fabric(
+    repeat: str, up: int, across: int
+) -> None:
+    """Extent of the inner repeats, over that of the answer."""
+    chart = StitchChart.parse(repeat)
+    piece = curl(chart.tile(up, across), ACRYLIC)
+    assert piece.converged
+    answer = predict(chart, ACRYLIC)
+    for axis, along in ((1, answer.course), (0, answer.wale)):
+        line = piece.corners_mm.mean(axis=1 - axis)
+        ends = line[[chart.purl.shape[axis], -1 - chart.purl.shape[axis]]]
+        count = len(line) - 1 - 2 * chart.purl.shape[axis]
+        assert np.linalg.norm(ends[1] - ends[0]) / count == pytest.approx(along.relaxed_mm, rel=0.1)
+
+
+@pytest.mark.parametrize("repeat", ["KKP", "KKKKPP", "KKKKKP"])
+def test_ribs_that_do_not_balance_are_as_wide_as_predicted_when_laid_flat(repeat: str) -> None:
+    """One column in every repeat is kept in the plane; as it lies such a rib rolls to the back."""
+    wide, chart = len(repeat), StitchChart.parse(repeat).tile(8, 4)
+    sheet = sheet_of(chart, ACRYLIC)
+    held = np.zeros((chart.rows + 1, chart.columns + 1, 3), dtype=bool)
+    held[:, ::wide, 2] = True
+    held = held.reshape(-1, 3)
+    begin = sheet.flat_mm + 1e-3 * np.random.default_rng(0).standard_normal(sheet.flat_mm.shape)
+    begin[held] = 0.0
+    flat = settle(sheet, begin, held=held)
+    assert flat.converged
+    line = flat.x.reshape(chart.rows + 1, chart.columns + 1, 3)[:, :, 0].mean(axis=0)
+    width = (line[3 * wide] - line[wide]) / (2 * wide)
+    predicted = predict(StitchChart.parse(repeat), ACRYLIC).course.relaxed_mm
+    assert width == pytest.approx(predicted, rel=0.1)
+    piece = curl(chart, ACRYLIC)
+    assert piece.converged
+    assert piece.curl_course_mm < 0.0
+    assert UNBALANCED_NOTE in piece.notes
+
+
+def test_welts_draw_in_along_the_columns() -> None:
+    piece = _piece("P\nP\nP\nK\nK\nK", 12, 3)
+    flat = np.ptp(piece.flat_mm, axis=(0, 1))
+    assert piece.height_mm < 0.85 * flat[1]
+    assert piece.width_mm > 0.9 * flat[0]
+
+
+def test_a_basket_pillows() -> None:
+    piece = _piece(_block(4), 2, 2)
+    assert piece.depth_mm > 2.0 * piece.thickness_mm
+
+
+def test_shifted_stripes_fold_into_ridges_of_knits_and_valleys_of_purls() -> None:
+    """As the Miura chart of Niu, Dion and Kamien does along its rows."""
+    shifts = [*range(7), *range(5, 0, -1)]
+    stripes = "/".join("K" * at + "P" * 6 + "K" * (6 - at) for at in shifts for _ in range(2))
+    piece = curl(StitchChart.parse(stripes).tile(1, 2), ACRYLIC)
+    assert piece.converged
+    along = np.diff(piece.corners_mm[..., [0, 2]], axis=1)
+    along = along[1:] + along[:-1]
+    turn = np.linalg.det(np.stack([along[:, :-1], along[:, 1:]], axis=-1))
+    purl = piece.chart.purl
+    inside = purl[:, 1:] == purl[:, :-1]
+    as_named = np.where(purl[:, 1:], turn, -turn)[inside]
+    assert as_named[as_named > 0].sum() > 0.8 * np.abs(as_named).sum()
+
+
+def test_a_single_stitch_is_flat() -> None:
+    piece = curl(StitchChart.parse("K"), ACRYLIC)
+    assert piece.converged
+    assert piece.curl_course_mm == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_test_that_did_not_converge_is_marked() -> None:
+    piece = curl(StitchChart.parse("K").tile(20, 20), ACRYLIC, time_limit_s=0.0)
+    assert not piece.converged
+
+
+def test_a_piece_too_large_is_refused() -> None:
+    with pytest.raises(InputError, match="stitches"):
+        curl(StitchChart.of_fabric("garter", rows=101, columns=100), ACRYLIC)
+
+
+def test_it_can_be_cancelled() -> None:
+    with pytest.raises(CancelledError):
+        curl(StitchChart.parse("K").tile(9, 9), ACRYLIC, cancelled=lambda: True)
+
+
+def test_pulled_between_clamps_the_free_sides_curl_and_the_more_so_the_less_it_is_pulled() -> None:
+    chart = StitchChart.parse("K").tile(20, 12)
+    little, much = (
+        curl(chart, ACRYLIC, pull=Pull(Direction.WALE, strain)) for strain in (0.05, 0.3)
+    )
+    assert little.converged
+    assert much.converged
+    assert little.curl_course_mm < much.curl_course_mm < -0.5 * much.thickness_mm
+    ends = much.corners_mm[[0, 1, -2, -1]]
+    np.testing.assert_allclose(ends[..., 2], 0.0, atol=1e-12)
+    flat = much.flat_mm[..., 1]
+    between = 0.5 * (flat[-1, 0] + flat[-2, 0] - flat[0, 0] - flat[1, 0])
+    assert np.ptp(much.corners_mm[..., 1]) == pytest.approx(np.ptp(flat) + 0.3 * between)
+
+
+def test_pulled_along_the_rows_top_and_bottom_curl_to_the_front() -> None:
+    chart = StitchChart.parse("K").tile(16, 12)
+    piece = curl(chart, ACRYLIC, pull=Pull(Direction.COURSE, 0.2))
+    assert piece.converged
+    assert piece.curl_wale_mm > 0.5 * piece.thickness_mm
+
+
+def test_a_shaped_piece_is_the_rectangle_without_what_lies_outside() -> None:
+    """With every stitch nothing changes; without a corner the rest keeps its size."""
+    chart = StitchChart.of_fabric(Fabric.GARTER, rows=10, columns=10)
+    every = curl(chart, ACRYLIC, stitches=np.ones((10, 10), dtype=bool))
+    np.testing.assert_allclose(every.corners_mm, curl(chart, ACRYLIC).corners_mm, atol=1e-9)
+    inside = np.tri(10, dtype=bool)[:, ::-1]
+    piece = curl(chart, ACRYLIC, stitches=inside)
+    assert piece.converged
+    assert np.isnan(piece.curl_course_mm)
+    assert np.count_nonzero(piece.used) == 55 + 21
+    steps = np.linalg.norm(np.diff(piece.corners_mm[:, -1], axis=0), axis=1)
+    whole = np.linalg.norm(np.diff(every.corners_mm[:, -1], axis=0), axis=1)
+    np.testing.assert_allclose(steps, whole, rtol=2e-3)
+
+
+def test_an_outline_of_another_size_is_refused() -> None:
+    with pytest.raises(InputError, match="does not fit"):
+        curl(StitchChart.parse("K").tile(4, 4), ACRYLIC, stitches=np.ones((3, 4), dtype=bool))
+
+
+def test_clamps_need_a_stitch_between_them() -> None:
+    with pytest.raises(InputError, match="too small for clamps"):
+        curl(StitchChart.parse("KK"), ACRYLIC, pull=Pull(Direction.WALE, 0.1))
+
+
+def test_after_a_change_a_descent_that_begins_at_the_old_shape_is_near_rest_at_once() -> None:
+    chart = StitchChart.parse("KKKPPP").tile(12, 3)
+    old = curl(chart, ACRYLIC)
+    purl = chart.purl.copy()
+    purl[5, 8:10] ^= True
+    changed = StitchChart(purl)
+    rest = curl(changed, ACRYLIC)
+    begun = curl(changed, ACRYLIC, begin=old.corners_mm)
+    assert begun.converged
+    assert begun.energy_n_mm == pytest.approx(rest.energy_n_mm, rel=0.02)
+    soon = [curl(changed, ACRYLIC, begin=b, time_limit_s=1e-9) for b in (None, old.corners_mm)]
+    assert not any(piece.converged for piece in soon)
+    far = [piece.energy_n_mm - rest.energy_n_mm for piece in soon]
+    assert 0.0 < far[1] < 0.3 * far[0]
+
+
+def test_the_first_shape_after_a_change_moves_only_what_is_near_it() -> None:
+    chart = StitchChart.parse("KKKPPP").tile(40, 5)
+    old = curl(chart, ACRYLIC)
+    purl = chart.purl.copy()
+    purl[5, 8:10] ^= True
+    soon = curl(StitchChart(purl), ACRYLIC, begin=old.corners_mm, time_limit_s=1e-9)
+    rise = np.linalg.norm(np.diff(soon.corners_mm - old.corners_mm, axis=0), axis=-1)
+    assert rise[:12].max() > 0.01
+    assert rise[30:].max() < 0.03 * rise.max()  # the whole is aligned anew
+
+
+def test_a_shape_of_another_size_is_nothing_to_begin_with() -> None:
+    with pytest.raises(InputError, match="another size"):
+        curl(StitchChart.parse("K").tile(4, 4), ACRYLIC, begin=np.zeros((4, 5, 3)))

@@ -1,0 +1,74 @@
+"""Which stitches fold against each other, how far, and how large they are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.folds import balances, folds_of, opposed, rest_turns, turning
+from knitcore.materials import material
+from knitcore.prediction.neighbourhood import neighbourhood_sizes
+
+ACRYLIC = material("acrylic")
+FREE = np.array([1.8, 1.1])
+
+
+@pytest.mark.parametrize(
+    ("row", "runs"),
+    [
+        ("KKKPPPKKK", [3, 3, 3, 3, 3, 3, 3, 3, 3]),
+        ("KKKKPPKK", [0, 0, 0, 0, 2, 2, 2, 2]),  # the wider edge is free
+        ("KKKKK", [0, 0, 0, 0, 0]),
+        ("PPKKKPKKKPP", [2, 2, 3, 3, 3, 0, 3, 3, 3, 2, 2]),  # a single purl opposes, but is plain
+        ("PKPKKKKPKP", [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]),  # a border of 1x1 rib does not
+    ],
+)
+def test_runs_between_others_are_opposed(row: str, runs: list[int]) -> None:
+    assert opposed(turning(StitchChart.parse(row).tile(3, 1)))[1].tolist() == runs
+
+
+@pytest.mark.parametrize("fabric", list(Fabric))
+def test_pure_fabrics_keep_their_size_and_their_turn(fabric: Fabric) -> None:
+    found = folds_of(StitchChart.of_fabric(fabric, rows=8, columns=8), ACRYLIC, FREE)
+    record = ACRYLIC.record(fabric)
+    size = (record.stitch_course_mm, record.stitch_wale_mm)
+    assert np.allclose(found.sizes_mm, size, rtol=1e-3)
+    assert np.all(found.share == 1.0)
+
+
+def test_a_wide_rib_turns_over_to_the_width_of_its_surroundings() -> None:
+    """The polygon of its panels spans what the resolver says."""
+    chart = StitchChart.parse("KKKKPPPP").tile(16, 4)
+    found = folds_of(chart, ACRYLIC, FREE)
+    turn = found.share[8, 13, 0] * FREE[0]
+    at = turn * (np.arange(4) - 1.5)
+    span = found.sizes_mm[8, 13, 0] * np.cos(at).mean()
+    assert span == pytest.approx(neighbourhood_sizes(chart, ACRYLIC)[8, 13, 0], rel=1e-9)
+    assert turn < np.pi / 4
+
+
+@pytest.mark.parametrize("row", ["KKKKPP", "KKKKKP", "KKPP", "KKKPP"])
+def test_ribs_turn_back_between_their_panels_as_far_as_within(row: str) -> None:
+    side = turning(StitchChart.parse(row).tile(3, 4))
+    inside = np.where(side[:, 1:] == side[:, :-1], side[:, 1:], 0.0)
+    turns = rest_turns(side, 0.3 * inside, 0.0 * inside, np.ones_like(inside))
+    inner = slice(len(row), 2 * len(row))
+    assert turns[1, inner].sum() == pytest.approx(0.0, abs=1e-12)
+    assert np.all(turns[1, inner][inside[1, inner] > 0] == 0.3)
+
+
+def test_what_does_not_balance_rolls_up_evenly() -> None:
+    side = turning(StitchChart.parse("KKKKKP").tile(3, 4))
+    inside = np.where(side[:, 1:] == side[:, :-1], side[:, 1:], 0.0)
+    turns = rest_turns(side, 0.0 * inside, inside, np.ones_like(inside))
+    assert np.allclose(turns[1, 6:12], 4 / 6)
+
+
+@pytest.mark.parametrize(
+    ("row", "balanced"), [("KKPP", True), ("KKKKPP", False), ("KKKKKP", False), ("K", True)]
+)
+def test_ribs_of_as_many_knits_as_purls_balance(row: str, balanced: bool) -> None:
+    chart = StitchChart.parse(row).tile(6, 4)
+    assert balances(chart) is balanced

@@ -1,0 +1,51 @@
+"""Pieces that hang."""
+
+from __future__ import annotations
+
+import pytest
+
+from knitcore.base.errors import CancelledError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.hang import HungBy, hang
+from knitcore.materials import material
+
+ACRYLIC = material("acrylic")
+GARTER = StitchChart.of_fabric(Fabric.GARTER, rows=24, columns=8)
+
+
+def test_a_piece_gets_longer_by_its_weight() -> None:
+    """By half of what its whole weight would do at the end: w L² / 2 Y of a free strip."""
+    found = hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5)
+    record = ACRYLIC.record(Fabric.GARTER)
+    width = 8 * record.stitch_course_mm
+    stress = found.weight_n / width
+    free, held = 1.0 / record.law.modulus(Direction.WALE), 1.0 / record.law.stiffness_yyyy
+    assert found.converged
+    assert 0.5 * stress * held <= found.lengthening <= 1.02 * 0.5 * stress * free
+    assert found.depth_mm < 0.1
+
+
+def test_twice_the_weight_pulls_twice_as_far() -> None:
+    light, heavy = (hang(GARTER, ACRYLIC, linear_density_g_per_m=density) for density in (0.3, 0.6))
+    assert heavy.weight_n == pytest.approx(2.0 * light.weight_n)
+    assert heavy.lengthening == pytest.approx(2.0 * light.lengthening, rel=0.03)
+
+
+def test_held_by_its_corners_the_top_edge_sags() -> None:
+    edge, corners = (
+        hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5, by=by)
+        for by in (HungBy.EDGE, HungBy.CORNERS)
+    )
+    assert corners.corners_mm[-1, 4, 1] < edge.corners_mm[-1, 4, 1] - 0.05
+
+
+def test_the_bottom_of_stockinette_rolls_to_the_front_against_its_weight() -> None:
+    found = hang(StitchChart.parse("K").tile(12, 8), ACRYLIC, linear_density_g_per_m=0.5)
+    assert found.converged
+    assert found.corners_mm[0, 4, 2] > 0.5
+
+
+def test_it_can_be_cancelled() -> None:
+    with pytest.raises(CancelledError):
+        hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5, cancelled=lambda: True)

@@ -1,0 +1,118 @@
+"""A whole piece worn as a tube."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.space.limb_tube import worn_tube
+from knitcore.draw.placing import lying
+from knitcore.garment.limb import MeasuredLimb, place_on
+from knitcore.materials import material
+from knitcore.prediction.predict import predict
+
+ACRYLIC = material("acrylic")
+PLAIN = StitchChart.parse("K").tile(6, 40)
+
+
+def _radius_mm(corners: np.ndarray) -> np.ndarray:
+    return np.hypot(corners[..., 0], corners[..., 2])
+
+
+def test_every_row_fits_as_a_tube_of_its_repeat_does() -> None:
+    girth = 170.0
+    tube = worn_tube(PLAIN, ACRYLIC, MeasuredLimb((0.0, 300.0), (girth, girth)))
+    along = predict(StitchChart.parse("K"), ACRYLIC).along(Direction.COURSE)
+    alone = place_on(along, 0.0, girth, 40 * along.relaxed_mm)
+    assert alone.pressure is not None
+    for place in tube.places:
+        assert place.pressure is not None
+        assert place.pressure.kpa.high == pytest.approx(alone.pressure.kpa.high, rel=1e-6)
+    assert _radius_mm(tube.corners_mm) == pytest.approx(girth / (2 * np.pi))
+    assert tube.length_mm == pytest.approx(
+        tube.relaxed_length_mm * (1 + alone.pressure.axial_strain_free)
+    )
+    assert np.ptp(tube.corners_mm[..., 1]) == pytest.approx(tube.length_mm)
+
+
+def test_a_loose_tube_keeps_its_own_size() -> None:
+    tube = worn_tube(PLAIN, ACRYLIC, MeasuredLimb((0.0, 300.0), (50.0, 60.0)))
+    assert all(place.pressure is None for place in tube.places)
+    assert tube.length_mm == pytest.approx(tube.relaxed_length_mm)
+    assert _radius_mm(tube.corners_mm).min() > _radius_mm(tube.limb_mm).max()
+
+
+def test_the_face_is_outside_and_the_tube_is_closed() -> None:
+    tube = worn_tube(PLAIN, ACRYLIC, MeasuredLimb((0.0, 20.0), (170.0, 200.0)))
+    frames = lying(tube.corners_mm).frames
+    assert frames is not None
+    centres = 0.25 * (
+        tube.corners_mm[1:, 1:]
+        + tube.corners_mm[:-1, 1:]
+        + tube.corners_mm[1:, :-1]
+        + tube.corners_mm[:-1, :-1]
+    )
+    outwards = (frames[..., 2] * centres * (1, 0, 1)).sum(axis=-1)
+    assert (outwards > 0.9 * _radius_mm(centres)).all()
+    np.testing.assert_allclose(tube.corners_mm[:, 0], tube.corners_mm[:, -1], atol=1e-9)
+
+
+def test_a_ribbed_cuff_is_narrower_at_rest_and_presses_less() -> None:
+    cuff = np.tile([[False, False, True, True]], (20, 12))
+    sleeve = StitchChart(np.vstack([cuff, np.zeros((24, 48), dtype=bool)]))
+    tube = worn_tube(sleeve, ACRYLIC, MeasuredLimb((0.0, 300.0), (200.0, 200.0)))
+    first, last = tube.places[3], tube.places[-3]
+    assert first.rest_mm < 0.8 * last.rest_mm
+    assert first.pressure is not None
+    assert last.pressure is not None
+    assert first.pressure.kpa.high < last.pressure.kpa.low
+
+
+def test_at_a_hem_the_pressure_changes_from_row_to_row_and_not_at_once() -> None:
+    cuff = np.tile([[False, False, True, True]], (20, 16))
+    sleeve = StitchChart(np.vstack([cuff, np.zeros((50, 64), dtype=bool)]))
+    along = worn_tube(sleeve, ACRYLIC, MeasuredLimb((0.0, 600.0), (260.0, 260.0)))
+    across = worn_tube(
+        StitchChart(sleeve.purl.T),
+        ACRYLIC,
+        MeasuredLimb((0.0, 600.0), (160.0, 160.0)),
+        Direction.WALE,
+    )
+    for tube in (along, across):
+        kpa = np.array([place.pressure.kpa.low for place in tube.places if place.pressure])
+        assert len(kpa) == 70
+        assert kpa.max() > 2.0 * kpa.min()
+        assert np.abs(np.diff(np.log(kpa))).max() < np.log(1.4)
+
+
+def test_columns_run_around_as_rows_do() -> None:
+    rib = StitchChart.parse("KP").tile(40, 3)
+    tube = worn_tube(rib, ACRYLIC, MeasuredLimb((0.0, 300.0), (120.0, 120.0)), Direction.WALE)
+    assert tube.corners_mm.shape == (41, 7, 3)
+    assert len(tube.places) == 6
+    assert np.ptp(tube.corners_mm[..., 0]) == pytest.approx(tube.length_mm)
+    np.testing.assert_allclose(tube.corners_mm[0], tube.corners_mm[-1], atol=1e-9)
+
+
+def test_on_a_cone_lengths_are_measured_along_the_skin() -> None:
+    tube = worn_tube(PLAIN, ACRYLIC, MeasuredLimb((0.0, 20.0), (170.0, 230.0)))
+    front = tube.corners_mm[:, 20]
+    skin = np.linalg.norm(np.diff(front[:, 1:], axis=0), axis=1).sum()
+    assert skin == pytest.approx(tube.length_mm, rel=0.05)
+    assert np.ptp(front[:, 1]) < tube.length_mm
+
+
+def test_too_few_stitches_make_no_tube() -> None:
+    with pytest.raises(InputError, match="at least 4 stitches, or"):
+        worn_tube(StitchChart.parse("KK/KK"), ACRYLIC, MeasuredLimb((0.0, 9.0), (50.0, 60.0)))
+
+
+@pytest.mark.parametrize(
+    ("at", "girths"), [((0.0,), (9.0,)), ((5.0, 5.0), (9.0, 9.0)), ((0.0, 5.0), (9.0, 0.0))]
+)
+def test_impossible_limbs_are_refused(at: tuple[float, ...], girths: tuple[float, ...]) -> None:
+    with pytest.raises(InputError):
+        MeasuredLimb(at, girths)

@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from knitcore import InputError
+from knitcore.formats.designs.design_file import (
+    DesignFile,
+    design_schema,
+    read_design,
+    write_design,
+)
+from tests.knitcore.charts import stitch_charts
+
+NAMES = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=40)
+
+
+@given(chart=stitch_charts(), name=NAMES, material=st.none() | NAMES, note=NAMES)
+def test_nothing_is_lost(
+    chart: object, name: str, material: str | None, note: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "design.json"
+    design = DesignFile(name=name, material=material, chart=str(chart), note=note)
+    file.write_text(write_design(design), encoding="utf-8")
+    assert read_design(file) == design
+    assert read_design(file).to_chart() == chart
+
+
+def test_the_schema_names_what_a_file_holds() -> None:
+    schema = design_schema()
+    assert schema["additionalProperties"] is False
+    assert set(schema["properties"]) == set(DesignFile.model_fields)
+    assert schema["properties"]["format"]["const"] == "knitcore-design"
+    assert schema["required"] == ["chart"]
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"colour": "red"}, "colour"),
+        ({"name": ""}, "name"),
+        ({"chart": "KX"}, "neither K nor P"),
+        ({"version": 3}, "version 3"),
+        ({"version": 1}, "version 1"),
+        ({"version": True}, "version"),
+        ({"version": [1]}, "version"),
+        ({"format": "other"}, "not a design"),
+    ],
+)
+def test_errors_name_their_place(tmp_path: Path, change: dict[str, object], says: str) -> None:
+    file = tmp_path / "design.json"
+    file.write_text(json.dumps({"format": "knitcore-design", "version": 2, "chart": "KP"} | change))
+    with pytest.raises(InputError, match=says):
+        read_design(file)

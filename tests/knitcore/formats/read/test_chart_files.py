@@ -1,0 +1,75 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from knitcore import InputError, StitchChart
+from knitcore.formats.read.chart_files import read_chart
+
+CHART = StitchChart.parse("KKP\nPPK")
+
+
+def test_text(tmp_path: Path) -> None:
+    file = tmp_path / "chart.txt"
+    file.write_text("KKP\nPPK\n", encoding="utf-8")
+    assert read_chart(file) == CHART
+
+
+def test_png_has_dark_purls_and_the_top_row_first(tmp_path: Path) -> None:
+    file = tmp_path / "chart.png"
+    Image.fromarray(np.where(CHART.purl[::-1], 20, 240).astype(np.uint8)).save(file)
+    assert read_chart(file) == CHART
+
+
+def test_transparent_pixels_are_knits(tmp_path: Path) -> None:
+    file = tmp_path / "chart.png"
+    Image.new("RGBA", (3, 2), (0, 0, 0, 0)).save(file)
+    assert not read_chart(file).purl.any()
+
+
+def test_design_file(tmp_path: Path) -> None:
+    file = tmp_path / "chart.json"
+    file.write_text(json.dumps({"format": "knitcore-design", "version": 2, "chart": CHART.text}))
+    assert read_chart(file) == CHART
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("chart.doc", b"KP", "not of a kind that holds a chart"),
+        ("chart.txt", b"\xff\xfe\x00", "not UTF-8"),
+        ("chart.png", b"no picture", "not a readable PNG"),
+        ("chart.json", b"{", "not valid JSON"),
+        ("chart.json", b"[1]", "not a design"),
+        ("chart.json", b'{"format": "knitcore-design", "version": 99}', "version 99"),
+        ("chart.json", b'{"format": "knitcore-design", "version": 2}', "no chart text"),
+    ],
+)
+def test_files_that_are_not_what_they_claim(
+    tmp_path: Path, name: str, content: bytes, says: str
+) -> None:
+    file = tmp_path / name
+    file.write_bytes(content)
+    with pytest.raises(InputError, match=says):
+        read_chart(file)
+
+
+def test_a_missing_file_and_a_truncated_picture(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="does not exist"):
+        read_chart(tmp_path / "none.txt")
+    file = tmp_path / "chart.png"
+    Image.fromarray(np.zeros((40, 40), dtype=np.uint8)).save(file)
+    file.write_bytes(file.read_bytes()[:40])
+    with pytest.raises(InputError, match="not a readable PNG"):
+        read_chart(file)
+
+
+def test_a_huge_picture_is_refused_before_it_is_decoded(tmp_path: Path) -> None:
+    file = tmp_path / "chart.png"
+    Image.new("1", (5000, 5000)).save(file)
+    with pytest.raises(InputError, match="too large"):
+        read_chart(file)

@@ -1,0 +1,362 @@
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import meshio
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from knitcore import InputError, StitchChart
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.row_sides import Construction
+from knitcore.formats.designs.garment_design import design_of_plan
+from knitcore.formats.designs.layout import (
+    DesignLayout,
+    DesignRegion,
+    DesignRepeat,
+    Placement,
+    layout_of,
+)
+from knitcore.formats.read.chart_files import read_chart, read_piece
+from knitcore.formats.write import report
+from knitcore.formats.write.chart_drawing import chart_pages, chart_pdf, chart_svg
+from knitcore.formats.write.chart_key import HEAVY, ChartStyle, RegionMark, tinted
+from knitcore.formats.write.drawn_page import Label, Page, Rectangle, to_pdf, to_svg
+from knitcore.formats.write.export import (
+    FORMATS,
+    ExportKind,
+    ExportOptions,
+    export_chart,
+)
+from knitcore.formats.write.extensibility_drawing import region_fields
+from knitcore.formats.write.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radius_mm
+from knitcore.garment.glove import Hand, glove
+from knitcore.garment.piece import Piece
+from knitcore.materials import material
+from knitcore.mechanics.local_moduli import local_moduli
+from tests.knitcore.charts import stitch_charts
+from tests.knitcore.pieces import pieces
+
+ACRYLIC = material("acrylic:published")
+CHEAP = (
+    ExportKind.TEXT,
+    ExportKind.PNG,
+    ExportKind.WRITTEN,
+    ExportKind.KNITSPEAK,
+    ExportKind.DESIGN,
+)
+WHOLE = (ExportKind.PNG, ExportKind.WRITTEN, ExportKind.DESIGN)
+"""Formats that hold outlines and yarns, and are cheap to read back."""
+
+
+def round_trip(chart: StitchChart, kind: ExportKind, folder: Path) -> StitchChart:
+    file = folder / f"chart{FORMATS[kind].suffix}"
+    file.write_bytes(export_chart(chart, kind, ACRYLIC).content)
+    return read_chart(file)
+
+
+@pytest.mark.parametrize("kind", CHEAP)
+@settings(max_examples=25)
+@given(chart=stitch_charts())
+def test_round_trips_are_identities(kind: ExportKind, chart: StitchChart, tmp_path: Path) -> None:
+    assert round_trip(chart, kind, tmp_path) == chart
+
+
+@pytest.mark.parametrize("kind", CHEAP)
+@settings(max_examples=2)
+@given(seed=st.integers(0, 2**32 - 1), rows=st.integers(150, 200), columns=st.integers(150, 200))
+def test_round_trips_of_large_charts(
+    kind: ExportKind, seed: int, rows: int, columns: int, tmp_path: Path
+) -> None:
+    chart = StitchChart(np.random.default_rng(seed).random((rows, columns)) < 0.5)
+    assert round_trip(chart, kind, tmp_path) == chart
+
+
+@pytest.mark.parametrize("kind", WHOLE)
+@settings(max_examples=25)
+@given(piece=pieces())
+def test_outlines_and_yarns_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
+    options = ExportOptions(layout=layout_of(piece))
+    file = tmp_path / f"piece{FORMATS[kind].suffix}"
+    file.write_bytes(export_chart(piece.chart, kind, ACRYLIC, options).content)
+    found = read_piece(file)
+    assert found == (piece.cropped() if kind is ExportKind.WRITTEN else piece)
+
+
+@pytest.mark.parametrize("kind", WHOLE)
+@settings(max_examples=1)
+@given(piece=pieces(most_rows=200, most_columns=200))
+def test_large_pieces_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
+    options = ExportOptions(layout=layout_of(piece))
+    file = tmp_path / f"piece{FORMATS[kind].suffix}"
+    file.write_bytes(export_chart(piece.chart, kind, ACRYLIC, options).content)
+    assert read_piece(file).cropped() == piece.cropped()
+
+
+def test_content_that_a_format_cannot_hold_is_reported() -> None:
+    chart = StitchChart.of_fabric("seed", rows=3, columns=4)
+    shaped = ExportOptions(layout=DesignLayout(outline="xxx.\nxxxx\nxxxx"))
+    for kind in (k for k, f in FORMATS.items() if not f.holds_outlines):
+        with pytest.raises(InputError, match="cannot hold an outline"):
+            export_chart(chart, kind, ACRYLIC, shaped)
+    region = DesignRegion(id="a", name="A", colour="#112233", yarn="navy", runs=[(0, 0, 2)])
+    coloured = ExportOptions(layout=DesignLayout(regions=[region]))
+    for kind in (k for k, f in FORMATS.items() if not f.holds_yarns):
+        assert "no colours" in export_chart(chart, kind, ACRYLIC, coloured).notes[-1]
+    apart = ExportOptions(layout=DesignLayout(outline="xx..\n..xx\nxxxx"))
+    with pytest.raises(InputError, match="the outline is in several parts"):
+        export_chart(chart, ExportKind.SVG, ACRYLIC, apart)
+
+
+def test_a_coloured_chart_has_its_yarns_in_the_key_with_length_and_mass() -> None:
+    chart = StitchChart.of_fabric("stockinette", rows=4, columns=10)
+    region = DesignRegion(
+        id="a", name="A", colour="#1f3b70", yarn="navy", runs=[(r, 0, 5) for r in range(4)]
+    )
+    options = ExportOptions(
+        note="Mind the edge.", layout=DesignLayout(regions=[region]), linear_density_tex=500
+    )
+    drawing = export_chart(chart, ExportKind.SVG, ACRYLIC, options).content.decode()
+    metres = 20 * (ACRYLIC.record(Fabric.STOCKINETTE).loop_length_mm or 0) / 1000
+    assert f"B: navy (#1f3b70), 20 sts, {metres:.1f} m, {metres / 2:.1f} g" in drawing
+    assert "A: main yarn" in drawing
+    assert "Mind the edge." in drawing
+    assert drawing.count(f'fill="{tinted("#1f3b70")}"') == 4 + 1  # a stretch a row, and the key
+
+
+def test_linked_repeats_are_bordered_and_named() -> None:
+    chart = StitchChart.of_fabric("seed", rows=6, columns=9)
+    repeat = DesignRepeat(
+        id="m",
+        name="Moss",
+        motif="KP/PK",
+        edge_columns=1,
+        placements=[Placement(row=0, column=0, rows=4, columns=5)] * 2,
+    )
+    options = ExportOptions(layout=DesignLayout(repeats=[repeat]))
+    drawing = export_chart(chart, ExportKind.SVG, ACRYLIC, options).content.decode()
+    assert "Moss: multiple of 2 + 1 sts, multiple of 2 rows" in drawing
+    assert drawing.count(f'stroke="{HEAVY}"') == 2 + 1  # the copies, and the key
+
+
+def test_values_are_those_of_the_stitches_inside() -> None:
+    chart = StitchChart.of_fabric("rib", rows=4, columns=6)
+    options = ExportOptions(layout=DesignLayout(outline="xxxx..\n" * 2 + "xxxxxx\n" * 2))
+    lines = export_chart(chart, ExportKind.CSV, ACRYLIC, options).content.decode().splitlines()
+    assert len(lines) == 1 + 2 * 4 + 2 * 6
+    moduli = {line.split(",")[3] for line in lines[1:]}
+    assert len(moduli) == 1  # the outline's edge does not change the fabric
+
+
+def test_the_report_of_a_piece_speaks_by_regions() -> None:
+    plan = glove(Hand(), material("glove-wool:glove"))
+    document = design_of_plan(plan, "glove-wool:glove")
+    options = ExportOptions(name="Glove", layout=document)
+    content = export_chart(
+        document.to_chart(), ExportKind.REPORT, material("glove-wool:glove"), options
+    ).content
+    assert content.startswith(b"%PDF")
+    fields = region_fields(document.to_piece(), document.regions, material("glove-wool:glove"))
+    support = next(field for field in fields if field.name == "wrist support")
+    along = support.answer.along(Direction.WALE)
+    value, interval = along.modulus_n_per_mm, along.modulus_interval_n_per_mm
+    assert value == pytest.approx(1.05, abs=0.03)  # table 20, stockinette on 2.0 mm, Y_y
+    assert interval.low < value < interval.high
+    assert sum(field.stitches for field in fields) == plan.shaped.stitches
+
+
+def test_knitout_is_read_from_a_file(tmp_path: Path) -> None:
+    chart = StitchChart.parse("KPP\nKKP")
+    assert round_trip(chart, ExportKind.KNITOUT, tmp_path) == chart
+
+
+@pytest.mark.parametrize("kind", list(ExportKind))
+def test_the_same_chart_gives_the_same_bytes(kind: ExportKind) -> None:
+    chart = StitchChart.parse("KPK\nPKP")
+    first, again = (export_chart(chart, kind, ACRYLIC).content for _ in range(2))
+    assert first == again
+
+
+@given(chart=stitch_charts(most=6))
+def test_a_drawing_has_a_dot_for_every_purl_in_its_place(chart: StitchChart) -> None:
+    root = ET.fromstring(chart_svg(chart, ChartStyle(aspect=1.0)))  # noqa: S314 - our own
+    groups = root.findall("{http://www.w3.org/2000/svg}g")
+    dots = [(float(d.get("cx", 0)), float(d.get("cy", 0))) for d in groups[0]]
+    left, top = 18.0, 26.0
+    drawn = np.zeros_like(chart.purl)
+    for x, y in dots:
+        drawn[chart.rows - 1 - int((y - top) / 5.0), int((x - left) / 5.0)] = True
+    assert np.array_equal(drawn, chart.purl)
+
+
+def test_a_drawing_has_sides_repeat_and_key() -> None:
+    chart = StitchChart.of_fabric("rib", rows=9, columns=7)
+    svg = chart_svg(chart)
+    labels = {
+        text: float(x)
+        for x, text in re.findall(r'<text[^>]* x="([\d.]+)"[^>]*>([^<]+)</text>', svg)
+    }
+    assert "purl on RS, knit on WS" in labels
+    assert any("multiple of 2 + 1 sts" in label for label in labels)
+    in_the_round = chart_svg(chart, ChartStyle(Construction.ROUND))
+    assert "every round from right to left" in in_the_round
+    assert in_the_round.count(">2</text>") == 2  # a row and a stitch
+    assert labels["8"] < labels["9"]  # WS numbers at the left, RS numbers at the right
+
+
+@pytest.mark.parametrize("aspect", [0.6, 0.75, 1.0])
+def test_a_printed_chart_can_be_knitted_from(aspect: float) -> None:
+    """Every page has numbers of both sides at arm's length, and shares stitches with the next."""
+    rows, columns = 132, 77
+    cells = np.zeros((rows, columns), dtype=bool)
+    cells[10:60, 5:30] = True
+    style = ChartStyle(
+        aspect=aspect, title="Glove", note="Wash.", regions=(RegionMark("palm", "#336699", cells),)
+    )
+    overview, *pages = chart_pages(StitchChart(np.arange(rows)[:, None] % 3 < cells), style)
+    assert len(pages) > 1
+    words = " ".join(shape.text for shape in overview.shapes if isinstance(shape, Label))
+    assert all(word in words for word in ("Glove", "palm", "Wash.", "page 2", f"page {len(pages)}"))
+    right: set[int] = set()
+    for page in pages:
+        labels = [shape for shape in page.shapes if isinstance(shape, Label)]
+        assert min(label.size for label in labels) >= 2.47  # 7 pt
+        numbers = [label for label in labels if label.text.isdigit() and label.anchor != "middle"]
+        here = {
+            side: [int(n.text) for n in numbers if n.anchor == side] for side in ("start", "end")
+        }
+        assert min(map(len, here.values())) > 5
+        assert all(number % 2 for number in here["start"])
+        assert not any(number % 2 for number in here["end"])
+        right |= set(here["start"])
+    assert right == set(range(1, rows + 1, 2))
+
+
+def test_a_large_chart_is_printed_on_several_pages() -> None:
+    small = chart_pdf(StitchChart.of_fabric("seed", rows=40, columns=40))
+    large = chart_pdf(StitchChart.of_fabric("seed", rows=200, columns=200))
+    count = [content.count(b"/Type /Page\n") for content in (small, large)]
+    assert small.startswith(b"%PDF-")
+    assert count[0] == 1
+    assert count[1] >= 6
+
+
+def test_fonts_are_in_the_file_as_printers_ask_for() -> None:
+    content = to_pdf([Page(99, 99, (Label(9, 9, "Knit"), Label(9, 19, "Purl", bold=True)))], "Two")
+    assert content.count(b"/Type /FontDescriptor") == content.count(b"/FontFile2") == 2
+    assert b"/Subtype /Type1" not in content
+
+
+@pytest.mark.parametrize("aspect", [0.0, float("nan"), 9.0])
+def test_stitches_have_a_shape(aspect: float) -> None:
+    with pytest.raises(InputError, match="aspect ratio of a stitch"):
+        ChartStyle(aspect=aspect)
+
+
+@pytest.mark.parametrize(("kind", "unit"), [(ExportKind.GLB, 0.001), (ExportKind.STL, 1.0)])
+def test_the_yarn_is_a_solid_of_its_length(kind: ExportKind, unit: float, tmp_path: Path) -> None:
+    chart = StitchChart.parse("KPKK\nPPKP\nKKKP")
+    file = tmp_path / f"yarn.{kind}"
+    file.write_bytes(export_chart(chart, kind, ACRYLIC).content)
+    solid = trimesh.load_mesh(file)
+    solid.merge_vertices()
+    assert solid.is_watertight
+    assert solid.body_count == chart.rows
+    radius = yarn_radius_mm(chart, ACRYLIC)
+    ring = 3 / np.pi * np.sin(np.pi / 3)  # hexagon over circle
+    length = solid.volume / (unit**3 * ring * np.pi * radius**2)
+    loop = ACRYLIC.record(next(iter(ACRYLIC.fabrics))).loop_length_mm or 0.0
+    assert length == pytest.approx(chart.purl.size * loop, rel=0.5)
+
+
+def test_a_mesh_has_a_limit() -> None:
+    side = int(MAX_STITCHES**0.5) + 1
+    with pytest.raises(InputError, match="Use at most"):
+        yarn_mesh(StitchChart.of_fabric("rib", side, side), ACRYLIC)
+
+
+def test_values_of_every_stitch(tmp_path: Path) -> None:
+    chart = StitchChart.parse("KPKK\nPPKP")
+    local = local_moduli(chart, ACRYLIC)
+    lines = list(
+        csv.DictReader(io.StringIO(export_chart(chart, ExportKind.CSV, ACRYLIC).content.decode()))
+    )
+    assert [line["stitch"] for line in lines] == list("PPKPKPKK")
+    extensibility = [float(line["extensibility_wale_mm_per_n"]) for line in lines]
+    table = local.table.extensibility_mm_per_n(Direction.WALE)[local.codes]
+    assert extensibility == pytest.approx(table.ravel().tolist(), rel=1e-5)
+
+    file = tmp_path / "chart.vtu"
+    file.write_bytes(export_chart(chart, ExportKind.VTU, ACRYLIC).content)
+    mesh = meshio.read(file)
+    assert mesh.cells_dict["quad"].shape == (8, 4)
+    assert mesh.cell_data["modulus_course_n_per_mm"][0] == pytest.approx(
+        local.modulus_course_n_per_mm.ravel()
+    )
+
+
+@pytest.mark.parametrize(
+    ("chart", "pages"),
+    [
+        (StitchChart.of_fabric("garter", rows=31, columns=31), 2),
+        (StitchChart(np.random.default_rng(0).random((60, 70)) < 0.5), 4),
+    ],
+    ids=["with curves", "patchwork"],
+)
+def test_a_report_has_numbers_and_the_chart(chart: StitchChart, pages: int) -> None:
+    content = export_chart(chart, ExportKind.REPORT, ACRYLIC).content
+    assert content.startswith(b"%PDF-")
+    assert content.count(b"/Type /Page\n") == pages
+
+
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Page]:
+    """The pages of a report that is made."""
+    drawn: list[Page] = []
+
+    def keep(pages: Iterable[Page], _: str) -> bytes:
+        drawn.extend(pages)
+        return b""
+
+    monkeypatch.setattr(report, "to_pdf", keep)
+    return drawn
+
+
+def test_a_report_tells_how_many_regions_its_table_leaves_out(drawn: list[Page]) -> None:
+    most = report.MAX_REGIONS
+    chart = StitchChart.of_fabric("stockinette", rows=most + 2, columns=4)
+    regions = [
+        DesignRegion(id=str(row), name=str(row), colour="#112233", runs=[(row, 0, 4)])
+        for row in range(most + 2)
+    ]
+    for some in (regions[: most - 1], regions):  # and the rest of the chart, if there is one
+        report.design_report(chart, ACRYLIC, "Cuff", ChartStyle(), some)
+    words = [shape.text for page in drawn for shape in page.shapes if isinstance(shape, Label)]
+    assert [text for text in words if "more, in" in text] == ["… and 2 more, in the maps only."]
+
+
+def test_a_report_gives_its_numbers_with_their_source(drawn: list[Page]) -> None:
+    chart = StitchChart.of_fabric("garter", rows=5, columns=5)
+    report.design_report(chart, ACRYLIC, "Cuff", ChartStyle())
+    words = " ".join(shape.text for shape in drawn[0].shapes if isinstance(shape, Label))
+    assert "Cuff" in words
+    assert "0.223  (" in words
+    assert "Source: measured" in words
+    assert "Shear modulus 0.01 N/mm: an assumption" in words
+    inside = [s for s in drawn[0].shapes if isinstance(s, Rectangle)]
+    assert all(0 <= b.x <= 210 and b.y + b.height <= 297 for b in inside)
+
+
+def test_a_drawing_is_xml_whatever_it_is_called() -> None:
+    page = Page(10.0, 10.0, (Label(1.0, 1.0, "a\ufffe\x0b\ud800🧶", 3.0),))
+    drawn = ET.fromstring(to_svg(page, "\x00")).find("{*}text")  # noqa: S314 - our own
+    assert drawn is not None
+    assert drawn.text == "a\ufffd\ufffd\ufffd🧶"

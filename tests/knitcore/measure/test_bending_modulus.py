@@ -1,0 +1,169 @@
+"""The bending modulus comes back from drawn photos."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from knitcore.base.errors import InputError
+from knitcore.measure.bending_modulus import STANDARD_GRAVITY_M_PER_S2, measure_bending
+from knitcore.measure.centreline import load_grey, trace_centreline
+from tests.knitcore.measure.synthetic import hanging_yarn, save_photo
+
+DENSITY = 0.5
+LENGTH = 120.0
+
+
+def modulus(load: float) -> float:
+    """B (N·mm²) of a drawn yarn of 120 mm and 0.5 g/m."""
+    return DENSITY * 1e-6 * STANDARD_GRAVITY_M_PER_S2 * LENGTH**3 / load
+
+
+@pytest.mark.parametrize("load", [5.0, 60.0, 180.0, 1000.0])
+def test_a_drawn_yarn_gives_its_modulus(tmp_path: Path, load: float) -> None:
+    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(load))
+    found = measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
+    assert found.bending_modulus_n_mm2 == pytest.approx(modulus(load), rel=0.04)
+    assert found.standard_deviation is None
+
+
+@pytest.mark.parametrize(
+    "look",
+    [
+        {"mirrored": True},
+        {"dark_on_light": True},
+        {"fibres": 60},
+        {"width_px": 14.0},
+        {"length_px": 2600.0, "width_px": 60.0},
+    ],
+)
+def test_how_the_photo_looks_does_not_matter(tmp_path: Path, look: dict[str, Any]) -> None:
+    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0, **look))
+    found = measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
+    assert found.bending_modulus_n_mm2 == pytest.approx(modulus(100.0), rel=0.05)
+
+
+def test_a_given_scale_does_for_the_length(tmp_path: Path) -> None:
+    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
+    found = measure_bending([photo], linear_density_g_per_m=DENSITY, px_per_mm=10.0)
+    assert found.photos[0].length_mm == pytest.approx(LENGTH, rel=0.02)
+    assert found.bending_modulus_n_mm2 == pytest.approx(modulus(100.0), rel=0.05)
+
+
+def test_the_modulus_is_proportional_to_the_density(tmp_path: Path) -> None:
+    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
+    one, two = (
+        measure_bending([photo], linear_density_g_per_m=d, length_mm=LENGTH) for d in (0.4, 0.8)
+    )
+    assert two.bending_modulus_n_mm2 == pytest.approx(2 * one.bending_modulus_n_mm2)
+
+
+def test_several_photos_have_a_mean_and_a_spread(tmp_path: Path) -> None:
+    photos = [
+        save_photo(tmp_path / f"{load}.png", hanging_yarn(load)) for load in (80.0, 100.0, 125.0)
+    ]
+    found = measure_bending(photos, linear_density_g_per_m=DENSITY, length_mm=[LENGTH] * 3)
+    values = [p.bending_modulus_n_mm2 for p in found.photos]
+    assert found.bending_modulus_n_mm2 == pytest.approx(np.mean(values))
+    assert found.standard_deviation == pytest.approx(np.std(values, ddof=1))
+    assert found.standard_error == pytest.approx(np.std(values, ddof=1) / np.sqrt(3))
+    assert values == sorted(values, reverse=True)
+
+
+def test_the_centreline_lies_on_the_drawn_one() -> None:
+    line = trace_centreline(hanging_yarn(100.0) / 255.0)
+    assert line.length_px == pytest.approx(1200, rel=0.02)
+    assert line.width_px == pytest.approx(30, rel=0.15)
+    assert line.tip_in_photo
+
+
+# -- bad photos ------------------------------------------------------------------------------------
+
+
+def blank() -> np.ndarray[Any, Any]:
+    return np.full((400, 300), 40, dtype=np.uint8)
+
+
+def noise() -> np.ndarray[Any, Any]:
+    return np.random.default_rng(1).integers(0, 255, (400, 300)).astype(np.uint8)
+
+
+def spot() -> np.ndarray[Any, Any]:
+    y, x = np.indices((400, 300))
+    return np.where((y - 200) ** 2 + (x - 150) ** 2 < 60**2, 220, 20).astype(np.uint8)
+
+
+def half() -> np.ndarray[Any, Any]:
+    image = np.full((400, 300), 20, dtype=np.uint8)
+    image[:, 150:] = 230
+    return image
+
+
+@pytest.mark.parametrize("image", [blank, noise, spot, half])
+def test_a_photo_without_a_yarn_is_refused(tmp_path: Path, image: Any) -> None:
+    photo = save_photo(tmp_path / "nothing.png", image())
+    with pytest.raises(InputError) as error:
+        measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
+    assert error.value.field == "nothing.png"
+    assert "yarn" in error.value.problem
+
+
+def test_a_ruler_is_not_taken_for_hanging_yarn(tmp_path: Path) -> None:
+    image = np.full((900, 700), 20, dtype=np.uint8)
+    for i in range(800):
+        image[50 + i, 20 + i // 2 : 50 + i // 2] = 220
+    photo = save_photo(tmp_path / "ruler.png", image)
+    with pytest.raises(InputError, match=r"ruler\.png: .*yarn"):
+        measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
+
+
+def test_a_missing_scale_is_reported(tmp_path: Path) -> None:
+    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
+    with pytest.raises(InputError, match="has no scale") as error:
+        measure_bending([photo], linear_density_g_per_m=DENSITY)
+    assert "length_mm" in error.value.remedy
+    assert "px_per_mm" in error.value.remedy
+
+
+def test_a_cut_off_tip_needs_the_length(tmp_path: Path) -> None:
+    photo = save_photo(tmp_path / "cut.png", hanging_yarn(100.0)[:700])
+    with pytest.raises(InputError, match="free end is outside"):
+        measure_bending([photo], linear_density_g_per_m=DENSITY, px_per_mm=10.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"linear_density_g_per_m": 500.0}, "tex"),
+        ({"linear_density_g_per_m": np.nan}, "linear_density"),
+        ({"length_mm": 1.2}, "5 to 5000 mm"),
+        ({"length_mm": [100.0, 100.0]}, "2 lengths are given for 1"),
+        ({"length_mm": None, "px_per_mm": -1.0}, "px_per_mm"),
+        ({"length_mm": 120.0, "px_per_mm": 100.0}, "by its scale"),
+    ],
+)
+def test_impossible_numbers_are_refused(tmp_path: Path, given: dict[str, Any], says: str) -> None:
+    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
+    options = {"linear_density_g_per_m": DENSITY, "length_mm": LENGTH} | given
+    with pytest.raises(InputError, match=says):
+        measure_bending([photo], **options)
+
+
+def test_files_that_are_not_photos_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = tmp_path / "text.jpg"
+    text.write_text("not a photo")
+    cut = tmp_path / "cut.png"
+    cut.write_bytes(save_photo(tmp_path / "whole.png", hanging_yarn(100.0)).read_bytes()[:3000])
+    for bad in (text, cut, tmp_path / "none.jpg", tmp_path):
+        with pytest.raises(InputError, match=bad.name):
+            load_grey(bad)
+    big = tmp_path / "big.png"
+    Image.new("L", (9000, 9000)).save(big)
+    with pytest.raises(InputError, match="9000 x 9000"):
+        load_grey(big)

@@ -1,0 +1,92 @@
+"""The code of the clasps: the same for all shapes of a fabric, another where yarn passed yarn."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.model.cell import mirrored_cell, plain_cell
+from knitcore.yarn.model.spline import SplineGrid
+from knitcore.yarn.model.start_shape import start_state
+from knitcore.yarn.model.tiling import centre_lines
+from knitcore.yarn.model.yarn_model import YarnModel
+from knitcore.yarn.solve.clasps import cell_is_knitted, clasp_code, knitted_code, same_clasps
+from knitcore.yarn.study.relax import relax
+
+YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
+WIDTH, HEIGHT = 6.0, 4.0
+
+
+def _lines(chart):
+    cell = plain_cell(chart, SplineGrid(16, 3))
+    state = start_state(cell, 12.0, 0.6)
+    lines = centre_lines(cell, state, chart.rows, chart.columns)
+    return lines, chart.columns * state[-2], chart.rows * state[-1]
+
+
+def _charts(draw):
+    shape = draw(st.tuples(st.integers(1, 3), st.integers(1, 3)))
+    bits = draw(st.lists(st.booleans(), min_size=shape[0] * shape[1], max_size=shape[0] * shape[1]))
+    return StitchChart(np.array(bits).reshape(shape))
+
+
+charts = st.composite(_charts)()
+
+
+@settings(max_examples=25, deadline=None)
+@given(charts, st.integers(0, 10**6))
+def test_the_code_does_not_depend_on_the_shape_or_the_view(chart, seed):
+    lines, width, height = _lines(chart)
+    code = clasp_code(lines, width, height)
+    rng = np.random.default_rng(seed)
+    slope = rng.uniform(-0.4, 0.4, 2)
+    seen = lines.copy()
+    seen[..., :2] += lines[..., 2:] * slope  # from another side
+    seen += (*rng.uniform(-1.0, 1.0, 2), 0.3)  # elsewhere
+    seen += 0.02 * rng.standard_normal(lines.shape)  # moved a little
+    assert same_clasps(clasp_code(seen, width, height), code)
+    again = np.roll(lines, 7, axis=1)  # begun elsewhere on the yarn
+    again[:, :7, 0] -= width
+    assert same_clasps(clasp_code(again, width, height), code)
+
+
+@settings(max_examples=25, deadline=None)
+@given(charts, st.data())
+def test_a_stitch_on_the_other_side_changes_the_code(chart, data):
+    row = data.draw(st.integers(0, chart.rows - 1))
+    column = data.draw(st.integers(0, chart.columns - 1))
+    purl = chart.purl.copy()
+    purl[row, column] ^= True
+    one, other = np.array(knitted_code(chart)), np.array(knitted_code(StitchChart(purl)))
+    assert not same_clasps(one, other)
+
+
+def test_loose_courses_are_not_fabric():
+    lines = np.zeros((2, 40, 3))
+    lines[..., 0] = np.arange(40) / 40 * WIDTH
+    lines[1, :, 1] = HEIGHT / 2
+    loose = clasp_code(lines, WIDTH, HEIGHT)
+    parallel = 2 * np.log(np.abs(1 - np.exp(1j * np.array([1.9, 0.9, 2.9]))))
+    np.testing.assert_allclose(loose, parallel, rtol=1e-12)
+    for text in ("KK\nKK", "KP\nPK", "KP\nKP"):
+        assert not same_clasps(loose, np.array(knitted_code(StitchChart.parse(text))))
+
+
+@pytest.mark.parametrize("text", ["K", "KP", "P\nK", "PK\nKP", "KKPP"])
+@pytest.mark.parametrize("branch", ["mirrored", pytest.param("free", marks=pytest.mark.slow)])
+def test_relaxed_repeats_are_knitted(text, branch):
+    relaxed = relax(StitchChart.parse(text), YARN, 11.28, branch=branch)
+    assert cell_is_knitted(relaxed.cell, relaxed.state)
+
+
+@pytest.mark.parametrize("text", ["K", "KP", "PK\nKP"])
+def test_a_strand_pushed_through_another_is_noticed(text):
+    cell = mirrored_cell(StitchChart.parse(text), SplineGrid(16, 4))
+    state = start_state(cell, 12.0, 0.6)
+    assert cell_is_knitted(cell, state)
+    controls = cell.controls(state)
+    near_head = np.abs(np.arange(16) - 8) <= 1
+    controls[0, :16][near_head, 2] *= -3.0
+    through = cell.state(controls, state[-2], state[-1])
+    assert not cell_is_knitted(cell, through)

@@ -1,0 +1,95 @@
+"""Repeats relaxed in the round."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from knitcore.base.errors import CancelledError, ConvergenceError, InputError
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.model.paper_samples import sample
+from knitcore.yarn.study import yarn_tube as tube
+from knitcore.yarn.study.bending import bending_response
+from knitcore.yarn.study.relax import RelaxedRepeat, relax
+from knitcore.yarn.study.yarn_tube import in_the_round
+
+
+@pytest.fixture(scope="module")
+def stockinette() -> RelaxedRepeat:
+    entry = sample("cotton", Fabric.STOCKINETTE)
+    return relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm)
+
+
+@pytest.mark.parametrize("face_outside", [True, False])
+def test_a_wide_tube_follows_the_linear_response(
+    stockinette: RelaxedRepeat, face_outside: bool
+) -> None:
+    found = in_the_round(stockinette, 2000, face_outside=face_outside)
+    curvature = (1.0 if face_outside else -1.0) * 2.0 / found.diameter_mm
+    response = bending_response(stockinette).course
+    higher = found.cell_wale_mm / found.flat_wale_mm - 1.0
+    assert higher / curvature == pytest.approx(response.strain_across_mm, rel=5e-3)
+    area = found.flat_course_mm * found.flat_wale_mm
+    moment = (found.energy_n_mm - found.flat_energy_n_mm) / area / curvature
+    assert moment == pytest.approx(response.moment_n, rel=5e-3)
+
+
+def test_stockinette_curls_the_way_of_its_tube(stockinette: RelaxedRepeat) -> None:
+    outside, inside = (in_the_round(stockinette, 60, face_outside=side) for side in (True, False))
+    assert outside.energy_n_mm < outside.flat_energy_n_mm < inside.energy_n_mm
+    assert outside.cell_wale_mm > outside.flat_wale_mm > inside.cell_wale_mm
+    assert outside.diameter_mm == pytest.approx(60 * outside.cell_course_mm / np.pi)
+
+
+def test_a_step_that_fails_is_halved() -> None:
+    entry = sample("cotton", Fabric.RIB)
+    tubes = [
+        in_the_round(
+            relax(StitchChart.parse(text), entry.yarn, entry.loop_length_mm, branch="mirrored"), 24
+        )
+        for text in ("KP", "PK")
+    ]
+    one, other = ((t.cell_course_mm, t.cell_wale_mm, t.energy_n_mm) for t in tubes)
+    np.testing.assert_allclose(one, other, rtol=1e-5)
+
+
+@pytest.mark.slow
+def test_a_shifted_repeat_makes_the_same_tube() -> None:
+    entry = sample("acrylic", Fabric.RIB)
+    length = 1.03 * entry.loop_length_mm
+    tubes = [
+        in_the_round(relax(StitchChart.parse(t), entry.yarn, length, branch="mirrored"), 36)
+        for t in ("KKP", "PKK")
+    ]
+    one, other = ((t.cell_course_mm, t.cell_wale_mm, t.energy_n_mm) for t in tubes)
+    np.testing.assert_allclose(one, other, rtol=1e-4)
+
+
+def test_a_tube_without_an_equilibrium_says_where_its_shape_gives_way(
+    stockinette: RelaxedRepeat, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = tube._turned
+    monkeypatch.setattr(
+        tube,
+        "_turned",
+        lambda begin, turn, cancelled: None if turn > 0.1 else found(begin, turn, cancelled),
+    )
+    with pytest.raises(ConvergenceError, match="of fewer than 64 wales"):
+        in_the_round(stockinette, 32)
+
+
+def test_wrong_tubes_are_refused(stockinette: RelaxedRepeat) -> None:
+    with pytest.raises(InputError, match="wales"):
+        in_the_round(stockinette, 2)
+    entry = sample("acrylic", Fabric.RIB)
+    rib = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm, branch="mirrored")
+    with pytest.raises(InputError, match="not a multiple"):
+        in_the_round(rib, 25)
+    with pytest.raises(InputError, match="held flat"):
+        in_the_round(replace(stockinette, flat=True), 24)
+
+
+def test_a_tube_can_be_cancelled(stockinette: RelaxedRepeat) -> None:
+    with pytest.raises(CancelledError):
+        in_the_round(stockinette, 60, cancelled=lambda: True)
