@@ -52,27 +52,27 @@ def test_other_words_and_other_shapes_differ_beyond_measure():
 
 SAME_EVERYWHERE = sorted(
     path
-    for folder in ("yarnlevel", "shell", "gridsolver")
+    for folder in ("yarn", "cloth/space", "linear")
     for path in (ROOT / "knitcore" / folder).rglob("*.py")
 )
 SUMMED = {
-    "yarnlevel/fronts.py": "whole numbers",
-    "yarnlevel/published/relax.py": "whole numbers",
-    "yarnlevel/results.py": "seconds",
-    "yarnlevel/rs_geometry.py": "two numbers each",
-    "yarnlevel/search.py": "whole numbers",
+    "yarn/solve/fronts.py": "whole numbers",
+    "yarn/paper/bezier_relax.py": "whole numbers",
+    "yarn/model/relaxed_cell.py": "seconds",
+    "yarn/study/rs_geometry.py": "two numbers each",
+    "yarn/solve/search.py": "whole numbers",
 }
 """Files of these rooms that use Python's sum, and why they may."""
 LINEAR = {
-    "yarnlevel/bent_cell.py": "a linear response, which hangs on no last digit",
-    "yarnlevel/tube.py": "the same",
-    "yarnlevel/clasps.py": "logarithms of determinants, compared with a margin",
-    "yarnlevel/jumps.py": "a measure of what was found",
-    "yarnlevel/rs_geometry.py": "the same",
-    "yarnlevel/whole.py": "the force that is left",
-    "shell/curl.py": "turns what was found",
-    "shell/surface.py": "draws what was found",
-    "gridsolver/factor.py": "a solver to compare with",
+    "yarn/study/bent_cell.py": "a linear response, which hangs on no last digit",
+    "yarn/study/yarn_tube.py": "the same",
+    "yarn/solve/clasps.py": "logarithms of determinants, compared with a margin",
+    "yarn/study/jumps.py": "a measure of what was found",
+    "yarn/study/rs_geometry.py": "the same",
+    "yarn/study/whole_chart.py": "the force that is left",
+    "cloth/space/curl.py": "turns what was found",
+    "cloth/space/surface.py": "draws what was found",
+    "linear/direct_factor.py": "a solver to compare with",
 }
 """Files of these rooms that use BLAS, and why they may."""
 
@@ -102,7 +102,7 @@ def test_shapes_are_found_without_blas():
     found = {
         str(path.relative_to(ROOT / "knitcore"))
         for path in SAME_EVERYWHERE
-        if _uses_blas(path) and "published" not in path.parts
+        if _uses_blas(path) and "paper" not in path.parts
     }
     assert found == LINEAR.keys()
 
@@ -111,7 +111,7 @@ def test_shapes_are_found_without_pythons_sum():
     """It rounds otherwise from Python 3.12 on."""
     found = {
         str(path.relative_to(ROOT / "knitcore"))
-        for path in [*SAME_EVERYWHERE, ROOT / "knitcore" / "yarnlibrary" / "yarns.py"]
+        for path in SAME_EVERYWHERE
         if any(
             isinstance(node, ast.Call) and ast.unparse(node.func) == "sum"
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))

@@ -12,24 +12,17 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 
 FLOORS = (
-    {"arrays", "compiled", "errors", "threads"},
-    {"batch", "bounds", "choice", "dense", "elementary", "extensions", "showing"},
-    {"fabric"},
-    {"chart"},
-    {"result"},
-    {"segments", "patterns", "worked"},
-    {"phases", "repeats"},
-    {"law", "gridsolver"},
+    {"base"},
+    {"chart", "linear"},
+    {"law", "measure"},
     {"materials"},
-    {"mechanics", "measure", "estimate"},
-    {"yarnlevel"},
-    {"yarnlibrary"},
+    {"mechanics"},
+    {"yarn"},
     {"prediction"},
     {"garment"},
-    {"swatch", "shell"},
-    {"geometry"},
-    {"piece"},
-    {"formats", "design", "notebook", "warm_up"},
+    {"cloth"},
+    {"draw", "fit"},
+    {"design", "formats", "notebook", "warm_up"},
 )
 """Rooms of ``knitcore`` from the ground up; one imports from lower floors only."""
 

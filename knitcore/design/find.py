@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.base.result import Result
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.cost import CostLimits, KnittingCost

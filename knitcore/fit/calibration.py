@@ -24,6 +24,7 @@ from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet
 from knitcore.cloth.flat.sheet_models import SheetModel
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE, pull
+from knitcore.cloth.flat.strip_uncertainty import LOG_SHEAR_PRIOR
 from knitcore.fit.field_comparison import Edges, field_differences, field_sheet
 from knitcore.fit.measured_field import MeasuredField
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -41,10 +42,6 @@ CURVE_BINS = 40
 KAPPA_PRIOR = (0.45, 0.15)
 """Mean and standard deviation. Narrower than a strip fit's (:mod:`knitcore.fit.strip_fit`): a
 field of small stretch hardly tells kappa from the coupling."""
-LOG_SHEAR_PRIOR = (float(np.log(0.02)), 1.0)
-"""Mean and standard deviation of ln(C_xyxy / (N/mm)). In acrylic garter, for which it was chosen,
-0.02 N/mm is 0.2 sqrt(Y_x Y_y), the mean of a strip fit's prior; other fabrics may be far from it.
-Its deviation is also that of a shear modulus that was not fitted (``swatch/uncertainty.py``)."""
 CELLS_ACROSS = 64
 SAMPLED_POINTS = 4000
 

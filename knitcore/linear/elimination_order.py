@@ -14,7 +14,6 @@ from scipy.sparse.csgraph import maximum_bipartite_matching
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
-from knitcore.linear.fronts import Front, elimination, work
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -23,30 +22,6 @@ _LEAF = 12
 """Blocks that are not divided any more."""
 _SWEEPS = 60
 """Averages over the blocks around, which leave the slowest wave of a pattern."""
-_STALE = 1.1
-"""An order is found again where its work has grown by this factor."""
-
-
-class Dissection:
-    """The fronts of a pattern that changes little from step to step, as yarn touches and parts."""
-
-    def __init__(self) -> None:
-        self._touching: Bools | None = None
-        self._order: Ints | None = None
-        self._fronts: tuple[Front, ...] = ()
-        self._fresh = 0.0
-
-    def fronts(self, touching: Bools) -> tuple[Front, ...]:
-        """The fronts of a symmetric pattern (blocks, blocks)."""
-        if self._touching is None or not np.array_equal(self._touching, touching):
-            self._touching = touching
-            if self._order is not None:
-                self._fronts = elimination(touching, self._order)
-            if self._order is None or work(self._fronts) > _STALE * self._fresh:
-                self._order = dissected(touching)
-                self._fronts = elimination(touching, self._order)
-                self._fresh = work(self._fronts)
-        return self._fronts
 
 
 def dissected(touching: Bools) -> Ints:

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
 from knitcore.base.arrays import Array
-from knitcore.base.result import Result
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.phases import quarter_phases
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.materials import Material, as_material
 from knitcore.mechanics.lamination import SheetGrid, coarsened

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.base.result import Result
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.phases import QUARTERS_OF_CODE, surroundings
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.materials import Material, as_material
 from knitcore.materials.law_uncertainty import Z_SCORE

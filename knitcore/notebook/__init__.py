@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from knitcore.notebook.figure_in_space import view
-    from knitcore.notebook.test_figures import figure
+    from knitcore.notebook.result_figures import figure
 
 __all__ = ["figure", "view"]
 

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from knitcore.base import showing
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.base.result import Result
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import in_a_sentence

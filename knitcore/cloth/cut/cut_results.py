@@ -10,7 +10,7 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.base.result import Result
+from knitcore.chart.result import Result
 from knitcore.cloth.cut.assembly import PieceEnergy
 from knitcore.cloth.cut.conditions import Condition, Constraints
 from knitcore.cloth.cut.equilibrium import PieceEquilibrium

@@ -10,8 +10,8 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, InputError, Progress
-from knitcore.base.result import Result
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.cloth.cut.conditions import MAX_SHEAR_ANGLE, Framed, Held, frame_rate
 from knitcore.cloth.cut.cut_cloth import Cloth, cloth_under

@@ -10,8 +10,8 @@ import numpy as np
 
 from knitcore.base import showing
 from knitcore.base.arrays import Array
-from knitcore.base.result import Result
 from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.result import Result
 from knitcore.cloth.flat.fields import (
     Fields,
     cell_strains,

@@ -14,9 +14,9 @@ from scipy.ndimage import label
 from knitcore.base import showing
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, InputError
-from knitcore.base.result import Result
 from knitcore.chart.fabric import Direction
 from knitcore.chart.phases import continued
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart, check_stitches
 from knitcore.cloth.space.folds import balances
 from knitcore.cloth.space.rolled import start

@@ -11,8 +11,8 @@ from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 from knitcore.base.arrays import Array
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled
-from knitcore.base.result import Result
 from knitcore.chart.phases import continued
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.cloth.space.curl import TIME_LIMIT_S, check_piece
 from knitcore.cloth.space.even_cloth import stitch_weights_n

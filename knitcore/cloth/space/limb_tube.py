@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.base.result import Result
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.limb import LimbPlace, MeasuredLimb, place_on
 from knitcore.materials import Material

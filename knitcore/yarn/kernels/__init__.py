@@ -1,12 +1,5 @@
 """Energy, gradient and Hessian of a cell of yarn, compiled."""
 
-from knitcore.linear.tiles import (
-    TiledMatrix,
-    empty_tiles,
-    one_tile,
-    tiled_product,
-    touching_blocks,
-)
 from knitcore.yarn.kernels.bent import bent_contact
 from knitcore.yarn.kernels.contact import contact_energy, contact_hessian, contact_slopes
 from knitcore.yarn.kernels.curve_samples import control_of, laid_out, sample_curve
@@ -21,6 +14,13 @@ from knitcore.yarn.kernels.friction_kernels import (
 from knitcore.yarn.kernels.rod import rod_energy, rod_hessian, rod_slopes
 from knitcore.yarn.kernels.scatter import scatter_gradient, scatter_local
 from knitcore.yarn.kernels.structures import ContactLaw, Layout, RodLaw
+from knitcore.yarn.kernels.tiles import (
+    TiledMatrix,
+    empty_tiles,
+    one_tile,
+    tiled_product,
+    touching_blocks,
+)
 
 __all__ = [
     "ContactLaw",

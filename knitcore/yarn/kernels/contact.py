@@ -106,7 +106,7 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
     """Hessian of the contact, but for the blocks of samples with themselves.
 
     What couples different samples is added to the tiles (see
-    :class:`~knitcore.linear.tiles.TiledMatrix`). Returned are the rows of the two sizes
+    :class:`~knitcore.yarn.kernels.tiles.TiledMatrix`). Returned are the rows of the two sizes
     of a stitch, (2, unknowns), and what couples samples with themselves: (n, 3, 3) in x, (n, 3, 3)
     between x (first) and d1 (second).
 

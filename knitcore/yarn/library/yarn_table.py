@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from knitcore.base.arrays import sum_in_order
 from knitcore.base.batch import BatchProgress, run_batch
 from knitcore.base.errors import Cancelled, InputError
 from knitcore.chart.fabric import Direction, Fabric
@@ -107,7 +108,7 @@ def plan_for_material(
     own = {fabric: entry.loop_length_mm for fabric, entry in used.items()}
     if loop_lengths_mm:
         settings = _given_settings(loop_lengths_mm, tuple(used))
-        mean = sum(own.values()) / len(own)
+        mean = sum_in_order(own.values()) / len(own)
         lengths = [setting.loop_length_mm[next(iter(own))] for setting in settings]
     else:
         settings = tuple(

@@ -10,8 +10,8 @@ import numpy as np
 from knitcore.base import showing
 from knitcore.base.arrays import Array
 from knitcore.base.choice import Choice
-from knitcore.base.result import Result
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.yarn_model import YarnModel

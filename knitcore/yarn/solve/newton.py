@@ -27,9 +27,8 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
 from knitcore.base.threads import in_one_blas_thread
-from knitcore.linear.elimination_order import Dissection
-from knitcore.linear.fronts import Room
 from knitcore.yarn.model.energy import CellEnergy, Slope, Terms
+from knitcore.yarn.solve.fronts import Dissection, Room
 from knitcore.yarn.solve.systems import DenseSystem, SparseSystem, System
 from knitcore.yarn.solve.trajectory import Trajectory
 

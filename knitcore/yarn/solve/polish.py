@@ -24,8 +24,8 @@ from knitcore.base.errors import Cancelled, check_cancelled
 from knitcore.base.threads import on_halves
 from knitcore.linear.dense import dot, product, solved, times
 from knitcore.linear.elimination_order import dissected
-from knitcore.linear.fronts import Room, elimination
 from knitcore.yarn.model.energy import CellEnergy, Slope
+from knitcore.yarn.solve.fronts import Room, elimination
 from knitcore.yarn.solve.newton import Minimum
 from knitcore.yarn.solve.systems import SparseSystem
 from knitcore.yarn.solve.trajectory import Trajectory

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.linear.dense import dot, eliminate, norm, product, solved, substitute, times
-from knitcore.linear.fronts import Front, FrontalFactor, Precision, Room
 from knitcore.yarn.kernels import one_tile
 from knitcore.yarn.model.energy import Slope
+from knitcore.yarn.solve.fronts import Front, FrontalFactor, Precision, Room
 
 
 class System(ABC):

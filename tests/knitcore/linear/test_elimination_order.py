@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from knitcore.linear.elimination_order import Dissection, dissected, vertex_cover
-from knitcore.linear.fronts import elimination, work
+from knitcore.linear.elimination_order import dissected, vertex_cover
+from knitcore.yarn.solve.fronts import Dissection, elimination, work
 
 
 def _sheet(side: int) -> np.ndarray:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from knitcore.linear.fronts import FrontalFactor, Room, elimination
 from knitcore.yarn.kernels import empty_tiles, tiled_product
+from knitcore.yarn.solve.fronts import FrontalFactor, Room, elimination
 
 SIZE, UNKNOWNS = 3, 58
 

@@ -17,10 +17,14 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.linear.dense import backward, eliminate, forward, subtract_product
-from knitcore.linear.tiles import TiledMatrix
+from knitcore.linear.elimination_order import dissected
+from knitcore.yarn.kernels.tiles import TiledMatrix
 
 _PASSING_ON = 3.0
 """Passing on a tile of a remainder takes as long as this many products of tiles."""
+
+_STALE = 1.1
+"""An order is found again where its work has grown by this factor."""
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.floating]
@@ -91,6 +95,28 @@ def work(fronts: tuple[Front, ...]) -> float:
 def _cost(own: int, border: int) -> float:
     """Products of tiles of a front, and what passing on its remainder is worth of them."""
     return own**3 / 3 + own**2 * border + own * border**2 + _PASSING_ON * border**2
+
+
+class Dissection:
+    """The fronts of a pattern that changes little from step to step, as yarn touches and parts."""
+
+    def __init__(self) -> None:
+        self._touching: NDArray[np.bool_] | None = None
+        self._order: Ints | None = None
+        self._fronts: tuple[Front, ...] = ()
+        self._fresh = 0.0
+
+    def fronts(self, touching: NDArray[np.bool_]) -> tuple[Front, ...]:
+        """The fronts of a symmetric pattern (blocks, blocks)."""
+        if self._touching is None or not np.array_equal(self._touching, touching):
+            self._touching = touching
+            if self._order is not None:
+                self._fronts = elimination(touching, self._order)
+            if self._order is None or work(self._fronts) > _STALE * self._fresh:
+                self._order = dissected(touching)
+                self._fronts = elimination(touching, self._order)
+                self._fresh = work(self._fronts)
+        return self._fronts
 
 
 class Room:

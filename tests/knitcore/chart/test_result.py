@@ -13,7 +13,7 @@ import pytest
 
 from knitcore import Direction, InputError, StitchChart, curve, predict, strip_test
 from knitcore.base.arrays import Array
-from knitcore.base.result import Result
+from knitcore.chart.result import Result
 from knitcore.cloth.space.curl import CurledPiece
 from knitcore.materials import Interval
 
