@@ -211,7 +211,8 @@ def pressures(folder: Path) -> list[str]:
         "![Pressure by the measured force against the predicted](figures/evidence-pressure.svg)",
         "",
         f"At a quarter, half and three quarters of the strain, {inside} of {total} measured ranges",
-        "overlap the interval. The refitted laws rest on these tests, so this shows the arithmetic and the narrowing, not a new sample. *Not",
+        "overlap the interval. The refitted laws rest on these tests, so this shows the arithmetic",
+        "and the narrowing, not a new sample. *Not",
         "shown*: a pressure measured on a limb, friction, and relaxation with time.",
         "",
     ]
@@ -397,7 +398,8 @@ def field(folder: Path) -> list[str]:
         "",
         "The refitted law rests on the stretch tests only, so its row is a true test. The",
         "calibrated laws also keep the force of the stretch test",
-        f"({loaded.min():.2f} to {loaded.max():.2f} from a strain of {first.force_strain[1]:.2f} on,",
+        f"({loaded.min():.2f} to {loaded.max():.2f} from a strain of",
+        f"{first.force_strain[1]:.2f} on,",
         f"{first.force_ratio[0]:.2f} at {first.force_strain[0]:.2f}). Half the",
         f"difference of the swatch's left and right side is {FIELD_NOISE_PERCENT} % of the width,",
         "which no simulation of even cloth can follow. *Not shown*: other fabrics and directions;",
@@ -473,8 +475,8 @@ def shear(folder: Path) -> list[str]:
         + ".",
         "So part of the stiffening comes from the coupling, and the rest from shear itself. Its",
         "one number was chosen on this strip, so the table does not prove it, and the yarn level",
-        "does not confirm it ([decisions](decisions.md#shear)). The interval of the number includes",
-        "both. This jersey has a share of "
+        "does not confirm it ([decisions](decisions.md#shear)). The interval of the number",
+        "includes both. This jersey has a share of "
         f"{min(matched[name]):.2f} to {max(matched[name]):.2f}; the library's acrylic has, from",
         f"its tests and a broad prior, {', '.join(shares)}. The intervals allow for a factor of",
         "three to five either way. *Not shown*: width (50 mm is assumed), length and Poisson's",
