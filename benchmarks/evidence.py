@@ -104,11 +104,12 @@ def stretch(folder: Path) -> list[str]:
     for laws, rows in both.items():
         lines.append(f"- {laws} laws, in sample: {Summary.of(list(rows.values()))}.")
     pulls = left_out(folder)
+    scatter = Summary.of([pull.same_sample for pull in pulls])
     figures.left_out_pulls(pulls)
     figures.waists(both[Laws.PUBLISHED], both[Laws.REFITTED])
     lines += [
         f"- every pull predicted from the others: {Summary.of([p.other_sample for p in pulls])};",
-        f"  using only pull-to-pull scatter: {Summary.of([p.same_sample for p in pulls])}.",
+        f"  using only pull-to-pull scatter, {scatter.inside} of {scatter.forces}.",
         "- every fabric without its own raw tests, from its published law and the correction",
         f"  found on the other fabrics, as cotton's four are predicted: {carried(folder)}.",
         "",

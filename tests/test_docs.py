@@ -52,7 +52,9 @@ def test_links_between_pages_lead_somewhere(page: Path) -> None:
 def _send(client: TestClient, command: str) -> Response:
     """Send what a `curl` command of the page would send."""
     words = shlex.split(command, comments=True)
-    headers, method, body = {}, None, None
+    headers: dict[str, str] = {}
+    method: str | None = None
+    body: str | None = None
     for option, value in pairwise(words):
         if option == "-H":
             name, _, content = value.partition(": ")
