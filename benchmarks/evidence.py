@@ -115,8 +115,6 @@ def stretch(folder: Path) -> list[str]:
         "",
         "![Waists of the eight tests by both sets of laws](figures/evidence-waists.svg)",
         "",
-        "Simulated minus measured waist of each test at the three stresses.",
-        "",
         "![Pulls predicted from the others](figures/left-out-pulls.svg)",
         "",
         "Simulated over measured force of each pull left out; grey bars are the 90 % intervals at",
