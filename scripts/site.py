@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import inspect
 import io
 import os
 import pkgutil
@@ -32,6 +33,9 @@ FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 LATER_IN_SEARCH = "---\nsearch:\n  boost: 0.2\n---\n\n"
 """References have every word; pages that explain them come first."""
+ROLE = re.compile(r":(?:py:)?[a-z]+:<code>(~?)([^<]*)</code>")
+SPHINX = re.compile(r":(?:py:)?[a-z]+:`(~?)([^`]*)`")
+"""A reference of Sphinx in a docstring, which Markdown shows as it is; ROLE once it is HTML."""
 LIST_AFTER_TEXT = re.compile(r"^([^\s|#-].*\n)(?=- )", re.MULTILINE)
 """GitHub begins a list there; MkDocs wants an empty line before it."""
 ROOT_PAGES = {"contributing.md": "CONTRIBUTING.md", "changelog.md": "CHANGELOG.md"}
@@ -80,7 +84,7 @@ def commands_page() -> str:
         named = [row for row in rows if row is not None]
         if named:
             parts += ["| option | |", "|---|---|"]
-            parts += [f"| <code>{_cell(name)}</code> | {_cell(text)} |" for name, text in named]
+            parts += [f"| {_code(name)} | {_cell(text)} |" for name, text in named]
     return "\n".join(parts)
 
 
@@ -102,6 +106,11 @@ def _cell(text: str) -> str:
     return escape(re.sub(r"\s+", " ", text), quote=False).replace("|", "&#124;")
 
 
+def _code(text: str) -> str:
+    """Code in a cell of a table, where a backslash before a bar would show."""
+    return f"<code>{escape(' '.join(text.split())).replace('|', '&#124;')}</code>"
+
+
 def rest_page() -> str:
     """Every operation of the service, from its OpenAPI document, by its own reference."""
     from app.service.main import create_app
@@ -120,7 +129,19 @@ def library_pages() -> tuple[str, dict[str, str]]:
     """A page for each room of the library, which mkdocstrings fills, and their list."""
     import knitcore
 
-    lines = ["# Library", "", "Made from the docstrings, room by room.", ""]
+    lines = [
+        "# Library",
+        "",
+        "`from knitcore import …` gives these names; the pages below have everything, by package.",
+        "Units are part of the names.",
+        "",
+        "| name | what it is |",
+        "|---|---|",
+        *(f"| {_public(name)} | {_cell(_summary(name))} |" for name in knitcore.__all__),
+        "",
+        "## Packages",
+        "",
+    ]
     pages = {}
     rooms: dict[str, list[str]] = {}
     for module in pkgutil.walk_packages(knitcore.__path__, "knitcore."):
@@ -133,6 +154,19 @@ def library_pages() -> tuple[str, dict[str, str]]:
         body = "\n\n".join(f"::: {module}" for module in sorted(modules))
         pages[f"reference/library/{room}.md"] = f"# knitcore.{room}\n\n{body}\n"
     return "\n".join(lines), pages
+
+
+def _public(name: str) -> str:
+    """A public name, linked to its place in the page of its package."""
+    home = getattr(__import__("knitcore"), name)
+    where = f"{home.__module__}.{home.__qualname__}"
+    return f"[`{name}`](library/{where.split('.')[1]}.md#{where})"
+
+
+def _summary(name: str) -> str:
+    """The first sentence of what a public name says about itself."""
+    documented = inspect.getdoc(getattr(__import__("knitcore"), name)) or ""
+    return SPHINX.sub(r"`\2`", documented.partition("\n\n")[0])
 
 
 def _source(module: str) -> str:
@@ -187,7 +221,7 @@ def _shown(code: str, names: dict[str, Any]) -> str:
 
 
 def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Formulas as MathML."""
+    """Formulas as MathML, references of docstrings as plain names."""
     del page, config, files
     from latex2mathml.converter import convert
 
@@ -196,4 +230,10 @@ def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -
         made = str(convert(unescape(found[3]).strip(), display=display))
         return f'<div class="formula">{made}</div>' if display == "block" else made
 
+    html = ROLE.sub(lambda role: f"<code>{_short(role[2]) if role[1] else role[2]}</code>", html)
     return FORMULA.sub(formula, html)
+
+
+def _short(name: str) -> str:
+    """The last part of a dotted name."""
+    return name.rpartition(".")[2]

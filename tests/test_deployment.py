@@ -47,7 +47,7 @@ def test_no_secret_has_a_default() -> None:
 
 
 def test_the_cluster_is_the_one_that_the_service_asks() -> None:
-    """The commands themselves are run by tests/app/running/compute/test_cluster.py."""
+    """The commands themselves are run by tests/app/service/compute/test_cluster.py."""
     services = COMPOSE["services"]
     address = services["app"]["environment"]["KNITCORE_SCHEDULER"]
     name, port = address.removeprefix("tcp://").split(":")

@@ -13,6 +13,7 @@ import click
 import pytest
 import yaml
 
+import knitcore
 from app.cli.main import main
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -49,6 +50,17 @@ def test_formulas_become_mathml(site: ModuleType) -> None:
 def test_formulas_on_their_own_scroll_on_narrow_screens(site: ModuleType) -> None:
     html = '<div class="arithmatex">\\[a = b\\]</div>'
     assert site.on_page_content(html, None, None, None).startswith('<div class="formula"><math')
+
+
+def test_references_of_docstrings_are_plain_names(site: ModuleType) -> None:
+    html = "see :func:<code>~knitcore.answer.curve.curve</code> and :class:<code>Fit</code>"
+    shown = "see <code>curve</code> and <code>Fit</code>"
+    assert site.on_page_content(html, None, None, None) == shown
+
+
+def test_the_library_begins_with_its_public_names(site: ModuleType) -> None:
+    listed, _ = site.library_pages()
+    assert [name for name in knitcore.__all__ if f"| [`{name}`](library/" not in listed] == []
 
 
 def test_lists_of_the_changelog_are_lists(site: ModuleType) -> None:
