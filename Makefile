@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help install page client types wheel serve test test-slow test-hard frontend-check lint format coverage mutation audit sbom bench docs examples stitches lock clean
+.PHONY: help install page client types wheel serve test test-slow ten-runs any-machine test-hard frontend-check lint format coverage mutation audit sbom bench docs examples stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -78,6 +78,12 @@ test: $(VENV)/.installed-tests frontend/node_modules/.installed ## Run the defau
 test-slow: $(VENV)/.installed-tests $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
 	scripts/ensure-browsers chromium firefox-esr
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
+
+ten-runs: ## Run the default suite ten times, two at a time, in fresh clones; log in build
+	scripts/ten-runs
+
+any-machine: $(VENV)/.installed-tests ## Compare answers under several instruction sets of this machine; OPTIONS="--short"
+	$(BIN)/python -m scripts.any_machine $(OPTIONS)
 
 coverage: $(VENV)/.installed-tests page ## Tell which lines the default suite runs, workers included
 	$(BIN)/pip install --quiet --disable-pip-version-check coverage==7.17.3

@@ -7,13 +7,15 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.service.results.on_disk import KeptResults
-from app.service.results.own_materials import KINDS, PREFIX, find_own_material
 from knitcore.materials import Material, load_material_file, material
 
+from .service.results.on_disk import KeptResults
+from .service.results.own_materials import KINDS, PREFIX, find_own_material
+
 if TYPE_CHECKING:
-    from app.service.results.atlases import Extent
     from knitcore.design.atlas import Atlas
+
+    from .service.results.atlases import Extent
 
 
 def _never() -> bool:
@@ -83,8 +85,9 @@ class Context:
             If there is no such material, or the file cannot be read.
         """
         # most operations need none
-        from app.service.results.atlases import atlas_of
         from knitcore.design.atlas import load_atlas
+
+        from .service.results.atlases import atlas_of
 
         if file is not None:
             return load_atlas(file)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import emit, json_option, open_database, user_settings
+from .common import emit, json_option, open_database, user_settings
 
 
 @click.command("backup")
@@ -17,8 +17,8 @@ def backup(file: Path, as_json: bool) -> None:
 
     Earlier versions of designs are kept with them. The service may run meanwhile.
     """
-    from app.service.results.own_materials import FOLDER
-    from app.service.store.backup import back_up
+    from ..service.results.own_materials import FOLDER
+    from ..service.store.backup import back_up
 
     settings = user_settings()
     with open_database(settings) as database:
@@ -34,8 +34,8 @@ def restore(file: Path, as_json: bool) -> None:
 
     The settings name the folder, or the database.
     """
-    from app.service.results.own_materials import FOLDER
-    from app.service.store import backup as store
+    from ..service.results.own_materials import FOLDER
+    from ..service.store import backup as store
 
     settings = user_settings()
     with open_database(settings, migrated=False) as database:

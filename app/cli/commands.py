@@ -18,14 +18,15 @@ from typing import Any
 import click
 from pydantic import BaseModel
 
-from app.cli.common import emit, json_option, telling_what_is_compiled, user_data_dir
-from app.cli.inputs import Inputs
-from app.cli.options import CHART_HELP
-from app.context import Context
-from app.models.base import IntervalResult
-from app.operations.perform import Viewed, carried_out
-from app.operations.registry import Operation
 from knitcore.base.errors import InputError
+
+from ..context import Context
+from ..models.base import IntervalResult
+from ..operations.perform import Viewed, carried_out
+from ..operations.registry import Operation
+from .common import emit, json_option, telling_what_is_compiled, user_data_dir
+from .inputs import Inputs
+from .options import CHART_HELP
 
 
 def command_of(operation: Operation[Any, Any], name: str) -> click.Command:

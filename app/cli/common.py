@@ -17,8 +17,8 @@ from pydantic import BaseModel
 from knitcore.base.errors import InputError
 
 if TYPE_CHECKING:
-    from app.service.settings import Settings
-    from app.service.store.database import Database
+    from ..service.settings import Settings
+    from ..service.store.database import Database
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 
@@ -33,7 +33,7 @@ def user_settings() -> Settings:
     """
     from pydantic_settings import SettingsError
 
-    from app.service.settings import Settings
+    from ..service.settings import Settings
 
     try:
         return Settings()
@@ -46,8 +46,8 @@ def user_settings() -> Settings:
 @contextlib.contextmanager
 def open_database(settings: Settings, *, migrated: bool = True) -> Iterator[Database]:
     """The database of the settings, brought up to date."""
-    from app.service.store.database import Database
-    from app.service.store.schema import migrate
+    from ..service.store.database import Database
+    from ..service.store.schema import migrate
 
     with contextlib.closing(Database(settings.store_url)) as database:
         if migrated:

@@ -26,12 +26,13 @@ import click
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from app.cli.options import chart_file, is_fabric, resolve_chart
-from app.models.base import UNIT
-from app.models.charts import IS_REPEAT
-from app.models.refusals import OF_VALUES, problem_in_words, remedy_in_words
-from app.models.uploads import UploadedFile
 from knitcore.base.errors import InputError
+
+from ..models.base import UNIT
+from ..models.charts import IS_REPEAT
+from ..models.refusals import OF_VALUES, problem_in_words, remedy_in_words
+from ..models.uploads import UploadedFile
+from .options import chart_file, is_fabric, resolve_chart
 
 FILE = click.Path(path_type=Path)
 MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."
@@ -192,7 +193,7 @@ def _chart_input(model: type[BaseModel]) -> Input:
 
 def _design_fields(file: Path, model: type[BaseModel]) -> dict[str, Any]:
     """Read the fields of the request that a file holds."""
-    from app.operations.import_ import design_in
+    from ..operations.import_ import design_in
 
     design = design_in(file)
     return {name: part for name, part in design if name in model.model_fields and part is not None}

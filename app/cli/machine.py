@@ -7,9 +7,10 @@ import sys
 import click
 from pydantic import BaseModel, ValidationError
 
-from app.cli.common import emit, json_option, user_settings
-from app.models.base import first_fault
 from knitcore.base.errors import InputError
+
+from ..models.base import first_fault
+from .common import emit, json_option, user_settings
 
 
 @click.command("doctor")
@@ -19,7 +20,7 @@ def doctor(as_json: bool) -> None:
 
     The exit code is 1 if a check fails.
     """
-    from app.service.doctor import Check, Checks, examine
+    from ..service.doctor import Check, Checks, examine
 
     try:
         report = examine(user_settings())

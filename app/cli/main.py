@@ -8,10 +8,11 @@ from typing import Any
 import click
 from pydantic import ValidationError
 
-from app.cli.options import CHART_HELP
-from app.models.base import first_fault
-from app.operations.registry import commands, operation_of_command
 from knitcore.base.errors import KnitcoreError
+
+from ..models.base import first_fault
+from ..operations.registry import commands, operation_of_command
+from .options import CHART_HELP
 
 GROUPS = {"measure": "Measure a yarn's bending and its compression."}
 """Groups of commands, which are operations."""
@@ -68,7 +69,7 @@ class Operations(click.Group):
             return _not_installed(cmd_name, error)
         if operation is None:
             return None
-        from app.cli.commands import command_of
+        from .commands import command_of
 
         return command_of(operation, cmd_name)
 

@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from app.cli.common import json_option, user_settings
-from app.service.settings import Settings
 from knitcore.base.errors import InputError
 
+from ..service.settings import Settings
+from .common import json_option, user_settings
+
 if TYPE_CHECKING:
-    from app.service.store.database import Database
+    from ..service.store.database import Database
 
 log = logging.getLogger("knitcore.app")
 
@@ -41,8 +42,8 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     """Start the service and print its address."""
     given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
     settings = Settings.model_validate(user_settings().model_dump() | given).check()
-    from app.service.problems import ServiceError
-    from app.service.web.observing import configure_logging
+    from ..service.problems import ServiceError
+    from ..service.web.observing import configure_logging
 
     os.umask(0o077)  # files are readable by this user only
     configure_logging(settings.log_format)
@@ -64,10 +65,10 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
 @contextlib.contextmanager
 def _prepared(settings: Settings, address: str) -> Iterator[Database]:
     """Lock and migrate the data, and report failed checks; yields the database to serve."""
-    from app.service.doctor import check_folder, examine_start
-    from app.service.store.database import Database
-    from app.service.store.lock import held
-    from app.service.store.schema import migrate
+    from ..service.doctor import check_folder, examine_start
+    from ..service.store.database import Database
+    from ..service.store.lock import held
+    from ..service.store.schema import migrate
 
     check_folder(settings.folder)
     with (
@@ -85,9 +86,9 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
     """Serve a database on an open socket until a signal ends the service."""
     import uvicorn
 
-    from app.service import memory
-    from app.service.main import create_app
-    from app.viewer.incoming import MAX_PICTURE_BYTES
+    from ..service import memory
+    from ..service.main import create_app
+    from ..viewer.incoming import MAX_PICTURE_BYTES
 
     sys.setswitchinterval(SWITCH_S)
     memory.keep_no_large_blocks()

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from app.cli.common import emit, json_option, open_database, user_settings
+from .common import emit, json_option, open_database, user_settings
 
 if TYPE_CHECKING:
-    from app.service.web.tokens import Tokens
+    from ..service.web.tokens import Tokens
 
 
 @contextlib.contextmanager
 def _tokens() -> Iterator[Tokens]:
-    from app.service.web.tokens import Tokens
+    from ..service.web.tokens import Tokens
 
     with open_database(user_settings()) as database:
         yield Tokens(database)

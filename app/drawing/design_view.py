@@ -11,27 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
-from app.context import Context
-from app.drawing.fabric import Drawing, FabricScene
-from app.drawing.stitch_colours import (
-    Colour,
-    FieldColours,
-    Palette,
-    region_labels,
-    stitch_colours,
-)
-from app.models.base import RequestModel
-from app.models.charts import (
-    ChartInput,
-    Column,
-    MaterialName,
-    OutlineInput,
-    Row,
-    size_of_chart,
-    to_chart,
-)
-from app.models.posed import PosedView
-from app.models.stretched import StretchView
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.draw.instances import MAX_STITCHES
@@ -42,6 +21,28 @@ from knitcore.draw.stitches import stitch_shapes
 from knitcore.formats.designs.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
 from knitcore.materials import Material
+
+from ..context import Context
+from ..models.base import RequestModel
+from ..models.charts import (
+    ChartInput,
+    Column,
+    MaterialName,
+    OutlineInput,
+    Row,
+    size_of_chart,
+    to_chart,
+)
+from ..models.posed import PosedView
+from ..models.stretched import StretchView
+from .fabric import Drawing, FabricScene
+from .stitch_colours import (
+    Colour,
+    FieldColours,
+    Palette,
+    region_labels,
+    stitch_colours,
+)
 
 MAX_REGIONS = 200
 MAX_LETTERS = 41_000

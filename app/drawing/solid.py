@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from app.drawing.colours import SKIN
-from app.drawing.fabric import FabricScene
 from knitcore.draw.placing import placed_lines
 from knitcore.draw.tubes import resampled, tube_faces, tube_vertices
+
+from .colours import SKIN
+from .fabric import FabricScene
 
 SOLID_LEVELS = ((1_000, 33, 8), (4_000, 17, 6), (10_000, 11, 5))
 """(largest number of stitches, points, sides) of solids."""

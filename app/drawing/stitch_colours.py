@@ -10,17 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.drawing.colours import (
-    FABRIC_COLOURS,
-    diverging,
-    fabric_mix,
-    named_colour,
-    rgb,
-    sequential,
-)
-from app.models.base import RequestModel
-from app.models.charts import MAX_FIELD
-from app.models.stretched import StretchView
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction, Fabric
 from knitcore.chart.phases import surroundings
@@ -29,6 +18,18 @@ from knitcore.formats.designs.layout import Colour as HexColour
 from knitcore.formats.designs.layout import DesignRegion
 from knitcore.materials import Material
 from knitcore.mechanics.local_moduli import StitchTable, stitch_table
+
+from ..models.base import RequestModel
+from ..models.charts import MAX_FIELD
+from ..models.stretched import StretchView
+from .colours import (
+    FABRIC_COLOURS,
+    diverging,
+    fabric_mix,
+    named_colour,
+    rgb,
+    sequential,
+)
 
 Colours = NDArray[np.uint8]
 

@@ -16,8 +16,9 @@ from pydantic import (
     ValidationError,
 )
 
-from app.models.refusals import problem_in_words
 from knitcore.base.errors import InputError
+
+from .refusals import problem_in_words
 
 T = TypeVar("T")
 UNIT = "_n_per_mm"

@@ -6,11 +6,12 @@ from typing import Annotated
 
 from pydantic import BaseModel, Discriminator, Field, Tag
 
-from app.models.base import RequestModel
-from app.models.checks import CheckedBy
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.garment.shaped import outline_marks
+
+from .base import RequestModel
+from .checks import CheckedBy
 
 MAX_TEXT = 1_200_000
 """Characters of a chart text: the largest chart with its line ends and some blanks."""

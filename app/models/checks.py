@@ -16,7 +16,7 @@ from pydantic import BaseModel
 from knitcore.base.errors import InputError
 
 if TYPE_CHECKING:
-    from app.context import Context
+    from ..context import Context
 
 
 @dataclass(frozen=True)

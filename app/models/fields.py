@@ -6,11 +6,12 @@ from typing import Annotated
 
 from pydantic import Field
 
-from app.models.base import RequestModel, ResultModel
-from app.models.checks import CheckedBy
-from app.models.uploads import UploadedFile, stored
 from knitcore.chart.fabric import Direction
 from knitcore.fit.measured_field import MeasuredField, load_field
+
+from .base import RequestModel, ResultModel
+from .checks import CheckedBy
+from .uploads import UploadedFile, stored
 
 
 class FieldRequest(RequestModel):

@@ -8,10 +8,6 @@ from typing import Self
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Ends, ResultModel
-from app.models.checks import with_others
-from app.models.yarn_level import YarnLevelRequest
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import check_stitches
 from knitcore.yarn.library.yarn_friction import yarn_friction
@@ -19,6 +15,11 @@ from knitcore.yarn.model.friction import MAX_COEFFICIENT, MAX_STITCHES
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
 from knitcore.yarn.study.hysteresis import TAKE_DOWN_N_PER_MM, WORN_N_PER_MM, History
 from knitcore.yarn.study.relax import Branch, RelaxedRepeat
+
+from ..context import Context
+from .base import Ends, ResultModel
+from .checks import with_others
+from .yarn_level import YarnLevelRequest
 
 HISTORIES = (
     f"As-knitted: pulled along the columns by {TAKE_DOWN_N_PER_MM:g} N/mm, then released; "

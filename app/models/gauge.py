@@ -7,9 +7,10 @@ from typing import Annotated
 
 from pydantic import Field
 
-from app.models.base import RequestModel, ResultModel
-from app.models.laws import FabricRequest
 from knitcore.prediction.size import KnownBy, RelaxedSize
+
+from .base import RequestModel, ResultModel
+from .laws import FabricRequest
 
 Count = Annotated[
     float,

@@ -6,12 +6,13 @@ from typing import Any, Self
 
 from pydantic import Field, model_validator
 
-from app.context import Context
-from app.models.base import RequestModel, ResultModel
-from app.models.charts import ChartInput, MaterialName, to_chart
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Laws, Material, load_library
+
+from ..context import Context
+from .base import RequestModel, ResultModel
+from .charts import ChartInput, MaterialName, to_chart
 
 
 class LawsRequest(RequestModel):

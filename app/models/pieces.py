@@ -8,10 +8,6 @@ from typing import Annotated, Any, Literal, Self, TypeVar
 import numpy as np
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Floats, IntervalResult, RequestModel
-from app.models.charts import MaterialName, RepeatInput, to_repeat
-from app.models.laws import LawsRequest
 from knitcore.base.errors import InputError
 from knitcore.cloth.cut import Condition, CutPiece, Held, PieceTest, Pulled, Sewn, Traction
 from knitcore.cloth.cut.cut_mesh import DEFAULT_ELEMENTS, size_for
@@ -19,6 +15,11 @@ from knitcore.cloth.cut.outline import MAX_CORNERS
 from knitcore.cloth.flat.strip_uncertainty import interval_source
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Z_SCORE
+
+from ..context import Context
+from .base import Floats, IntervalResult, RequestModel
+from .charts import MaterialName, RepeatInput, to_repeat
+from .laws import LawsRequest
 
 T = TypeVar("T")
 MAX_ELEMENT_STEPS = 40_000

@@ -12,7 +12,7 @@ from typing import Annotated
 from pydantic import EncodedBytes, EncoderProtocol, Field, PrivateAttr
 from pydantic_core import PydanticCustomError
 
-from app.models.base import RequestModel
+from .base import RequestModel
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 """Files of the API's examples (``scripts/example_files.py``), and the answers to them."""

@@ -8,15 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import ResultModel
-from app.models.charts import CellLines, ChartLines, MaterialName
-from app.models.laws import LawsRequest
 from knitcore.base.arrays import Array
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of, stitched
 from knitcore.draw.body import Floats
 from knitcore.garment.shaped import ShapedChart
+
+from ..context import Context
+from .base import ResultModel
+from .charts import CellLines, ChartLines, MaterialName
+from .laws import LawsRequest
 
 LinearDensity = Annotated[
     float,

@@ -10,9 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import RequestModel, ResultModel
-from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import (
     MAX_STITCHES_PER_SIDE,
@@ -25,6 +22,10 @@ from knitcore.yarn.library.yarns import ChartYarn, yarn_for
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
 from knitcore.yarn.study.relax import Branch, relax
+
+from ..context import Context
+from .base import RequestModel, ResultModel
+from .charts import MaterialName, RepeatInput, to_chart, to_repeat
 
 LoopLength = Annotated[float, Field(gt=0, le=1000)]
 LoopLengths = list[

@@ -10,18 +10,19 @@ from typing import Annotated, Any, Literal, get_args
 import click
 from pydantic import BeforeValidator, Field
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import IntervalResult
-from app.models.charts import MaterialName, RepeatText
-from app.models.laws import LawsRequest
-from app.operations.registry import Command, Operation
-from app.service.results.atlases import EXTENTS, Extent, repeats_of
 from knitcore.chart.fabric import Direction
 from knitcore.design.atlas import INTERVAL_SOURCE, VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import improve_atlas
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import IntervalResult
+from ..models.charts import MaterialName, RepeatText
+from ..models.laws import LawsRequest
+from ..service.results.atlases import EXTENTS, Extent, repeats_of
+from .registry import Command, Operation
 
 DIGITS = 5
 MAX_STITCHES = 8

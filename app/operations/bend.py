@@ -7,11 +7,6 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import ResultModel
-from app.models.laws import LawsRequest
-from app.models.yarn_level import StitchRequest, YarnResult
-from app.operations.registry import Command, Operation
 from knitcore.yarn.library.store import stored_for
 from knitcore.yarn.study.bending import (
     MAX_STITCHES,
@@ -23,6 +18,12 @@ from knitcore.yarn.study.bending import (
 )
 from knitcore.yarn.study.bent_cell import BendingResponse
 from knitcore.yarn.study.relax import relax
+
+from ..context import Context
+from ..models.base import ResultModel
+from ..models.laws import LawsRequest
+from ..models.yarn_level import StitchRequest, YarnResult
+from .registry import Command, Operation
 
 _FRICTIONLESS = (
     "Friction and set are left out, so these values are qualitative: measured knits of 187 to "

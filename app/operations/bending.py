@@ -6,11 +6,12 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import RequestModel, ResultModel
-from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.registry import Command, Operation
 from knitcore.measure.bending_modulus import measure_bending
+
+from ..context import Context
+from ..models.base import RequestModel, ResultModel
+from ..models.uploads import UploadedFile, example_file, stored
+from .registry import Command, Operation
 
 MAX_PHOTOS = 100
 

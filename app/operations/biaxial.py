@@ -6,11 +6,12 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import EndsOfList, Floats
-from app.models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
-from app.operations.registry import Command, Operation
 from knitcore.cloth.cut.standard_tests import biaxial_test
+
+from ..context import Context
+from ..models.base import EndsOfList, Floats
+from ..models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
+from .registry import Command, Operation
 
 
 class BiaxialRequest(PieceTestRequest):

@@ -6,14 +6,15 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import ResultModel
-from app.models.charts import RepeatInput, to_repeat
-from app.models.weighed import FROM_QUARTERS, WeighedRequest
-from app.operations.registry import Command, Operation
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.border import RULE_ROWS, RULE_STITCHES, advice
+
+from ..context import Context
+from ..models.base import ResultModel
+from ..models.charts import RepeatInput, to_repeat
+from ..models.weighed import FROM_QUARTERS, WeighedRequest
+from .registry import Command, Operation
 
 _RULE = (
     f"Knitters make borders of {RULE_STITCHES[0]} to {RULE_STITCHES[1]} stitches or "

@@ -8,14 +8,6 @@ from typing import Literal
 import click
 from pydantic import Field
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import Floats
-from app.models.charts import MaterialName
-from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
-from app.models.laws import LawResult, LawsRequest
-from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.fit.calibration import Calibration, ForceCurve
@@ -26,6 +18,15 @@ from knitcore.fit.strip_fit import fit_tests
 from knitcore.formats.read.law_files import LawFile, save_law
 from knitcore.measure.stretch_test import stated_direction
 from knitcore.measure.uniaxial_files import Marks, read_stretch_test
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import Floats
+from ..models.charts import MaterialName
+from ..models.fields import FieldRequest, FrameErrorResult, errors_table, load
+from ..models.laws import LawResult, LawsRequest
+from ..models.uploads import UploadedFile, example_file, stored
+from .registry import Command, Operation
 
 
 class CalibrateRequest(FieldRequest, LawsRequest):

@@ -9,11 +9,6 @@ from typing import Any, Literal, Self
 import click
 from pydantic import Field, RootModel, model_validator
 
-from app.cli.options import write_table
-from app.context import Context
-from app.models.base import Positive, RequestModel, ResultModel
-from app.models.charts import MaterialName
-from app.operations.registry import Command, Operation
 from knitcore.base.batch import BatchProgress
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
@@ -34,6 +29,12 @@ from knitcore.yarn.library.yarn_table import (
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.study.relax import Branch
+
+from ..cli.options import write_table
+from ..context import Context
+from ..models.base import Positive, RequestModel, ResultModel
+from ..models.charts import MaterialName
+from .registry import Command, Operation
 
 MAX_SETTINGS = 24
 QUANTITIES = ("strain", "transverse_strain", "stress_n_per_mm", "bending_share", "contact_share")

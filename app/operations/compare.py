@@ -6,13 +6,6 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import ResultModel
-from app.models.charts import MaterialName
-from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
-from app.models.laws import LawsRequest
-from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel
@@ -20,6 +13,14 @@ from knitcore.fit.field_comparison import Edges
 from knitcore.fit.field_comparison import compare as compared
 from knitcore.formats.read.law_files import load_law
 from knitcore.law.constitutive import ConstitutiveLaw
+
+from ..context import Context
+from ..models.base import ResultModel
+from ..models.charts import MaterialName
+from ..models.fields import FieldRequest, FrameErrorResult, errors_table, load
+from ..models.laws import LawsRequest
+from ..models.uploads import UploadedFile, example_file, stored
+from .registry import Command, Operation
 
 
 class CompareRequest(FieldRequest, LawsRequest):

@@ -8,13 +8,14 @@ from typing import Literal
 import click
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import RequestModel, ResultModel
-from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.measure.compression import PROBE_WIDTH_MM, average_compression, fit_compression
 from knitcore.measure.compression_files import read_compression
+
+from ..context import Context
+from ..models.base import RequestModel, ResultModel
+from ..models.uploads import UploadedFile, example_file, stored
+from .registry import Command, Operation
 
 
 class CompressionRequest(RequestModel):

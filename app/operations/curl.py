@@ -8,21 +8,22 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import Known, RequestModel, ResultModel
-from app.models.charts import OutlineInput
-from app.models.laws import FabricRequest
-from app.models.posed import PosedView
-from app.models.weighed import Corners, TimeLimit, corner_lists
-from app.operations.perform import Viewed
-from app.operations.registry import Command, Operation
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.cloth.space.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece, Pull
 from knitcore.cloth.space.curl import curl as curl_piece
 from knitcore.formats.write.curled import write_curled_glb, write_curled_npz
 from knitcore.garment.shaped import outline_marks
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import Known, RequestModel, ResultModel
+from ..models.charts import OutlineInput
+from ..models.laws import FabricRequest
+from ..models.posed import PosedView
+from ..models.weighed import Corners, TimeLimit, corner_lists
+from .perform import Viewed
+from .registry import Command, Operation
 
 FLAT = 0.02
 """Edges that stand out by less than this fraction of the thickness count as flat."""

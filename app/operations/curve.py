@@ -8,15 +8,16 @@ import click
 import numpy as np
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import EndsOfList, Floats, IntervalResult
-from app.models.checks import CheckedBy
-from app.models.gauge import GaugedRequest
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import check_cancelled
 from knitcore.chart.fabric import Direction
 from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM, increasing
 from knitcore.prediction.curve import curve as chart_curve
+
+from ..context import Context
+from ..models.base import EndsOfList, Floats, IntervalResult
+from ..models.checks import CheckedBy
+from ..models.gauge import GaugedRequest
+from .registry import Command, Operation
 
 Stress = Annotated[float, Field(ge=0, le=100)]
 

@@ -6,10 +6,11 @@ from typing import Any
 
 from pydantic import RootModel
 
-from app.context import Context
-from app.models.base import NoRequest
-from app.operations.registry import Operation
 from knitcore.formats.designs.design_file import design_schema as schema_of_designs
+
+from ..context import Context
+from ..models.base import NoRequest
+from .registry import Operation
 
 
 class DesignSchema(RootModel[dict[str, Any]]):

@@ -7,11 +7,15 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Ends, ResultModel
-from app.models.charts import RepeatInput, to_repeat
-from app.models.posed import PosedView
-from app.models.weighed import (
+from knitcore.cloth.space.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
+from knitcore.cloth.space.drape import drape as drape_cloth
+from knitcore.draw.body import Body
+
+from ..context import Context
+from ..models.base import Ends, ResultModel
+from ..models.charts import RepeatInput, to_repeat
+from ..models.posed import PosedView
+from ..models.weighed import (
     ClothPiece,
     Corners,
     WantsCorners,
@@ -20,11 +24,8 @@ from app.models.weighed import (
     corner_lists,
     notes_of,
 )
-from app.operations.perform import Viewed
-from app.operations.registry import Command, Operation
-from knitcore.cloth.space.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
-from knitcore.cloth.space.drape import drape as drape_cloth
-from knitcore.draw.body import Body
+from .perform import Viewed
+from .registry import Command, Operation
 
 DISC_THICK_MM = 10.0
 """Of the disc that is shown."""

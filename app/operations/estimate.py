@@ -8,18 +8,6 @@ from typing import Any
 import click
 from pydantic import Field, ValidationError
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
-from app.models.laws import LawResult
-from app.operations.estimate_report import (
-    LeftOutResult,
-    ModelReport,
-    report,
-    report_lines,
-    text_of_left_out,
-)
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.formats.read.law_files import law_from_mapping, load_law
@@ -34,6 +22,19 @@ from knitcore.materials.estimate.estimated_material import estimated_material
 from knitcore.materials.estimate.yarn_statistics import left_out
 from knitcore.materials.material_document import MaterialDocument
 from knitcore.materials.material_files import save_material_file
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
+from ..models.laws import LawResult
+from .estimate_report import (
+    LeftOutResult,
+    ModelReport,
+    report,
+    report_lines,
+    text_of_left_out,
+)
+from .registry import Command, Operation
 
 
 class SwatchInput(RequestModel):

@@ -6,11 +6,12 @@ import math
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import NoRequest, ResultModel
-from app.operations.registry import Operation
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials.estimate.yarn_statistics import left_out, library_table
+
+from ..context import Context
+from ..models.base import NoRequest, ResultModel
+from .registry import Operation
 
 
 class LeftOutResult(ResultModel):

@@ -8,20 +8,21 @@ from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import ResultModel
-from app.models.charts import ChartInput, MaterialName, to_chart
-from app.models.gauge import GaugeInput
-from app.models.laws import LawsRequest
-from app.models.uploads import Content
-from app.operations.registry import Command, Operation
 from knitcore.base.extensions import IDENTIFIER
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart, check_stitches, size_in_words
 from knitcore.formats.designs.layout import DesignLayout
 from knitcore.formats.write.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.formats.write.knitout import Finish
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import ResultModel
+from ..models.charts import ChartInput, MaterialName, to_chart
+from ..models.gauge import GaugeInput
+from ..models.laws import LawsRequest
+from ..models.uploads import Content
+from .registry import Command, Operation
 
 MAX_STITCHES: dict[str, int] = {
     ExportKind.KNITOUT: 20_000,

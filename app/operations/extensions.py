@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import NoRequest, ResultModel
-from app.operations.registry import Command, Operation
 from knitcore.base.extensions import ExtensionError, Group, Offer
 from knitcore.base.extensions import extensions as installed
 from knitcore.formats.write.export import Exporter
 from knitcore.materials import Material
+
+from ..context import Context
+from ..models.base import NoRequest, ResultModel
+from .registry import Command, Operation
 
 KINDS: dict[Group, type[Offer]] = {
     Group.MATERIALS: Material,

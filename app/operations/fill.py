@@ -10,10 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.cli.options import atlas_option, design_option, resolve_chart, write_design_of
-from app.context import Context
-from app.models.base import Ends, IntervalResult, Known, RequestModel, ResultModel
-from app.models.charts import (
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import StitchChart, size_in_words
+from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
+from knitcore.design.fill import fill_field
+from knitcore.design.part_targets import Parts, PartTarget, target_maps, target_parts
+from knitcore.formats.write.stitch_maps import read_wanted_moduli
+from knitcore.garment.shaped import outline_marks
+
+from ..cli.options import atlas_option, design_option, resolve_chart, write_design_of
+from ..context import Context
+from ..models.base import Ends, IntervalResult, Known, RequestModel, ResultModel
+from ..models.charts import (
     ChartLines,
     ChartText,
     Column,
@@ -22,16 +30,9 @@ from app.models.charts import (
     RepeatText,
     Row,
 )
-from app.models.laws import LawsRequest
-from app.operations.registry import Command, Operation
-from app.service.results.atlases import Extent
-from knitcore.base.errors import InputError
-from knitcore.chart.stitch_chart import StitchChart, size_in_words
-from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
-from knitcore.design.fill import fill_field
-from knitcore.design.part_targets import Parts, PartTarget, target_maps, target_parts
-from knitcore.formats.write.stitch_maps import read_wanted_moduli
-from knitcore.garment.shaped import outline_marks
+from ..models.laws import LawsRequest
+from ..service.results.atlases import Extent
+from .registry import Command, Operation
 
 Maps = tuple[NDArray[np.float64], NDArray[np.float64], Parts | None]
 

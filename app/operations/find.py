@@ -10,19 +10,20 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Ends, IntervalResult, Known, KnownEnds, RequestModel, ResultModel
-from app.models.charts import MaterialName, RepeatText
-from app.models.checks import CheckedBy
-from app.models.laws import LawsRequest
-from app.operations.registry import Command, Operation
-from app.service.results.atlases import EXTENTS, Extent
 from knitcore.base.errors import InputError
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas, load_atlas
 from knitcore.design.cost import CostLimits
 from knitcore.design.find import Candidate, find_fabric
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM, Quantity, Target, WornTube
 from knitcore.materials import load_library
+
+from ..context import Context
+from ..models.base import Ends, IntervalResult, Known, KnownEnds, RequestModel, ResultModel
+from ..models.charts import MaterialName, RepeatText
+from ..models.checks import CheckedBy
+from ..models.laws import LawsRequest
+from ..service.results.atlases import EXTENTS, Extent
+from .registry import Command, Operation
 
 MAX_MATERIALS = 16
 MAX_TARGETS = 20

@@ -7,19 +7,20 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from app.cli.options import out_option, write_table
-from app.context import Context
-from app.models.base import Floats, RequestModel, ResultModel
-from app.models.checks import CheckedBy
-from app.models.laws import ElasticConstants, LawConstants, LawResult, elastic_constants_of
-from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.registry import Command, Operation
 from knitcore.chart.fabric import Direction
 from knitcore.fit.pull_fit import LawFit, Reduction, Residuals
 from knitcore.fit.strip_fit import fit_tests
 from knitcore.formats.read.law_files import LawFile, save_law
 from knitcore.materials.material_document import CurveDocument
 from knitcore.measure.uniaxial_files import read_stretch_test
+
+from ..cli.options import out_option, write_table
+from ..context import Context
+from ..models.base import Floats, RequestModel, ResultModel
+from ..models.checks import CheckedBy
+from ..models.laws import ElasticConstants, LawConstants, LawResult, elastic_constants_of
+from ..models.uploads import UploadedFile, example_file, stored
+from .registry import Command, Operation
 
 PLOTTED_POINTS = 2000
 """Most points of a residual plot: more than a screen resolves."""

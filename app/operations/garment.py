@@ -10,12 +10,6 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
-from app.models.charts import CellLines, ChartLines, MaterialName, RepeatText
-from app.models.laws import Extensibility, LawsRequest, Moduli
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import size_in_words
@@ -28,6 +22,13 @@ from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worn_piece import Fit, Worn
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import log_interval
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import Ends, IntervalResult, RequestModel, ResultModel
+from ..models.charts import CellLines, ChartLines, MaterialName, RepeatText
+from ..models.laws import Extensibility, LawsRequest, Moduli
+from .registry import Command, Operation
 
 Length = Annotated[float, Field(gt=0, le=5000)]
 Ease = Annotated[float, Field(ge=-0.6, le=1)]

@@ -8,19 +8,20 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import IntervalResult
-from app.models.posed import PosedView
-from app.operations.garment import Glove, KnitterRequest, measured_options, read_measured
-from app.operations.limb import HEADING, LimbPlaceResult
-from app.operations.perform import Viewed
-from app.operations.registry import Command, Operation
 from knitcore.chart.fabric import Fabric
 from knitcore.draw.body import Body
 from knitcore.garment.worn_glove import GloveOnHand, answer_of, glove_on_hand
 from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import IntervalResult
+from ..models.posed import PosedView
+from .garment import Glove, KnitterRequest, measured_options, read_measured
+from .limb import HEADING, LimbPlaceResult
+from .perform import Viewed
+from .registry import Command, Operation
 
 SIMPLE = (
     "Fingers and thumb are cylinders, palm and forearm straight in front and behind. Every part is "
@@ -108,9 +109,9 @@ def _and_write(request: GloveRequest, context: Context, out: Path | None) -> Glo
     result = _result(found, request, context)
     if out is not None:
         # the 3D view's libraries take a second to load
-        from app.drawing.design_view import Curled, ViewRequest, build_scene
-        from app.drawing.solid import solid_glb
-        from app.drawing.stitch_colours import Colour
+        from ..drawing.design_view import Curled, ViewRequest, build_scene
+        from ..drawing.solid import solid_glb
+        from ..drawing.stitch_colours import Colour
 
         shaped = found.plan.shaped
         shown = ViewRequest(

@@ -7,11 +7,16 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import ResultModel
-from app.models.charts import ChartInput, OutlineInput, to_chart
-from app.models.posed import PosedView
-from app.models.weighed import (
+from knitcore.cloth.space.curl import TIME_LIMIT_S
+from knitcore.cloth.space.hang import HungBy
+from knitcore.cloth.space.hang import hang as hang_piece
+from knitcore.garment.shaped import outline_marks
+
+from ..context import Context
+from ..models.base import ResultModel
+from ..models.charts import ChartInput, OutlineInput, to_chart
+from ..models.posed import PosedView
+from ..models.weighed import (
     FRICTIONLESS,
     Corners,
     TimeLimit,
@@ -19,12 +24,8 @@ from app.models.weighed import (
     WeighedRequest,
     corner_lists,
 )
-from app.operations.perform import Viewed
-from app.operations.registry import Command, Operation
-from knitcore.cloth.space.curl import TIME_LIMIT_S
-from knitcore.cloth.space.hang import HungBy
-from knitcore.cloth.space.hang import hang as hang_piece
-from knitcore.garment.shaped import outline_marks
+from .perform import Viewed
+from .registry import Command, Operation
 
 
 class HangRequest(WeighedRequest):

@@ -7,18 +7,19 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Ends, Floats, IntervalResult, ResultModel
-from app.models.friction import HISTORIES, RestSizeResult, rest_line
-from app.models.laws import LawsRequest
-from app.models.yarn_level import StitchRequest, YarnResult
-from app.operations.registry import Command, Operation
 from knitcore.chart.fabric import Direction
 from knitcore.yarn.library.yarn_friction import yarn_friction
 from knitcore.yarn.model.friction import MAX_COEFFICIENT, MAX_STITCHES
 from knitcore.yarn.study import hysteresis as loops
 from knitcore.yarn.study.hysteresis import DEFAULT_POINTS, MAX_CYCLES
 from knitcore.yarn.study.relax import relax
+
+from ..context import Context
+from ..models.base import Ends, Floats, IntervalResult, ResultModel
+from ..models.friction import HISTORIES, RestSizeResult, rest_line
+from ..models.laws import LawsRequest
+from ..models.yarn_level import StitchRequest, YarnResult
+from .registry import Command, Operation
 
 
 class HysteresisRequest(StitchRequest, LawsRequest):

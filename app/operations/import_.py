@@ -6,15 +6,16 @@ from pathlib import Path
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import RequestModel, ResultModel
-from app.models.charts import ChartLines, RepeatText
-from app.models.uploads import UploadedFile, stored
-from app.operations.registry import Command, Operation
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
 from knitcore.formats.read.chart_files import read_chart, read_piece
+
+from ..context import Context
+from ..models.base import RequestModel, ResultModel
+from ..models.charts import ChartLines, RepeatText
+from ..models.uploads import UploadedFile, stored
+from .registry import Command, Operation
 
 
 class ImportRequest(RequestModel):

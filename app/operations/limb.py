@@ -10,14 +10,6 @@ import click
 import numpy as np
 from pydantic import Field
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
-from app.models.charts import to_chart
-from app.models.laws import FabricRequest
-from app.models.posed import PosedView
-from app.operations.perform import Viewed
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import check_stitches
@@ -36,6 +28,15 @@ from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
 from knitcore.prediction.patches import SIDE
 from knitcore.prediction.predict import predict
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import Ends, IntervalResult, RequestModel, ResultModel
+from ..models.charts import to_chart
+from ..models.laws import FabricRequest
+from ..models.posed import PosedView
+from .perform import Viewed
+from .registry import Command, Operation
 
 MAX_STITCHES = 40_000
 """Of a chart that is itself the tube."""

@@ -5,25 +5,6 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import (
-    Ends,
-    Floats,
-    IntervalResult,
-    MissingError,
-    RequestModel,
-    ResultModel,
-)
-from app.models.charts import MaterialName
-from app.models.laws import (
-    ElasticConstants,
-    Extensibility,
-    LawResult,
-    Moduli,
-    elastic_constants_of,
-    moduli_of,
-)
-from app.operations.registry import Operation
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -32,6 +13,26 @@ from knitcore.materials import FabricRecord, Material
 from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.materials.material_document import CurveDocument
 from knitcore.mechanics.local_moduli import StitchTable, stitch_table
+
+from ..context import Context
+from ..models.base import (
+    Ends,
+    Floats,
+    IntervalResult,
+    MissingError,
+    RequestModel,
+    ResultModel,
+)
+from ..models.charts import MaterialName
+from ..models.laws import (
+    ElasticConstants,
+    Extensibility,
+    LawResult,
+    Moduli,
+    elastic_constants_of,
+    moduli_of,
+)
+from .registry import Operation
 
 CURVE_POINTS = 60
 CURVE_END = 0.85

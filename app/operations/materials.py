@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import click
 
-from app.context import Context
-from app.models.base import NoRequest, ResultModel
-from app.operations.material import (
+from knitcore.materials import load_library, load_variants, offered_materials
+
+from ..context import Context
+from ..models.base import NoRequest, ResultModel
+from ..service.identity import current_user
+from ..service.results.own_materials import added_by, own_materials
+from .material import (
     MaterialDetail,
     MaterialRequest,
     MaterialSummary,
     material,
     summary,
 )
-from app.operations.registry import Command, Operation
-from app.service.identity import current_user
-from app.service.results.own_materials import added_by, own_materials
-from knitcore.materials import load_library, load_variants, offered_materials
+from .registry import Command, Operation
 
 
 class Materials(ResultModel):

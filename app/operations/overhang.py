@@ -8,11 +8,15 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import ResultModel
-from app.models.charts import RepeatInput, to_repeat
-from app.models.posed import PosedView
-from app.models.weighed import (
+from knitcore.chart.fabric import Direction
+from knitcore.cloth.space.overhang import overhang as hang_over
+from knitcore.draw.body import Body
+
+from ..context import Context
+from ..models.base import ResultModel
+from ..models.charts import RepeatInput, to_repeat
+from ..models.posed import PosedView
+from ..models.weighed import (
     ClothPiece,
     Corners,
     WantsCorners,
@@ -20,11 +24,8 @@ from app.models.weighed import (
     cloth_piece,
     notes_of,
 )
-from app.operations.perform import Viewed
-from app.operations.registry import Command, Operation
-from knitcore.chart.fabric import Direction
-from knitcore.cloth.space.overhang import overhang as hang_over
-from knitcore.draw.body import Body
+from .perform import Viewed
+from .registry import Command, Operation
 
 TABLE_MM = 40.0
 """Of the table that is shown, from its edge to the back."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from app.context import Context
-from app.models.base import RequestModel, ResultModel
-from app.models.charts import ChartLines, ChartText, RepeatText
-from app.operations.registry import Operation
 from knitcore.chart.stitch_chart import StitchChart
+
+from ..context import Context
+from ..models.base import RequestModel, ResultModel
+from ..models.charts import ChartLines, ChartText, RepeatText
+from .registry import Operation
 
 
 class ParseRequest(RequestModel):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from app.context import Context
-from app.models.base import NoRequest, ResultModel
-from app.models.charts import RepeatText
-from app.operations.registry import Operation
 from knitcore.chart.patterns import PATTERNS
+
+from ..context import Context
+from ..models.base import NoRequest, ResultModel
+from ..models.charts import RepeatText
+from .registry import Operation
 
 
 class PatternResult(ResultModel):

@@ -11,10 +11,11 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from pydantic import BaseModel
 
-from app.context import Context
-from app.models.base import read
-from app.models.checks import all_faults
 from knitcore.base.errors import InputError
+
+from ..context import Context
+from ..models.base import read
+from ..models.checks import all_faults
 
 Result = TypeVar("Result", bound=BaseModel)
 T = TypeVar("T")

@@ -9,13 +9,6 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field, ValidationError
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import EndsOfList, Floats, ResultModel, first_fault
-from app.models.charts import to_repeat
-from app.models.checks import CheckedBy
-from app.models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.cloth.cut import PieceTest, cloth_under, write_piece_test
 from knitcore.cloth.cut import cut_test as solve
@@ -23,6 +16,14 @@ from knitcore.cloth.cut.cut_results import SUFFIXES
 from knitcore.cloth.cut.cut_uncertainty import piece_spreads
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Z_SCORE
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import EndsOfList, Floats, ResultModel, first_fault
+from ..models.charts import to_repeat
+from ..models.checks import CheckedBy
+from ..models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
+from .registry import Command, Operation
 
 
 class PieceRequest(PieceTestRequest):

@@ -4,12 +4,6 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Ends, IntervalResult, ResultModel
-from app.models.charts import OutlineInput
-from app.models.gauge import GaugedRequest
-from app.models.laws import ElasticConstants, Extensibility
-from app.operations.registry import Command, Operation
 from knitcore.chart.fabric import Direction
 from knitcore.chart.segments import segment_map
 from knitcore.chart.stitch_chart import size_in_words
@@ -17,6 +11,13 @@ from knitcore.draw.laid_out import size_at_rest
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.prediction.predict import predict as predict_chart
 from knitcore.prediction.swept import worth_relaxing
+
+from ..context import Context
+from ..models.base import Ends, IntervalResult, ResultModel
+from ..models.charts import OutlineInput
+from ..models.gauge import GaugedRequest
+from ..models.laws import ElasticConstants, Extensibility
+from .registry import Command, Operation
 
 
 class PredictRequest(GaugedRequest):

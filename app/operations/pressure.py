@@ -10,11 +10,6 @@ from pathlib import Path
 import click
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Ends, IntervalResult
-from app.models.charts import ChartInput, MaterialName, to_chart
-from app.models.laws import LawsRequest
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.formats.read.law_files import LawFile, law_from_mapping, load_law
@@ -35,6 +30,12 @@ from knitcore.mechanics.pressure import (
 )
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Prediction
+
+from ..context import Context
+from ..models.base import Ends, IntervalResult
+from ..models.charts import ChartInput, MaterialName, to_chart
+from ..models.laws import LawsRequest
+from .registry import Command, Operation
 
 NO_INTERVAL = "No interval: the law comes without standard errors."
 

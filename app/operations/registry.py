@@ -29,9 +29,9 @@ from typing import (
 
 from pydantic import BaseModel
 
-import app.operations as package
-from app.context import Context
-from app.operations.perform import Viewed, key_of
+from .. import operations as package
+from ..context import Context
+from .perform import Viewed, key_of
 
 Request = TypeVar("Request", bound=BaseModel)
 Result = TypeVar("Result", bound=BaseModel)

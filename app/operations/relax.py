@@ -9,13 +9,6 @@ from typing import Literal, Self
 
 from pydantic import Field
 
-from app.cli.options import loop_lengths
-from app.context import Context
-from app.models.base import Ends, IntervalResult, Known, ResultModel
-from app.models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
-from app.models.gauge import FoundGauge
-from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.chart.phases import pure_fabric
 from knitcore.chart.stitch_chart import StitchChart, size_in_words
@@ -29,6 +22,14 @@ from knitcore.yarn.study.hysteresis import History, rest_sizes
 from knitcore.yarn.study.lowest import FOLLOWED_UP_TO, lowest
 from knitcore.yarn.study.relax import Branch, RelaxedRepeat
 from knitcore.yarn.study.whole_chart import WINDOWS_FROM
+
+from ..cli.options import loop_lengths
+from ..context import Context
+from ..models.base import Ends, IntervalResult, Known, ResultModel
+from ..models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
+from ..models.gauge import FoundGauge
+from ..models.yarn_level import YarnResult, kept_or_made, relax_requested
+from .registry import Command, Operation
 
 
 class RelaxRequest(RubbedRequest):

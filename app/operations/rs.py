@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
-from app.models.charts import MaterialName
-from app.models.laws import Moduli
-from app.operations.registry import Command, Operation
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials.law_uncertainty import RS_ERRORS, RS_LOG_SD, log_interval
 from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import rs_fabrics
+
+from ..context import Context
+from ..models.base import Ends, IntervalResult, RequestModel, ResultModel
+from ..models.charts import MaterialName
+from ..models.laws import Moduli
+from .registry import Command, Operation
 
 
 class RSRequest(RequestModel):

@@ -10,18 +10,19 @@ import click
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from app.cli.options import atlas_option, design_option, write_design_of
-from app.context import Context
-from app.models.base import Known, ResultModel
-from app.models.charts import ChartLines, MaterialName, RepeatText
-from app.models.laws import LawsRequest
-from app.operations.registry import Command, Operation
-from app.service.results.atlases import Extent
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.design.atlas import Atlas
 from knitcore.design.shape import fill_shape
+
+from ..cli.options import atlas_option, design_option, write_design_of
+from ..context import Context
+from ..models.base import Known, ResultModel
+from ..models.charts import ChartLines, MaterialName, RepeatText
+from ..models.laws import LawsRequest
+from ..service.results.atlases import Extent
+from .registry import Command, Operation
 
 
 def _rounded(values: Any) -> Any:

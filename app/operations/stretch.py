@@ -10,14 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.cli.options import out_option
-from app.context import Context
-from app.models.base import EndsOfList, Floats, IntervalResult, ResultModel
-from app.models.charts import Column, OutlineInput, Row, to_chart
-from app.models.gauge import GaugedRequest
-from app.models.stretched import StretchView
-from app.operations.perform import Viewed
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
@@ -35,6 +27,15 @@ from knitcore.cloth.flat.strip import load_levels
 from knitcore.draw.strained_stitches import stitch_at, stitch_states
 from knitcore.garment.shaped import outline_marks
 from knitcore.law.stiffening import EXTENSION_START
+
+from ..cli.options import out_option
+from ..context import Context
+from ..models.base import EndsOfList, Floats, IntervalResult, ResultModel
+from ..models.charts import Column, OutlineInput, Row, to_chart
+from ..models.gauge import GaugedRequest
+from ..models.stretched import StretchView
+from .perform import Viewed
+from .registry import Command, Operation
 
 Array = NDArray[np.float32]
 

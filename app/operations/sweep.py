@@ -9,13 +9,6 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.cli.options import loop_lengths
-from app.context import Context
-from app.models.base import EndsOfList, Floats, IntervalResult
-from app.models.friction import RubbedRequest, on_splines
-from app.models.laws import ElasticConstants, elastic_constants_of
-from app.models.yarn_level import YarnResult, kept_or_made, relax_requested
-from app.operations.registry import Command, Operation
 from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
@@ -30,6 +23,14 @@ from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
 from knitcore.yarn.study.hysteresis import Hysteresis, hysteresis, pull
 from knitcore.yarn.study.relax import Branch
 from knitcore.yarn.study.sweep import sweep as swept
+
+from ..cli.options import loop_lengths
+from ..context import Context
+from ..models.base import EndsOfList, Floats, IntervalResult
+from ..models.friction import RubbedRequest, on_splines
+from ..models.laws import ElasticConstants, elastic_constants_of
+from ..models.yarn_level import YarnResult, kept_or_made, relax_requested
+from .registry import Command, Operation
 
 FACTOR = log_interval(1.0, YARN_LEVEL_STRAIN_LOG_SD).high
 """90 % interval of the strains of knitted cloth, as a factor either way."""

@@ -8,11 +8,12 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import EndsOfList, Floats
-from app.models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
-from app.operations.registry import Command, Operation
 from knitcore.cloth.cut.standard_tests import trellis_test
+
+from ..context import Context
+from ..models.base import EndsOfList, Floats
+from ..models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
+from .registry import Command, Operation
 
 
 class TrellisRequest(PieceTestRequest):

@@ -6,10 +6,6 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import Ends, IntervalResult
-from app.models.yarn_level import StitchRequest, YarnResult
-from app.operations.registry import Command, Operation
 from knitcore.materials.law_uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_SIZE_LOG_SD,
@@ -19,6 +15,11 @@ from knitcore.yarn.study.bending import MAX_STITCHES
 from knitcore.yarn.study.lowest import lowest
 from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.yarn_tube import MAX_WALES, MIN_WALES, in_the_round
+
+from ..context import Context
+from ..models.base import Ends, IntervalResult
+from ..models.yarn_level import StitchRequest, YarnResult
+from .registry import Command, Operation
 
 
 class TubeRequest(StitchRequest):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.context import Context
-from app.models.base import NoRequest, ResultModel
-from app.operations.registry import Operation
-from app.service import VERSION
+from ..context import Context
+from ..models.base import NoRequest, ResultModel
+from ..service import VERSION
+from .registry import Operation
 
 
 class VersionResult(ResultModel):

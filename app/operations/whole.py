@@ -8,16 +8,17 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import BaseModel, Field
 
-from app.context import Context
-from app.models.base import Ends, IntervalResult
-from app.models.charts import ChartInput, to_chart
-from app.models.yarn_level import StitchRequest, YarnResult
-from app.operations.registry import Command, Operation
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.materials.law_uncertainty import YARN_LEVEL_ERRORS
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.solve.splines import size_intervals
 from knitcore.yarn.study.whole_chart import MAX_ROUNDS, WholeShape, relax_whole
+
+from ..context import Context
+from ..models.base import Ends, IntervalResult
+from ..models.charts import ChartInput, to_chart
+from ..models.yarn_level import StitchRequest, YarnResult
+from .registry import Command, Operation
 
 
 class WholeRequest(StitchRequest):

@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, Field
 
-from app.service.problems import ServiceError
-from app.service.settings import Settings
-from app.service.store.database import Database, sqlite_file
-from app.service.store.file import check_not_lost, check_reserved
-from app.service.store.lock import holder
-from app.service.store.schema import check_schema
 from knitcore.base.errors import InputError
 
+from .problems import ServiceError
+from .settings import Settings
+from .store.database import Database, sqlite_file
+from .store.file import check_not_lost, check_reserved
+from .store.lock import holder
+from .store.schema import check_schema
+
 if TYPE_CHECKING:
-    from app.service.compute.cluster import Cluster
+    from .compute.cluster import Cluster
 
 MIN_FREE_BYTES = 100_000_000
 
@@ -174,7 +175,7 @@ def check_cluster(address: str) -> None:
     ------
     ClusterError
     """
-    from app.service.compute.cluster import Cluster  # its library is needed here only
+    from .compute.cluster import Cluster  # its library is needed here only
 
     with closing(Cluster(address)) as cluster:
         cluster.check()

@@ -8,9 +8,9 @@ from fastapi import APIRouter, Request, Response
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 from pydantic import BaseModel, Field
 
-from app.service.doctor import examine_running
-from app.service.identity import LOCAL_USER, current_user
-from app.service.problems import Problem, RefusedError, UnavailableError
+from .doctor import examine_running
+from .identity import LOCAL_USER, current_user
+from .problems import Problem, RefusedError, UnavailableError
 
 router = APIRouter(tags=["service"])
 

@@ -15,41 +15,41 @@ from typing import TYPE_CHECKING
 from anyio.to_thread import current_default_thread_limiter
 from fastapi import FastAPI
 
-from app.context import Context
-from app.operations.predict import PredictRequest, predict
-from app.service import VERSION, health, memory
-from app.service.api import routers
-from app.service.compute.answers import Answers
-from app.service.compute.compute import Compute
-from app.service.compute.processes import processes
-from app.service.compute.workers import Worker
-from app.service.designs.idempotency import forget_old_keys
-from app.service.designs.store import DesignStore
-from app.service.designs.watching import Watched
-from app.service.jobs.runner import JobRunner
-from app.service.jobs.store import JobStore
-from app.service.limits.budgets import BUDGETS, InUse
-from app.service.limits.turns import Gate
-from app.service.problems import PROBLEM_RESPONSES, StoreError
-from app.service.results.recent import RecentResults
-from app.service.settings import Settings
-from app.service.store.database import Database
-from app.service.store.schema import migrate
-from app.service.web.errors import install_problem_handlers
-from app.service.web.observing import Metrics, Observer, configure_logging
-from app.service.web.page import serve_page
-from app.service.web.passes import Passes
-from app.service.web.reference import serve_kinds, serve_reference
-from app.service.web.schema import install_schema
-from app.service.web.security import Guard
-from app.service.web.sessions import Sessions
-from app.service.web.tokens import REMEMBERED_S, Login, Tokens
-from app.viewer import relay
-from app.viewer.client import viewer_page
-from app.viewer.views import Views
+from ..context import Context
+from ..operations.predict import PredictRequest, predict
+from ..viewer import relay
+from ..viewer.client import viewer_page
+from ..viewer.views import Views
+from . import VERSION, health, memory
+from .api import routers
+from .compute.answers import Answers
+from .compute.compute import Compute
+from .compute.processes import processes
+from .compute.workers import Worker
+from .designs.idempotency import forget_old_keys
+from .designs.store import DesignStore
+from .designs.watching import Watched
+from .jobs.runner import JobRunner
+from .jobs.store import JobStore
+from .limits.budgets import BUDGETS, InUse
+from .limits.turns import Gate
+from .problems import PROBLEM_RESPONSES, StoreError
+from .results.recent import RecentResults
+from .settings import Settings
+from .store.database import Database
+from .store.schema import migrate
+from .web.errors import install_problem_handlers
+from .web.observing import Metrics, Observer, configure_logging
+from .web.page import serve_page
+from .web.passes import Passes
+from .web.reference import serve_kinds, serve_reference
+from .web.schema import install_schema
+from .web.security import Guard
+from .web.sessions import Sessions
+from .web.tokens import REMEMBERED_S, Login, Tokens
 
 if TYPE_CHECKING:
-    from app.service.compute.cluster import Cluster
+    from .compute.cluster import Cluster
 
 log = logging.getLogger("knitcore.app")
 
@@ -187,7 +187,7 @@ async def _close_idle_views(views: Views, idle_s: float) -> None:
 def _cluster(settings: Settings) -> Cluster | None:
     if settings.scheduler is None:
         return None
-    from app.service.compute.cluster import Cluster  # its library is needed here only
+    from .compute.cluster import Cluster  # its library is needed here only
 
     return Cluster(settings.scheduler)
 
@@ -195,7 +195,7 @@ def _cluster(settings: Settings) -> Cluster | None:
 def _workers(settings: Settings, cluster: Cluster | None) -> list[Worker]:
     """Where heavy work is done."""
     if cluster is not None:
-        from app.service.compute.cluster import ClusterWorker
+        from .compute.cluster import ClusterWorker
 
         return [ClusterWorker(cluster) for _ in range(settings.workers)]
     return list(

@@ -18,8 +18,9 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from app.service.memory import machine_bytes
 from knitcore.base.errors import InputError
+
+from .memory import machine_bytes
 
 NO_SETTINGS = frozenset(
     f"KNITCORE_{name}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.drawing.fabric import Ground
+from ..drawing.fabric import Ground
 
 Cell = tuple[int, int]
 

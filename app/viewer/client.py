@@ -8,7 +8,7 @@ from pathlib import Path
 
 import viser
 
-from app.service.web.page import script_tag
+from ..service.web.page import script_tag
 
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
 SCRIPTS = ("viser/notices.js", "viser/yarn.js", "viser/aside.js", "viser/frame.js")

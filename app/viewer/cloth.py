@@ -9,11 +9,12 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.drawing.colours import linear
-from app.drawing.fabric import FabricScene
 from knitcore.base.arrays import Array
 from knitcore.draw.instances import quaternions, stitch_meshes, tube_sizes
 from knitcore.draw.stitches import StitchShapes
+
+from ..drawing.colours import linear
+from ..drawing.fabric import FabricScene
 
 UNITS_PER_MM = 0.01
 """A scene is drawn in dm: browsers draw nothing that is 1000 units from the camera or farther, and

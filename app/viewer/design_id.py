@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import Path
 
-from app.service.identity import current_user
+from ..service.identity import current_user
 
 DesignId = Annotated[
     str,

@@ -13,13 +13,13 @@ from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from starlette.websockets import WebSocketState
 
-from app.service.identity import current_user
-from app.service.limits.budgets import InUse, OverBudgetError, RateLimit
-from app.viewer.client import ViewerPage
-from app.viewer.design_id import DesignId, private_name
-from app.viewer.incoming import BURST, PER_S, RefusedMessageError, passed_on
-from app.viewer.private_port import RELAY_HEADERS
-from app.viewer.views import View, Views
+from ..service.identity import current_user
+from ..service.limits.budgets import InUse, OverBudgetError, RateLimit
+from .client import ViewerPage
+from .design_id import DesignId, private_name
+from .incoming import BURST, PER_S, RefusedMessageError, passed_on
+from .private_port import RELAY_HEADERS
+from .views import View, Views
 
 log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)

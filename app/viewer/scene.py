@@ -9,12 +9,13 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.drawing.colours import SKIN
-from app.drawing.fabric import Box, Drawing, FabricScene, Ground
-from app.viewer.camera import CameraSide, place_camera
-from app.viewer.cloth import UNITS_PER_MM, ShownStitches
 from knitcore.base.arrays import Array
 from knitcore.draw.instances import level_of
+
+from ..drawing.colours import SKIN
+from ..drawing.fabric import Box, Drawing, FabricScene, Ground
+from .camera import CameraSide, place_camera
+from .cloth import UNITS_PER_MM, ShownStitches
 
 STILL_S = 0.4
 """Tubes that a stretch has flattened are drawn again after this time without another change."""

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from app.drawing.fabric import FabricScene
-from app.service.problems import ServiceError
-from app.viewer.client import with_scripts
-from app.viewer.incoming import WantedPicture
-from app.viewer.views import View, new_view
+from ..drawing.fabric import FabricScene
+from ..service.problems import ServiceError
+from .client import with_scripts
+from .incoming import WantedPicture
+from .views import View, new_view
 
 FRAME_S = 0.14
 PICTURE_TIMEOUT_S = 25.0

@@ -7,17 +7,18 @@ from pathlib import Path
 
 from pydantic import Field
 
-from app.context import Context
-from app.drawing.design_view import StretchStep, ViewRequest, build_scene
-from app.drawing.fabric import FabricScene
-from app.drawing.solid import MAX_SOLID, solid_glb
-from app.models.charts import to_chart
-from app.models.posed import PosedView
-from app.models.stretched import StretchView
-from app.viewer.share import page_html, recording
-from app.viewer.still import still_png
 from knitcore.chart.stitch_chart import check_stitches
 from knitcore.garment.shaped import outline_marks
+
+from ..context import Context
+from ..drawing.design_view import StretchStep, ViewRequest, build_scene
+from ..drawing.fabric import FabricScene
+from ..drawing.solid import MAX_SOLID, solid_glb
+from ..models.charts import to_chart
+from ..models.posed import PosedView
+from ..models.stretched import StretchView
+from .share import page_html, recording
+from .still import still_png
 
 MAX_SHARED_STITCHES = 40_000
 

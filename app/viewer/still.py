@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from app.drawing.colours import SKIN, linear
-from app.drawing.fabric import Drawing
-from app.viewer.camera import FIELD_OF_VIEW, CameraSide, stand
 from knitcore.base.arrays import Array
 from knitcore.draw.body import Floats
 from knitcore.draw.placing import placed_lines
 from knitcore.draw.tubes import resampled
+
+from ..drawing.colours import SKIN, linear
+from ..drawing.fabric import Drawing
+from .camera import FIELD_OF_VIEW, CameraSide, stand
 
 SPACING = 0.5
 """Of the balls that a yarn is drawn as, over its radius."""

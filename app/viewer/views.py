@@ -9,16 +9,16 @@ from dataclasses import dataclass, field
 
 import viser
 
-from app.drawing.fabric import Drawing
-from app.service.limits.budgets import BUDGETS, OverBudgetError
-from app.service.listeners import Listeners
-from app.service.problems import ServiceError, UnavailableError
-from app.viewer.camera import FARTHEST
-from app.viewer.clicks import Cell, clicked_stitch
-from app.viewer.cloth import UNITS_PER_MM
-from app.viewer.incoming import WantedPicture
-from app.viewer.private_port import private_server
-from app.viewer.scene import SceneWriter
+from ..drawing.fabric import Drawing
+from ..service.limits.budgets import BUDGETS, OverBudgetError
+from ..service.listeners import Listeners
+from ..service.problems import ServiceError, UnavailableError
+from .camera import FARTHEST
+from .clicks import Cell, clicked_stitch
+from .cloth import UNITS_PER_MM
+from .incoming import WantedPicture
+from .private_port import private_server
+from .scene import SceneWriter
 
 log = logging.getLogger("knitcore.app")
 

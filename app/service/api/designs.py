@@ -7,8 +7,9 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 
-from app.service.designs.conditions import etag, knows
-from app.service.designs.document import (
+from ...viewer.design_id import DesignId
+from ..designs.conditions import etag, knows
+from ..designs.document import (
     Design,
     DesignDocument,
     DesignPage,
@@ -24,14 +25,13 @@ from app.service.designs.document import (
     Versions,
     VersionSummary,
 )
-from app.service.designs.parameters import MISSING, Cursor, Limit, Owner, Responses, RetryOf
-from app.service.designs.sharing import Sharing
-from app.service.designs.store import DesignStore
-from app.service.designs.watching import PERIOD_S, QUIET_S
-from app.service.problems import Problem
-from app.service.web.bodies import BoundedRoute
-from app.service.web.events import event_stream
-from app.viewer.design_id import DesignId
+from ..designs.parameters import MISSING, Cursor, Limit, Owner, Responses, RetryOf
+from ..designs.sharing import Sharing
+from ..designs.store import DesignStore
+from ..designs.watching import PERIOD_S, QUIET_S
+from ..problems import Problem
+from ..web.bodies import BoundedRoute
+from ..web.events import event_stream
 
 CONFLICT: Responses = {
     409: {"model": Problem, "description": "It conflicts with the present state."}

@@ -10,15 +10,15 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Path, Request, Response
 from fastapi.responses import StreamingResponse
 
-from app.service.designs.conditions import ConflictError
-from app.service.designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
-from app.service.jobs.document import JobPage, JobState, JobStatus
-from app.service.jobs.kinds import JobRequest, JobResult
-from app.service.jobs.runner import JobRunner
-from app.service.problems import NotFoundError, Problem
-from app.service.web.bodies import OrUndecoded, Undecoded, WorkerRoute
-from app.service.web.events import event_stream
-from app.service.web.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
+from ..designs.conditions import ConflictError
+from ..designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
+from ..jobs.document import JobPage, JobState, JobStatus
+from ..jobs.kinds import JobRequest, JobResult
+from ..jobs.runner import JobRunner
+from ..problems import NotFoundError, Problem
+from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
+from ..web.events import event_stream
+from ..web.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
 
 EVENT_PERIOD_S = 0.25
 

@@ -7,13 +7,14 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Path, Request
 from fastapi.concurrency import run_in_threadpool
 
-from app.context import Context
-from app.operations.material import MaterialSummary, summary
-from app.service.designs.parameters import MISSING, Owner
-from app.service.problems import NotFoundError
-from app.service.results.own_materials import keep_material, remove_material
-from app.service.web.bodies import BoundedRoute
 from knitcore.materials.material_document import MaterialDocument
+
+from ...context import Context
+from ...operations.material import MaterialSummary, summary
+from ..designs.parameters import MISSING, Owner
+from ..problems import NotFoundError
+from ..results.own_materials import keep_material, remove_material
+from ..web.bodies import BoundedRoute
 
 router = APIRouter(route_class=BoundedRoute, tags=["materials"], responses=MISSING)
 

@@ -12,16 +12,16 @@ from fastapi import APIRouter, Path, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
-from app.models.charts import size_of
-from app.operations.perform import Viewed, carried_out
-from app.operations.registry import Operation, operations
-from app.service.compute.answers import Answers
-from app.service.identity import current_user
-from app.service.limits.turns import Gate
-from app.service.problems import Problem
-from app.service.web.bodies import OrUndecoded, Undecoded, WorkerRoute
-from app.service.web.events import abandoned
-from app.service.web.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
+from ...models.charts import size_of
+from ...operations.perform import Viewed, carried_out
+from ...operations.registry import Operation, operations
+from ..compute.answers import Answers
+from ..identity import current_user
+from ..limits.turns import Gate
+from ..problems import Problem
+from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
+from ..web.events import abandoned
+from ..web.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
 
 MAX_LIGHT = 2_500
 """Most stitches of a request that the service answers itself. A larger one goes to a worker, with

@@ -6,15 +6,15 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
 
-from app.service.designs.parameters import Owner
-from app.service.designs.sharing import Sharing
-from app.service.designs.store import DesignStore
-from app.service.identity import current_session
-from app.service.limits.budgets import BUDGETS, InUse, Use
-from app.service.problems import NotFoundError, Problem
-from app.service.web.security import OPENED_BY, SESSION_COOKIE
-from app.service.web.sessions import Sessions, SignedIn
-from app.service.web.tokens import Login
+from ..designs.parameters import Owner
+from ..designs.sharing import Sharing
+from ..designs.store import DesignStore
+from ..identity import current_session
+from ..limits.budgets import BUDGETS, InUse, Use
+from ..problems import NotFoundError, Problem
+from ..web.security import OPENED_BY, SESSION_COOKIE
+from ..web.sessions import Sessions, SignedIn
+from ..web.tokens import Login
 
 router = APIRouter(tags=["session"])
 

@@ -13,33 +13,24 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import Field
 
-from app.drawing.design_view import (
+from ...drawing.design_view import (
     ViewRequest,
     ViewResult,
     build_drawing,
     build_scene,
     is_large,
 )
-from app.drawing.fabric import Box, Drawing
-from app.models.base import RequestModel
-from app.models.charts import size_of_chart
-from app.models.posed import PosedView
-from app.models.stretched import StretchView
-from app.operations.perform import Reply
-from app.service.compute.compute import Compute
-from app.service.identity import current_user
-from app.service.limits.budgets import InUse
-from app.service.limits.turns import Gate
-from app.service.problems import NotFoundError, Problem
-from app.service.web.bodies import BoundedRoute
-from app.service.web.events import abandoned, event_stream
-from app.service.web.passes import Passes
-from app.service.web.security import OPENED_BY
-from app.viewer.camera import CameraSide
-from app.viewer.design_id import DesignId, private_name
-from app.viewer.scene import round_length_mm
-from app.viewer.share import picture_png
-from app.viewer.shared import (
+from ...drawing.fabric import Box, Drawing
+from ...models.base import RequestModel
+from ...models.charts import size_of_chart
+from ...models.posed import PosedView
+from ...models.stretched import StretchView
+from ...operations.perform import Reply
+from ...viewer.camera import CameraSide
+from ...viewer.design_id import DesignId, private_name
+from ...viewer.scene import round_length_mm
+from ...viewer.share import picture_png
+from ...viewer.shared import (
     Found,
     SharedViewRequest,
     shared_page,
@@ -47,7 +38,16 @@ from app.viewer.shared import (
     shared_solid,
     shared_still,
 )
-from app.viewer.views import View
+from ...viewer.views import View
+from ..compute.compute import Compute
+from ..identity import current_user
+from ..limits.budgets import InUse
+from ..limits.turns import Gate
+from ..problems import NotFoundError, Problem
+from ..web.bodies import BoundedRoute
+from ..web.events import abandoned, event_stream
+from ..web.passes import Passes
+from ..web.security import OPENED_BY
 
 EVENT_PERIOD_S = 0.5
 MISSING: dict[int | str, dict[str, Any]] = {

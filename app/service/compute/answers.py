@@ -9,11 +9,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from app.context import Context
-from app.operations.perform import Reply, perform
-from app.operations.registry import Operation
-from app.service.compute.compute import Compute
-from app.service.results.recent import RecentResults
+from ...context import Context
+from ...operations.perform import Reply, perform
+from ...operations.registry import Operation
+from ..results.recent import RecentResults
+from .compute import Compute
 
 
 class Answers:

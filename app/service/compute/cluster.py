@@ -22,7 +22,7 @@ from distributed import Client, get_worker
 from distributed.client import Future as ClusterFuture
 from distributed.scheduler import KilledWorker
 
-from app.service.compute.workers import NotBegunError, WorkerDiedError, call
+from .workers import NotBegunError, WorkerDiedError, call
 
 log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")

@@ -9,16 +9,16 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from typing import Any, TypeVar
 
-from app.service.compute.workers import (
+from ..identity import current_user
+from ..limits.budgets import BUDGETS, ComputingTime
+from ..limits.turns import Turns
+from .workers import (
     AbandonedError,
     NotBegunError,
     TimeLimitError,
     Worker,
     WorkerDiedError,
 )
-from app.service.identity import current_user
-from app.service.limits.budgets import BUDGETS, ComputingTime
-from app.service.limits.turns import Turns
 
 log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.service.compute.processes import be_nice
+from .processes import be_nice
 
 SERVICE = os.getppid()
 _loaded = threading.Event()
@@ -26,13 +26,14 @@ def _end_with_service() -> None:
 
 def _load() -> None:
     be_nice()  # the first page comes before this
-    from app.context import Context
-    from app.models.charts import PureFabricChart
-    from app.operations.stretch import StretchRequest, stretch
     from knitcore.chart.fabric import Fabric
     from knitcore.cloth.flat.grid_kernel import respond
     from knitcore.cloth.flat.sheet_models import SheetModel
     from knitcore.materials import material
+
+    from ...context import Context
+    from ...models.charts import PureFabricChart
+    from ...operations.stretch import StretchRequest, stretch
 
     stretch(
         StretchRequest(

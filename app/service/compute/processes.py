@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 from weakref import WeakSet
 
-from app.service.compute.workers import call
+from .workers import call
 
 T = TypeVar("T")
 
@@ -165,7 +165,7 @@ def processes(
 def _loaded() -> Future[None]:
     """Done once the process that workers are forked from has loaded what they need."""
     done: Future[None] = Future()
-    forkserver.set_forkserver_preload(["app.service.compute.loaded"])
+    forkserver.set_forkserver_preload([f"{__package__}.loaded"])
 
     def wait() -> None:
         try:

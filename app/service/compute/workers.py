@@ -7,7 +7,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Protocol, TypeVar
 
-from app.service.problems import ServiceError, UnavailableError
+from ..problems import ServiceError, UnavailableError
 
 T = TypeVar("T")
 

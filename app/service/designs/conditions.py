@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.service.problems import ServiceError
+from ..problems import ServiceError
 
 
 class StaleError(ServiceError):

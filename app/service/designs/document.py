@@ -7,11 +7,12 @@ from typing import Annotated, Literal
 
 from pydantic import AwareDatetime, BaseModel, Field
 
-from app.models.base import RequestModel
-from app.models.charts import ChartText
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE
 from knitcore.formats.designs.design_file import FORMAT, VERSION
 from knitcore.formats.designs.layout import DesignLayout
+
+from ...models.base import RequestModel
+from ...models.charts import ChartText
 
 Name = Annotated[
     str,

@@ -11,9 +11,9 @@ from pydantic import BaseModel
 from sqlalchemy import Connection, insert, select
 from sqlalchemy.exc import IntegrityError
 
-from app.service.problems import ServiceError
-from app.service.store.database import Database
-from app.service.store.tables import idempotency_keys, now
+from ..problems import ServiceError
+from ..store.database import Database
+from ..store.tables import idempotency_keys, now
 
 Reply = TypeVar("Reply", bound=BaseModel)
 KEPT_S = 86_400.0

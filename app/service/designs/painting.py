@@ -6,10 +6,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from app.service.designs.document import Run, StitchKinds
 from knitcore.base.errors import InputError
 from knitcore.chart.phases import surroundings
 from knitcore.chart.stitch_chart import StitchChart
+
+from .document import Run, StitchKinds
 
 
 def paint(chart: str, rows: int, columns: int, runs: Iterable[Run]) -> str:

@@ -8,9 +8,9 @@ from typing import Annotated, Any
 from fastapi import Depends, Header, Query, Request
 from pydantic import BaseModel
 
-from app.service.designs.idempotency import Retry
-from app.service.identity import asking
-from app.service.problems import Problem
+from ..identity import asking
+from ..problems import Problem
+from .idempotency import Retry
 
 Responses = dict[int | str, dict[str, Any]]
 MISSING: Responses = {

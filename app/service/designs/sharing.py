@@ -6,13 +6,13 @@ import secrets
 
 from sqlalchemy import Connection, Row, func, insert, select, update
 
-from app.service.designs.document import Design, NewShare, Share, SharedDesign, ShareMode, Shares
-from app.service.designs.idempotency import Retry, once
-from app.service.designs.store import add, copied, document_of, find_design, most_of_one
-from app.service.limits.budgets import BUDGETS, OverBudgetError
-from app.service.problems import NotFoundError, RefusedError
-from app.service.store.database import Database
-from app.service.store.tables import designs, hash_of, now, shares
+from ..limits.budgets import BUDGETS, OverBudgetError
+from ..problems import NotFoundError, RefusedError
+from ..store.database import Database
+from ..store.tables import designs, hash_of, now, shares
+from .document import Design, NewShare, Share, SharedDesign, ShareMode, Shares
+from .idempotency import Retry, once
+from .store import add, copied, document_of, find_design, most_of_one
 
 _OPEN = shares.c.revoked_at.is_(None)
 

@@ -20,8 +20,16 @@ from sqlalchemy import (
     update,
 )
 
-from app.service.designs.conditions import ConflictError, check_match
-from app.service.designs.document import (
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.designs.layout import DesignLayout, check_layout
+
+from ..limits.budgets import BUDGETS, OverBudgetError
+from ..problems import NotFoundError
+from ..store.database import Database
+from ..store.pages import one_page
+from ..store.tables import design_versions, designs, now
+from .conditions import ConflictError, check_match
+from .document import (
     Design,
     DesignDocument,
     DesignPage,
@@ -33,15 +41,8 @@ from app.service.designs.document import (
     Versions,
     VersionSummary,
 )
-from app.service.designs.idempotency import Retry, once
-from app.service.designs.painting import kinds_around, paint
-from app.service.limits.budgets import BUDGETS, OverBudgetError
-from app.service.problems import NotFoundError
-from app.service.store.database import Database
-from app.service.store.pages import one_page
-from app.service.store.tables import design_versions, designs, now
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.formats.designs.layout import DesignLayout, check_layout
+from .idempotency import Retry, once
+from .painting import kinds_around, paint
 
 DELETED_KEPT_S = 30 * 86_400.0
 """How long a deleted design can be recovered."""

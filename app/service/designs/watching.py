@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncGenerator, Callable
 
-from app.service.listeners import Listeners
+from ..listeners import Listeners
 
 PERIOD_S = 0.5
 QUIET_S = 5.0

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from pydantic import AwareDatetime, BaseModel, Field
 
-from app.service.problems import Problem
+from ..problems import Problem
 
 
 class JobState(StrEnum):

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, create_model
 
-from app.models.base import RequestModel, ResultModel, read
-from app.operations.registry import Operation, operations
 from knitcore.base.extensions import Group, extensions
 from knitcore.yarn.library import fingerprint
+
+from ...models.base import RequestModel, ResultModel, read
+from ...operations.registry import Operation, operations
 
 KINDS: dict[str, Operation[Any, Any]] = {
     name: operation for name, operation in operations().items() if operation.job

@@ -9,16 +9,16 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any
 
-from app.service.compute.answers import Answers
-from app.service.compute.workers import AbandonedError, NotBegunError
-from app.service.designs.idempotency import Retry
-from app.service.jobs.document import JobState, JobStatus
-from app.service.jobs.kinds import KINDS, job_key, read_job
-from app.service.jobs.store import JobStore
-from app.service.limits.budgets import SpentError
-from app.service.problems import DispossessedError, Problem, ServiceError, StoreError
-from app.service.web.bodies import SMALL_BYTES
-from app.service.web.errors import problem_of
+from ..compute.answers import Answers
+from ..compute.workers import AbandonedError, NotBegunError
+from ..designs.idempotency import Retry
+from ..limits.budgets import SpentError
+from ..problems import DispossessedError, Problem, ServiceError, StoreError
+from ..web.bodies import SMALL_BYTES
+from ..web.errors import problem_of
+from .document import JobState, JobStatus
+from .kinds import KINDS, job_key, read_job
+from .store import JobStore
 
 log = logging.getLogger("knitcore.jobs")
 

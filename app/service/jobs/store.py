@@ -9,13 +9,13 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
 
-from app.service.designs.idempotency import Retry, once
-from app.service.jobs.document import JobPage, JobState, JobStatus
-from app.service.limits.budgets import BUDGETS, OverBudgetError
-from app.service.problems import NotFoundError, Problem, StoreError
-from app.service.store.database import Database
-from app.service.store.pages import one_page
-from app.service.store.tables import job_requests, jobs, now, results
+from ..designs.idempotency import Retry, once
+from ..limits.budgets import BUDGETS, OverBudgetError
+from ..problems import NotFoundError, Problem, StoreError
+from ..store.database import Database
+from ..store.pages import one_page
+from ..store.tables import job_requests, jobs, now, results
+from .document import JobPage, JobState, JobStatus
 
 WAITING, RUNNING = OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from pydantic import BaseModel
 
-from app.service.identity import LOCAL_USER
-from app.service.memory import machine_bytes
-from app.service.problems import ServiceError
+from ..identity import LOCAL_USER
+from ..memory import machine_bytes
+from ..problems import ServiceError
 
 MAX_KNOWN = 50_000
 

@@ -9,8 +9,8 @@ from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from app.service.limits.budgets import OverBudgetError
-from app.service.problems import UnavailableError
+from ..problems import UnavailableError
+from .budgets import OverBudgetError
 
 Place = TypeVar("Place")
 MAX_AT_A_GATE = 100

@@ -18,11 +18,12 @@ from pydantic import BaseModel
 from sqlalchemy import Connection, MetaData, func, insert, select
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.service.results.own_materials import KINDS
-from app.service.store.database import Database
-from app.service.store.schema import migrate, revision
-from app.service.store.tables import metadata
 from knitcore.base.errors import InputError
+
+from ..results.own_materials import KINDS
+from .database import Database
+from .schema import migrate, revision
+from .tables import metadata
 
 FORMAT = "knitcore-backup"
 VERSION = 1

@@ -33,9 +33,9 @@ from sqlalchemy.exc import DatabaseError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.pool import QueuePool
 
-from app.service.problems import DamagedError, StoreError, StoreFullError
-from app.service.store.file import DatabaseFile
-from app.service.store.name_lock import NameLock
+from ..problems import DamagedError, StoreError, StoreFullError
+from .file import DatabaseFile
+from .name_lock import NameLock
 
 log = logging.getLogger("knitcore.store")
 T = TypeVar("T")

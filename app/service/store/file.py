@@ -17,8 +17,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from app.service.problems import DispossessedError, VanishedError
 from knitcore.base.errors import InputError
+
+from ..problems import DispossessedError, VanishedError
 
 BESIDE = ("-wal", "-shm")
 """Files that SQLite keeps beside its own while it is open: the newest changes, and their index."""

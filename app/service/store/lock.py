@@ -5,10 +5,11 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 
-from app.service.store.database import Database, sqlite_file
-from app.service.store.file import holder_of
-from app.service.store.name_lock import NameLock
 from knitcore.base.errors import InputError
+
+from .database import Database, sqlite_file
+from .file import holder_of
+from .name_lock import NameLock
 
 
 @contextlib.contextmanager

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from sqlalchemy import Connection, Engine, text
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from app.service.problems import DispossessedError
+from ..problems import DispossessedError
 
 log = logging.getLogger("knitcore.store")
 

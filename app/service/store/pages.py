@@ -7,8 +7,9 @@ from typing import Any
 
 from sqlalchemy import Column, Row, Select, tuple_
 
-from app.service.store.database import Database
 from knitcore.base.errors import InputError
+
+from .database import Database
 
 
 def one_page(

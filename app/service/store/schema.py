@@ -10,10 +10,11 @@ from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import inspect
 
-from app.service.problems import DamagedError
-from app.service.store.database import Database
-from app.service.store.tables import metadata
 from knitcore.base.errors import InputError
+
+from ..problems import DamagedError
+from .database import Database
+from .tables import metadata
 
 MIGRATIONS = Path(__file__).with_name("migrations")
 EARLIER = frozenset(f"{number:04}" for number in range(1, 8))
@@ -90,6 +91,7 @@ def check_schema(database: Database, target: str = "head") -> str | None:
 def _config() -> Config:
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS))
+    config.attributes["metadata"] = metadata
     return config
 
 

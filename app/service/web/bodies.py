@@ -18,9 +18,9 @@ from pydantic import ValidatorFunctionWrapHandler, WrapValidator
 from starlette.exceptions import HTTPException
 from starlette.types import Message, Receive
 
-from app.models.charts import MAX_FIELD
-from app.service.identity import current_user
-from app.service.limits.turns import Gate
+from ...models.charts import MAX_FIELD
+from ..identity import current_user
+from ..limits.turns import Gate
 
 SMALL_BYTES = 64_000
 """Largest body that is decoded without waiting for a turn."""

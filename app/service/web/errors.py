@@ -14,10 +14,18 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from starlette.exceptions import HTTPException
 
-from app.models.base import InvalidRequestError, MissingError
-from app.models.checks import faults_of
-from app.models.refusals import problem_in_words, remedy_in_words
-from app.service.problems import (
+from knitcore.base.errors import (
+    CancelledError,
+    ConvergenceError,
+    InputError,
+    KnitcoreError,
+    UnravelledError,
+)
+
+from ...models.base import InvalidRequestError, MissingError
+from ...models.checks import faults_of
+from ...models.refusals import problem_in_words, remedy_in_words
+from ..problems import (
     MAX_FAULTS,
     PROBLEM_TYPE,
     Fault,
@@ -25,13 +33,6 @@ from app.service.problems import (
     NotFoundError,
     Problem,
     ServiceError,
-)
-from knitcore.base.errors import (
-    CancelledError,
-    ConvergenceError,
-    InputError,
-    KnitcoreError,
-    UnravelledError,
 )
 
 MAX_BYTES = 10_000

@@ -8,9 +8,9 @@ from contextlib import aclosing
 from fastapi import Request
 from fastapi.responses import StreamingResponse
 
-from app.service.identity import current_user
-from app.service.limits.budgets import InUse
-from app.service.problems import StoppingError
+from ..identity import current_user
+from ..limits.budgets import InUse
+from ..problems import StoppingError
 
 QUIET_S = 15.0
 

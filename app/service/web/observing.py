@@ -17,8 +17,8 @@ from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Info
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.service import VERSION
-from app.service.identity import current_user
+from .. import VERSION
+from ..identity import current_user
 
 log = logging.getLogger("knitcore.access")
 request_id: ContextVar[str | None] = ContextVar("request_id", default=None)

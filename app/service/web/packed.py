@@ -10,7 +10,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 from starlette.datastructures import Headers
 
-from app.operations.perform import LEVEL
+from ...operations.perform import LEVEL
 
 WORTH_BYTES = 1_000
 """Shorter responses are sent uncompressed."""

@@ -16,7 +16,7 @@ from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
-from app.service.web.packed import takes_gzip
+from .packed import takes_gzip
 
 log = logging.getLogger("knitcore.app")
 

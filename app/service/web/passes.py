@@ -17,7 +17,7 @@ from urllib.parse import parse_qs
 
 from starlette.types import Scope
 
-from app.service.identity import current_session, current_user
+from ..identity import current_session, current_user
 
 MAX_PASSES = 10_000
 """Most passes that are remembered; the oldest makes room for a new one."""

@@ -15,9 +15,9 @@ from typing import Any
 from fastapi import FastAPI, HTTPException, Request, Response
 from fastapi.responses import HTMLResponse
 
-from app.service.problems import FOLDER, KINDS
-from app.service.web.packed import tagged
-from app.service.web.schema import FIRST_PROBLEM
+from ..problems import FOLDER, KINDS
+from .packed import tagged
+from .schema import FIRST_PROBLEM
 
 STYLE = """
 :root { color-scheme: light dark; }

@@ -10,11 +10,12 @@ from typing import Any
 
 from fastapi import FastAPI, Request, Response
 
-from app.models.uploads import EXAMPLES
-from app.service.problems import PROBLEM_TYPE
-from app.service.web.errors import problem_of
-from app.service.web.packed import tagged
 from knitcore.base.errors import InputError
+
+from ...models.uploads import EXAMPLES
+from ..problems import PROBLEM_TYPE
+from .errors import problem_of
+from .packed import tagged
 
 FIRST_PROBLEM = 400
 EXAMPLE = problem_of(

@@ -17,18 +17,18 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
-from app.service.identity import NOBODY, current_session, current_user
-from app.service.limits.budgets import InUse, RateLimit
-from app.service.problems import RefusedError, ServiceError, StoppingError, StoreError, TooManyError
-from app.service.settings import Settings
-from app.service.web.answer import Answer
-from app.service.web.bodies import limited
-from app.service.web.errors import answer_to, unexpected
-from app.service.web.passes import Opener, Passes
-from app.service.web.reference import PAGES
-from app.service.web.sessions import SESSION_S
-from app.service.web.sign_in import PATH, sign_in_form, sign_in_page, token_page
-from app.service.web.tokens import REMEMBERED_S, Login
+from ..identity import NOBODY, current_session, current_user
+from ..limits.budgets import InUse, RateLimit
+from ..problems import RefusedError, ServiceError, StoppingError, StoreError, TooManyError
+from ..settings import Settings
+from .answer import Answer
+from .bodies import limited
+from .errors import answer_to, unexpected
+from .passes import Opener, Passes
+from .reference import PAGES
+from .sessions import SESSION_S
+from .sign_in import PATH, sign_in_form, sign_in_page, token_page
+from .tokens import REMEMBERED_S, Login
 
 log = logging.getLogger("knitcore.app")
 

@@ -7,9 +7,9 @@ import secrets
 from pydantic import AwareDatetime, BaseModel, Field
 from sqlalchemy import delete, insert, select
 
-from app.service.limits.budgets import Use
-from app.service.store.database import Database
-from app.service.store.tables import now, sessions
+from ..limits.budgets import Use
+from ..store.database import Database
+from ..store.tables import now, sessions
 
 SESSION_S = 30 * 86_400
 

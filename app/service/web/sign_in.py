@@ -9,7 +9,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import HTMLResponse
 from starlette.types import Receive, Scope
 
-from app.service.web.reference import page
+from .reference import page
 
 PATH = "/sign-in"
 MAX_BYTES = 4_000

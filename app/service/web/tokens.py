@@ -11,11 +11,12 @@ from itsdangerous import BadSignature, URLSafeTimedSerializer
 from pydantic import AwareDatetime, BaseModel
 from sqlalchemy import Connection, insert, or_, select, update
 
-from app.service.identity import LOCAL_USER
-from app.service.store.database import Database
-from app.service.store.tables import access_tokens, hash_of, now, service_keys
-from app.service.web.sessions import SESSION_S, Sessions
 from knitcore.base.errors import InputError
+
+from ..identity import LOCAL_USER
+from ..store.database import Database
+from ..store.tables import access_tokens, hash_of, now, service_keys
+from .sessions import SESSION_S, Sessions
 
 USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
 REMEMBERED_S = 5.0

@@ -1,4 +1,4 @@
-"""Maps of target moduli from a spreadsheet (columns: :mod:`knitcore.formats.write.stitch_values`)."""
+"""Maps of target moduli from a spreadsheet (see :mod:`knitcore.formats.write.stitch_values`)."""
 
 from __future__ import annotations
 

@@ -10,14 +10,16 @@ import ast
 import hashlib
 import json
 import re
+import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
+from importlib.util import resolve_name
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
-"""Folder of the packages."""
+ROOT = Path(__file__).resolve().parents[3]
+"""Folder of the packages, but for those that are installed under another name."""
 SOLVERS = ("knitcore.yarn.library.characterise",)
 """The module that relaxes, stretches and fits a law; it imports all others that do."""
 _FILE_NAME = re.compile(r"[\w-]+\.\w+")
@@ -83,7 +85,9 @@ def reached(modules: tuple[str, ...]) -> dict[str, ModuleCode]:
         if name in found or file is None:
             continue
         found[name] = _read(file.read_text(encoding="utf-8"))
-        waiting += [n for n in found[name].imports if n.partition(".")[0] in packages]
+        package = name if file.stem == "__init__" else name.rpartition(".")[0]
+        imported = (resolve_name(n, package) for n in found[name].imports)
+        waiting += [n for n in imported if n.partition(".")[0] in packages]
     return found
 
 
@@ -99,16 +103,24 @@ def _read(text: str) -> ModuleCode:
 
 
 def _file(module: str) -> Path | None:
-    path = ROOT.joinpath(*module.split("."))
+    path = _folder(*module.split("."))
     candidates = (path.with_suffix(".py"), path / "__init__.py")
     return next((file for file in candidates if file.is_file()), None)
 
 
+def _folder(package: str, *inside: str) -> Path:
+    folder = ROOT / package
+    if not folder.is_dir() and package in sys.modules:
+        folder = Path(sys.modules[package].__path__[0])
+    return folder.joinpath(*inside)
+
+
 def _imports(tree: ast.Module) -> Iterator[str]:
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
-            yield from (f"{node.module}.{name.name}" for name in node.names)
+        if isinstance(node, ast.ImportFrom):
+            module = "." * node.level + (node.module or "")
+            dot = "." if node.module else ""
+            yield from (module, *(f"{module}{dot}{name.name}" for name in node.names))
         elif isinstance(node, ast.Import):
             yield from (name.name for name in node.names)
 
@@ -116,7 +128,7 @@ def _imports(tree: ast.Module) -> Iterator[str]:
 def _named_data(module: str, source: ModuleCode) -> Iterator[Path]:
     """Files in the data folders around a module that it names."""
     parts = module.split(".")
-    folders = [ROOT.joinpath(*parts[:k], "data") for k in range(1, len(parts))]
+    folders = [_folder(*parts[:k], "data") for k in range(1, len(parts))]
     for name in source.files:
         yield from (folder / name for folder in folders if (folder / name).is_file())
 
