@@ -3,8 +3,8 @@
  * to do, or the browser's own AbortError if the call was given up.
  *
  * @import {Box} from "./grid/grid.js"
- * @import {CameraSide, JobStatus, MaterialDetail, MaterialSummary, Operations, PatternResult, Problem, SignedIn,
- *   VersionResult, ViewRequest, ViewResult} from "./types.js"
+ * @import {CameraSide, JobStatus, MaterialDetail, Operations, Problem, SignedIn, VersionResult, ViewRequest,
+ *   ViewResult} from "./types.js"
  */
 
 /** A refused or failed call. */
@@ -126,13 +126,13 @@ export const api = {
   /** @type {() => Promise<VersionResult>} */
   version: () => call("/version"),
 
-  /** @type {() => Promise<{materials: MaterialSummary[]}>} */
+  /** @type {() => Promise<{materials: import("./types.js").MaterialSummary[]}>} */
   materials: () => call("/materials"),
 
   /** @type {(id: string, signal?: AbortSignal) => Promise<MaterialDetail>} */
   material: (id, signal) => call(`/materials/${encodeURIComponent(id)}`, { signal }),
 
-  /** @type {() => Promise<{patterns: PatternResult[]}>} */
+  /** @type {() => Promise<{patterns: import("./types.js").PatternResult[]}>} */
   patterns: () => call("/patterns"),
 
   /** @type {(design: string, body: ViewRequest) => Promise<ViewResult>} */

@@ -92,7 +92,11 @@ async function* hung(studio, signal) {
   const { rows, columns } = studio.document.grid;
   const asked = { ...studio.request, outline: outlineOf(studio), linear_density_g_per_m: studio.weight.value };
   for (const time_limit_s of PATIENCE_S) {
-    const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.run("hang", { ...asked, time_limit_s }, signal);
+    const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.run(
+      "hang",
+      { ...asked, time_limit_s },
+      signal,
+    );
     const length = `reaches ${figure(drop_mm / 10, 3)} cm down, stitches ${percent(lengthening, 1)} longer`;
     const words = `Hanging: ${figure(weight_g, 2)} g, ${length}`;
     yield { pose: "hung", id, rows, columns, converged, words, note: notes[0] };

@@ -81,7 +81,8 @@ test("after a stroke the old shape is a preview at once", async () => {
 test("the first shape begins at the old one, and the last one at nothing", async () => {
   /** @type {any[]} */
   const begun = [];
-  /** @type {any} */ (api).run = (/** @type {any} */ { after, time_limit_s }) => {
+  /** @type {any} */ (api).run = (/** @type {string} */ operation, /** @type {any} */ { after, time_limit_s }) => {
+    assert.equal(operation, "curl");
     begun.push(after);
     const id = `shape ${begun.length}`;
     return Promise.resolve({ id, rows: 1, columns: 2, converged: time_limit_s > 1 || after, notes: [] });
