@@ -137,7 +137,10 @@ def library_pages() -> tuple[str, dict[str, str]]:
         "",
         "| name | what it is |",
         "|---|---|",
-        *(f"| {_public(name)} | {_cell(_summary(name))} |" for name in knitcore.__all__),
+        *(
+            f"| {_public(name)} | {_cell(_summary(name))} |"
+            for name in sorted(vars(knitcore)["__all__"])
+        ),
         "",
         "## Packages",
         "",

@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, least_squares, nnls
 
 from knitcore.chart.fabric import Direction, Fabric
-from knitcore.cloth.cut import Cloth, CutPiece, Held
-from knitcore.cloth.cut import cut_test as solve
+from knitcore.cloth.cut import Cloth, CutPiece, Held, solve
 from knitcore.cloth.flat import QuarterGrid, Sheet, SheetModel, pull
 from knitcore.cloth.flat.strip import Clamps
 from knitcore.fit.strip_fit import ALPHA_SHARE, SHEAR_STIFFENING

@@ -10,8 +10,7 @@ import click
 from pydantic import Field, ValidationError
 
 from knitcore.base.errors import InputError
-from knitcore.cloth.cut import PieceTest, cloth_under, write_piece_test
-from knitcore.cloth.cut import cut_test as solve
+from knitcore.cloth.cut import PieceTest, cloth_under, solve, write_piece_test
 from knitcore.cloth.cut.cut_results import SUFFIXES
 from knitcore.cloth.cut.cut_uncertainty import piece_spreads
 from knitcore.materials import Material

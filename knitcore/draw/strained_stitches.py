@@ -26,7 +26,7 @@ class StitchStates:
         stitch.
     """
 
-    positions_mm: Array
+    positions_mm: NDArray[np.float32]
     strain: Array
     utilisation: Array
 

@@ -50,6 +50,8 @@ def reduced_symmetry() -> None:
             for direction in Direction:
                 segment = moduli.segment(direction)
                 even = segment.geometry.parity == "even"
+                if segment.published_n_per_mm is None:
+                    continue
                 axes.plot(
                     segment.published_n_per_mm,
                     segment.modulus_n_per_mm,

@@ -6,8 +6,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 from knitcore import StitchChart
-from knitcore.cloth.cut import CutPiece, Held, PieceTest, Pulled, Sewn, cloth_under
-from knitcore.cloth.cut import cut_test as solve
+from knitcore.cloth.cut import CutPiece, Held, PieceTest, Pulled, Sewn, cloth_under, solve
 from knitcore.materials import material
 from studies.figures.plot import MUTED, chart, save
 

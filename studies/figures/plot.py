@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+from cycler import cycler
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from knitcore.chart.fabric import Fabric
 
@@ -45,7 +47,7 @@ mpl.rcParams.update(
         "axes.edgecolor": TOKENS["line-strong"],
         "axes.grid": True,
         "axes.labelcolor": TOKENS["text"],
-        "axes.prop_cycle": mpl.cycler(color=INKS),
+        "axes.prop_cycle": cycler(color=INKS),
         "axes.spines.right": False,
         "axes.spines.top": False,
         "axes.titlelocation": "left",
@@ -113,14 +115,16 @@ def logarithmic(axes: Axes, x: Sequence[float], y: Sequence[float]) -> None:
 
 def name_fabrics(axes: Axes, *more: Any) -> None:
     """Add a legend of the fabrics' colours, then of further lines or points."""
-    lines = [plt.Line2D([], [], color=ink, label=str(name)) for name, ink in FABRICS.items()]
+    lines = [Line2D([], [], color=ink, label=str(name)) for name, ink in FABRICS.items()]
     axes.legend(handles=[*lines, *more])
 
 
 def save(axes: Axes, name: str) -> None:
     """Write the figure that has these axes to ``docs/figures``."""
     path = FOLDER / f"{name}.svg"
-    axes.get_figure(root=True).savefig(path, metadata={"Date": None, "Creator": None})
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.savefig(path, metadata={"Date": None, "Creator": None})
     plt.close("all")
     drawn = re.sub(r"(\d\.\d\d)\d{3,}", r"\1", path.read_text(encoding="utf-8"))  # 0.01 pt
     path.write_text(re.sub(r"\s*\n\s*", " ", drawn).strip() + "\n", encoding="utf-8")

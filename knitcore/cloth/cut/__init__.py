@@ -2,8 +2,8 @@
 
 from knitcore.cloth.cut.conditions import Condition, Framed, Held, Pulled, Sewn, Traction
 from knitcore.cloth.cut.cut_cloth import Cloth, cloth_under
+from knitcore.cloth.cut.cut_piece import solve
 from knitcore.cloth.cut.cut_results import ElementFields, PieceTest, write_piece_test
-from knitcore.cloth.cut.cut_test import solve
 from knitcore.cloth.cut.outline import CutPiece
 
 __all__ = [

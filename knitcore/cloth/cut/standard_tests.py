@@ -15,8 +15,8 @@ from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.cloth.cut.conditions import MAX_SHEAR_ANGLE, Framed, Held, frame_rate
 from knitcore.cloth.cut.cut_cloth import Cloth, cloth_under
+from knitcore.cloth.cut.cut_piece import solve
 from knitcore.cloth.cut.cut_results import PieceTest
-from knitcore.cloth.cut.cut_test import solve
 from knitcore.cloth.cut.cut_uncertainty import force_log_sd
 from knitcore.cloth.cut.outline import CutPiece
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE, MAX_STRAIN
@@ -123,7 +123,7 @@ def bias_test(
     steps : of the load.
     shear_modulus : N/mm, replaces the laws' own.
     mesh_mm : length of an element's side.
-    progress, cancelled : as for :func:`knitcore.cloth.cut.cut_test.solve`.
+    progress, cancelled : as for :func:`knitcore.cloth.cut.cut_piece.solve`.
 
     Raises
     ------

@@ -14,7 +14,7 @@ test("formats of extensions are offered, with the package that they come from", 
   const house = { name: "house", package: "knit-house 1.0", problem: null };
   const found = ofExtensions([
     { ...house, group: "knitcore.exporters", offers: ["punchcard", "jacquard"] },
-    { ...house, group: "knitcore.chart.patterns", offers: ["waffle"] },
+    { ...house, group: "knitcore.materials", offers: ["waffle"] },
     { ...house, group: "knitcore.exporters", offers: ["broken"], problem: "It cannot be loaded." },
   ]);
   assert.deepEqual(

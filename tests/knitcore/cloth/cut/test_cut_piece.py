@@ -25,9 +25,9 @@ from knitcore.cloth.cut import (
     Sewn,
     Traction,
     cloth_under,
+    solve,
     write_piece_test,
 )
-from knitcore.cloth.cut import cut_test as solve
 from knitcore.cloth.cut.assembly import PieceEnergy
 from knitcore.cloth.cut.conditions import Constraints
 from knitcore.cloth.cut.cut_mesh import mesh_of
