@@ -92,7 +92,11 @@ def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResul
         cancelled=context.cancelled,
     )
     return ShapeResult.of(
-        found, rows=found.chart.rows, columns=found.chart.columns, chart=found.chart.text
+        found,
+        rows=found.chart.rows,
+        columns=found.chart.columns,
+        chart=found.chart.text,
+        wanted=found.target,
     )
 
 

@@ -197,8 +197,8 @@ def _attempt(function: Callable[[Task], Document], task: Task) -> Document | Exc
 def _executor(scheduler: str | None, workers: int | None) -> Iterator[tuple[Executor, int]]:
     """The executor, and the number of tasks that keeps all workers busy."""
     if scheduler is not None:
-        with _cluster(scheduler) as found:
-            yield found
+        with _cluster(scheduler) as cluster:
+            yield cluster
         return
     count = workers or os.cpu_count() or 1
     executor = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))

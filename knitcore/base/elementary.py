@@ -35,9 +35,9 @@ def _parts(value: float) -> tuple[int, float]:
     s = (part - 1.0) / (part + 1.0)
     square = s * s
     q = square * square  # two sums side by side take half as long
-    one = 1 / 5 + q * (1 / 9 + q * (1 / 13 + q * (1 / 17 + q * (1 / 21))))
-    other = 1 / 3 + q * (1 / 7 + q * (1 / 11 + q * (1 / 15 + q * (1 / 19))))
-    return int(whole), 2.0 * (s + s * (square * other + q * one))
+    from_fifth = 1 / 5 + q * (1 / 9 + q * (1 / 13 + q * (1 / 17 + q * (1 / 21))))
+    from_third = 1 / 3 + q * (1 / 7 + q * (1 / 11 + q * (1 / 15 + q * (1 / 19))))
+    return int(whole), 2.0 * (s + s * (square * from_third + q * from_fifth))
 
 
 @compiled

@@ -76,17 +76,18 @@ class Extension:
             If it cannot be imported, fails, or offers something else.
         """
         try:
-            found = tuple(EntryPoint(self.name, self.target, self.group).load()())
+            things = tuple(EntryPoint(self.name, self.target, self.group).load()())
         except Exception as error:  # a foreign package may raise anything
             raise self.error(f"{type(error).__name__}: {error}") from error
-        for one in found:
-            if not isinstance(one, kind):
-                raise self.error(f"it offers a {type(one).__name__}, not a {kind.__name__}")
-            if not IDENTIFIER.fullmatch(one.identifier):
+        for thing in things:
+            if not isinstance(thing, kind):
+                raise self.error(f"it offers a {type(thing).__name__}, not a {kind.__name__}")
+            if not IDENTIFIER.fullmatch(thing.identifier):
                 raise self.error(
-                    f"{one.identifier!r} is not an identifier (lower-case letters, digits, hyphens)"
+                    f"{thing.identifier!r} is not an identifier"
+                    " (lower-case letters, digits, hyphens)"
                 )
-        return found
+        return things
 
     def error(self, problem: str) -> ExtensionError:
         """An error that names the entry point."""
@@ -117,17 +118,17 @@ def offered(group: Group, kind: type[Kind], built_in: Container[str] = ()) -> di
     ExtensionWarning
         Of every extension that is left out, because it fails or takes a name that is taken.
     """
-    found: dict[str, Kind] = {}
+    things: dict[str, Kind] = {}
     for extension in extensions(group):
         try:
-            new = {one.identifier: one for one in extension.load(kind)}
-            if taken := [name for name in new if name in built_in or name in found]:
+            new = {thing.identifier: thing for thing in extension.load(kind)}
+            if taken := [name for name in new if name in built_in or name in things]:
                 raise extension.error(f"{', '.join(taken)} exists already")
         except ExtensionError as error:
             warnings.warn(str(error), ExtensionWarning, stacklevel=2)
         else:
-            found |= new
-    return found
+            things |= new
+    return things
 
 
 @contextmanager

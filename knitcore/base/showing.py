@@ -34,8 +34,8 @@ def svg(width: float, height: float, title: str, parts: Iterable[str]) -> str:
 
 def captioned(picture: str, *lines: str) -> str:
     """A picture or table with lines of text below it."""
-    told = "".join(f"<div>{escape(line)}</div>" for line in lines if line)
-    return f'<figure style="margin:0">{picture}<figcaption>{told}</figcaption></figure>'
+    caption = "".join(f"<div>{escape(line)}</div>" for line in lines if line)
+    return f'<figure style="margin:0">{picture}<figcaption>{caption}</figcaption></figure>'
 
 
 def beside(*parts: str) -> str:
@@ -94,8 +94,8 @@ def rectangles(drawn: Sequence[tuple[str, float, float]], unit: str) -> str:
             f'<rect x="{middle - w / 2:.1f}" y="{middle - h / 2:.1f}" width="{w:.1f}" '
             f'height="{h:.1f}" fill="{ink}" fill-opacity=".25" stroke="{ink}"/>'
         )
-    told = "; ".join(f"{name} {w:.3g} × {h:.3g} {unit}".strip() for name, w, h in drawn)
-    return svg(2 * middle, 2 * middle, told, parts)
+    caption = "; ".join(f"{name} {w:.3g} × {h:.3g} {unit}".strip() for name, w, h in drawn)
+    return svg(2 * middle, 2 * middle, caption, parts)
 
 
 def curves(
@@ -137,8 +137,8 @@ def curves(
         f'fill="currentColor">{text}</text>'
         for x, y, anchor, text in texts
     ]
-    told = " and ".join(name for name, *_ in lines)
-    return svg(WIDTH, HEIGHT, f"{y_name} over {x_name}: {told}", parts)
+    caption = " and ".join(name for name, *_ in lines)
+    return svg(WIDTH, HEIGHT, f"{y_name} over {x_name}: {caption}", parts)
 
 
 def net(lines: Sequence[Array], title: str) -> str:

@@ -50,12 +50,12 @@ class Fabric(Choice):
 
     @property
     def course_odd(self) -> bool:
-        """Whether neighbours in a row are of unlike kind."""
+        """Say whether neighbours in a row differ in kind (one knit, one purl)."""
         return self in (Fabric.RIB, Fabric.SEED)
 
     @property
     def wale_odd(self) -> bool:
-        """Whether neighbours in a column are of unlike kind."""
+        """Say whether neighbours in a column differ in kind (one knit, one purl)."""
         return self in (Fabric.GARTER, Fabric.SEED)
 
     @property

@@ -88,8 +88,8 @@ def striped_repeats() -> tuple[StitchChart, ...]:
 
     In stiffness they lie between their fabrics, each a step from the next.
     """
-    found = dict.fromkeys(chart.canonical() for chart in _stripes())
-    return tuple(chart for chart in found if max(chart.purl.shape) > 4)
+    distinct = dict.fromkeys(chart.canonical() for chart in _stripes())
+    return tuple(chart for chart in distinct if max(chart.purl.shape) > 4)
 
 
 def _symmetries(

@@ -19,7 +19,7 @@ class Construction(StrEnum):
 
 
 class Side(StrEnum):
-    """Which side faces the knitter."""
+    """The side of the fabric that faces the knitter: right (RS) or wrong (WS)."""
 
     RS = "RS"
     WS = "WS"

@@ -59,7 +59,7 @@ VALUES = (
 """Columns of an atlas; low and high are ends of 90 % intervals. Relaxed sizes are of the mean
 stitch."""
 
-INTERVAL_SOURCE = "Each repeat's own answer; `predict` names what its intervals rest on."
+INTERVAL_SOURCE = "Each repeat's own prediction; `predict` names what its intervals rest on."
 
 
 @dataclass(frozen=True)
@@ -103,14 +103,14 @@ class Atlas:
     @classmethod
     def of_entries(cls, material: str, fingerprint: str, entries: Mapping[str, Entry]) -> Atlas:
         """A table of entries by key."""
-        found = entries.values()
+        rows = entries.values()
         return cls(
             material=material,
             fingerprint=fingerprint,
             keys=tuple(entries),
-            values=np.array([e.values for e in found]).reshape(-1, len(VALUES)),
-            curves=np.array([e.curves for e in found]).reshape(-1, *CURVES),
-            provenance=tuple(e.provenance for e in found),
+            values=np.array([e.values for e in rows]).reshape(-1, len(VALUES)),
+            curves=np.array([e.curves for e in rows]).reshape(-1, *CURVES),
+            provenance=tuple(e.provenance for e in rows),
         )
 
     def __len__(self) -> int:
@@ -142,11 +142,11 @@ class Atlas:
 
         NaN beyond the last stress of the table, 2 N/mm.
         """
-        wanted = np.broadcast_to(np.asarray(stress_n_per_mm, dtype=float), (len(self),))
+        stresses = np.broadcast_to(np.asarray(stress_n_per_mm, dtype=float), (len(self),))
         curves = self.strains(direction)
-        if np.ptp(wanted) == 0 and len(self):
-            return _through(STRESS_N_PER_MM, curves)(float(wanted[0]))
-        return _each(curves, wanted)
+        if np.ptp(stresses) == 0 and len(self):
+            return _through(STRESS_N_PER_MM, curves)(float(stresses[0]))
+        return _each(curves, stresses)
 
     def stress_at(self, direction: Direction, strain: float) -> Array:
         """Stress (N/mm) of every repeat at a strain, free across; NaN beyond the table."""

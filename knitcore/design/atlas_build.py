@@ -68,7 +68,7 @@ def build_atlas(
     CancelledError
         If it was asked to stop.
     InputError
-        If the file holds something else, or the cluster does not answer.
+        If the file holds something else, or the cluster does not respond.
     """
     material = as_material(material)
     fingerprint = material_fingerprint(material)
@@ -82,7 +82,7 @@ def build_atlas(
         if progress is not None:
             progress(len(keys) - max(len(missing) - at.done * AT_ONCE, 0), len(keys))
 
-    found = run_batch(
+    batch = run_batch(
         predict_repeats,
         tasks,
         workers=workers,
@@ -91,9 +91,9 @@ def build_atlas(
         progress=tell,
         cancelled=cancelled,
     )
-    if found.failures:
-        raise KnitcoreError(next(iter(found.failures.values())))
-    for document in found.results.values():
+    if batch.failures:
+        raise KnitcoreError(next(iter(batch.failures.values())))
+    for document in batch.results.values():
         known |= {
             key: Entry(tuple(row["values"]), tuple(row["curves"]), row["provenance"])
             for key, row in document["entries"].items()
@@ -101,17 +101,17 @@ def build_atlas(
     if file is not None and tasks:
         save_atlas(Atlas.of_entries(material.identifier, fingerprint, known), file)
         shutil.rmtree(parts_folder(file))
-    wanted = {key: known[key] for key in dict.fromkeys(keys)}
-    return Atlas.of_entries(material.identifier, fingerprint, wanted)
+    chosen = {key: known[key] for key in dict.fromkeys(keys)}
+    return Atlas.of_entries(material.identifier, fingerprint, chosen)
 
 
 def predict_repeats(task: AtlasTask) -> dict[str, Any]:
     """One task: entries of its repeats, by key."""
-    found = {
+    entries = {
         key: asdict(entry_of(predict_repeat(StitchChart.parse(key), task.material)))
         for key in task.keys
     }
-    return {"entries": found}
+    return {"entries": entries}
 
 
 def predict_repeat(
@@ -122,9 +122,9 @@ def predict_repeat(
     return predict(repeat.tile(2, 2), material, swept=swept)
 
 
-def entry_of(answer: Prediction) -> Entry:
+def entry_of(prediction: Prediction) -> Entry:
     """The row of a repeat."""
-    course, wale = (answer.along(d) for d in Direction)
+    course, wale = (prediction.along(d) for d in Direction)
     values = (
         *_three(course.modulus_n_per_mm, course.modulus_interval_n_per_mm),
         *_three(wale.modulus_n_per_mm, wale.modulus_interval_n_per_mm),
@@ -147,7 +147,7 @@ def entry_of(answer: Prediction) -> Entry:
         ]
     )
     as_kept = tuple(curves.astype(np.float32).tolist())
-    return Entry(values, as_kept, answer.provenance.value)
+    return Entry(values, as_kept, prediction.provenance.value)
 
 
 def material_fingerprint(material: Material) -> str:

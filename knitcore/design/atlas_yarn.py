@@ -120,15 +120,15 @@ def _task(material: Material, key: str) -> RepeatTask:
 
 def _kept(folder: Path, tasks: Mapping[str, RepeatTask]) -> dict[str, Document]:
     """Finished repeats; a damaged file counts as not finished, as it does for the batch."""
-    found = {}
+    documents = {}
     for key, task in tasks.items():
         file = folder / f"{task.key}.json"
         if file.is_file():
             try:
-                found[key] = json.loads(file.read_text(encoding="utf-8"))
+                documents[key] = json.loads(file.read_text(encoding="utf-8"))
             except ValueError:
                 continue
-    return found
+    return documents
 
 
 def _merge(material: Material, file: Path, done: Mapping[str, Document]) -> None:

@@ -40,7 +40,7 @@ class CostLimits:
     curl: float | None = None
 
     def allow(self, cost: KnittingCost) -> bool:
-        """Whether a repeat keeps within all limits."""
+        """Say whether a repeat keeps within all limits."""
         pairs = (
             (cost.transfers_per_stitch, self.transfers_per_stitch),
             (cost.crossings_per_stitch, self.crossings_per_stitch),

@@ -1,4 +1,4 @@
-"""Which targets a filled chart meets, patch by patch, and alternatives for the others."""
+"""Report the targets that a filled chart misses, patch by patch, and suggest alternatives."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Patch:
 
 
 def unreached(regions: Sequence[Patch], targets: Array, off: Array, have: Array) -> list[str]:
-    """Messages about targets that were not met, with alternatives; one for patches alike.
+    """Write one message for each missed target, with an alternative; equal patches share it.
 
     Parameters
     ----------
@@ -58,12 +58,12 @@ def unreached(regions: Sequence[Patch], targets: Array, off: Array, have: Array)
     have : (repeats, 2) logarithms of the moduli of all repeats.
     """
     said = []
-    told = set()
+    reported = set()
     for region, target, away in zip(regions, targets, off, strict=True):
         for axis, direction in enumerate(Direction):
             alike = region.repeat, float(target[axis]), axis
-            if abs(away[axis]) > OFF and alike not in told:
-                told.add(alike)
+            if abs(away[axis]) > OFF and alike not in reported:
+                reported.add(alike)
                 said.append(
                     f"The patch of {region.stitches} stitches that begins in row {region.row + 1}, "
                     f"column {region.column + 1} is {_compared(away[axis])} {direction}-wise than "
@@ -92,7 +92,7 @@ def _compared(away: float) -> str:
 
 
 def _reach(target: Array, direction: Direction, have: Array) -> str:
-    """What this yarn can reach."""
+    """Describe the moduli that repeats of this yarn can reach."""
     own, other = direction.axis, direction.other.axis
     whole = np.exp(have[:, own])
     text = (
@@ -100,10 +100,10 @@ def _reach(target: Array, direction: Direction, have: Array) -> str:
     )
     if not np.isnan(target[other]):
         near = np.abs(have[:, other] - target[other]) < OFF
-        wanted = f"the wanted {np.exp(target[other]):.3g} N/mm {direction.other}-wise"
+        condition = f"the wanted {np.exp(target[other]):.3g} N/mm {direction.other}-wise"
         if near.any():
             part = np.exp(have[near, own])
-            text += f"; those with {wanted} have {part.min():.3g} to {part.max():.3g}"
+            text += f"; those with {condition} have {part.min():.3g} to {part.max():.3g}"
         else:
-            text += f", and none has {wanted}"
+            text += f", and none has {condition}"
     return text + ". Other yarns or needles may come closer."

@@ -30,7 +30,7 @@ from knitcore.design.patch_check import finite_size
 from knitcore.design.patch_placing import placed
 from knitcore.design.progress import SearchProgress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
-from knitcore.design.region_patches import connected, smooth, unevenness, wanted_labels
+from knitcore.design.region_patches import best_labels, connected, smooth, unevenness
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Interval
 from knitcore.mechanics.local_moduli import LocalModuli, local_moduli, stitch_table
@@ -125,27 +125,27 @@ def fill_field(
     CancelledError
         If it was asked to stop.
     """
-    wanted = _checked(modulus_course_n_per_mm, modulus_wale_n_per_mm, smallest_patch)
-    if kept is not None and kept.purl.shape != wanted[0].shape:
-        rows, columns = wanted[0].shape
+    target = _checked(modulus_course_n_per_mm, modulus_wale_n_per_mm, smallest_patch)
+    if kept is not None and kept.purl.shape != target[0].shape:
+        rows, columns = target[0].shape
         raise InputError(
             "chart",
             f"it has {kept.columns}x{kept.rows} stitches, the targets are for {columns}x{rows}.",
             "Give the chart that the targets were drawn on.",
         )
     if stitch is not None:
-        check_cloth(stitch, *wanted[0].shape)
-        if np.isnan(wanted[:, stitch]).all():
+        check_cloth(stitch, *target[0].shape)
+        if np.isnan(target[:, stitch]).all():
             raise InputError("target", "there is no target inside the outline.", "Paint there.")
     if atlas.material != material.identifier:
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
     if parts is None:
-        parts = np.zeros(wanted.shape[1:], dtype=np.intp)
+        parts = np.zeros(target.shape[1:], dtype=np.intp)
     watch = SearchProgress(progress, cancelled)
-    fill = _Fill(wanted, parts, kept, stitch, material, atlas, scattered, seed, watch)
-    return fill.run(smallest_patch, check=check and wanted[0].size <= MAX_CHECKED)
+    fill = _Fill(target, parts, kept, stitch, material, atlas, scattered, seed, watch)
+    return fill.run(smallest_patch, check=check and target[0].size <= MAX_CHECKED)
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ class _Fill:
 
     def __init__(
         self,
-        wanted: Array,
+        target: Array,
         parts: Labels,
         kept: StitchChart | None,
         stitch: NDArray[np.bool_] | None,
@@ -181,11 +181,11 @@ class _Fill:
         seed: int,
         progress: SearchProgress,
     ) -> None:
-        inside = np.ones(wanted.shape[1:], dtype=bool) if stitch is None else stitch
-        self._wanted = np.where(inside, wanted, np.nan)
+        inside = np.ones(target.shape[1:], dtype=bool) if stitch is None else stitch
+        self._target_map = np.where(inside, target, np.nan)
         self._parts, self._scattered = parts, scattered
         self._material, self._atlas, self._stitch = material, atlas, inside
-        no_target = np.isnan(self._wanted).all(axis=0)
+        no_target = np.isnan(self._target_map).all(axis=0)
         self._fixed = ~inside if kept is None else no_target
         around = np.zeros_like(inside) if kept is None else kept.purl
         self._kept = StitchChart(around & inside)
@@ -196,12 +196,12 @@ class _Fill:
 
     def run(self, smallest_patch: int, *, check: bool) -> FilledField:
         self._progress.look(0.01)
-        own = self._beside_kept(nearest_chart(self._wanted, self._table))
-        exact = float(np.nanmax(np.abs(deviation(own, self._wanted, self._table))))
+        own = self._beside_kept(nearest_chart(self._target_map, self._table))
+        exact = float(np.nanmax(np.abs(deviation(own, self._target_map, self._table))))
         if exact <= EXACT:
             return self._read_back(own, "The map is exactly that of a chart, which was read back.")
         uneven = unevenness(self._atlas, self._table)
-        chosen, cost = wanted_labels(self._atlas, uneven, *self._wanted)
+        chosen, cost = best_labels(self._atlas, uneven, *self._target_map)
         labels = smooth(cost, smallest_patch, self._parts)
         effective = self._atlas.log_moduli[chosen[labels]].transpose(2, 0, 1)
         patches = connected(np.where(self._fixed, len(chosen), labels))
@@ -209,11 +209,11 @@ class _Fill:
         patches[self._fixed] = count  # labels are in order, so these were last
         first = np.unique(patches, return_index=True)[1][:count]
         medians = _spread(self._targets(patches, count), patches)
-        rough = self._rms(deviation(own, self._wanted, self._table))
-        uneven_map = self._rms(medians - self._wanted)
+        rough = self._rms(deviation(own, self._target_map, self._table))
+        uneven_map = self._rms(medians - self._target_map)
         if rough <= min(
             _NEARLY,
-            _AS_GOOD * self._rms(effective - self._wanted),
+            _AS_GOOD * self._rms(effective - self._target_map),
             _AS_GOOD * uneven_map + EXACT,
         ):
             return self._read_back(own, "The map is nearly that of a chart, which was read back.")
@@ -241,15 +241,15 @@ class _Fill:
         large = [k for k in np.argsort(-sizes[: len(choices)]) if sizes[k] >= MIN_MIXED]
         poor = [k for k in large if off[k] > CLOSE][:MAX_MIXED]
         known: dict[tuple[float, ...], _Choice | None] = {}
-        found = list(choices)
+        improved = list(choices)
         for count, patch in enumerate(poor):
             self._progress.look(0.45 * count / len(poor))
             rows, columns = _extent(patches == patch)
             key = (*np.nan_to_num(targets[patch].round(3)).tolist(), rows, columns)
             if key not in known:
                 known[key] = self._mixture(targets[patch], rows, columns, off[patch])
-            found[patch] = known[key] or choices[patch]
-        return found
+            improved[patch] = known[key] or choices[patch]
+        return improved
 
     def _mixture(self, target: Array, rows: int, columns: int, off: float) -> _Choice | None:
         if self._mixer is None:
@@ -270,15 +270,15 @@ class _Fill:
         targets = self._targets(patches, len(last.choices)) - last.factors
         if self._is_alone(last.choices):
             return None
-        found = list(last.choices)
+        improved = list(last.choices)
         for patch, choice in enumerate(last.choices):
             off = np.nan_to_num(np.abs(self._atlas.log_moduli - targets[patch])).max(axis=1)
             entry = int(off.argmin())
             own = float(np.nan_to_num(np.abs(choice.log_moduli - targets[patch])).max())
             if own > CLOSE and off[entry] < 0.8 * own:
-                found[patch] = self._of_atlas(entry)
-        changed = any(a is not b for a, b in zip(found, last.choices, strict=True))
-        return found if changed else None
+                improved[patch] = self._of_atlas(entry)
+        changed = any(a is not b for a, b in zip(improved, last.choices, strict=True))
+        return improved if changed else None
 
     def _trial(
         self, patches: Labels, choices: list[_Choice], start: float, *, check: bool
@@ -287,7 +287,7 @@ class _Fill:
         chart = placed(
             patches,
             repeats,
-            self._wanted,
+            self._target_map,
             self._table,
             kept=self._kept,
             stitch=self._stitch,
@@ -307,25 +307,25 @@ class _Fill:
                     cancelled=self._progress.cancelled,
                 )
             )
-        off = _spread(self._judged(choices, factors), patches) - self._wanted
+        off = _spread(self._judged(choices, factors), patches) - self._target_map
         return _Trial(chart, tuple(choices), factors, self._off_share(off) + 0.1 * self._rms(off))
 
     def _targets(self, patches: Labels, count: int) -> Array:
         """(patches, 2) medians of the targets' logarithms, NaN where a patch has none."""
-        found = np.full((count, 2), np.nan)
+        medians = np.full((count, 2), np.nan)
         for patch in range(count):
-            for axis, target in enumerate(self._wanted):
+            for axis, target in enumerate(self._target_map):
                 here = target[patches == patch]
                 if not np.isnan(here).all():
-                    found[patch, axis] = np.nanmedian(here)
-        return found
+                    medians[patch, axis] = np.nanmedian(here)
+        return medians
 
     def _rms(self, off: Array) -> float:
         return float(np.sqrt(np.nanmean(off**2)))
 
     def _read_back(self, chart: StitchChart, message: str) -> FilledField:
         self._progress.look(1.0)
-        off = deviation(chart, self._wanted, self._table)
+        off = deviation(chart, self._target_map, self._table)
         return FilledField(
             chart,
             np.zeros(chart.purl.shape, dtype=np.intp),
@@ -365,7 +365,7 @@ class _Fill:
             patches,
             tuple(regions),
             local_moduli(trial.chart, self._material),
-            self._off_share(_spread(judged, patches) - self._wanted),
+            self._off_share(_spread(judged, patches) - self._target_map),
             tuple(unreached(regions, targets, np.expm1(judged - targets), self._atlas.log_moduli)),
         )
 
@@ -389,7 +389,7 @@ class _Fill:
             StitchChart(np.where(self._fixed, self._kept.purl, chart.purl ^ swap))
             for swap in (False, True)
         ]
-        return min(charts, key=lambda c: self._rms(deviation(c, self._wanted, self._table)))
+        return min(charts, key=lambda c: self._rms(deviation(c, self._target_map, self._table)))
 
     def _off_share(self, off: Array) -> float:
         """Share of stitches with a target that miss it by more than 10 % (logarithms)."""
@@ -397,7 +397,7 @@ class _Fill:
         return float(np.mean(missed, where=self._has_target))
 
     def _is_alone(self, choices: Sequence[_Choice]) -> bool:
-        """Whether a single patch covers all stitches."""
+        """Say whether a single patch covers all stitches."""
         return len(choices) == 1 and not self._fixed.any()
 
     def _judged(self, choices: Sequence[_Choice], factors: Array) -> Array:

@@ -36,7 +36,7 @@ class Candidate(Result):
     values : predictions by the targets' labels; NaN where there is none, such as a pressure beyond
         the lock-up.
     intervals : 90 % intervals of these.
-    deviations : predicted over wanted, minus one; the difference for Poisson's ratios.
+    deviations : predicted over target, minus one; the difference for Poisson's ratios.
     chance : that all quantities are within their tolerances, by their intervals and as if
         independent.
     misfit : weighted rms of the deviations in units of their tolerances (logarithms).
@@ -59,14 +59,14 @@ class Candidate(Result):
 
 @dataclass(frozen=True, repr=False)
 class FoundFabrics(Result):
-    """The answer to a search.
+    """The result of a search.
 
     Attributes
     ----------
     candidates : the surest first.
     reached : whether any repeat is predicted within all tolerances.
     ranges : what all repeats together span, by label.
-    message : the answer in words.
+    message : the result in words.
     """
 
     candidates: tuple[Candidate, ...]
@@ -149,13 +149,11 @@ def find_fabric(
 
 
 def _doubtful(atlas: Atlas, index: int, targets: Sequence[Target]) -> bool:
-    """Whether a repeat is a pure fabric whose published figures contradict each other in a
-    direction of the targets.
-    """
-    asked = {target.quantity.direction for target in targets}
+    """Say whether a repeat's published figures contradict each other in a targeted direction."""
+    targeted = {target.quantity.direction for target in targets}
     return any(
         atlas.material == Laws.PUBLISHED.of(yarn)
-        and bool(asked & directions)
+        and bool(targeted & directions)
         and _canonical(atlas.keys[index]) == StitchChart.of_fabric(fabric).canonical().key
         for (yarn, fabric), directions in INCONSISTENT.items()
     )

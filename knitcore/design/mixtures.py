@@ -100,10 +100,10 @@ class Mixer:
         tried: set[StitchChart] = set()
         for _ in range(MAX_PREDICTED):
             look()
-            found = self._next(tables, target - learnt, tried)
-            if found is None:
+            candidate = self._next(tables, target - learnt, tried)
+            if candidate is None:
                 break
-            chart, estimated = found
+            chart, estimated = candidate
             tried.add(chart)
             mixture = self._predicted(chart, target)
             if best is None or mixture.off < best.off:
@@ -116,8 +116,8 @@ class Mixer:
         return best
 
     def _predicted(self, chart: StitchChart, target: Array) -> Stripes:
-        found = predict_repeat(chart, self._material)
-        moduli = found.modulus_course_n_per_mm, found.modulus_wale_n_per_mm
+        predicted = predict_repeat(chart, self._material)
+        moduli = predicted.modulus_course_n_per_mm, predicted.modulus_wale_n_per_mm
         return Stripes(chart, *moduli, float(np.nanmax(np.abs(np.log(moduli) - target))))
 
     def _turned(
@@ -198,10 +198,13 @@ class Mixer:
         widths = np.tile(widths, (len(pairs), 1))
         share = widths * sizes[partners]
         share = share / share.sum(axis=1, keepdims=True)
-        one, other, mixed = laminated(
+        crosswise, lengthwise, mixed = laminated(
             stiff[along][partners], stiff[across][partners], coupling[partners], share
         )
-        moduli = {along: one - mixed**2 / other, across: other - mixed**2 / one}
+        moduli = {
+            along: crosswise - mixed**2 / lengthwise,
+            across: lengthwise - mixed**2 / crosswise,
+        }
         return _Estimates(
             direction,
             partners,

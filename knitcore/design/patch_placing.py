@@ -25,7 +25,7 @@ _ENOUGH = 1e-12
 def placed(
     patches: NDArray[np.intp],
     repeats: list[StitchChart],
-    wanted: Array,
+    target: Array,
     table: StitchTable,
     *,
     kept: StitchChart,
@@ -41,7 +41,7 @@ def placed(
     patches : (rows, columns) number of each stitch's patch; a number without a repeat means that
         the stitch stays as it is in ``kept``.
     repeats : of each patch.
-    wanted : (2, rows, columns) logarithms of the wanted moduli, NaN where there is no target.
+    target : (2, rows, columns) logarithms of the target moduli, NaN where there is no target.
     table : of the material.
     kept : stitches of the chart where there is no repeat.
     stitch : (rows, columns), where there are stitches.
@@ -50,7 +50,7 @@ def placed(
     look : called from time to time with the share done; may raise to stop.
     """
     rng = np.random.default_rng(seed)
-    local = _LocalCost(wanted, table, stitch)
+    local = _LocalCost(target, table, stitch)
     purl = kept.purl.copy()
     for patch, repeat in enumerate(repeats):
         purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
@@ -64,10 +64,10 @@ def placed(
 class _LocalCost:
     """Squared deviations of local moduli from the map, by windows."""
 
-    def __init__(self, wanted: Array, table: StitchTable, stitch: Grid) -> None:
+    def __init__(self, target: Array, table: StitchTable, stitch: Grid) -> None:
         self._stitch = stitch
         have = table.log_moduli[:, None, None]
-        self._cost = np.nansum((have - wanted[..., None]) ** 2, axis=0)
+        self._cost = np.nansum((have - target[..., None]) ** 2, axis=0)
 
     def around(self, purl: Grid, rows: slice, columns: slice) -> float:
         """Cost of all stitches whose surroundings a change inside the window can alter."""

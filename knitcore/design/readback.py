@@ -30,16 +30,16 @@ EXACT = 0.01
 _TURNS = 3
 
 
-def nearest_chart(wanted: Array, table: StitchTable) -> StitchChart:
+def nearest_chart(target: Array, table: StitchTable) -> StitchChart:
     """A chart whose local moduli are near a map, stitch by stitch.
 
     Parameters
     ----------
-    wanted : (2, rows, columns) logarithms; NaN where there is no target.
+    target : (2, rows, columns) logarithms; NaN where there is no target.
     table : of the material.
     """
     have = table.log_moduli
-    cost = np.nansum((wanted[..., None] - have[:, None, None]) ** 2, axis=0)  # (rows, columns, 16)
+    cost = np.nansum((target[..., None] - have[:, None, None]) ** 2, axis=0)  # (rows, columns, 16)
     rows, columns = cost.shape[:2]
     by_bit = cost.reshape(rows, columns, 2, 2, 2, 2)  # above, below, right, left
     rowwise = by_bit.transpose(0, 1, 5, 4, 3, 2)  # left, right, below, above
@@ -125,6 +125,6 @@ def _integrated(course: Odd, wale: Odd, cost: Array) -> StitchChart:
     return StitchChart(purl.reshape(rows, columns))
 
 
-def deviation(chart: StitchChart, wanted: Array, table: StitchTable) -> Array:
-    """(2, rows, columns) logarithms of a chart's local moduli over the wanted ones."""
-    return table.log_moduli[:, surroundings(chart)] - wanted
+def deviation(chart: StitchChart, target: Array, table: StitchTable) -> Array:
+    """(2, rows, columns) logarithms of a chart's local moduli over the targets."""
+    return table.log_moduli[:, surroundings(chart)] - target

@@ -35,7 +35,7 @@ def unevenness(atlas: Atlas, table: StitchTable) -> Array:
     return np.minimum(squares, 1.0)
 
 
-def wanted_labels(
+def best_labels(
     atlas: Atlas, uneven: Array, log_course: Array, log_wale: Array
 ) -> tuple[Labels, Array]:
     """The best repeats for a map, and the cost of each at every stitch.
@@ -44,7 +44,7 @@ def wanted_labels(
     ----------
     atlas : repeats to choose from.
     uneven : see :func:`unevenness`; of repeats about equally near the most even one is taken.
-    log_course, log_wale : (rows, columns) logarithms of the wanted moduli; NaN without a target.
+    log_course, log_wale : (rows, columns) logarithms of the target moduli; NaN without a target.
 
     Returns
     -------
@@ -60,8 +60,8 @@ def wanted_labels(
     votes = np.bincount(best, weights=counts, minlength=len(atlas))
     chosen = np.argsort(-votes, kind="stable")[:MAX_LABELS]
     chosen = np.sort(chosen[votes[chosen] > 0])
-    wanted = np.stack([log_course, log_wale])
-    cost = np.nansum((have[:, chosen, None, None] - wanted[:, None]) ** 2, axis=0)
+    target = np.stack([log_course, log_wale])
+    cost = np.nansum((have[:, chosen, None, None] - target[:, None]) ** 2, axis=0)
     return chosen, cost + price[chosen, None, None]
 
 
@@ -91,9 +91,9 @@ def connected(labels: Labels) -> Labels:
     numbered = np.zeros(labels.shape, dtype=np.intp)
     count = 0
     for label in np.unique(labels):
-        parts, found = ndimage.label(labels == label)
+        parts, added = ndimage.label(labels == label)
         numbered[parts > 0] = parts[parts > 0] - 1 + count
-        count += found
+        count += added
     return numbered
 
 

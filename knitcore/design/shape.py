@@ -66,7 +66,7 @@ class ShapedSwatch:
     chart : the stitches.
     bands : of one repeat each, from the bottom or the left.
     width : (lines,) stretched width over width at rest, from the swatch.
-    wanted : the target, NaN where there was none.
+    target : target width over width at rest, (lines,), NaN where there was none.
     rms, largest : of the differences.
     force_n : at the clamps.
     pulls : number of swatches that were pulled.
@@ -76,7 +76,7 @@ class ShapedSwatch:
     chart: StitchChart
     bands: tuple[Band, ...]
     width: Array
-    wanted: Array
+    target: Array
     rms: float
     largest: float
     force_n: float
@@ -119,12 +119,12 @@ def fill_shape(
     CancelledError
         If it was asked to stop.
     """
-    wanted = _checked(width, across, strain, smallest_band, direction)
+    target = _checked(width, across, strain, smallest_band, direction)
     if atlas.material != material.identifier:
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
-    run = _Run(wanted, across, direction, strain, material, atlas, smallest_band, cancelled)
+    run = _Run(target, across, direction, strain, material, atlas, smallest_band, cancelled)
     return run.solve(np.random.default_rng(seed), progress)
 
 
@@ -144,7 +144,7 @@ class _Run:
 
     def __init__(
         self,
-        wanted: Array,
+        target: Array,
         across: int,
         direction: Direction,
         strain: float,
@@ -153,11 +153,11 @@ class _Run:
         smallest_band: int,
         cancelled: Cancelled | None,
     ) -> None:
-        self._wanted, self._across, self._direction = wanted, across, direction
+        self._target, self._across, self._direction = target, across, direction
         self._strain, self._material, self._atlas = strain, material, atlas
         self._cancelled = cancelled
-        count = max(len(wanted) // smallest_band, 1)
-        self._edges = np.linspace(0, len(wanted), count + 1).round().astype(int)
+        count = max(len(target) // smallest_band, 1)
+        self._edges = np.linspace(0, len(target), count + 1).round().astype(int)
         self._palette = _palette(atlas, direction, strain, across)
         self._curves = atlas.strains(direction)[self._palette]
         self._poisson = atlas.poisson(direction)[self._palette]
@@ -171,7 +171,7 @@ class _Run:
         total = chosen + TRIES
 
         watch = SearchProgress(progress, self._cancelled)
-        target = self._by_band(1 - self._wanted)
+        target = self._by_band(1 - self._target)
         best: _Pulled | None = None
         aim = target
         for turn in range(chosen):
@@ -244,7 +244,7 @@ class _Run:
         lines = slice(1, None, 2)  # nodes in the middle of a line of stitches
         size = rest[-1, lines] - rest[0, lines]
         width = 1 + (moved[-1, lines] - moved[0, lines]) / size
-        error = float(np.sqrt(np.nanmean((width - self._wanted) ** 2)))
+        error = float(np.sqrt(np.nanmean((width - self._target) ** 2)))
         return _Pulled(labels, chart, width, float(test.force_n[-1]), error)
 
     def _change_bands(
@@ -257,7 +257,7 @@ class _Run:
         tried = {best.labels}
         for turn in range(TRIES):
             look(turn)
-            off = np.abs(np.nan_to_num(self._by_band(best.width - self._wanted))) + 1e-6
+            off = np.abs(np.nan_to_num(self._by_band(best.width - self._target))) + 1e-6
             labels = list(best.labels)
             band = int(rng.choice(len(off), p=off / off.sum()))
             if rng.random() < 0.5:
@@ -294,7 +294,7 @@ class _Run:
         )
 
     def _result(self, best: _Pulled) -> ShapedSwatch:
-        off = best.width - self._wanted
+        off = best.width - self._target
         keys = [self._atlas.keys[int(self._palette[label])] for label in best.labels]
         bands: list[Band] = []
         for key, first, last in zip(keys, self._edges[:-1], self._edges[1:], strict=True):
@@ -307,7 +307,7 @@ class _Run:
             chart=best.chart,
             bands=tuple(bands),
             width=best.width,
-            wanted=self._wanted,
+            target=self._target,
             rms=best.error,
             largest=float(np.nanmax(np.abs(off))),
             force_n=best.force_n,
@@ -356,24 +356,24 @@ def _checked(
     smallest_band: int,
     direction: Direction,
 ) -> Array:
-    wanted = np.asarray(width, dtype=float)
-    if wanted.ndim != 1 or len(wanted) < 3 or np.isnan(wanted).all():
+    target = np.asarray(width, dtype=float)
+    if target.ndim != 1 or len(target) < 3 or np.isnan(target).all():
         raise InputError("width", "is not a profile.", "Give the width of at least three lines.")
-    given = wanted[~np.isnan(wanted)]
+    given = target[~np.isnan(target)]
     if not (np.isfinite(given).all() and (given > 0.05).all() and (given < 3).all()):
         raise InputError(
             "width",
             "is outside 0.05 to 3 times the width at rest.",
             "Give every width as a multiple of the width at rest.",
         )
-    lines = (across, len(wanted)) if direction is Direction.COURSE else (len(wanted), across)
+    lines = (across, len(target)) if direction is Direction.COURSE else (len(target), across)
     check_chart_size(*lines)
-    if across < 3 or across * len(wanted) > _MAX_STITCHES:
+    if across < 3 or across * len(target) > _MAX_STITCHES:
         raise InputError(
             "across",
-            f"{across} x {len(wanted)} stitches are too many to pull repeatedly.",
+            f"{across} x {len(target)} stitches are too many to pull repeatedly.",
             f"Use at least 3 across and at most {_MAX_STITCHES} stitches.",
         )
     check_positive("strain", strain, what="a stretch", most=5)
-    check_range("smallest_band", smallest_band, 1, len(wanted), "lines")
-    return wanted
+    check_range("smallest_band", smallest_band, 1, len(target), "lines")
+    return target

@@ -77,12 +77,12 @@ class Quantity(StrEnum):
 
     @property
     def needs_load(self) -> bool:
-        """Whether it needs a load."""
+        """Say whether the quantity is defined at a load."""
         return self in (Quantity.STRETCH_COURSE, Quantity.STRETCH_WALE)
 
     @property
     def needs_limb(self) -> bool:
-        """Whether it needs a limb."""
+        """Say whether the quantity is defined on a limb."""
         return self in (Quantity.PRESSURE_COURSE, Quantity.PRESSURE_WALE)
 
 
@@ -174,7 +174,7 @@ class Target:
         return self.quantity.value
 
     def deviation(self, value: float) -> float:
-        """Predicted over wanted, minus one; the difference for Poisson's ratios."""
+        """Predicted over target, minus one; the difference for Poisson's ratios."""
         return value - self.value if self.quantity.is_poisson else value / self.value - 1
 
     def off(self, values: Array) -> Array:
@@ -196,9 +196,9 @@ class Target:
         """
         if not self.quantity.is_poisson:
             value, low, high = np.log(value), np.log(low), np.log(high)
-            wanted, half = math.log(self.value), math.log1p(self.tolerance)
+            centre, half = math.log(self.value), math.log1p(self.tolerance)
         else:
-            wanted, half = self.value, self.tolerance
+            centre, half = self.value, self.tolerance
         below, above = (np.maximum(width, 1e-12) / Z_SCORE for width in (value - low, high - value))
         below, above = (
             np.where(np.isnan(below), above, below),
@@ -209,7 +209,7 @@ class Target:
             away = end - value
             return np.asarray(ndtr(away / np.where(away < 0, below, above)))
 
-        return np.nan_to_num(up_to(wanted + half) - up_to(wanted - half))
+        return np.nan_to_num(up_to(centre + half) - up_to(centre - half))
 
 
 def values_of(atlas: Atlas, target: Target) -> tuple[Array, Array, Array]:

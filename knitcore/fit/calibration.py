@@ -228,16 +228,16 @@ class _Problem:
         try:
             law = self.law_of(values)
             sheet = field_sheet(self.field, law, self.direction, SheetModel(), CELLS_ACROSS)
-            found, _ = field_differences(self.field, sheet, self.direction, Edges.MEASURED)
+            differences, _ = field_differences(self.field, sheet, self.direction, Edges.MEASURED)
             _, ratios = self.force_ratios(law)
         except InputError:
             return penalty
-        if len(found) < len(counts) or len(ratios) < len(self.strain):
+        if len(differences) < len(counts) or len(ratios) < len(self.strain):
             return penalty
         percent = 100 / self.field.width / FIELD_NOISE_PERCENT
         parts = [
             (d * percent * np.sqrt(INDEPENDENT_POINTS / n)).ravel()
-            for d, n in zip(found, counts, strict=True)
+            for d, n in zip(differences, counts, strict=True)
         ]
         return np.concatenate([*parts, (ratios - 1) / FORCE_NOISE, prior])
 

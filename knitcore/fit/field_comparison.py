@@ -75,8 +75,8 @@ def compare(
     differences, problem = field_differences(field, sheet, direction, edges)
     axis = direction.axis
     errors = []
-    for frame, found in zip(field.frames, differences, strict=False):
-        pulled, across = found[:, 1], found[:, 0]
+    for frame, difference in zip(field.frames, differences, strict=False):
+        pulled, across = difference[:, 1], difference[:, 0]
         ux, uy = (pulled, across) if axis == 0 else (across, pulled)
         percent = 100 / field.width
         errors.append(

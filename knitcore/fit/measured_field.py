@@ -199,7 +199,7 @@ def _rest_region(
 
 
 def _pulled_vertically(sample: _Samples) -> bool:
-    """Whether the picture is stretched more along y than along x."""
+    """Say whether the picture is stretched more along y than along x."""
     rest, moved = sample.rest, sample.moved
     slopes = [np.polyfit(rest[:, axis], moved[:, axis], 1)[0] for axis in (0, 1)]
     return bool(slopes[1] >= slopes[0])
@@ -225,7 +225,7 @@ def _frame(
 
 def _edge(points: Array, moved: Array, line: NDArray[np.int64], y: float) -> Array:
     """Displacements where each sampling line meets the edge at rest height y, (lines, 3)."""
-    found = []
+    crossings = []
     for number in np.unique(line):
         on = np.flatnonzero(line == number)
         nearest = on[np.argsort(np.abs(points[on, 1] - y))[:EDGE_POINTS]]
@@ -235,8 +235,8 @@ def _edge(points: Array, moved: Array, line: NDArray[np.int64], y: float) -> Arr
         if np.abs(heights).max() > 2 * EDGE_POINTS * PITCH_PX:
             continue  # this line of the picture leaves the fabric before it meets the edge
         values = np.column_stack([points[nearest, 0], moved[nearest]])
-        found.append(np.polyfit(heights, values, 1)[1])
-    if len(found) < 4:
+        crossings.append(np.polyfit(heights, values, 1)[1])
+    if len(crossings) < 4:
         raise InputError("field", "an edge cannot be found.", "Give a denser field.")
-    edge = np.array(found)
+    edge = np.array(crossings)
     return np.asarray(edge[np.argsort(edge[:, 0])])

@@ -111,10 +111,10 @@ class MeasuredStrip:
         """Stress (N/mm) and waist strain at the test's strains; NaN beyond what converges."""
         levels = self.strain if strain is None else strain
         clamps = Clamps.SLIDING if self.length_mm is None else Clamps.CLAMPED
-        found = pull(self.sheet(law, cells), self.direction, levels, clamps=clamps)
+        run = pull(self.sheet(law, cells), self.direction, levels, clamps=clamps)
         stress, waist = np.full(len(levels), np.nan), np.full(len(levels), np.nan)
-        stress[: found.steps] = found.stress_n_per_mm
-        waist[: found.steps] = [self._waist(found.sheet.grid, s.corners) for s in found.states]
+        stress[: run.steps] = run.stress_n_per_mm
+        waist[: run.steps] = [self._waist(run.sheet.grid, s.corners) for s in run.states]
         return stress, waist
 
     def _waist(self, grid: QuarterGrid, corners: Array) -> float:

@@ -63,7 +63,7 @@ class Reduction(StrEnum):
 
     @property
     def marks(self) -> Marks:
-        """Which tracked points give the strain along the pull."""
+        """The tracked points that give the strain along the pull."""
         return Marks.CENTRE if self is Reduction.PUBLISHED else Marks.CLAMPS
 
 

@@ -160,24 +160,24 @@ def fit_simulated(
             )
         if strip.pulls == 1:
             notes.append(f"{test.source} has one pull, so the scatter between pulls is unknown.")
-    found = fit_strips(strips, cancelled=cancelled)
+    fit = fit_strips(strips, cancelled=cancelled)
     residuals = {
         d: _residuals(test, strip, simulated)
-        for d, test, strip, simulated in zip(Direction, tests, strips, found.stress, strict=True)
+        for d, test, strip, simulated in zip(Direction, tests, strips, fit.stress, strict=True)
     }
     return LawFit.of(
         tests,
         residuals,
-        law=found.law,
-        standard_errors=found.errors,
+        law=fit.law,
+        standard_errors=fit.errors,
         reduction=Reduction.RECOMMENDED,
         largest_strain={d: t.largest_strain for d, t in zip(Direction, tests, strict=True)},
         error_method="jackknife over pulls, scatter about the fit, readings of width",
         notes=tuple(notes),
-        uncertainty=found.uncertainty,
+        uncertainty=fit.uncertainty,
         waist_rms={
             d: rms((w - strip.means[1])[np.isfinite(w)])
-            for d, w, strip in zip(Direction, found.waist, strips, strict=True)
+            for d, w, strip in zip(Direction, fit.waist, strips, strict=True)
         },
     )
 
@@ -201,7 +201,7 @@ def fit_strips(
     """
     problem = _Problem(tuple(strips), cancelled or (lambda: False))
     tried = [problem.solve(start, ROUGH_CELLS, ROUGH_STEPS) for start in problem.starts]
-    best = min(tried, key=lambda found: float(found.cost))
+    best = min(tried, key=lambda attempt: float(attempt.cost))
     fit = problem.solve(best.x, CELLS, MAX_STEPS)
     law = _law(fit.x)
     simulated = [strip.simulate(law) for strip in strips]
@@ -263,7 +263,7 @@ class _Problem:
 
     @property
     def bounds(self) -> tuple[Array, Array]:
-        """Of the unknowns."""
+        """Lower and upper bounds of the unknowns."""
         most = [math.log(ALPHA_SHARE * LOCK_UP_SHARE / strip.strain[-1]) for strip in self.strips]
         low = [-14, -14, -1, most[0] - 3, most[1] - 3, -14, -14, 0, 0, math.log(1e-3)]
         high = [4, 4, 1.8, *most, 2, 2, 1.5, 1.5, math.log(10)]

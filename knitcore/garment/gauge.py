@@ -10,7 +10,7 @@ from enum import Enum
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.materials import Material
-from knitcore.prediction.pure import GAUGE_LOG_SD
+from knitcore.prediction.pure import SIZE_LOG_SD
 from knitcore.prediction.size import RelaxedSize
 
 SWATCH_LOG_SD = RelaxedSize.log_sd
@@ -87,7 +87,7 @@ class Gauge:
             record.stitch_course_mm,
             record.stitch_wale_mm,
             f"{material.identifier}, {fabric}: {record.stitch_size_source}",
-            GAUGE_LOG_SD,
+            SIZE_LOG_SD,
         )
 
     def counts(self, per: GaugeLength = GaugeLength.TEN_CM) -> tuple[float, float]:
@@ -148,7 +148,7 @@ class GaugeSet:
                 g.stitch_course_mm * across,
                 g.stitch_wale_mm * along,
                 f"{swatch.source} {fabric}, other fabrics scaled alike",
-                swatch.log_sd if f is fabric else math.hypot(swatch.log_sd, GAUGE_LOG_SD),
+                swatch.log_sd if f is fabric else math.hypot(swatch.log_sd, SIZE_LOG_SD),
             )
             for f, g in found.items()
         }

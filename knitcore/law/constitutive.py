@@ -221,7 +221,7 @@ class ConstitutiveLaw:
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether C_xxyy equals C_yyxx, so that an energy exists."""
+        """Say whether C_xxyy equals C_yyxx, so that an energy exists."""
         return math.isclose(self.stiffness_xxyy, self.stiffness_yyxx, rel_tol=1e-12, abs_tol=1e-15)
 
     def symmetrised(self, rule: Symmetrisation = Symmetrisation.GEOMETRIC) -> ConstitutiveLaw:

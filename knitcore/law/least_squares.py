@@ -118,13 +118,13 @@ def fit_direction(
         shares[max(best - 1, 0)] if best > 0 else 1e-3,
         shares[best + 1] if best + 1 < len(shares) else ALPHA_SHARE_LIMIT,
     )
-    found = minimize_scalar(
+    minimum = minimize_scalar(
         lambda share: solve(share / largest)[0],
         bounds=bounds,
         method="bounded",
         options={"xatol": 1e-7},
     )
-    alpha = float(found.x if found.fun <= costs[best] else shares[best]) / largest
+    alpha = float(minimum.x if minimum.fun <= costs[best] else shares[best]) / largest
     cost, stiffness, scale = solve(alpha)
     beta = scale / float(stiffening_stress(np.asarray(alpha * 0.85 * largest)))
     return DirectionFit(stiffness, alpha, scale, beta, float(np.sqrt(cost)), largest)

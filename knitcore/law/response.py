@@ -47,12 +47,12 @@ class Response:
     def stress(self, strain: ArrayLike) -> Array:
         """Stresses (N/mm) at strains of at least 0; 10 N/mm where that is not enough."""
         grid, stresses = self._points
-        wanted = np.asarray(strain, dtype=float)
+        strains = np.asarray(strain, dtype=float)
         # in logarithms, so that the initial slope and the lock-up are equally accurate
         logs = np.interp(
-            np.log(np.maximum(wanted, grid[1])), np.log(grid[1:]), np.log(stresses[1:])
+            np.log(np.maximum(strains, grid[1])), np.log(grid[1:]), np.log(stresses[1:])
         )
-        return np.where(wanted < grid[1], self.modulus_n_per_mm * wanted, np.exp(logs))
+        return np.where(strains < grid[1], self.modulus_n_per_mm * strains, np.exp(logs))
 
 
 def free_response(law: ConstitutiveLaw, direction: Direction) -> Response:
@@ -61,7 +61,7 @@ def free_response(law: ConstitutiveLaw, direction: Direction) -> Response:
 
 
 def held_response(law: ConstitutiveLaw, direction: Direction) -> Response:
-    """Of a law whose width is held."""
+    """Response of a law while the width is held."""
     stiffness = float(law.stiffness[direction.axis, direction.axis])
     return Response(stiffness, partial(held_strains_at_stress, law, direction))
 

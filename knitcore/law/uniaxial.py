@@ -91,14 +91,14 @@ def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
     InputError
         If a stress is negative or not a number.
     """
-    wanted = _checked(stress)
+    stresses = _checked(stress)
     # The linear part alone bounds the strain; free contraction only softens it.
-    low, high = np.zeros_like(wanted), wanted / law.modulus(direction)
+    low, high = np.zeros_like(stresses), stresses / law.modulus(direction)
     if min(law.poisson_yx, law.poisson_xy) < 0 or law.kappa_xx > 0 or law.kappa_yy > 0:
-        return _by_newton(law, direction, wanted, low, high)
+        return _by_newton(law, direction, stresses, low, high)
     modulus, alpha, beta = law.modulus(direction), law.alpha(direction), law.beta(direction)
     high = np.minimum(high, law.lock_up_strain(direction))
-    return _by_halving(lambda e: modulus * e + beta * stiffening(alpha * e)[1], wanted, low, high)
+    return _by_halving(lambda e: modulus * e + beta * stiffening(alpha * e)[1], stresses, low, high)
 
 
 def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
@@ -111,20 +111,20 @@ def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
     InputError
         If a stress is negative or not a number.
     """
-    wanted = _checked(stress)
+    stresses = _checked(stress)
     axis = direction.axis
-    low, high = np.zeros_like(wanted), wanted / law.stiffness[axis, axis]
+    low, high = np.zeros_like(stresses), stresses / law.stiffness[axis, axis]
     high = np.minimum(high, law.lock_up_strain(direction))
     return _by_halving(
-        lambda e: law.stress(*_pair(direction, e, np.zeros_like(e)))[axis], wanted, low, high
+        lambda e: law.stress(*_pair(direction, e, np.zeros_like(e)))[axis], stresses, low, high
     )
 
 
 def _checked(stress: ArrayLike) -> Array:
-    wanted = np.asarray(stress, dtype=float)
-    if not np.all(np.isfinite(wanted)) or np.any(wanted < 0):
+    stresses = np.asarray(stress, dtype=float)
+    if not np.all(np.isfinite(stresses)) or np.any(stresses < 0):
         raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
-    return wanted
+    return stresses
 
 
 def _pair(direction: Direction, along: Array, across: Array) -> tuple[Array, Array]:
@@ -132,11 +132,13 @@ def _pair(direction: Direction, along: Array, across: Array) -> tuple[Array, Arr
     return direction.of((along, across), (across, along))
 
 
-def _by_halving(carried: Callable[[Array], Array], wanted: Array, low: Array, high: Array) -> Array:
+def _by_halving(
+    carried: Callable[[Array], Array], stresses: Array, low: Array, high: Array
+) -> Array:
     """Strain at which an increasing stress has a given value."""
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        less = carried(middle) < wanted
+        less = carried(middle) < stresses
         low, high = np.where(less, middle, low), np.where(less, high, middle)
     return np.asarray((low + high) / 2)
 

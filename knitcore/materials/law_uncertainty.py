@@ -25,7 +25,8 @@ Z_SCORE = NormalDist().inv_cdf(0.5 + COVERAGE / 2)
 """Half width of such an interval in standard deviations."""
 
 DEFAULT_POISSON_SD = 0.02
-"""Of a measured Poisson ratio without one: the largest ± printed for acrylic and cotton."""
+"""Standard deviation of a measured Poisson ratio printed without one: the largest ± of acrylic and
+cotton."""
 
 MODEL_POISSON_SD = 0.05
 """Standard deviation of a Poisson ratio from a model."""
@@ -141,7 +142,7 @@ class LawUncertainty:
 
 
 def in_a_sentence(sources: Iterable[str]) -> str:
-    """What intervals rest on, each thing once.
+    """Join the sources of intervals to a sentence, each source once.
 
     Examples
     --------

@@ -47,8 +47,8 @@ def load_library(laws: Laws = Laws.REFITTED) -> Mapping[str, Material]:
     >>> list(load_library())[:3]
     ['acrylic', 'cotton', 'lace-acrylic']
     """
-    found = {row["identifier"]: _measured(row) for row in read_packaged("yarns.csv")}
-    return MappingProxyType(_with_laws(found, laws))
+    measured = {row["identifier"]: _measured(row) for row in read_packaged("yarns.csv")}
+    return MappingProxyType(_with_laws(measured, laws))
 
 
 @cache
@@ -62,13 +62,13 @@ def load_variants(laws: Laws = Laws.REFITTED) -> Mapping[str, Material]:
     throughout, so that its four fabrics can be compared.
     """
     library = {row["identifier"]: _measured(row) for row in read_packaged("yarns.csv")}
-    found = {}
+    variants = {}
 
     def add(
         base: str, variant: str, name: str, fabrics: Mapping[Fabric, FabricRecord], note: str
     ) -> None:
         key, yarn = f"{base}:{variant}", library[base]
-        found[key] = Material(key, f"{yarn.name}, {name}", yarn.yarn, fabrics, note=note)
+        variants[key] = Material(key, f"{yarn.name}, {name}", yarn.yarn, fabrics, note=note)
 
     for yarn in ("acrylic", "cotton"):
         simulated = {fabric: _record(yarn, fabric, SIMULATION) for fabric in Fabric}
@@ -79,7 +79,7 @@ def load_variants(laws: Laws = Laws.REFITTED) -> Mapping[str, Material]:
     add("glove-wool", NEEDLE_2_MM, "on 2.0 mm needles", tight, note)
     note = "Stockinette on 2.0 mm needles, the other fabrics on 2.75 mm."
     add("glove-wool", GLOVE, "as in the glove", {**library["glove-wool"].fabrics, **tight}, note)
-    return MappingProxyType(_with_laws(found, laws))
+    return MappingProxyType(_with_laws(variants, laws))
 
 
 def material(identifier: str, laws: Laws | str | None = None) -> Material:
@@ -107,9 +107,9 @@ def material(identifier: str, laws: Laws | str | None = None) -> Material:
     sample = Laws.REFITTED.of(key)
     named = Laws.PUBLISHED if sample != key else Laws.REFITTED
     chosen = named if laws is None else Laws.parse(laws)
-    found = load_library(chosen).get(sample) or load_variants(chosen).get(sample)
-    if found is not None:
-        return found
+    known_material = load_library(chosen).get(sample) or load_variants(chosen).get(sample)
+    if known_material is not None:
+        return known_material
     others = offered_materials()
     if key not in others:
         known = ", ".join([*load_library(), *load_variants(), *others])

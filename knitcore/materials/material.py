@@ -38,7 +38,7 @@ class Origin(StrEnum):
 
 
 class Laws(Choice):
-    """Which laws of the paper's yarns: refitted clamp to clamp, or as published."""
+    """The laws used for the paper's yarns: refitted clamp to clamp, or as published."""
 
     REFITTED = "refitted"
     PUBLISHED = "published"
@@ -178,12 +178,12 @@ class Material:
 
     @property
     def is_simulated(self) -> bool:
-        """Whether all its fabrics come from yarn-level simulations."""
+        """Say whether all fabrics of the material come from yarn-level simulations."""
         return all(record.origin is Origin.SIMULATED for record in self.fabrics.values())
 
     @property
     def is_complete(self) -> bool:
-        """Whether all four pure fabrics are known, so that any chart can be predicted."""
+        """Say whether all four pure fabrics are known, so that any chart can be predicted."""
         return len(self.fabrics) == len(Fabric)
 
     def yarn_diameter_mm(self, fabric: Fabric) -> float | None:

@@ -235,14 +235,14 @@ def _elastica_through(
         raise InputError(
             name, "the yarn is too straight: its bend is not resolved.", "Hang a shorter piece."
         )
-    found = minimize_scalar(
+    minimum = minimize_scalar(
         cost, bounds=(LOG_LOADS[best - 1], LOG_LOADS[best + 1]), method="bounded"
     )
-    rms = float(np.sqrt(found.fun))
+    rms = float(np.sqrt(minimum.fun))
     if rms > WORST_RMS_SHARE * length_mm:
         raise InputError(
             name,
             f"the traced line is {rms:.1f} mm off any hanging yarn's shape.",
             "The photo must be level, with the clamp at one side and the yarn hanging freely.",
         )
-    return float(np.exp(found.x)), rms, difference(float(found.x)).mean(axis=0)
+    return float(np.exp(minimum.x)), rms, difference(float(minimum.x)).mean(axis=0)

@@ -126,15 +126,15 @@ def _of_sheet(
 
 def _readings(rows: Worksheet, *columns: int) -> dict[int, list[Cell]]:
     """The columns, without the rows at the end in which all of them are empty."""
-    found = [[row[c] if c < len(row) else "" for c in columns] for row in rows]
-    while found and not any(map(str, found[-1])):
-        found.pop()
-    return {c: [row[i] for row in found] for i, c in enumerate(columns)}
+    readings = [[row[c] if c < len(row) else "" for c in columns] for row in rows]
+    while readings and not any(map(str, readings[-1])):
+        readings.pop()
+    return {c: [row[i] for row in readings] for i, c in enumerate(columns)}
 
 
 def _diameters(sheets: dict[str, Worksheet]) -> dict[tuple[str, int], float]:
     """Diameters by (column name, sample number)."""
-    found: dict[tuple[str, int], float] = {}
+    diameters: dict[tuple[str, int], float] = {}
     for name, sheet in sheets.items():
         if "diameter" not in name.lower():
             continue
@@ -145,8 +145,8 @@ def _diameters(sheets: dict[str, Worksheet]) -> dict[tuple[str, int], float]:
             elif header and isinstance(values[0], int | float):
                 for column, value in zip(header[1:], values[1:], strict=False):
                     if isinstance(value, int | float) and value > 0:
-                        found[(column, int(values[0]))] = value
-    return found
+                        diameters[(column, int(values[0]))] = value
+    return diameters
 
 
 def _diameter_of(diameters: dict[tuple[str, int], float], yarn: str, number: int) -> float | None:

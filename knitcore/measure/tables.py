@@ -87,8 +87,8 @@ def numbers(where: str, values: Sequence[object] | pd.Series, first_row: int = 2
     import pandas as pd
 
     texts = pd.Series(values, dtype=object)
-    found = pd.to_numeric(texts, errors="coerce").to_numpy(dtype=float)
-    bad = np.flatnonzero(~np.isfinite(found))
+    parsed = pd.to_numeric(texts, errors="coerce").to_numpy(dtype=float)
+    bad = np.flatnonzero(~np.isfinite(parsed))
     if bad.size:
         row = int(bad[0])
         raise InputError(
@@ -97,4 +97,4 @@ def numbers(where: str, values: Sequence[object] | pd.Series, first_row: int = 2
             f" ({bad.size} such rows).",
             "Remove the row or give a number with a decimal point.",
         )
-    return found
+    return parsed

@@ -139,7 +139,7 @@ def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
     mm_per_px = CLAMP_MM / float(clamp_px.mean())
     width_mm = float(fabric_px.mean()) * mm_per_px
     tracked = {key: _tracked(name, file, key, marks, notes) for key in keys}
-    pulls = {key: one for key, one in tracked.items() if one is not None}
+    pulls = {key: pull for key, pull in tracked.items() if pull is not None}
     if not pulls:
         raise _no_pull(name, notes)
     first = next(iter(pulls.values()))
@@ -153,11 +153,11 @@ def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
     runs = [
         StretchRun(
             name=f"{name}, {key}",
-            strain_along=one.along / first.along[0] - 1,
-            strain_across=one.across / first.across[0] - 1,
-            stress=one.force / width_mm,
+            strain_along=pull.along / first.along[0] - 1,
+            strain_across=pull.across / first.across[0] - 1,
+            stress=pull.force / width_mm,
         )
-        for key, one in pulls.items()
+        for key, pull in pulls.items()
     ]
     runs = _sound(runs, notes)
     if not runs:
@@ -328,8 +328,8 @@ def _read_table(path: Path) -> StretchTest:
     if len(table) == 0:
         raise InputError(path.name, "has no rows.", "Give one row per point.")
     labelled = rows_by_label(table, "run", "").items()
-    found = [_run(path.name, label, rows, values) for label, rows in labelled]
-    runs, widths = zip(*found, strict=True)
+    runs_and_widths = [_run(path.name, label, rows, values) for label, rows in labelled]
+    runs, widths = zip(*runs_and_widths, strict=True)
     lengths = {
         column: _length(path.name, column, values[column])
         for column in TABLE_LENGTHS

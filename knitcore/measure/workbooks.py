@@ -26,7 +26,7 @@ _XLSX = b"PK\x03\x04"
 
 
 def is_workbook(path: Path) -> bool:
-    """Whether a file begins as workbooks do, whatever its name."""
+    """Say whether a file begins as workbooks do, whatever its name."""
     with path.open("rb") as file:
         return file.read(8).startswith((_XLS, _XLSX))
 
@@ -46,7 +46,7 @@ def read_workbook(path: Path) -> dict[str, Worksheet]:
         raise _too_large(path)
     with path.open("rb") as file:
         of_kind = _xlsx_sheets if file.read(4) == _XLSX else _xls_sheets
-    found: dict[str, Worksheet] = {}
+    sheets: dict[str, Worksheet] = {}
     room = MAX_CELLS
     try:
         for name, rows in of_kind(path):
@@ -61,7 +61,7 @@ def read_workbook(path: Path) -> dict[str, Worksheet]:
                 if room < 0:
                     raise _too_large(path)
             if filled:
-                found[name] = sheet[:filled]
+                sheets[name] = sheet[:filled]
     except InputError:
         raise
     except Exception as error:  # on a damaged file both readers may raise anything
@@ -70,7 +70,7 @@ def read_workbook(path: Path) -> dict[str, Worksheet]:
             f"cannot be read as a workbook ({error}).",
             "It may be cut off or protected by a password: save it again, without one, or as CSV.",
         ) from None
-    return found
+    return sheets
 
 
 def _xls_sheets(path: Path) -> Iterator[tuple[str, Iterable[Sequence[Any]]]]:

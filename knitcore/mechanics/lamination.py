@@ -102,10 +102,10 @@ def laminated(
     across, along, coupling : (..., sheets) stiffnesses, N/mm.
     share : (..., sheets) of the widths, across the joints.
     """
-    one = 1.0 / (share / across).sum(axis=-1)
-    mixed = one * (share * coupling / across).sum(axis=-1)
-    other = (share * (along - coupling**2 / across)).sum(axis=-1) + mixed**2 / one
-    return one, other, mixed
+    crosswise = 1.0 / (share / across).sum(axis=-1)
+    mixed = crosswise * (share * coupling / across).sum(axis=-1)
+    lengthwise = (share * (along - coupling**2 / across)).sum(axis=-1) + mixed**2 / crosswise
+    return crosswise, lengthwise, mixed
 
 
 def coarsened(grid: SheetGrid, most_cells: int) -> SheetGrid:
@@ -123,17 +123,17 @@ def coarsened(grid: SheetGrid, most_cells: int) -> SheetGrid:
     return grid
 
 
-def _mean(one: SheetGrid, other: SheetGrid) -> SheetGrid:
+def _mean(first: SheetGrid, second: SheetGrid) -> SheetGrid:
     """Halfway between two estimates: the geometric mean of the moduli keeps ratios unbiased."""
 
     def mean(a: Array, b: Array) -> Array:
         return np.sqrt(a * b)
 
     return SheetGrid(
-        mean(one.xxxx, other.xxxx),
-        mean(one.yyyy, other.yyyy),
-        (one.xxyy + other.xxyy) / 2,
-        mean(one.xyxy, other.xyxy),
-        one.width_mm,
-        one.height_mm,
+        mean(first.xxxx, second.xxxx),
+        mean(first.yyyy, second.yyyy),
+        (first.xxyy + second.xxyy) / 2,
+        mean(first.xyxy, second.xyxy),
+        first.width_mm,
+        first.height_mm,
     )

@@ -150,7 +150,7 @@ def rest_circumference(
     check_positive("mmhg", mmhg, "mmHg", "a target pressure", 300)
     check_positive("worn_mm", worn_mm, "mm", "a circumference", MAX_CIRCUMFERENCE_MM)
     tension = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
-    found = []
+    circumferences = []
     for transverse in Transverse:
         lock_up = law.lock_up_strain(direction)
         upper = lock_up * (1 - 1e-9) if math.isfinite(lock_up) else 1.0
@@ -168,8 +168,8 @@ def rest_circumference(
             if reached
             else upper
         )
-        found.append(worn_mm / (1 + float(strain)))
-    return Interval(min(found), max(found))
+        circumferences.append(worn_mm / (1 + float(strain)))
+    return Interval(min(circumferences), max(circumferences))
 
 
 def _tension(
@@ -190,23 +190,23 @@ def _warnings(
     law: ConstitutiveLaw, direction: Direction, strain: float, tested_strain: float | None
 ) -> list[str]:
     lock_up = law.lock_up_strain(direction)
-    found = []
+    warnings = []
     if strain > NEAR_LOCK_UP * lock_up:
-        found.append(
+        warnings.append(
             f"The strain {strain:.2f} is {strain / lock_up:.0%} of the lock-up {lock_up:.2f}: the"
             " pressure rises steeply here, and a slightly larger limb is pressed much harder."
         )
     limit = TESTED_SHARE * lock_up if tested_strain is None else tested_strain
     if strain > limit:
         known = "stretch tests typically reach" if tested_strain is None else "the tests reached"
-        found.append(
+        warnings.append(
             f"The strain {strain:.2f} is beyond the {limit:.2f} that {known}: the pressure is"
             " extrapolated."
         )
     axial = float(uniaxial_response(law, direction, strain).transverse_strain[0])
     if axial <= -0.5:
-        found.append(
+        warnings.append(
             f"Axially free, the tube would shorten by {-axial:.0%}: the linear Poisson ratio does"
             " not hold that far."
         )
-    return [*found, ELASTIC_MEAN]
+    return [*warnings, ELASTIC_MEAN]

@@ -1,4 +1,4 @@
-"""What will this chart of this material do?
+"""Predict the size, stiffness and curves of a chart of a material.
 
-:func:`knitcore.prediction.predict.predict` answers for every caller.
+Every caller uses :func:`knitcore.prediction.predict.predict`.
 """

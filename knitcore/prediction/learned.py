@@ -35,7 +35,7 @@ from knitcore.prediction.mixture import Mixture, present, pure_numbers
 from knitcore.prediction.size import RelaxedSize
 
 STRESS_GRID = np.array([400.0, 800.0, 2000.0, 4000.0, 8000.0, 12000.0])
-"""Stresses over B / L³ at which strains are learned: about .01 to .3 N/mm."""
+"""Stresses over B / L³ at which strains are learned: about 0.01 to 0.3 N/mm."""
 
 MAX_FOLDED = 0.87
 """Knitted fabric folds less than the yarn level predicts, which has no friction and no set. In

@@ -18,7 +18,7 @@ from knitcore.prediction.densities import Densities
 from knitcore.prediction.learned import LearnedResponse, SweptChart
 from knitcore.prediction.mixture import Mixture
 from knitcore.prediction.prediction import Along, Prediction, Source
-from knitcore.prediction.pure import CURL, GAUGE_LOG_SD, GAUGE_SD_SOURCE
+from knitcore.prediction.pure import CURL, SIZE_LOG_SD, SIZE_SD_SOURCE
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 LEARNED = (
@@ -70,8 +70,8 @@ def predict_mixed(
     else:
         remarks = (f"{note} {COUNT}", *((RELAXED,) if known_by else ()))
         knitted = () if mixture.simulated else (KNITTED,)
-        size_errors = (known_by.errors if known_by else errors, *knitted, GAUGE_SD_SOURCE)
-        own_size_log_sd = GAUGE_LOG_SD * pure
+        size_errors = (known_by.errors if known_by else errors, *knitted, SIZE_SD_SOURCE)
+        own_size_log_sd = SIZE_LOG_SD * pure
     shares = ", ".join(f"{share:.0%} {record.fabric}" for share, record in parts)
     notes = _notes(mixture, material)
     course, wale = (_along(learned, direction, own_size_log_sd, pure) for direction in Direction)

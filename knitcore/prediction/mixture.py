@@ -75,7 +75,7 @@ class Mixture:
 
     @property
     def simulated(self) -> bool:
-        """Whether all of its fabrics are simulated at the yarn level."""
+        """Say whether all of its fabrics are simulated at the yarn level."""
         return all(record.origin is Origin.SIMULATED for _, record in self.parts)
 
     @property

@@ -60,8 +60,10 @@ def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
 
 
 def sizes_and_folds(chart: StitchChart, material: Material) -> tuple[Array, Array]:
-    """Those sizes, and the same over the flat mixture's of the same surroundings, (rows, columns,
-    2) each: 1 where a pure fabric is far from others, less where the cloth folds.
+    """Width and height of every stitch at rest, and their ratios to the flat mixture's.
+
+    Both are (rows, columns, 2). The flat mixture has the same surroundings; a ratio is 1 where a
+    pure fabric is far from others, and less where the cloth folds.
 
     Raises
     ------

@@ -195,7 +195,7 @@ class Patches:
 
 
 def is_large(repeat: StitchChart) -> bool:
-    """Whether a repeat is larger than one patch."""
+    """Say whether a repeat is larger than one patch."""
     return max(repeat.rows, repeat.columns) > SIDE
 
 

@@ -1,6 +1,6 @@
-"""The one rule: what a chart of a material does.
+"""Predict a chart of a material by one rule.
 
-1. A chart that is one pure fabric has that fabric's own law and gauge (*measured*; *estimated* or
+1. A chart that is one pure fabric has that fabric's own law and size (*measured*; *estimated* or
    *swept* if the record is).
 2. A chart with a yarn-level sweep of its own has that sweep's correction of the mixture of its pure
    fabrics (*swept*). The caller gives the sweep; for a simulated material, which the yarn level

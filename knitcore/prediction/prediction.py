@@ -147,12 +147,12 @@ class Prediction:
 
     @property
     def size_is_known(self) -> bool:
-        """Whether the relaxed size was given, not estimated."""
+        """Say whether the relaxed size was given, not estimated."""
         return self.relaxed_source in tuple(KnownBy)
 
     @property
     def interval_source(self) -> str:
-        """What the intervals rest on, in words."""
+        """Name the sources of the intervals, in words."""
         return f"Stretch: {'; '.join(self.stretch_errors)}. Size: {'; '.join(self.size_errors)}."
 
     def along(self, direction: Direction | str) -> Along:

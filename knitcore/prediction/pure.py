@@ -1,4 +1,4 @@
-"""Pure fabrics: their own law and gauge."""
+"""Pure fabrics: their own law and size."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ CURL = (
     "moduli are those of a sheet held flat."
 )
 
-GAUGE_LOG_SD = 0.08
+SIZE_LOG_SD = 0.08
 """Standard deviation of the logarithm of a pure fabric's size: one aspect ratio is used for all
 yarns, and those of two yarns differ by up to 17 % (``materials/data/aspect.csv``)."""
-GAUGE_SD_SOURCE = "one aspect ratio of stitches for all yarns (8 %)"
+SIZE_SD_SOURCE = "one aspect ratio of stitches for all yarns (8 %)"
 
 _SOURCES = {Origin.SIMULATED: Source.SWEPT, Origin.ESTIMATED: Source.ESTIMATED}
 
@@ -41,7 +41,7 @@ def predict_pure(fabric: Fabric, material: Material) -> Prediction:
         f"law of {fabric}, {record.origin}",
         "gauge of the pure fabric",
         (record.uncertainty.source,),
-        (GAUGE_SD_SOURCE,),
+        (SIZE_SD_SOURCE,),
         (*notes, *([material.note] if material.note else [])),
     )
 
@@ -59,6 +59,6 @@ def _along(record: FabricRecord, direction: Direction) -> Along:
         poisson=law.poisson(direction),
         poisson_sd=spread.poisson(direction),
         relaxed_mm=record.stitch_size_mm(direction),
-        relaxed_log_sd=GAUGE_LOG_SD,
+        relaxed_log_sd=SIZE_LOG_SD,
         bounds_n_per_mm=Interval(modulus, modulus),
     )

@@ -210,8 +210,9 @@ def _own_log_sd(
 def _fitted_laws(
     cells: NDArray[np.uint8], prediction: Prediction, material: Material, parts: Array | None
 ) -> list[ConstitutiveLaw]:
-    """Laws of the phases with which a patch does what its prediction says, even ones if no parts of
-    the phases are given.
+    """Laws of the phases that give a patch its predicted response.
+
+    All phases get the same law if no parts are given.
 
     A phase keeps its couplings kappa as far as it is as stiff as in its pure fabric: cloth that
     unfolds first has little strain in its yarn. So a patch that is all but pure has nearly the
@@ -238,7 +239,7 @@ def _fitted_laws(
         kappa[:], regained[:] = shares @ kappa, (shares @ regained)[:, None]
     constants *= np.exp(regained)
     most_yx, most_xy = (max(prediction.along(d).poisson, 0.0) for d in Direction)
-    found = []
+    laws = []
     for (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y), coupled, modulus, grown in zip(
         *(values.tolist() for values in (*constants, kappa, shear, growth)), strict=True
     ):
@@ -246,7 +247,7 @@ def _fitted_laws(
         nu_xy = min(most_xy, most_yx * modulus_y / modulus_x)
         nu_yx = nu_xy * modulus_x / modulus_y
         held = 1 - min(nu_yx * nu_xy, _MAX_POISSON)
-        found.append(
+        laws.append(
             ConstitutiveLaw(
                 stiffness_xxxx=modulus_x / held,
                 stiffness_yyyy=modulus_y / held,
@@ -262,7 +263,7 @@ def _fitted_laws(
                 shear_stiffening=grown,
             )
         )
-    return found
+    return laws
 
 
 def _constants(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
@@ -279,17 +280,18 @@ def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, fl
 
 
 def _parts(cells: NDArray[np.uint8], material: Material) -> Array:
-    """(2, phases, stresses) strains of the phases at :data:`STRESSES` over those of cloth of these
-    cells: half as far from 1 as in the flat composite, or as far in wide areas of one phase.
+    """Ratios of the phases' strains to the cloth's at :data:`STRESSES`, (2, phases, stresses).
+
+    They are half as far from 1 as in the flat composite, and as far in wide areas of one phase.
     """
     records = _records(cells, material)
     wide = maximum_filter(cells, _WIDE) == minimum_filter(cells, _WIDE)
     contrast = (1 + wide.mean()) / 2
-    found = []
+    ratios = []
     for direction in Direction:
         strains = np.array([law_strains(r.law, direction, STRESSES) for r in records])
-        found.append(1 + contrast * (strains / _flat_strain(cells, records, direction) - 1))
-    return np.array(found)
+        ratios.append(1 + contrast * (strains / _flat_strain(cells, records, direction) - 1))
+    return np.array(ratios)
 
 
 def _flat_strain(
@@ -305,8 +307,8 @@ def _flat_strain(
     width = np.bincount(same.ravel()) * (kinds @ across)
     common = np.linspace(0.0, 1.0, 400) ** 2 * of_line[:, -1].min()
     stress = width @ np.array([np.interp(common, line, _FINE) for line in of_line]) / width.sum()
-    found: Array = np.interp(STRESSES, stress, common)
-    return found
+    flat: Array = np.interp(STRESSES, stress, common)
+    return flat
 
 
 def _fitted(strains: Array) -> tuple[float, float, float]:

@@ -17,7 +17,7 @@ class KnownBy(StrEnum):
 
     @property
     def errors(self) -> str:
-        """What the interval of such a size rests on, in words."""
+        """Name the source of the interval of such a size, in words."""
         return _ERRORS[self]
 
 
@@ -55,7 +55,7 @@ class RelaxedSize:
 
     @classmethod
     def from_gauge(cls, stitches_per_10_cm: float, rows_per_10_cm: float) -> RelaxedSize:
-        """From a swatch's gauge.
+        """Take the size from the gauge of a swatch.
 
         Examples
         --------

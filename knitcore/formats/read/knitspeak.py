@@ -92,7 +92,7 @@ def _listed(numbers: list[int]) -> str:
 
 
 def looks_knitspeak(text: str) -> bool:
-    """Whether a text begins with rows of KnitSpeak, without casting on."""
+    """Say whether a text begins with rows of KnitSpeak, without casting on."""
     first = next(lines_of(text), None)
     return first is not None and _LINE.match(first.text) is not None
 
@@ -171,24 +171,24 @@ def read_knitspeak(text: str) -> StitchChart:
 
 
 def _numbers(line: Line, text: str) -> Iterable[int]:
-    found: list[int] = []
+    numbers: list[int] = []
     for match in _NUMBERS.finditer(text):
         first, last = int(match[1]), int(match[2] or match[1])
         if not 1 <= first <= last <= MAX_STITCHES_PER_SIDE:
             raise line.wrong(f"rows {match[0]} cannot be made.", "Number them from 1 up.")
-        found += range(first, last + 1)
-    if not found:
+        numbers += range(first, last + 1)
+    if not numbers:
         raise line.wrong("it numbers no row.", 'Write "Row 1:" or "Rows 2, 4 and 6-8:".')
-    return found
+    return numbers
 
 
 def _first_side(stated: dict[int, Side], construction: Construction) -> Side:
-    found = {side if index % 2 else side.other for index, side in stated.items()}
-    if len(found) > 1 or (construction is Construction.ROUND and Side.WS in stated.values()):
+    first_sides = {side if index % 2 else side.other for index, side in stated.items()}
+    if len(first_sides) > 1 or (construction is Construction.ROUND and Side.WS in stated.values()):
         raise InputError(
             "rows", "right-side and wrong-side rows do not alternate.", "Correct RS and WS."
         )
-    return found.pop() if found else Side.RS
+    return first_sides.pop() if first_sides else Side.RS
 
 
 def _count(rows: list[_Row]) -> int:
@@ -216,10 +216,10 @@ def _row(line: Line, words: str) -> _Row:
     else:
         return _Row(line, _stitches(line, words), (), ())
     head, tail = _stitches(line, before or ""), _stitches(line, after or "")
-    wanted = int(last or 1) if to_last else 0
-    if not unit or len(tail) != wanted:
+    stated = int(last or 1) if to_last else 0
+    if not unit or len(tail) != stated:
         raise line.wrong(
-            f"{len(tail)} stitches follow the repeat, but it says {wanted}.",
+            f"{len(tail)} stitches follow the repeat, but it says {stated}.",
             'Make "to last N sts" agree with what follows.',
         )
     return _Row(line, head, unit, tail)

@@ -31,7 +31,7 @@ _YARN = re.compile(r"yarn ([A-Z]{1,2}): (.*) \((#[0-9a-f]{6})\)", re.IGNORECASE)
 
 
 def looks_written(text: str) -> bool:
-    """Whether a text is meant as written rows rather than as lines of K and P."""
+    """Say whether a text is meant as written rows rather than as lines of K and P."""
     first = next(lines_of(text), None)
     return first is not None and first.text.lower().startswith(("cast on", "row", "rnd", "round"))
 

@@ -177,10 +177,10 @@ def _words(line: Line, words: str, worked: int) -> Stitches:
     head = _items(line, before.rstrip(", "), worked) if before.strip(", ") else ()
     body = _items(line, unit, worked)
     tail = _items(line, after, worked) if after else ()
-    wanted = 0 if end else int(last or 1)
-    if taken(tail) != wanted:
+    stated = 0 if end else int(last or 1)
+    if taken(tail) != stated:
         raise line.wrong(
-            f"{taken(tail)} stitches follow the repeat, but it says {wanted}.",
+            f"{taken(tail)} stitches follow the repeat, but it says {stated}.",
             'Make "to last N sts" agree with what follows.',
         )
     room = worked - taken(head) - taken(tail)
@@ -199,26 +199,26 @@ def _items(line: Line, words: str, worked: int) -> Stitches:
     while rest:
         bracket, run, shaped = (p.match(rest) for p in (_BRACKET, _STITCHES, _SHAPED))
         if rest.lower() in ("knit", "purl"):
-            found = (WrittenStitch(rest.lower() == "purl"),) * (worked - taken(stitches))
+            added = (WrittenStitch(rest.lower() == "purl"),) * (worked - taken(stitches))
             used = len(rest)
         elif bracket is not None:
             inside = _items(line, bracket[1], worked)
             times = 2 if bracket[2] else int(bracket[3])
             # More than a row can hold is refused below without being written out.
-            found = inside * min(times, MAX_STITCHES_PER_SIDE + 1)
+            added = inside * min(times, MAX_STITCHES_PER_SIDE + 1)
             used = bracket.end()
         elif shaped is not None:
             form = shaped[1].lower()
             purl = form in ("ssp", "p2tog", "p3tog", "m1p")
-            found, used = (WrittenStitch(purl, form),), shaped.end()
+            added, used = (WrittenStitch(purl, form),), shaped.end()
         elif run is not None:
-            found, used = (WrittenStitch(run[1].lower() == "p"),) * int(run[2]), run.end()
+            added, used = (WrittenStitch(run[1].lower() == "p"),) * int(run[2]), run.end()
         else:
             raise line.wrong(
                 f"{rest[:30]!r} cannot be read.",
                 'Write k3, p2, (k1, p1) 3 times, or "*…; rep from * to end".',
             )
-        stitches += found
+        stitches += added
         if len(stitches) > MAX_STITCHES_PER_SIDE:
             raise line.wrong("it has too many stitches.", f"Use {worked}.")
         rest = _after_comma(line, rest[used:])

@@ -89,7 +89,7 @@ def _inherited(active: dict[int, YarnRun], runs: tuple[YarnRun, ...]) -> dict[in
             for carrier, below in active.items()
             if carrier_fits(below, run)
         ),
-        key=lambda found: (-found[0], found[1]),
+        key=lambda candidate: (-candidate[0], candidate[1]),
     )
     taken: dict[int, int] = {}
     for _, index, carrier in shared:
@@ -99,5 +99,5 @@ def _inherited(active: dict[int, YarnRun], runs: tuple[YarnRun, ...]) -> dict[in
 
 
 def carrier_fits(below: YarnRun, run: YarnRun) -> bool:
-    """Whether a run of one row can continue with the yarn of one in the row below."""
+    """Say whether a run of a row can continue with the yarn of a run in the row below."""
     return below.yarn == run.yarn and below.start < run.stop and run.start < below.stop

@@ -75,7 +75,7 @@ class ChartStyle:
 
 
 def is_coloured(piece: Piece) -> bool:
-    """Whether its yarns are distinguished by colour."""
+    """Say whether the piece has several yarns, which its drawing tells apart by colour."""
     return len(piece.yarns) > 1
 
 

@@ -178,11 +178,11 @@ def export_chart(
 
 
 def _of_extension(kind: str) -> Exporter:
-    found = exporters()
-    if kind not in found:
-        known = ", ".join([*FORMATS, *found])
+    extra = exporters()
+    if kind not in extra:
+        known = ", ".join([*FORMATS, *extra])
         raise InputError("to", f"{kind!r} is not a format.", f"Use one of {known}.")
-    return found[kind]
+    return extra[kind]
 
 
 def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:

@@ -31,20 +31,20 @@ _INK, _OUTSIDE = "#222222", "#e5e1d9"
 
 @dataclass(frozen=True)
 class RegionField:
-    """What a region does, and where it lies.
+    """A region of a piece with its prediction and its place.
 
     Attributes
     ----------
     name, colour : of the region.
     stitches : inside the outline and not covered by later regions.
-    answer : of the repeat that fills it, or of the largest rectangle inside it.
+    prediction : for the repeat that fills it, or for the largest rectangle inside it.
     row, column : the middle of the region's largest part.
     """
 
     name: str
     colour: str
     stitches: int
-    answer: Prediction
+    prediction: Prediction
     row: float
     column: float
 
@@ -52,7 +52,7 @@ class RegionField:
 def region_fields(
     piece: Piece, regions: Sequence[DesignRegion], material: Material
 ) -> tuple[RegionField, ...]:
-    """What each region does; stitches of none are the last, "rest".
+    """Predict each region; stitches of no region come last, as "rest".
 
     Raises
     ------
@@ -65,18 +65,18 @@ def region_fields(
         owner[region_cells(region, rows, columns)] = index
     named = [(r.name, r.colour, r.fill) for r in regions]
     named.append(("rest" if regions else "all", "#8c877d", None))
-    found = []
+    fields = []
     for index, (name, colour, fill) in enumerate(named):
         cells = (owner == index) & piece.shaped.stitch
         if not cells.any():
             continue
         inside = piece.chart.purl[largest_rectangle(cells)]
-        answer = predict(StitchChart.parse(fill) if fill else StitchChart(inside), material)
+        prediction = predict(StitchChart.parse(fill) if fill else StitchChart(inside), material)
         parts, _ = label(cells)
         largest = parts == np.bincount(parts[cells]).argmax()
         row, column = (float(np.median(place)) for place in np.nonzero(largest))
-        found.append(RegionField(name, colour, int(cells.sum()), answer, row, column))
-    return tuple(found)
+        fields.append(RegionField(name, colour, int(cells.sum()), prediction, row, column))
+    return tuple(fields)
 
 
 def field_shapes(
@@ -121,7 +121,7 @@ def field_shapes(
         middle = left + cell * (column + 0.5), top + high * (chart.rows - 0.5 - row)
         yield _rectangle(middle, sides, _INK, 0.12)
     extents = [
-        (1 / part.answer.modulus_course_n_per_mm, 1 / part.answer.modulus_wale_n_per_mm)
+        (1 / part.prediction.modulus_course_n_per_mm, 1 / part.prediction.modulus_wale_n_per_mm)
         for part in fields
     ]
     scale = 0.16 * min(cell * chart.columns, high * chart.rows) / max(map(max, extents))

@@ -91,7 +91,7 @@ def _courses(loops: Sequence[Any], carriers: frozenset[int]) -> list[dict[int, A
 
 
 def _ties(tuck: Any, child: Mapping[Any, Any]) -> bool:
-    """Whether a tuck was laid onto a needle that held a loop already."""
+    """Say whether a tuck was laid onto a needle that held a loop already."""
     stitch = child.get(tuck)
     return stitch is not None and any(
         other is not tuck and _needle(other) == _needle(tuck) and time_of(other) < time_of(tuck)

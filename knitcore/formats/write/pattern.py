@@ -92,7 +92,7 @@ _RESTS_ON: dict[Source | None, tuple[str, ...]] = {
         "and seed of this yarn, corrected by simulations of other charts.",
     ),
 }
-"""What the numbers of an answer rest on, in a knitter's words; None for a piece with an outline."""
+"""Basis of a prediction's numbers, in a knitter's words; None is for a piece with an outline."""
 
 
 def pattern_pages(
@@ -141,9 +141,9 @@ def pattern_pages(
     _instructions(flow, piece, style, opening, sections)
     _finishing(flow, facts, style)
     _evidence(flow, facts)
-    told = flow.pages()
+    written = flow.pages()
     plain = replace(style, note="")  # printed above
-    pages = [*told, *chart_pages(piece, plain, first=len(told) + 1)]
+    pages = [*written, *chart_pages(piece, plain, first=len(written) + 1)]
     return tuple(
         _footed(page, f"{style.title or 'Untitled'}, page {number} of {len(pages)}")
         for number, page in enumerate(pages, start=1)
@@ -152,26 +152,26 @@ def pattern_pages(
 
 @dataclass(frozen=True, eq=False)
 class _Facts:
-    """What is known of the cloth.
+    """Facts about the cloth that the pattern prints.
 
     Attributes
     ----------
-    answer : None for a piece with an outline, which has no answer of its own.
+    prediction : None for a piece with an outline, which has no prediction of its own.
     size : of the whole.
     sizes_mm : (rows, columns, 2) width and height of the stitches, laid flat at rest.
     """
 
     piece: Piece
-    answer: Prediction | None
+    prediction: Prediction | None
     size: SizeAtRest
     sizes_mm: Array
 
     @classmethod
     def of(cls, piece: Piece, material: Material) -> _Facts:
         shaped = piece.shaped
-        answer = predict(shaped.rectangle_inside(), material, piece.gauge)
-        size = size_at_rest(shaped, material, answer)
-        own = answer if piece.is_rectangle else None
+        prediction = predict(shaped.rectangle_inside(), material, piece.gauge)
+        size = size_at_rest(shaped, material, prediction)
+        own = prediction if piece.is_rectangle else None
         return cls(piece, own, size, laid_sizes_mm(shaped, material, piece.gauge))
 
     @property
@@ -309,8 +309,8 @@ def _without_empty_edges(image: Image.Image) -> Image.Image:
 def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequence[str]) -> None:
     flow.heading("Materials")
     yarn = material.yarn
-    told = ", ".join(part for part in (yarn.product, yarn.fibre) if part)
-    flow.text(f"{material.name}{f' ({told})' if told else ''}.")
+    details = ", ".join(part for part in (yarn.product, yarn.fibre) if part)
+    flow.text(f"{material.name}{f' ({details})' if details else ''}.")
     for index, own in enumerate(piece.yarns):
         facts = yarn_facts[index] if index < len(yarn_facts) else ""
         name = f"{yarn_name(index)}: {own.name}" if is_coloured(piece) else own.name
@@ -323,7 +323,7 @@ def _gauge(flow: _Flow, facts: _Facts) -> None:
     flow.heading("Gauge and size")
     stitch = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
     of = "of the whole cloth at rest."
-    if facts.answer is None:
+    if facts.prediction is None:
         of = "at rest, the mean of all parts; each has its own below."
     flow.text(f"{_per_10_cm(*stitch)} {of}")
     places = (0.0, 62.0, 124.0)
@@ -332,8 +332,8 @@ def _gauge(flow: _Flow, facts: _Facts) -> None:
     width = _interval(size.width_mm, size.width_interval_mm, 0.1, "cm", 1)
     height = _interval(size.height_mm, size.height_interval_mm, 0.1, "cm", 1)
     flow.row(("Finished size", width, height), places)
-    if facts.answer is not None:
-        pulled = [_pulled(facts.answer.along(direction)) for direction in Direction]
+    if facts.prediction is not None:
+        pulled = [_pulled(facts.prediction.along(direction)) for direction in Direction]
         flow.row((f"Stretch under {PULL_N_PER_MM * 100:g} N on 10 cm", *pulled), places)
     flow.text("In brackets are 90 % intervals: nine pieces in ten should lie inside.")
 
@@ -395,13 +395,13 @@ def _breaks(piece: Piece, regions: Sequence[RegionMark]) -> list[int]:
 
 
 def _abbreviations(flow: _Flow, lines: Sequence[str]) -> None:
-    """Those that the rows use."""
+    """List the abbreviations that the rows use."""
     words = {word for line in lines for word in re.findall(r"[A-Za-z]+\d?[a-z]*", line)}
     written = words | {re.sub(r"\d+$", "", word) for word in words}
     used = {short for short in _ABBREVIATIONS if {short, short.capitalize()} & written}
     flow.heading("Abbreviations")
-    told = (f"{short}: {_ABBREVIATIONS[short]}" for short in _ABBREVIATIONS if short in used)
-    flow.text("; ".join(told) + ". A number after k or p is a number of stitches.")
+    explained = (f"{short}: {_ABBREVIATIONS[short]}" for short in _ABBREVIATIONS if short in used)
+    flow.text("; ".join(explained) + ". A number after k or p is a number of stitches.")
     if any("*" in line for line in lines):
         flow.text("Work the stitches after * once, then repeat them as often as stated.")
 
@@ -440,8 +440,11 @@ def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
 
 def _evidence(flow: _Flow, facts: _Facts) -> None:
     flow.heading("Where the numbers come from")
-    source = None if facts.answer is None else facts.answer.provenance
-    for sentence in (*_RESTS_ON[source], *(() if facts.answer is None else facts.answer.notes)):
+    source = None if facts.prediction is None else facts.prediction.provenance
+    for sentence in (
+        *_RESTS_ON[source],
+        *(() if facts.prediction is None else facts.prediction.notes),
+    ):
         flow.text(sentence, bullet=True)
     for sentence in (
         "The report of this design has all numbers, their intervals and methods.",

@@ -37,7 +37,7 @@ LOCAL_ASSUMPTIONS = (
     "welts, by the quarter-cell composite.",
     "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
 )
-"""What the numbers of a piece with an outline take for granted."""
+"""Assumptions behind the numbers of a piece with an outline."""
 _LINE_CHARACTERS = 112
 _MAP_MM = (84.0, 62.0)
 
@@ -60,14 +60,14 @@ def design_report(
     """
     piece = Piece.of(chart)
     pages = []
-    found = predict(piece.shaped.rectangle_inside(), material, piece.gauge)
-    size = size_at_rest(piece.shaped, material, found)
+    prediction = predict(piece.shaped.rectangle_inside(), material, piece.gauge)
+    size = size_at_rest(piece.shaped, material, prediction)
     if piece.is_rectangle:
         shapes = [
-            *_numbers(piece.chart, material, name, found, size),
+            *_numbers(piece.chart, material, name, prediction, size),
             *_maps(piece, material, style.aspect, 73.0),
         ]
-        shapes += [*_plot(found), *_assumptions(assumptions(found), 228.0)]
+        shapes += [*_plot(prediction), *_assumptions(assumptions(prediction), 228.0)]
         pages.append(Page(*A4_MM, tuple(shapes)))
     if regions or not piece.is_rectangle:
         pages.append(
@@ -76,13 +76,14 @@ def design_report(
     return to_pdf([*pages, *chart_pages(piece, style, first=len(pages) + 1)], name)
 
 
-def assumptions(found: Prediction) -> list[str]:
-    """How an answer was found and what it takes for granted, in sentences."""
+def assumptions(prediction: Prediction) -> list[str]:
+    """Say how a prediction was made and what it assumes, in sentences."""
     return [
-        f"Law: {found.method}.",
-        f"Shear modulus {found.shear_modulus_n_per_mm:.2g} N/mm: an assumption unless calibrated.",
+        f"Law: {prediction.method}.",
+        f"Shear modulus {prediction.shear_modulus_n_per_mm:.2g} N/mm: an assumption unless "
+        "calibrated.",
         "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
-        *found.notes,
+        *prediction.notes,
     ]
 
 
@@ -115,12 +116,12 @@ def _regions(
     fields = region_fields(piece, regions, material)
     for part in fields[:MAX_REGIONS]:
         yield Rectangle(MARGIN_MM, y - 2.6, 3.0, 3.0, fill=tinted(part.colour))
-        both = [part.answer.along(direction) for direction in Direction]
+        both = [part.prediction.along(direction) for direction in Direction]
         cells = (
             f"    {part.name[:28]}",
             str(part.stitches),
-            *(_value(one.modulus_n_per_mm, one.modulus_interval_n_per_mm) for one in both),
-            " × ".join(f"{1 / one.modulus_n_per_mm:.2f}" for one in both),
+            *(_value(along.modulus_n_per_mm, along.modulus_interval_n_per_mm) for along in both),
+            " × ".join(f"{1 / along.modulus_n_per_mm:.2f}" for along in both),
         )
         for x, text in zip(places, cells, strict=True):
             yield Label(x, y, text, 3.0)
@@ -149,7 +150,7 @@ def _in_cm(size: SizeAtRest) -> str:
 
 
 def _numbers(
-    chart: StitchChart, material: Material, name: str, found: Prediction, at_rest: SizeAtRest
+    chart: StitchChart, material: Material, name: str, prediction: Prediction, at_rest: SizeAtRest
 ) -> Iterator[Shape]:
     yield Label(MARGIN_MM, 16.0, name, 6.0)
     size = f"{chart.columns} stitches × {chart.rows} rows, {_in_cm(at_rest)}"
@@ -164,13 +165,13 @@ def _numbers(
     )
     rows = [("", "along the rows (course)", "along the columns (wale)")]
     for label, value in _NUMBERS:
-        along_rows, along_columns = (_value(*value(found.along(d))) for d in Direction)
+        along_rows, along_columns = (_value(*value(prediction.along(d))) for d in Direction)
         rows.append((label, along_rows, along_columns))
     for index, cells in enumerate(rows):
         for x, text in zip((MARGIN_MM, 62.0, 128.0), cells, strict=True):
             yield Label(x, 36.0 + 5.2 * index, text, 3.2)
     yield Lines(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
-    yield Label(MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {found.provenance}.", 3.0)
+    yield Label(MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {prediction.provenance}.", 3.0)
 
 
 _NUMBERS: tuple[tuple[str, Callable[[Along], tuple[float, Interval]]], ...] = (
@@ -217,12 +218,12 @@ def _colour(level: int) -> str:
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
 
-def _plot(found: Prediction) -> Iterator[Shape]:
+def _plot(prediction: Prediction) -> Iterator[Shape]:
     """Stress over strain, both directions."""
     yield Label(MARGIN_MM, 158.0, "stress (N/mm) over strain, pulled one way, free the other", 3.0)
     left, top, width, height = MARGIN_MM + 10.0, 162.0, 150.0, 52.0
     stress = np.array(DEFAULT_STRESS_N_PER_MM)
-    strains = {d: found.along(d).strain(stress) for d in Direction}
+    strains = {d: prediction.along(d).strain(stress) for d in Direction}
     widest, tallest = max(float(strain[-1]) for strain in strains.values()), float(stress[-1])
     yield Rectangle(left, top, width, height, stroke="#b5b0a8")
     for share in (0.0, 0.5, 1.0):
@@ -237,7 +238,7 @@ def _plot(found: Prediction) -> Iterator[Shape]:
         yield Lines(drawn, ink, 0.5)
         line = top + 5.0 + 5.0 * index
         yield Lines(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
-        yield Label(left + 13.0, line, f"{direction} ({found.provenance})", 2.8)
+        yield Label(left + 13.0, line, f"{direction} ({prediction.provenance})", 2.8)
 
 
 def _assumptions(said: Sequence[str], top: float) -> Iterator[Shape]:

@@ -56,7 +56,7 @@ def read_wanted_moduli(file: Path) -> tuple[Array, Array]:
 def _entry(line: dict[str, str], number: int) -> tuple[int, int, float, float]:
     try:
         row, column = int(line["row"]), int(line["column"])
-        wishes = [float(line[name]) if line.get(name) else np.nan for name in WANTED]
+        targets = [float(line[name]) if line.get(name) else np.nan for name in WANTED]
     except (TypeError, ValueError):
         raise InputError(
             "target", f"line {number} holds no numbers.", "Give row, column and moduli."
@@ -67,4 +67,4 @@ def _entry(line: dict[str, str], number: int) -> tuple[int, int, float, float]:
             f"line {number} is for row {row}, column {column}.",
             f"Count from 1 to {MAX_STITCHES_PER_SIDE}.",
         )
-    return row, column, wishes[0], wishes[1]
+    return row, column, targets[0], targets[1]

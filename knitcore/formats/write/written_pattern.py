@@ -74,10 +74,10 @@ def written_sections(
     first_side: Side = Side.RS,
     breaks: Sequence[int] = (),
 ) -> tuple[list[str], list[list[str]]]:
-    """What comes before the first row, and the rows of each section.
+    """Write the lines before the first row, and the rows of each section.
 
-    Sections begin at row 0 and at each of the ``breaks``, in rising order; rows of one section are
-    not told by repeating those of another.
+    Sections begin at row 0 and at each of the ``breaks``, in rising order; the rows of
+    one section are never written as a repetition of another's.
 
     Raises
     ------

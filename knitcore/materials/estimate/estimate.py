@@ -194,11 +194,11 @@ def _intervals(
     law: ConstitutiveLaw, name: str, log_width: Mapping[str, Array]
 ) -> dict[Direction, Estimate]:
     """A law's value in both directions, with its interval."""
-    found = {}
+    estimates = {}
     for d in DIRECTIONS:
         value, factor = _value(law, d, name), math.exp(log_width[name][d.axis])
-        found[d] = Estimate(value, value / factor, value * factor)
-    return found
+        estimates[d] = Estimate(value, value / factor, value * factor)
+    return estimates
 
 
 # -- inputs -------------------------------------------------------------------------------------
@@ -236,11 +236,11 @@ def _warnings(
     table: LibraryTable,
     product_setting: str,
 ) -> list[str]:
-    found = []
+    warnings = []
     for swatch in swatches:
         setting, product = swatch.setting.strip().lower(), product_setting.strip().lower()
         if setting and product and setting != product:
-            found.append(
+            warnings.append(
                 f"The {swatch.fabric} swatch was knitted with {swatch.setting}, the product with"
                 f" {product_setting}: the intervals do not cover another tightness (2.0 instead"
                 " of 2.75 mm needles changed a modulus three times more than the loop length"
@@ -248,19 +248,19 @@ def _warnings(
             )
         ratio = swatch.loop_length_mm / loops[swatch.fabric]
         if abs(math.log(ratio)) > LOOP_LENGTH_TOLERANCE:
-            found.append(
+            warnings.append(
                 f"The {swatch.fabric} swatch has {swatch.loop_length_mm:.2f} mm of yarn per stitch,"
                 f" the product {loops[swatch.fabric]:.2f} mm: that is another needle or stitch"
                 " setting, which the intervals do not cover."
             )
     if scale.min() < table.scale.min() - 0.3 or scale.max() > table.scale.max() + 0.3:
-        found.append(
+        warnings.append(
             "B / L³ is outside the range of the eight yarns behind the estimate; the intervals"
             " may be too narrow."
         )
     if not swatches:
-        found.append(
+        warnings.append(
             "No swatch was measured: testing one stockinette swatch in both directions would narrow"
             " the intervals most."
         )
-    return found
+    return warnings

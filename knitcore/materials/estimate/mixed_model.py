@@ -108,11 +108,11 @@ def leave_one_out(values: Array, measured: Mask) -> tuple[Array, Array]:
     -------
     (predictions, standard deviations), each (yarns, 4, 2).
     """
-    found = [
+    predictions = [
         MixedModel.fit(np.delete(values, i, axis=0)).predict(values[i], measured)
         for i in range(len(values))
     ]
-    return np.array([p for p, _ in found]), np.array([s for _, s in found])
+    return np.array([p for p, _ in predictions]), np.array([s for _, s in predictions])
 
 
 def interval_factor(values: Array, measured: Mask, coverage: float) -> float:

@@ -145,10 +145,12 @@ def left_out(measured: tuple[Fabric, ...] = ()) -> LeftOut:
     inside: dict[str, list[float]] = {"modulus": [], "strain": []}
     for i in range(len(table.modulus)):
         others = table.without(i)
-        found = predict_cells(others, _own_row(table, i), mask, table.scale[i])
-        for name, found_errors in errors.items():
-            found_errors.append((getattr(table, name)[i] - found.values[name])[out])
-        width = interval_factor(others.modulus, mask, COVERAGE) * found.deviation["modulus"][out]
+        predicted = predict_cells(others, _own_row(table, i), mask, table.scale[i])
+        for name, collected in errors.items():
+            collected.append((getattr(table, name)[i] - predicted.values[name])[out])
+        width = (
+            interval_factor(others.modulus, mask, COVERAGE) * predicted.deviation["modulus"][out]
+        )
         inside["modulus"].append(float(np.mean(np.abs(errors["modulus"][-1]) <= width)))
         strain_width = _strain_width(others, mask)
         inside["strain"].append(float(np.mean(np.abs(errors["strain"][-1]) <= strain_width)))

@@ -166,7 +166,7 @@ def test_the_report_of_a_piece_speaks_by_regions() -> None:
     assert content.startswith(b"%PDF")
     fields = region_fields(document.to_piece(), document.regions, material("glove-wool:glove"))
     support = next(field for field in fields if field.name == "wrist support")
-    along = support.answer.along(Direction.WALE)
+    along = support.prediction.along(Direction.WALE)
     value, interval = along.modulus_n_per_mm, along.modulus_interval_n_per_mm
     assert value == pytest.approx(1.05, abs=0.03)  # table 20, stockinette on 2.0 mm, Y_y
     assert interval.low < value < interval.high
