@@ -25,7 +25,7 @@ def sum_in_order(values: Iterable[Addend]) -> Addend:
 
 
 def rounded(values: ArrayLike) -> Array:
-    """Numbers to 36 binary digits, some eleven decimal ones.
+    """Round numbers to 36 binary digits, which are about eleven decimal ones.
 
     What begins a search is given without its last digits, since these differ between processors.
 

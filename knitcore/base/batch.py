@@ -31,7 +31,7 @@ Document = dict[str, Any]
 LOOK_EVERY_S = 0.5
 CONNECT_S = 10
 MAX_LOSSES = 3
-"""A task is given up after its process was lost this often, since the task may be the cause."""
+"""Give a task up after its process died this often: the task may be the cause."""
 _KEY = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,119}")
 
 

@@ -50,7 +50,7 @@ def check_positive(
 
 
 def check_count(field: str, value: int, low: int, high: int) -> None:
-    """Refuse what is no whole number from ``low`` to ``high``.
+    """Refuse a value that is not a whole number from ``low`` to ``high``.
 
     Raises
     ------

@@ -40,8 +40,10 @@ def compiled_as_numpy(function: Function) -> Function:
 
 
 class _Watch(event.Listener):
-    """Follows what is compiled: tells once that it takes time, and keeps the collector of garbage
-    away, which would search all that numba holds again and again, a sixth of the time.
+    """Listener to numba's compiler: it says once that compiling takes time.
+
+    It also pauses garbage collection, which would search numba's objects again and again and take
+    a sixth of the time.
     """
 
     def __init__(self) -> None:
@@ -50,7 +52,7 @@ class _Watch(event.Listener):
         self._collects = self._told = False
 
     def on_start(self, event: Any) -> None:
-        """A function is about to be compiled; numba lets one thread at a time."""
+        """Note that a function is about to be compiled; numba compiles in one thread at a time."""
         if self._depth == 0:
             self._begun = time.perf_counter()
             self._collects = gc.isenabled()
@@ -59,7 +61,7 @@ class _Watch(event.Listener):
         self._tell(event)
 
     def on_end(self, event: Any) -> None:
-        """A function has been compiled, or could not be."""
+        """Note that a function has been compiled, or could not be."""
         self._tell(event)
         self._depth -= 1
         if self._depth == 0:

@@ -1,4 +1,4 @@
-"""Errors.
+"""Errors that the package raises on purpose.
 
 KnitcoreError
 ├── InputError (also ValueError)   something the caller gave cannot be used; names field and remedy
@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 Cancelled = Callable[[], bool]
-"""Asked from time to time by a long computation; True stops it with :class:`CancelledError`."""
+"""Function that a long computation calls at times; True stops it with :class:`CancelledError`."""
 
 Progress = Callable[[int, int], None]
-"""Called by a long computation with (steps done, steps in all)."""
+"""Function that a long computation calls with (steps done, steps in all)."""
 
 
 class KnitcoreError(Exception):

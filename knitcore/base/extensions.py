@@ -48,7 +48,7 @@ class ExtensionError(KnitcoreError):
 
 
 class ExtensionWarning(UserWarning):
-    """An extension was left out."""
+    """Warning that an extension was left out."""
 
 
 @dataclass(frozen=True)

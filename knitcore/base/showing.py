@@ -18,7 +18,7 @@ from knitcore.base.arrays import Array
 INKS = ("#3f74b5", "#d98032")
 """Colours of the first and the second curve."""
 MAX_CELLS = 80
-"""Most rows or columns of a chart that are drawn."""
+"""Largest number of rows or columns of a chart that is drawn."""
 WIDTH, HEIGHT = 300, 200
 _LEFT, _BOTTOM, _RIGHT, _TOP = 46, 34, 10, 22
 

@@ -135,8 +135,9 @@ def reference_fabric(chart: StitchChart) -> Fabric:
 def _before_and_after(
     odd: NDArray[np.bool_], there: NDArray[np.bool_]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Parity of the segments before and after each stitch along axis 0; one that is not there
-    takes the other's.
+    """Parity of the segments before and after each stitch along axis 0.
+
+    A missing segment takes the parity of the other one.
     """
     framed = np.zeros((2, len(odd) + 2, odd.shape[1]), dtype=bool)
     framed[:, 1:-1] = odd & there, there

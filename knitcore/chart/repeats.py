@@ -75,7 +75,7 @@ def repeats_up_to(rows: int, columns: int, *, stitches: int = LARGEST) -> tuple[
 
 
 def known_larger_repeats() -> tuple[StitchChart, ...]:
-    """A choice beyond 4x4: ribs, welts and baskets up to 8 stitches a side, and named patterns."""
+    """List larger repeats: ribs, welts and baskets up to 8 stitches a side, and named patterns."""
     sides = [(a, b) for a in range(1, 8) for b in range(1, a + 1) if 4 < a + b <= 8]
     charts = [*(rib(a, b) for a, b in sides), *(welt(a, b) for a, b in sides)]
     charts += [_basket(a, b) for a in range(1, 5) for b in range(1, 5) if max(a, b) > 2]

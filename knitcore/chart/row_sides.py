@@ -1,4 +1,4 @@
-"""On which side a row is worked.
+"""Sides of the rows: right or wrong, as they are worked.
 
 In flat knitting right-side (RS) rows are worked from the right edge of the face to the left, and
 wrong-side (WS) rows from left to right with the opposite stitch, because the knitter looks at the
@@ -12,7 +12,7 @@ from enum import StrEnum
 
 
 class Construction(StrEnum):
-    """How the cloth is worked."""
+    """Way of working the cloth: flat, turned after each row, or in the round."""
 
     FLAT = "flat"
     ROUND = "round"

@@ -13,7 +13,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 
 MAX_STITCHES_PER_SIDE = 1000
-"""Charts are refused beyond this many rows or columns."""
+"""Largest number of rows or columns of a chart."""
 
 KNIT_SYMBOLS = frozenset("Kk|")
 PURL_SYMBOLS = frozenset("Pp•–-")
@@ -290,7 +290,7 @@ def check_chart_size(rows: int, columns: int) -> None:
 
 
 def size_in_words(columns: int, rows: int) -> str:
-    """Such as ``1 column x 12 rows``."""
+    """Write a size in words, such as ``1 column x 12 rows``."""
     counts = (columns, "column"), (rows, "row")
     return " x ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in counts)
 

@@ -189,7 +189,7 @@ def known_entries(file: Path | None, fingerprint: str) -> dict[str, Entry]:
 
 
 def parts_folder(file: Path) -> Path:
-    """Where finished parts of an atlas wait until it is written."""
+    """Folder that keeps the finished parts of an atlas until it is written."""
     return file.with_name(f"{file.stem}.parts")
 
 

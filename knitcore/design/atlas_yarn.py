@@ -88,7 +88,7 @@ def improve_atlas(
 
 
 def yarn_level_folder(file: Path) -> Path:
-    """Where relaxed and stretched repeats of an atlas are kept, a JSON document each."""
+    """Folder of the relaxed and stretched repeats of an atlas, a JSON document each."""
     return file.with_name(f"{file.stem}.yarn")
 
 

@@ -136,10 +136,14 @@ def fill_field(
     if stitch is not None:
         check_cloth(stitch, *target[0].shape)
         if np.isnan(target[:, stitch]).all():
-            raise InputError("target", "there is no target inside the outline.", "Paint there.")
+            raise InputError(
+                "target", "there is no target inside the outline.", "Paint a target there."
+            )
     if atlas.material != material.identifier:
         raise InputError(
-            "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
+            "atlas",
+            f"it was built for {atlas.material}, not for {material.identifier}.",
+            "Build an atlas of this material.",
         )
     if parts is None:
         parts = np.zeros(target.shape[1:], dtype=np.intp)
@@ -167,7 +171,7 @@ class _Trial:
 
 
 class _Fill:
-    """One fill."""
+    """A single run that fills a field."""
 
     def __init__(
         self,

@@ -22,7 +22,7 @@ from knitcore.materials.library import INCONSISTENT
 __all__ = ["Candidate", "FoundFabrics", "Quantity", "Target", "WornTube", "find_fabric"]
 
 _LONG = 24
-"""Longest key that is spelt out in a sentence."""
+"""Most characters of a repeat that a sentence spells out."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -82,8 +82,10 @@ def find_fabric(
     count: int = 10,
     limits: CostLimits | None = None,
 ) -> FoundFabrics:
-    """Rank all repeats by how surely they meet the targets: by their chance to the nearest per
-    cent, then by the weighted rms of their deviations; of equals the smaller repeat comes first.
+    """Rank all repeats by how surely they meet the targets.
+
+    Repeats are sorted by their chance to the nearest per cent, then by the weighted rms of their
+    deviations; of equals the smaller repeat comes first.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """Fabrics between those of an atlas: stripes of two repeats.
 
 The moduli of two sheets side by side follow from theirs (stress common across the joint, strain
-along it; docs/answer.md). That ranks all stripes at once; the best are then predicted as the
-repeats that they are, and errors of the ranking at the joints are corrected on the way. If none is
+along it; docs/answer.md). This estimate ranks all stripes at once. The best are then predicted as
+repeats, and the errors that the estimate makes at the joints are corrected on the way. If none is
 near, single stitches, rows and columns of the nearest charts are turned.
 """
 
@@ -31,7 +31,7 @@ MAX_PREDICTED = 100
 MAX_TURNED = 200
 """Most charts with turned stitches that are predicted for one target, if no mixture is near."""
 NEAR = 0.045
-"""Nothing is turned if a mixture is nearer than this."""
+"""Single stitches are not turned if a mixture is nearer than this (in logarithms)."""
 _PARTNERS = 140
 _MIN_WIDTH, _MAX_WIDTH = 1, 9
 _MAX_SIDE = 12

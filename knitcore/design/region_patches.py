@@ -1,4 +1,4 @@
-"""Patches: which repeat of an atlas goes where, so that a map of target moduli is met."""
+"""Choose patches of an atlas's repeats so that they meet a map of target moduli."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SWEEPS = 6
 
 
 def unevenness(atlas: Atlas, table: StitchTable) -> Array:
-    """How much the local moduli in each repeat differ from its effective ones, at most 1.
+    """Difference of the local moduli in each repeat from its effective ones, at most 1.
 
     Mean squares of logarithms: 0 for pure fabrics, large where unlike stitches alternate.
     """

@@ -122,7 +122,9 @@ def fill_shape(
     target = _checked(width, across, strain, smallest_band, direction)
     if atlas.material != material.identifier:
         raise InputError(
-            "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
+            "atlas",
+            f"it was built for {atlas.material}, not for {material.identifier}.",
+            "Build an atlas of this material.",
         )
     run = _Run(target, across, direction, strain, material, atlas, smallest_band, cancelled)
     return run.solve(np.random.default_rng(seed), progress)

@@ -154,7 +154,9 @@ def fit_law(
     """
     if reduction is Reduction.RECOMMENDED:
         raise InputError(
-            "reduction", "recommended simulates the tests.", "Call swatch.strip_fit.fit_tests."
+            "reduction",
+            "the recommended reduction needs simulated tests.",
+            "Call knitcore.fit.strip_fit.fit_tests.",
         )
     notes = [*course.notes, *wale.notes, *check_pair(course, wale)]
     fits, ratios, law = _fit(course, wale, reduction)

@@ -139,8 +139,10 @@ class LinearFit:
         )
 
     def _left_out(self, test: int) -> tuple[Array, Array]:
-        """Errors of force and waist, (pulls, levels), in units of their noise, of each pull by the
-        others; of a single pull by itself. NaN where it does not reach.
+        """Errors of force and waist, (pulls, levels), in units of their noise.
+
+        Each pull is compared with the others, a single pull with itself; NaN where a pull does
+        not reach.
         """
         strip, rows = self.strips[test], self._rows(test)
         stress, waist = strip.means

@@ -65,7 +65,7 @@ same reason. (It is 0.038 in acrylic garter, whose displacement field starts fla
 ALPHA_SHARE = 0.97
 """Largest alpha times the largest strain, so that the law can follow the whole test."""
 STOPPED_SHORT = 3.0
-"""Added to the residual of a force that the simulation does not reach."""
+"""Penalty added to the residual of a force that the simulation does not reach."""
 
 # Unknowns: logarithms of C_xxxx and C_yyyy, artanh of the coupling, logarithms of alpha_xx,
 # alpha_yy, beta_xx and beta_yy, kappa_xx, kappa_yy, and the logarithm of C_xyxy / sqrt(Y_x Y_y).

@@ -1,1 +1,1 @@
-"""Files that hold charts."""
+"""Read and write files that hold charts."""

@@ -15,7 +15,7 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress, held_strains_at_stress
 
 MAX_STRESS_N_PER_MM = 10.0
-"""Locks any fabric."""
+"""Stress that locks any fabric; curves end here."""
 _STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, MAX_STRESS_N_PER_MM, 600)])
 
 

@@ -59,8 +59,10 @@ def published(s: Values) -> tuple[Values, Values, Values]:
 def shear_response(
     angle: Values, modulus: Values | float, growth: Values | float
 ) -> tuple[Values, Values, Values]:
-    """Energy density, stress and stiffness (N/mm) in shear by an angle (rad), of a shear modulus
-    (N/mm) and its growth (1/rad²): stress ``modulus angle (1 + growth angle**2)``.
+    """Energy density, stress and stiffness (N/mm) in shear by an angle (rad).
+
+    The stress is ``modulus angle (1 + growth angle**2)``, with the shear modulus in N/mm and its
+    growth in 1/rad².
     """
     grown = growth * angle * angle
     stress = modulus * angle * (1.0 + grown)

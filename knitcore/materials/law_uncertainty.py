@@ -22,7 +22,7 @@ COVERAGE = 0.90
 """Probability content of all intervals."""
 
 Z_SCORE = NormalDist().inv_cdf(0.5 + COVERAGE / 2)
-"""Half width of such an interval in standard deviations."""
+"""Half width of a 90 % interval in standard deviations."""
 
 DEFAULT_POISSON_SD = 0.02
 """Standard deviation of a measured Poisson ratio printed without one: the largest ± of acrylic and
@@ -42,7 +42,7 @@ YARN_LEVEL_SIZE_LOG_SD = 0.16
 sizes, the four pure fabrics of acrylic and cotton (``studies/against_knitted.py``)."""
 
 YARN_LEVEL_FREE_SIZE_LOG_SD = 0.27
-"""The same of the shapes that they lead to without the symmetries of the chart."""
+"""Standard deviation of the same logarithm for shapes relaxed without the chart's symmetries."""
 
 YARN_LEVEL_STRAIN_LOG_SD = 0.41
 """Standard deviation of the logarithm of the strain at 0.05 to 0.3 N/mm, likewise."""
@@ -133,8 +133,9 @@ class LawUncertainty:
         return known or CurveUncertainty(self.log_modulus(direction))
 
     def log_stress(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
-        """Standard deviation of the logarithm of the stress at the strain that carries it: of the
-        modulus at first, then of the curve.
+        """Standard deviation of the logarithm of a stress, at the strain that carries it.
+
+        At small stress it is that of the modulus, then that of the curve.
         """
         first = 1 / (1 + (np.asarray(stress_n_per_mm, dtype=float) / QUIET_STRESS_N_PER_MM) ** 2)
         modulus, curve = self.log_modulus(direction), self.curve(direction).log_stress

@@ -29,7 +29,7 @@ copyreg.pickle(MappingProxyType, lambda proxy: (_frozen, (dict(proxy),)))
 
 
 class Origin(StrEnum):
-    """Where the constants of a law come from."""
+    """Origin of the constants of a law."""
 
     MEASURED = "measured"
     SIMULATED = "simulated"

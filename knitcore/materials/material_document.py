@@ -22,7 +22,7 @@ from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
 from knitcore.materials.measured_curves import MAX_POINTS, MeasuredCurve
 
 _DEFAULT_RELATIVE_SD = 0.10
-"""Assumed where a file gives no standard deviation: the paper's median."""
+"""Standard deviation assumed where a file gives none: the paper's median."""
 
 Length = Annotated[float, Field(gt=0, le=500, description="mm")]
 Modulus = Annotated[float, Field(gt=0, le=1000, description="N/mm")]
@@ -322,7 +322,7 @@ class MaterialDocument(_Model):
 
 
 def _written(value: float) -> float:
-    """Twelve digits, which are the same when the file is read and written again."""
+    """Round to twelve digits, which stay the same when the file is read and written again."""
     return float(f"{value:.12g}")
 
 

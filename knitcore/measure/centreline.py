@@ -141,7 +141,7 @@ def trace_centreline(grey: Array, *, name: str = "photo") -> Centreline:
 
 
 def _yarn_mask(grey: Array, name: str) -> tuple[Mask, float]:
-    """Where the yarn is, and the next largest area over its own."""
+    """Mask of the yarn, and the next largest area over its own."""
     border = np.concatenate([grey[0], grey[-1], grey[:, 0], grey[:, -1]])
     ground = float(np.median(border))
     low, high = np.percentile(grey, [0.5, 99.5])

@@ -135,8 +135,9 @@ def fit_compression(
 
 
 def _loading(test: CompressionTest) -> tuple[Array, Array, float, float]:
-    """Depths (mm) and forces (N) to fit, from contact up to :data:`FIT_LIMIT_N`; the depth (mm) at
-    which the core is reached, and that depth over the depth at contact.
+    """Depths (mm) and forces (N) to fit, depth (mm) of the core, and that over the contact depth.
+
+    The readings go from contact up to :data:`FIT_LIMIT_N`.
 
     Raises
     ------

@@ -21,7 +21,7 @@ from knitcore.base.errors import ConvergenceError
 
 NODES = 401
 MAX_LOAD = 1e6
-"""Beyond, the bend is shorter than a hundredth of the yarn and no photo resolves it."""
+"""Largest load; beyond it the bend is shorter than a hundredth of the yarn: no photo shows it."""
 
 
 def heavy_elastica(load: float) -> tuple[Array, Array, Array]:

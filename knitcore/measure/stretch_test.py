@@ -15,7 +15,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 
 MIN_POINTS = 20
-"""With fewer points a linear part cannot be distinguished from a stiffening one."""
+"""Fewest points of a pull; with fewer, a linear part looks like a stiffening one."""
 PERCENT_STRAIN = 6.0
 """A strain above this (600 %) must be in per cent: no knit reaches it before it locks."""
 SPIKE_SHARE = 0.1

@@ -1,4 +1,4 @@
-"""Columns of numbers in tables from users."""
+"""Read columns of numbers in users' tables."""
 
 from __future__ import annotations
 

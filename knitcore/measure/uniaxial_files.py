@@ -39,7 +39,7 @@ from knitcore.measure.tables import numbers, read_table, rows_by_label
 CLAMP_MM = 35.5
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
 TABLE_LENGTHS = {"length_mm": "the clamps", "across_mm": "the points tracked across"}
-"""Optional columns, and between what they are measured."""
+"""Optional columns, each with the marks between which it is measured."""
 MAX_TABLE_BYTES = 64 * 2**20
 MAX_PIXEL = 1e6
 MAX_FORCE_N = 1e6
@@ -51,7 +51,7 @@ _RIGHT, _LEFT, _BOTTOM, _TOP, _CENTRE, _CLAMP_BOTTOM, _CLAMP_TOP = range(7)
 
 
 class Marks(StrEnum):
-    """Between which tracked points the strain along the pull is read.
+    """The pair of tracked points between which the strain along the pull is read.
 
     ``centre`` (centre of the fabric to the lower clamp) reproduces the published numbers;
     ``clamps`` is the whole sample.

@@ -20,7 +20,7 @@ MAX_ROWS = 500_000
 MAX_COLUMNS = 200
 MAX_CELLS = 3_000_000
 MAX_EMPTY_ROWS = 1000
-"""A gap of more ends a sheet: a stray cell far below costs nothing then."""
+"""Longest gap of empty rows inside a sheet; a stray cell far below is ignored."""
 _XLS = bytes.fromhex("d0cf11e0a1b11ae1")
 _XLSX = b"PK\x03\x04"
 

@@ -124,7 +124,7 @@ def coarsened(grid: SheetGrid, most_cells: int) -> SheetGrid:
 
 
 def _mean(first: SheetGrid, second: SheetGrid) -> SheetGrid:
-    """Halfway between two estimates: the geometric mean of the moduli keeps ratios unbiased."""
+    """Average two estimates; the geometric mean of the moduli keeps ratios unbiased."""
 
     def mean(a: Array, b: Array) -> Array:
         return np.sqrt(a * b)

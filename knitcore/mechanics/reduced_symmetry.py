@@ -84,7 +84,7 @@ class SegmentGeometry:
 
     @classmethod
     def from_curve(cls, parity: Parity, curve_mm: ArrayLike) -> SegmentGeometry:
-        """From the centre line of a segment, e.g. of a relaxed stitch of the yarn level.
+        """Take the shape from a segment's centre line, such as that of a relaxed yarn-level stitch.
 
         Parameters
         ----------

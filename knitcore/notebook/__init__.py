@@ -1,6 +1,6 @@
-"""For notebooks: interactive figures and a view in space.
+"""Interactive figures and a view in space, for notebooks.
 
-Needs the extra ``knitcore[notebook]`` (plotly). Charts, materials, answers, curves,
+Needs the extra ``knitcore[notebook]`` (plotly). Charts, materials, predictions, curves,
 relaxed cells, swatches and curled pieces display without it.
 """
 

@@ -19,7 +19,7 @@ from knitcore.yarn.model.relaxed_cell import Sweep
 
 @singledispatch
 def figure(of: object) -> Any:
-    """The stress-strain curves of an answer, a curve, a sweep or a strip test, for plotly.
+    """The stress-strain curves of a prediction, a curve, a sweep or a strip test, for plotly.
 
     Returns
     -------

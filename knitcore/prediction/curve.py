@@ -21,7 +21,7 @@ from knitcore.prediction.size import RelaxedSize
 
 DEFAULT_STRESS_N_PER_MM = tuple(float(s) for s in np.linspace(0.0, 0.3, 31))
 MAX_STRESS_N_PER_MM = 100.0
-"""Laws say nothing beyond."""
+"""Largest stress of a curve; laws are not known beyond it."""
 
 
 @dataclass(frozen=True, eq=False)

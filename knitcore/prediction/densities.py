@@ -30,7 +30,7 @@ from knitcore.chart.fabric import PHASES
 from knitcore.chart.stitch_chart import StitchChart
 
 _LAGS = ((0, 2), (0, 3), (0, 4), (2, 0), (3, 0), (4, 0), (1, 2), (2, 1), (2, 2))
-"""Rows up and columns right. Those of (0, 1), (1, 0) and (1, 1) follow from the shares."""
+"""Lags, rows up and columns right; those of (0, 1), (1, 0) and (1, 1) follow from the shares."""
 _PAIRS = ((1, 0), (2, 0), (0, 2))
 """Lags between two pairs of neighbours in a row."""
 _SMOOTHED_OVER = (1.5, 4.0)
@@ -47,7 +47,7 @@ FEATURES = {
 }
 """Number of features of each kind, in their order."""
 Mean = Callable[[NDArray[np.generic]], Array]
-"""Takes means of values of the stitches (…, rows, columns)."""
+"""Function that averages values of the stitches (…, rows, columns)."""
 _NO_CHANGE = 1e-12
 _FEW_CROSSINGS = 0.1
 """Share of stitches with odd segments both ways, among those with any, at which a chart counts as
@@ -85,8 +85,9 @@ class Densities:
 
     @property
     def mixed(self) -> Array:
-        """(…,) 0 in a pure fabric, nearly 1 from a tenth of other fabrics on: the model's
-        uncertainty for this chart over that for a mixed one.
+        """Uncertainty of the model for a chart over that for a mixed one, (…,).
+
+        It is 0 in a pure fabric, and nearly 1 from a tenth of other fabrics on.
         """
         return np.asarray(1 - np.exp((self.shares.max(axis=-1) - 1) / _FEW_OTHERS))
 
@@ -106,7 +107,7 @@ class Densities:
         return Densities(*((1 - share) * own + share * theirs for own, theirs in pairs))
 
     def __iter__(self) -> Iterator[Densities]:
-        """One chart after another."""
+        """Iterate over the compositions of the single charts."""
         return (Densities(*chart) for chart in zip(*self.arrays, strict=True))
 
 

@@ -159,7 +159,7 @@ def learned(
 
 @dataclass(frozen=True, eq=False)
 class LearnedModel:
-    """Both regressions, with their samples and scales.
+    """The learned model: both regressions, with their samples and scales.
 
     Attributes
     ----------
@@ -306,8 +306,9 @@ class LearnedModel:
         )
 
     def sample(self, features: Array, numbers: Array) -> Samples:
-        """Features of charts (m, features) and numbers of their yarns (m, 4), in the samples'
-        units; an unknown yarn (nan) is one in the middle.
+        """Scale features of charts (m, features) and numbers of yarns (m, 4) as the samples are.
+
+        An unknown number (nan) of a yarn is taken as that of a yarn in the middle.
         """
         scaled = (numbers - self.number_centre) / self.number_scale
         none_pure = np.zeros(len(features), dtype=bool)

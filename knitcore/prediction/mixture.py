@@ -28,7 +28,7 @@ from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.model.yarn_model import YarnModel
 
 USUAL_STRESS_N_PER_MM = 2e-5
-"""B / L³ of a yarn without known B: about the middle of the library."""
+"""B / L³ assumed for a yarn whose B is unknown: about the middle of the library."""
 _NOTHING = 1e-9
 """Shares below this are rounding errors."""
 
@@ -198,8 +198,9 @@ def present(shares: Array) -> NDArray[np.int64]:
 
 
 def pure_numbers(material: Material, phases: NDArray[np.int64]) -> Array:
-    """(4, 5) numbers of the yarn in these pure fabrics; nan in others, and where too little is
-    known.
+    """Numbers of the yarn in these pure fabrics, (4, 5).
+
+    They are nan in other fabrics, and where too little is known.
     """
     numbers = np.full((len(PHASES), 5), np.nan)
     for phase in phases:

@@ -105,7 +105,7 @@ class Patches:
         )
 
     def lines(self, direction: Direction) -> tuple[Prediction, ...]:
-        """Predict the chart's rows (course), or its columns, for a pull along them.
+        """Predict each row of the chart for a course-wise pull, or each column for a wale-wise one.
 
         Between the middles of the patches' windows they change gradually, as if a line were knitted
         partly as the one window, partly as the other.
@@ -272,8 +272,9 @@ def _densities_of(
     rows: NDArray[np.intp],
     columns: NDArray[np.intp],
 ) -> Densities:
-    """Densities of the patches, row by row: means over the window of each, moved so that the mean
-    of all patches is the whole repeat's.
+    """Densities of the patches, row by row, as means over the window of each.
+
+    They are shifted so that the mean of all patches is that of the whole repeat.
     """
     up, along = _windows(rows), _windows(columns)
     own = densities_of(repeat.purl, lambda values: (up @ values.astype(float) @ along.T).ravel())

@@ -23,7 +23,7 @@ SHOWN_STRESS_N_PER_MM = 0.2
 
 
 class Source(StrEnum):
-    """Source of a prediction."""
+    """Kind of evidence that a prediction comes from."""
 
     MEASURED = "measured"
     ESTIMATED = "estimated"

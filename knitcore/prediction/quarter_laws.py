@@ -89,7 +89,7 @@ def quarter_laws(
     *,
     even: bool = False,
 ) -> QuarterLaws:
-    """Laws of a piece.
+    """Compute the laws and sizes of the quarter cells of a piece.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Files of designs."""
+"""Project files of designs, and the parts of a design."""

@@ -65,7 +65,7 @@ class DesignRegion(_Part):
 
 
 class Placement(_Part):
-    """Where a linked repeat lies."""
+    """Place of a linked repeat."""
 
     row: Index
     column: Index

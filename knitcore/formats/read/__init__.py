@@ -1,1 +1,1 @@
-"""Readers of files."""
+"""Readers of charts and laws from files."""

@@ -29,7 +29,7 @@ _HOLDS = re.compile(r"^; carrier (\d{1,2}) knits (#[0-9a-f]{6}) (.+)$", re.MULTI
 
 
 class KnitoutMismatchError(KnitcoreError):
-    """A program of this library does not knit its chart: an error here, so nothing is exported."""
+    """Error for a program of this library that does not knit its chart: it is not exported."""
 
 
 @dataclass(frozen=True)

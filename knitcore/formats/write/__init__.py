@@ -1,1 +1,1 @@
-"""Writers of files."""
+"""Writers of charts, patterns, reports and machine programs."""

@@ -55,7 +55,7 @@ OVERVIEW_CELL_MM = 2.0
 HEADER_MM = 14.0
 A4_MM = (210.0, 297.0)
 NUMBERED_UP_TO = 40
-"""Longer rows get every fifth number."""
+"""Most stitches of a row that are all numbered; longer rows get every fifth number."""
 
 
 def chart_svg(chart: StitchChart | Piece, style: ChartStyle | None = None) -> str:

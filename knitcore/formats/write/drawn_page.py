@@ -229,8 +229,9 @@ def _pdf(canvas: object, shape: Shape, top: float) -> None:
 
 @lru_cache
 def _embedded(font: str) -> str:
-    """The name of a font that comes with reportlab and goes into the file, as printers ask for;
-    Bitstream's licence allows that.
+    """Register a font of reportlab to be embedded in the file, and return its name.
+
+    Printers ask for embedded fonts; Bitstream's licence allows it.
     """
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont

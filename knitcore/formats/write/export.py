@@ -48,7 +48,7 @@ class ExportKind(StrEnum):
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """How a chart is worked and finished, where that matters.
+    """Options of an export: how the chart is worked, finished and drawn.
 
     Attributes
     ----------

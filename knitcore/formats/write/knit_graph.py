@@ -60,7 +60,7 @@ def carrier_of(loop: Any) -> int:
 
 
 def time_of(loop: Any) -> int:
-    """Loops are numbered in the order in which a machine makes them."""
+    """Number of a loop in the order in which a machine makes them."""
     return int(loop.loop_count_on_machine)
 
 
@@ -113,7 +113,7 @@ def _is_chained(loop: Any, child: Mapping[Any, Any]) -> bool:
 
 
 def _without_tag(courses: list[dict[int, Any]]) -> list[dict[int, Any]]:
-    """Without the few stitches on one needle that hold a bind-off: its last chain, and a tag."""
+    """Remove the few stitches on one needle that hold a bind-off: its last chain, and a tag."""
     tag = TAG_STITCHES + 1
     end = courses[-tag:]
     wide_below = len(courses) > tag and len(courses[-tag - 1]) > 1
@@ -123,7 +123,7 @@ def _without_tag(courses: list[dict[int, Any]]) -> list[dict[int, Any]]:
 
 
 def _check(row: int, course: Mapping[int, Any], below: Mapping[int, Any]) -> None:
-    """Refuse what does not stand on the course below."""
+    """Refuse a course that does not stand on the course below."""
     needles = sorted(course)
     gap = next((a for a, b in pairwise(needles) if b != a + 1), None)
     if gap is not None:

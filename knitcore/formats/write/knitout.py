@@ -325,7 +325,7 @@ def _leftwards(row: int) -> bool:
 
 
 def _onto(here: int, beside: int) -> Sequence[str]:
-    """A loop of the front bed onto its neighbour there."""
+    """Move a loop of the front bed onto its neighbour there."""
     return (
         f"xfer {_needle(False, here)} {_needle(True, here)}",
         f"rack {beside - here}",

@@ -1,4 +1,4 @@
-"""A design as a pattern to knit from: what one needs, the parts, the rows, the chart, the evidence.
+"""Write a design as a pattern: materials, parts, rows, chart and the evidence for its numbers.
 
 The same pages are written as PDF and as SVG. Sizes are those of the cloth at rest, with intervals.
 """
@@ -47,7 +47,7 @@ MAX_SECTIONS = 24
 """Rows of designs with more borders between regions are written without sections."""
 PULL_N_PER_MM = 0.05
 _FAINT = 16
-"""Differences of a channel, of 255, that are still the ground of a photo."""
+"""Largest difference of a colour channel (of 255) that still counts as a photo's background."""
 _EM = 0.5
 """Mean width of a letter over the size of its type."""
 

@@ -35,7 +35,7 @@ from knitcore.materials.estimate.yarn_statistics import (
 from knitcore.materials.measured_curves import MeasuredCurve
 
 LOOP_LENGTH_TOLERANCE = 0.1
-"""A swatch whose loop length differs by more than this is of another tightness."""
+"""Largest difference of two loop lengths (in logarithms) that counts as the same tightness."""
 INTERVAL_SOURCE = "Yarns of the library left out one at a time, the same fabrics of them measured."
 
 

@@ -350,5 +350,5 @@ def test_maps_that_cannot_be_used(course: np.ndarray, wale: np.ndarray, says: st
 
 
 def test_the_atlas_must_be_of_the_yarn() -> None:
-    with pytest.raises(InputError, match="it is of acrylic"):
+    with pytest.raises(InputError, match="it was built for acrylic"):
         fill_field(np.ones((2, 2)), np.ones((2, 2)), material("cotton"), acrylic_atlas())
