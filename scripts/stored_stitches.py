@@ -27,7 +27,7 @@ from knitcore.yarn.library.store import MATERIALS
 from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.study.relax import Branch
 
-DATA = Path(__file__).parent.parent / "knitcore" / "yarnlibrary" / "data"
+DATA = Path(__file__).parent.parent / "knitcore" / "yarn" / "library" / "data"
 COMMON: dict[str, str] = {
     "stockinette": "K",
     "garter": "P\nK",

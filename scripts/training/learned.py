@@ -36,7 +36,7 @@ from knitcore.yarn.library.store import MATERIALS, stored_charts, stored_stitch
 from knitcore.yarn.model.yarn_model import YarnModel
 from scripts.training.entries import TrainingEntry, training_entries
 
-FILE = Path(__file__).parents[2] / "knitcore" / "answer" / "data" / "learned.npz"
+FILE = Path(__file__).parents[2] / "knitcore" / "prediction" / "data" / "learned.npz"
 
 NUMBER_CENTRE = np.array([np.log(0.056), np.log(0.0255), np.log(0.25), 2.65])
 NUMBER_SCALE = np.array([0.15, 0.12, 1.0, 0.25])
