@@ -1,6 +1,6 @@
 """For notebooks: interactive figures and a view in space.
 
-Needs the extra ``knitcore[notebook]`` (plotly). Charts, materials, answers, curves,
+Needs the extra ``knitcore[notebook]`` (plotly). Charts, materials, predictions, curves,
 relaxed cells, swatches and curled pieces display without it.
 """
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["figure", "view"]
 
-_HOMES = {"figure": "figures", "view": "space"}
+_HOMES = {"figure": "result_figures", "view": "figure_in_space"}
 
 
 def __getattr__(name: str) -> Any:

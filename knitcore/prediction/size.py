@@ -36,7 +36,7 @@ class RelaxedSize:
     course_mm, wale_mm : width and height.
     log_sd : standard deviation of their logarithms.
     known_by : a gauge counted on cloth, or a relaxation at the yarn level
-        (:mod:`knitcore.prediction.relaxation`).
+        (:mod:`knitcore.prediction.swept`).
 
     Raises
     ------

@@ -114,13 +114,14 @@ print(*compiled)
         (
             "yarn",
             "knitcore.yarn.kernels.curve_samples",
-            {"yarnlevel.kernels.rod.rod_hessian", "yarnlevel.kernels.scatter.scatter_local",
-             "dense.eliminate", "dense.substitute", "dense.solved", "yarnlevel.clasps._crossings"},
+            {"yarn.kernels.rod.rod_hessian", "yarn.kernels.scatter.scatter_local",
+             "linear.dense.eliminate", "linear.dense.substitute", "linear.dense.solved",
+             "yarn.solve.clasps._crossings"},
         ),
         (
             "shape",
             "knitcore.cloth.space.sheet_kernels",
-            {f"gridsolver.elimination.{name}" for name in ("eliminate", "forward", "backward")},
+            {f"linear.elimination.{name}" for name in ("eliminate", "forward", "backward")},
         ),
     ],
 )  # fmt: skip
