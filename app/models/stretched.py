@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction
 
@@ -21,7 +24,7 @@ class StretchView:
     """
 
     direction: Direction
-    positions_mm: Array
+    positions_mm: NDArray[np.float32]
     strain: Array
     utilisation: Array
 

@@ -25,7 +25,7 @@ CALL = """
 import contextlib, gc, sys
 import kernel
 import knitcore.base.compiled
-from app.cli.common import telling_what_is_compiled
+from knitcore_app.cli.common import telling_what_is_compiled
 
 knitcore.base.compiled.TELL_AFTER_S = 0.0
 told = telling_what_is_compiled() if sys.argv[1] == "command" else contextlib.nullcontext()
