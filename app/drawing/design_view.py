@@ -126,7 +126,7 @@ def build_drawing(
 
 
 def build_scene(
-    request: ViewRequest, found: StretchView | PosedView | None, context: Context
+    request: ViewRequest, computed: StretchView | PosedView | None, context: Context
 ) -> FabricScene:
     """The scene of a design: flat, in a shape of its own, or at one step of its stretch test.
 
@@ -137,8 +137,8 @@ def build_scene(
     """
     chart, material = to_chart(request.chart), context.material(request.material)
     drawn = _drawn(request, chart)
-    stretch = found if isinstance(found, StretchView) else None
-    posed = _posed(request, found, chart)
+    stretch = computed if isinstance(computed, StretchView) else None
+    posed = _posed(request, computed, chart)
     step = _checked_step(request, stretch, chart)
     shapes = stitch_shapes(chart, material, folded=posed is None)
     placement, room = unstretched(shapes), None
@@ -172,17 +172,17 @@ def build_scene(
 
 
 def _posed(
-    request: ViewRequest, found: StretchView | PosedView | None, chart: StitchChart
+    request: ViewRequest, computed: StretchView | PosedView | None, chart: StitchChart
 ) -> PosedView | None:
     if request.curl is None:
         return None
     if request.stretch is not None:
         raise InputError("curl", "stretch is given as well.", "Leave one of them out.")
-    if not isinstance(found, PosedView):
+    if not isinstance(computed, PosedView):
         raise InputError("curl.id", "is not known any more.", "Compute the shape again.")
-    if found.corners_mm.shape[:2] != (chart.rows + 1, chart.columns + 1):
+    if computed.corners_mm.shape[:2] != (chart.rows + 1, chart.columns + 1):
         raise InputError("curl.id", "belongs to another chart.", "Compute it for this one.")
-    return found
+    return computed
 
 
 def _checked_step(request: ViewRequest, stretch: StretchView | None, chart: StitchChart) -> int:

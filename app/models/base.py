@@ -50,9 +50,9 @@ def read(model: Any, content: bytes | str) -> Any:
     try:
         return TypeAdapter(model).validate_json(content)
     except ValidationError as error:
-        found = error.errors(include_url=False, include_input=False)
+        faults = error.errors(include_url=False, include_input=False)
         raise InvalidRequestError(
-            [fault | {"loc": ("body", *fault["loc"])} for fault in found]
+            [fault | {"loc": ("body", *fault["loc"])} for fault in faults]
         ) from None
 
 

@@ -160,16 +160,16 @@ class PieceTestResult(IntervalResult):
     messages: list[str]
 
     @classmethod
-    def of_pull(cls, found: Any, material: Material, **more: Any) -> Self:
+    def of_pull(cls, pull: Any, material: Material, **more: Any) -> Self:
         """From a test of a rectangle, with an interval for each force."""
         ends = {}
         for name in cls.model_fields:
             force, is_interval, _ = name.partition("_interval_n")
             if is_interval:
-                factor = np.exp(Z_SCORE * getattr(found, f"{force}_log_sd"))
-                value = getattr(found, f"{force}_n")
+                factor = np.exp(Z_SCORE * getattr(pull, f"{force}_log_sd"))
+                value = getattr(pull, f"{force}_n")
                 ends[name] = value / factor, value * factor
-        return cls.of(found, **ends, **of_test(found.test, material), **more)
+        return cls.of(pull, **ends, **of_test(pull.test, material), **more)
 
 
 def of_test(test: PieceTest, material: Material) -> dict[str, Any]:

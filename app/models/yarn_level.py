@@ -103,8 +103,8 @@ class YarnLevelRequest(StitchRequest):
 
     def inputs(self, repeat: StitchChart, used: ChartYarn) -> dict[str, Any]:
         """Everything that decides a result, from which its stored name is made."""
-        asked = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
-        return {"repeat": repeat.text, "used": asdict(used), "asked": asked}
+        options = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
+        return {"repeat": repeat.text, "used": asdict(used), "asked": options}
 
 
 def _yarn(material: Material, repeat: StitchChart, loop_length_mm: float | None) -> ChartYarn:

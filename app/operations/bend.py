@@ -100,14 +100,14 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     loop = used.loop_length_mm
     stored = stored_for(repeat, used)
     if stored is not None and stored.bending is not None:
-        found, whence = stored.bending, ", stored"
+        bending, whence = stored.bending, ", stored"
         area = stored.cell_course_mm * stored.cell_wale_mm
     else:
         relaxed = relax(repeat, used.yarn, loop, branch="mirrored", cancelled=context.cancelled)
-        found, whence = repeat_bending(relaxed, cancelled=context.cancelled), ""
+        bending, whence = repeat_bending(relaxed, cancelled=context.cancelled), ""
         area = relaxed.cell_course_mm * relaxed.cell_wale_mm
-    shown, stable = found.shown, found.stable
-    notes = [_FRICTIONLESS, *_failures(found), *_compared(found)]
+    shown, stable = bending.shown, bending.stable
+    notes = [_FRICTIONLESS, *_failures(bending), *_compared(bending)]
     density = request.linear_density_g_per_m
     weight = None if density is None else weight_n_per_mm2(density, loop, area)
     if not stable.minimum:
@@ -122,7 +122,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         notes.append("It folds by itself along a diagonal: the rigidity there is not positive.")
     if stable.twist_n_mm is not None and stable.twist_n_mm <= 0.0:
         notes.append("A strip of it twists by itself: the rigidity of twist is not positive.")
-    symmetry = "with" if found.mirrored is not None else "without"
+    symmetry = "with" if bending.mirrored is not None else "without"
     return BendResult.of(
         shown,
         moment_course_n=shown.course.moment_n,
@@ -152,20 +152,20 @@ def _hanging(response: BendingResponse, weight_n_per_mm2: float | None) -> float
     return bending_length_mm(response.rigidity_n_mm, weight_n_per_mm2)
 
 
-def _failures(found: RepeatBending) -> Iterator[str]:
+def _failures(bending: RepeatBending) -> Iterator[str]:
     """Notes on what could not be bent."""
-    if found.failure:
-        yield f"With the symmetries of the chart: {found.failure}"
-    if found.unmirrored_failure:
-        yield f"Without them: {found.unmirrored_failure}"
+    if bending.failure:
+        yield f"With the symmetries of the chart: {bending.failure}"
+    if bending.unmirrored_failure:
+        yield f"Without them: {bending.unmirrored_failure}"
 
 
-def _compared(found: RepeatBending) -> Iterator[str]:
+def _compared(bending: RepeatBending) -> Iterator[str]:
     """Notes where the state without symmetries differs."""
-    if found.unmirrored is None:
+    if bending.unmirrored is None:
         return
-    for direction, factor in found.far_apart.items():
-        free = direction.of(found.unmirrored.course, found.unmirrored.wale)
+    for direction, factor in bending.far_apart.items():
+        free = direction.of(bending.unmirrored.course, bending.unmirrored.wale)
         way = direction.of("along the rows", "along the columns")
         yield (
             f"Bent {way}, the rigidity without the symmetries of the chart is "

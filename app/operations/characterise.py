@@ -197,13 +197,13 @@ def _plan(yarn: Material | YarnInput | None, options: CharacteriseOptions) -> Ya
     InputError
         If no yarn is given, or the options do not apply to it.
     """
-    asked = options.model_dump(include=set(CharacteriseOptions.model_fields))
+    settings = options.model_dump(include=set(CharacteriseOptions.model_fields))
     if isinstance(yarn, Material):
-        return plan_for_material(yarn, **asked)
+        return plan_for_material(yarn, **settings)
     if yarn is None:
         raise InputError("material", "is missing.", "Name a material, or give a yarn.")
-    del asked["tensions"]  # of a material's own lengths
-    return plan_for_yarn(yarn.name, yarn.pass_to(YarnModel), **asked)
+    del settings["tensions"]  # of a material's own lengths
+    return plan_for_yarn(yarn.name, yarn.pass_to(YarnModel), **settings)
 
 
 def _result(table: YarnTable) -> CharacteriseResult:
@@ -294,10 +294,10 @@ def _command(
     return YarnsResult(results)
 
 
-def _show(told: BatchProgress) -> None:
-    failed = f", {told.failed} failed" if told.failed else ""
-    label = told.key.rpartition(".")[0]  # without the digest
-    click.echo(f"{told.done} of {told.total} stitches{failed} {label}".rstrip(), err=True)
+def _show(batch: BatchProgress) -> None:
+    failed = f", {batch.failed} failed" if batch.failed else ""
+    label = batch.key.rpartition(".")[0]  # without the digest
+    click.echo(f"{batch.done} of {batch.total} stitches{failed} {label}".rstrip(), err=True)
 
 
 def _write_materials(result: CharacteriseResult, folder: Path) -> None:

@@ -55,12 +55,12 @@ def compare(request: CompareRequest, context: Context) -> CompareResult:
     """
     field = request.chosen(load(request.field))
     law, model = _law_and_model(request, context)
-    found = request.pass_to(compared, field, law, model=model)
+    comparison = request.pass_to(compared, field, law, model=model)
     return CompareResult.of(
-        found,
+        comparison,
         edges=request.edges,
         model=model.energy,
-        messages=[found.problem] if found.problem else [],
+        messages=[comparison.problem] if comparison.problem else [],
     )
 
 

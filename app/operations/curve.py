@@ -45,11 +45,11 @@ class CurveResult(IntervalResult):
 def curve(request: CurveRequest, context: Context) -> CurveResult:
     """Strain at each stress, and the stress interval at each strain, for a chart of any size."""
     check_cancelled(context.cancelled)
-    found = request.pass_to(chart_curve, *request.fabric(context), size=request.relaxed_size)
+    curve = request.pass_to(chart_curve, *request.fabric(context), size=request.relaxed_size)
     return CurveResult.of(
-        found,
-        strain_interval=(found.strain_low, found.strain_high),
-        stress_interval_n_per_mm=(found.stress_low, found.stress_high),
+        curve,
+        strain_interval=(curve.strain_low, curve.strain_high),
+        stress_interval_n_per_mm=(curve.stress_low, curve.stress_high),
     )
 
 

@@ -108,23 +108,23 @@ def estimate(request: EstimateRequest, context: Context) -> EstimateResult:
     return _result(request.pass_to(estimate_yarn, swatches=swatches))
 
 
-def _result(found: YarnEstimate) -> EstimateResult:
-    measured = tuple(f for f, e in found.fabrics.items() if e.measured)
+def _result(estimate: YarnEstimate) -> EstimateResult:
+    measured = tuple(f for f, e in estimate.fabrics.items() if e.measured)
     return EstimateResult.of(
-        found,
+        estimate,
         fabrics={
             fabric: FabricEstimateResult.of(f, law=LawResult.of_law(f.law), **_values(f))
-            for fabric, f in found.fabrics.items()
+            for fabric, f in estimate.fabrics.items()
         },
         interval_source=INTERVAL_SOURCE,
         left_out=left_out(measured) if len(measured) < len(Fabric) else None,
-        material=_document(found),
+        material=_document(estimate),
     )
 
 
-def _document(found: YarnEstimate) -> MaterialDocument:
+def _document(estimate: YarnEstimate) -> MaterialDocument:
     try:
-        return MaterialDocument.from_material(estimated_material(found, "estimated"))
+        return MaterialDocument.from_material(estimated_material(estimate, "estimated"))
     except ValidationError as error:
         fault = error.errors()[0]
         raise InputError(
@@ -135,13 +135,13 @@ def _document(found: YarnEstimate) -> MaterialDocument:
         ) from error
 
 
-def _values(found: FabricEstimate) -> dict[str, Any]:
+def _values(fabric: FabricEstimate) -> dict[str, Any]:
     """Central values and intervals, by direction."""
     by_name = {
-        ("strain_at_0_1_n_per_mm", ""): found.strain_at_load,
-        ("modulus", UNIT): found.modulus,
-        ("alpha", ""): found.alpha,
-        ("beta", UNIT): found.beta,
+        ("strain_at_0_1_n_per_mm", ""): fabric.strain_at_load,
+        ("modulus", UNIT): fabric.modulus,
+        ("alpha", ""): fabric.alpha,
+        ("beta", UNIT): fabric.beta,
     }
     values = {
         f"{name}{unit}": {d: estimate.value for d, estimate in known.items()}
@@ -208,7 +208,7 @@ def _command(
 
 
 def _lengths(texts: tuple[str, ...], field: str) -> dict[Fabric, float]:
-    found: dict[Fabric, float] = {}
+    lengths: dict[Fabric, float] = {}
     for text in texts:
         name, _, number = text.rpartition("=")
         try:
@@ -218,10 +218,10 @@ def _lengths(texts: tuple[str, ...], field: str) -> dict[Fabric, float]:
                 field, f"{text!r} is not a length.", "Write MM or FABRIC=MM."
             ) from None
         if name:
-            found[Fabric.parse(name)] = value
+            lengths[Fabric.parse(name)] = value
         else:
-            found = {fabric: found.get(fabric, value) for fabric in Fabric}
-    return found
+            lengths = {fabric: lengths.get(fabric, value) for fabric in Fabric}
+    return lengths
 
 
 def _swatch(

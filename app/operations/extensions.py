@@ -38,23 +38,23 @@ class Extensions(ResultModel):
 def extensions(request: NoRequest, context: Context) -> Extensions:
     """Materials and file formats that installed packages add."""
     del request, context
-    found = []
+    results = []
     for group, kind in KINDS.items():
         for extension in installed(group):
             offers: list[str] = []
             problem = None
             try:
-                offers = [one.identifier for one in extension.load(kind)]
+                offers = [offer.identifier for offer in extension.load(kind)]
             except ExtensionError as error:
                 problem = str(error)
-            found.append(ExtensionResult.of(extension, offers=offers, problem=problem))
-    return Extensions(extensions=found)
+            results.append(ExtensionResult.of(extension, offers=offers, problem=problem))
+    return Extensions(extensions=results)
 
 
-def _lines(found: Extensions) -> list[str]:
+def _lines(result: Extensions) -> list[str]:
     lines = [
         f"{e.group:20} {e.name} ({e.package}): {e.problem or ', '.join(e.offers)}"
-        for e in found.extensions
+        for e in result.extensions
     ]
     return lines or ["no extensions are installed"]
 

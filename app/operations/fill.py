@@ -151,20 +151,20 @@ def fill(request: FillRequest, context: Context) -> FillResult:
     InputError
         If the maps or wishes cannot be used, or are too large here.
     """
-    wanted = _wanted(request)
-    if wanted[0].size > MAX_STITCHES:
+    targets = _wanted(request)
+    if targets[0].size > MAX_STITCHES:
         raise InputError(
             "target",
-            f"{wanted[0].size} stitches are too many here.",
+            f"{targets[0].size} stitches are too many here.",
             f"Use at most {MAX_STITCHES}, or the command line.",
         )
     atlas = context.within(0.0, 0.3).atlas(request.material, request.repeats)
-    return _filled(request, wanted, atlas, context.within(0.3, 0.7))
+    return _filled(request, targets, atlas, context.within(0.3, 0.7))
 
 
-def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) -> FillResult:
-    course, wale, parts = wanted
-    found = request.pass_to(
+def _filled(request: FillRequest, targets: Maps, atlas: Atlas, context: Context) -> FillResult:
+    course, wale, parts = targets
+    filled = request.pass_to(
         fill_field,
         course,
         wale,
@@ -177,12 +177,12 @@ def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) 
         cancelled=context.cancelled,
     )
     return FillResult.of(
-        found,
-        rows=found.chart.rows,
-        columns=found.chart.columns,
+        filled,
+        rows=filled.chart.rows,
+        columns=filled.chart.columns,
         interval_source=f"{INTERVAL_SOURCE} Widened to what a patch does in the finite swatch.",
-        chart=found.chart.text,
-        patches=found.regions,
+        chart=filled.chart.text,
+        patches=filled.regions,
     )
 
 
@@ -223,11 +223,11 @@ def _command(
     atlas: Path | None,
     out: Path | None,
 ) -> FillResult:
-    wanted = *read_wanted_moduli(target), None
+    targets = *read_wanted_moduli(target), None
     if kept is not None:
         request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
     table = context.atlas(request.material, request.repeats, atlas)
-    result = _filled(request, wanted, table, context)
+    result = _filled(request, targets, table, context)
     write_design_of(result.chart, request.material, target.stem, out)
     return result
 

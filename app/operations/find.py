@@ -78,7 +78,7 @@ class FindRequest(LawsRequest):
     """Target properties, and the yarns to search."""
 
     materials: list[MaterialName] = Field(min_length=1, max_length=MAX_MATERIALS)
-    targets: list[Annotated[TargetInput, CheckedBy(lambda one, _: one.target())]] = Field(
+    targets: list[Annotated[TargetInput, CheckedBy(lambda target, _: target.target())]] = Field(
         min_length=1, max_length=MAX_TARGETS
     )
     limits: LimitsInput | None = None
@@ -149,9 +149,9 @@ def _ranked(
     """The best of some atlases, and of other yarns if nothing in those meets the targets."""
     targets = [target.target() for target in request.targets]
     limits = request.limits.pass_to(CostLimits) if request.limits else None
-    found = request.pass_to(find_fabric, atlases, targets, limits=limits)
-    message, elsewhere = found.message, list[Candidate]()
-    if others and not found.reached:
+    ranking = request.pass_to(find_fabric, atlases, targets, limits=limits)
+    message, elsewhere = ranking.message, list[Candidate]()
+    if others and not ranking.reached:
         best = [
             find_fabric([atlas], targets, count=1, limits=limits).candidates[0]
             for atlas in _atlases(others, request.repeats, context)
@@ -162,11 +162,11 @@ def _ranked(
         else:
             message += " Nor does any other yarn of the library reach it."
     return FindResult.of(
-        found,
+        ranking,
         message=message,
         interval_source=INTERVAL_SOURCE,
         searched=sum(len(atlas) for atlas in atlases),
-        candidates=[_candidate(c) for c in found.candidates],
+        candidates=[_candidate(c) for c in ranking.candidates],
         elsewhere=[_candidate(c) for c in elsewhere],
     )
 
@@ -180,12 +180,12 @@ def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atl
     ]
 
 
-def _candidate(found: Candidate) -> CandidateResult:
+def _candidate(candidate: Candidate) -> CandidateResult:
     return CandidateResult.of(
-        found,
-        transfers_per_stitch=found.cost.transfers_per_stitch,
-        crossings_per_stitch=found.cost.crossings_per_stitch,
-        curl=found.cost.curl,
+        candidate,
+        transfers_per_stitch=candidate.cost.transfers_per_stitch,
+        crossings_per_stitch=candidate.cost.crossings_per_stitch,
+        curl=candidate.cost.curl,
     )
 
 

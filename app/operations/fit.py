@@ -108,24 +108,24 @@ def _fit(request: FitRequest, context: Context) -> LawFit:
         )
 
 
-def _result(found: LawFit, *, residuals: bool) -> FitResult:
-    errors = found.standard_errors
+def _result(fit: LawFit, *, residuals: bool) -> FitResult:
+    errors = fit.standard_errors
     names = {name: name.removesuffix("_n_per_mm") for name in LawErrors.model_fields}
     return FitResult.of_law(
-        found.law,
-        **elastic_constants_of(found.law),
-        rms_n_per_mm=found.rms_n_per_mm,
-        rms_course_n_per_mm=found.rms_course_n_per_mm,
-        rms_wale_n_per_mm=found.rms_wale_n_per_mm,
-        largest_strain=found.largest_strain,
-        runs=found.runs,
-        reduction=found.reduction,
-        error_method=found.error_method,
-        notes=found.notes,
-        waist_rms=found.waist_rms,
+        fit.law,
+        **elastic_constants_of(fit.law),
+        rms_n_per_mm=fit.rms_n_per_mm,
+        rms_course_n_per_mm=fit.rms_course_n_per_mm,
+        rms_wale_n_per_mm=fit.rms_wale_n_per_mm,
+        largest_strain=fit.largest_strain,
+        runs=fit.runs,
+        reduction=fit.reduction,
+        error_method=fit.error_method,
+        notes=fit.notes,
+        waist_rms=fit.waist_rms,
         standard_errors={name: errors.get(constant) for name, constant in names.items()},
-        residuals={d: _points(r) for d, r in found.residuals.items()} if residuals else None,
-        curves={d: CurveDocument.from_curve(c) for d, c in found.curves.items()},
+        residuals={d: _points(r) for d, r in fit.residuals.items()} if residuals else None,
+        curves={d: CurveDocument.from_curve(c) for d, c in fit.curves.items()},
     )
 
 
@@ -144,20 +144,20 @@ def _points(residuals: Residuals) -> ResidualPoints:
 def _command(
     request: FitRequest, context: Context, out: Path | None, residuals: Path | None
 ) -> FitResult:
-    found = _fit(request, context)
+    fit = _fit(request, context)
     if out is not None:
         tests = f"{request.test_course.name} and {request.test_wale.name}"
-        source = f"fitted to {tests}, {found.reduction} reduction"
-        file = LawFile(found.law, source, found.standard_errors, found.largest_strain, found.curves)
+        source = f"fitted to {tests}, {fit.reduction} reduction"
+        file = LawFile(fit.law, source, fit.standard_errors, fit.largest_strain, fit.curves)
         save_law(file, out)
     if residuals is not None:
         points = (
             (direction, *map(float, row))
-            for direction, r in found.residuals.items()
+            for direction, r in fit.residuals.items()
             for row in zip(r.strain_along, r.strain_across, r.stress, r.fitted, strict=True)
         )
         write_table(residuals, ["direction", *ResidualPoints.model_fields], points)
-    return _result(found, residuals=False)
+    return _result(fit, residuals=False)
 
 
 def _lines(r: FitResult) -> list[str]:

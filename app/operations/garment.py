@@ -327,15 +327,19 @@ def _gauge(fabric: Fabric, gauge: Gauge) -> GaugeResult:
 
 
 def _worn(place: Worn) -> WornResult:
-    found = place.pressure
-    if found is None:
+    pressure = place.pressure
+    if pressure is None:
         return WornResult.of(place, strain=None, mmhg=None, kpa=None, warnings=[place.problem])
     return WornResult.of(
-        place, strain=found.strain, mmhg=found.mmhg, kpa=found.kpa, warnings=found.warnings
+        place,
+        strain=pressure.strain,
+        mmhg=pressure.mmhg,
+        kpa=pressure.kpa,
+        warnings=pressure.warnings,
     )
 
 
-def measured_options(asked: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
+def measured_options(command: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
     """Options of a garment's measurements; :func:`read_measured` reads them."""
     for option in (
         click.option("--per", type=click.Choice(list(_LENGTHS)), default="10 cm"),
@@ -348,8 +352,8 @@ def measured_options(asked: Callable[..., dict[str, object]]) -> Callable[..., d
             help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
         ),
     ):
-        asked = option(asked)
-    return asked
+        command = option(command)
+    return command
 
 
 def read_measured(
@@ -371,11 +375,11 @@ def read_measured(
             values[name] = json.loads(value)
         except json.JSONDecodeError:
             values[name] = value
-    asked: dict[str, object] = {"garment": values}
+    fields: dict[str, object] = {"garment": values}
     if gauge is not None:
         stitches, _, rows = gauge.lower().replace("×", "x").partition("x")
-        asked["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
-    return asked
+        fields["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
+    return fields
 
 
 @click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))

@@ -60,16 +60,16 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
     """
     chart, material = to_chart(request.chart), context.material(request.material)
     stitches = None if request.outline is None else outline_marks(request.outline)
-    found = request.pass_to(
+    hanging = request.pass_to(
         hang_piece, chart, material, stitches=stitches, cancelled=context.cancelled
     )
     result = HangResult.of(
-        found,
+        hanging,
         id=OPERATION.key(request),
-        corners_mm=corner_lists(found.corners_mm, found.used) if request.corners else None,
+        corners_mm=corner_lists(hanging.corners_mm, hanging.used) if request.corners else None,
         notes=[FRICTIONLESS],
     )
-    return Viewed(result, PosedView(found.corners_mm.astype(np.float32)))
+    return Viewed(result, PosedView(hanging.corners_mm.astype(np.float32)))
 
 
 def _lines(r: HangResult) -> list[str]:

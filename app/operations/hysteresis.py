@@ -102,25 +102,25 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     )
 
     def rubbed(friction: float) -> tuple[loops.Hysteresis, tuple[loops.RestSize, ...]]:
-        found = request.pass_to(
+        loop = request.pass_to(
             loops.hysteresis, relaxed, coefficient=friction, cancelled=context.cancelled
         )
         if not request.rest_sizes:
-            return found, ()
-        return found, loops.rest_sizes(relaxed, friction, cancelled=context.cancelled)
+            return loop, ()
+        return loop, loops.rest_sizes(relaxed, friction, cancelled=context.cancelled)
 
-    found, rests = rubbed(coefficient)
-    wanted = request.intervals and given is None and known.low < known.high
-    runs = [(found, rests), rubbed(known.low), rubbed(known.high)] if wanted else []
+    loop, rests = rubbed(coefficient)
+    varied = request.intervals and given is None and known.low < known.high
+    runs = [(loop, rests), rubbed(known.low), rubbed(known.high)] if varied else []
     return HysteresisResult.of(
-        found,
+        loop,
         friction=coefficient,
         friction_interval=(known.low, known.high) if given is None else None,
         interval_source=f"The interval of friction, {known.source}."
         if given is None
         else "No intervals: the request gave the coefficient of friction.",
         friction_source=known.source if given is None else "given",
-        legs=[LoopLeg.of(leg) for leg in found.legs],
+        legs=[LoopLeg.of(leg) for leg in loop.legs],
         lost_per_cycle_interval_n_per_mm=_ends(h.lost_per_cycle_n_per_mm for h, _ in runs),
         lost_share_interval=_ends(h.lost_share for h, _ in runs),
         left_strain_interval=_ends(h.left_strain for h, _ in runs),
@@ -133,13 +133,13 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
             for k, rest in enumerate(rests)
         ],
         yarn=YarnResult.of_chart(used),
-        notes=[*found.notes, HISTORIES],
+        notes=[*loop.notes, HISTORIES],
     )
 
 
 def _ends(values: Iterable[float]) -> Ends | None:
-    found = list(values)
-    return (min(found), max(found)) if found else None
+    numbers = list(values)
+    return (min(numbers), max(numbers)) if numbers else None
 
 
 def _between(interval: Ends | None, form: str) -> str:

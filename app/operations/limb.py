@@ -162,14 +162,14 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
         raise InputError(
             "girths", "some places have a rest_mm and others none.", "Give it for all, or for none."
         )
-    found = on_limb(
+    places = on_limb(
         answer.along(request.direction),
         [g.at_mm for g in request.girths],
         [g.girth_mm for g in request.girths],
         rests,
     )
-    length = found[-1].at_mm - found[0].at_mm
-    fit = _fit(found, found, length)
+    length = places[-1].at_mm - places[0].at_mm
+    fit = _fit(places, places, length)
     return Viewed(LimbResult(**fit, interval_source=source, notes=[ELASTIC_MEAN]), None)
 
 
@@ -184,10 +184,10 @@ def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
 def _of_tube(tube: TubeOnLimb, request: LimbRequest, source: str) -> LimbResult:
     repeat = to_chart(request.chart).repeat_cut()
     patched = max(repeat.rows, repeat.columns) > SIDE
-    told = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
+    listed = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
     return LimbResult.of(
         tube,
-        **_fit([tube.places[k] for k in told], tube.places, tube.length_mm),
+        **_fit([tube.places[k] for k in listed], tube.places, tube.length_mm),
         interval_source=source,
         id=OPERATION.key(request),
         notes=[ELASTIC_MEAN, FREE_ALONG, *([BY_PATCHES] if patched else [])],
@@ -208,10 +208,12 @@ def _view(tube: TubeOnLimb, around: Direction) -> PosedView:
     )
 
 
-def _fit(told: Sequence[LimbPlace], every: Sequence[LimbPlace], length_mm: float) -> dict[str, Any]:
+def _fit(
+    listed: Sequence[LimbPlace], every: Sequence[LimbPlace], length_mm: float
+) -> dict[str, Any]:
     loose = sum(place.ease >= 0.0 for place in every) / len(every)
     return {
-        "places": [LimbPlaceResult.of_place(place) for place in told],
+        "places": [LimbPlaceResult.of_place(place) for place in listed],
         "tightest_mm": max(every, key=lambda place: place.lock_up_share).at_mm,
         "loose_mm": loose * length_mm,
     }

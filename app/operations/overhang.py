@@ -70,20 +70,20 @@ def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResul
     repeat = to_repeat(request.chart)
     cloth = request.cloth(repeat, context)
     axis = 0 if request.direction is Direction.COURSE else 1
-    found = hang_over(cloth, axis, request.overhang_mm, cancelled=context.cancelled)
+    strip = hang_over(cloth, axis, request.overhang_mm, cancelled=context.cancelled)
     if axis == 0:
-        sheet, rectangle = found.corners_mm.transpose(1, 0, 2), found.rectangle_mm
+        sheet, rectangle = strip.corners_mm.transpose(1, 0, 2), strip.rectangle_mm
     else:  # turned about the vertical, so that the face stays above
-        sheet, rectangle = found.corners_mm[:, ::-1], found.rectangle_mm[::-1]
+        sheet, rectangle = strip.corners_mm[:, ::-1], strip.rectangle_mm[::-1]
     piece, corners = cloth_piece(sheet, rectangle, cloth, repeat, OPERATION.key(request))
     table = TABLE_MM * np.array([(-1.0, -0.5), (0.0, -0.5), (0.0, 0.5), (-1.0, 0.5)])
     result = OverhangResult.of(
-        found,
+        strip,
         piece=piece,
         weight_g_per_m2=cloth.weight_g_per_m2,
-        angle_deg=math.degrees(found.angle_rad),
+        angle_deg=math.degrees(strip.angle_rad),
         yarn_level_rigidity_n_mm=cloth.rigidity_n_mm[axis],
-        corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
+        corners_mm=strip.corners_mm.round(3).tolist() if request.corners else None,
         notes=notes_of(cloth),
     )
     return Viewed(result, PosedView(corners, Body.slab(table, 0.25 * TABLE_MM)).upright())

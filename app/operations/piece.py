@@ -97,12 +97,12 @@ def _result(request: PieceRequest, test: PieceTest, material: Material) -> Piece
     margins = dict(zip(values, Z_SCORE * piece_spreads(test, material), strict=True))
     edges = []
     for i, given in enumerate(request.piece.conditions):
-        found: dict[str, Any] = {"edge": given.edge, "kind": given.kind}
+        edge: dict[str, Any] = {"edge": given.edge, "kind": given.kind}
         for (name, (unit, by_edge)), (axis, letter) in product(values.items(), enumerate("xy")):
             value, margin = by_edge[:, i, axis], margins[name][:, i, axis]
-            found[f"{name}_{letter}_{unit}"] = value
-            found[f"{name}_{letter}_interval_{unit}"] = value - margin, value + margin
-        edges.append(found)
+            edge[f"{name}_{letter}_{unit}"] = value
+            edge[f"{name}_{letter}_interval_{unit}"] = value - margin, value + margin
+        edges.append(edge)
     return PieceResult(
         share=test.share,
         area_mm2=test.piece.area_mm2,

@@ -104,11 +104,11 @@ def pressure(request: PressureRequest, context: Context) -> PressureResult:
 def _of_answer(answer: Prediction, request: PressureRequest) -> PressureResult:
     along = answer.along(request.direction)
     rest, sizes = _sizes(request, partial(tube_for, along))
-    found = tube_pressure(along, rest, request.worn_mm)
+    pressure = tube_pressure(along, rest, request.worn_mm)
     return PressureResult.of(
-        found,
-        mmhg=found.kpa.scaled(MMHG_PER_KPA),
-        mmhg_with_law_spread=found.kpa_with_spread.scaled(MMHG_PER_KPA),
+        pressure,
+        mmhg=pressure.kpa.scaled(MMHG_PER_KPA),
+        mmhg_with_law_spread=pressure.kpa_with_spread.scaled(MMHG_PER_KPA),
         lock_up_share=None,
         rest_mm_for_target=sizes,
         warnings=[ELASTIC_MEAN],
@@ -123,8 +123,8 @@ def _of_file(file: LawFile, request: PressureRequest) -> PressureResult:
     uncertainty = None
     if error is not None:
         spread = log_deviation(file.law.modulus(direction), error)
-        told = "standard error of the modulus in the law's file"
-        uncertainty = LawUncertainty(spread, spread, 0.0, 0.0, told)
+        source = "standard error of the modulus in the law's file"
+        uncertainty = LawUncertainty(spread, spread, 0.0, 0.0, source)
     tested = file.largest_strain.get(direction)
     return _of_law(file.law, request, uncertainty=uncertainty, source=file.source, tested=tested)
 
@@ -139,18 +139,18 @@ def _of_law(
 ) -> PressureResult:
     direction, worn = request.direction, request.worn_mm
     rest, sizes = _sizes(request, partial(rest_circumference, law, direction))
-    found = limb_pressure(law, direction, rest, worn, tested_strain=tested)
+    pressure = limb_pressure(law, direction, rest, worn, tested_strain=tested)
     widened = None
     if uncertainty is not None:
-        spread = uncertainty.log_stress(direction, found.tension_n_per_mm.low)
+        spread = uncertainty.log_stress(direction, pressure.tension_n_per_mm.low)
         factor = math.exp(Z_SCORE * float(spread))
-        widened = found.mmhg.low / factor, found.mmhg.high * factor
+        widened = pressure.mmhg.low / factor, pressure.mmhg.high * factor
     return PressureResult.of(
-        found,
+        pressure,
         mmhg_with_law_spread=widened,
         rest_mm=rest,
         worn_mm=worn,
-        lock_up_share=found.utilisation,
+        lock_up_share=pressure.utilisation,
         rest_mm_for_target=sizes,
         law_source=source,
         interval_source=in_a_sentence([uncertainty.source]) if uncertainty else NO_INTERVAL,

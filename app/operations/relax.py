@@ -63,14 +63,14 @@ class RelaxRequest(RubbedRequest):
 
     def with_friction(self, context: Context) -> Self:
         """The request with its coefficient of friction and its history."""
-        asked = super().with_friction(context)
-        if not asked.has_friction:
-            return asked
+        request = super().with_friction(context)
+        if not request.has_friction:
+            return request
         usual = {
-            "history": asked.history or History.KNITTED,
-            "branch": asked.branch or Branch.MIRRORED,
+            "history": request.history or History.KNITTED,
+            "branch": request.branch or Branch.MIRRORED,
         }
-        return asked.model_copy(update=usual)
+        return request.model_copy(update=usual)
 
     def _against_friction(self) -> Iterator[InputError]:
         yield from super()._against_friction()
@@ -227,29 +227,29 @@ def _after_history(
     began = time.process_time()
     rests = rest_sizes(zero, friction, cancelled=context.cancelled)
     (cell,) = (rest.state.cell for rest in rests if rest.history is request.history)
-    told = replace(
+    after = replace(
         cell,
         starts=zero.starts,
         evaluations=zero.evaluations,
         seconds=zero.seconds + time.process_time() - began,
         notes=(*zero.notes, request.friction_note(context), HISTORIES),
     )
-    return told, [RestSizeResult.of(rest) for rest in rests]
+    return after, [RestSizeResult.of(rest) for rest in rests]
 
 
 def _unmirrored(cell: RelaxedCell, context: Context) -> tuple[RelaxedCell, RelaxedRepeat | None]:
     """A mirrored shape that knows whether it is a minimum, and the one it leads to otherwise."""
     if not isinstance(cell, RelaxedRepeat):
         return cell, None
-    found = lowest(cell, cancelled=context.cancelled)
-    if found.mirrored is None:
-        return found, None
+    lower = lowest(cell, cancelled=context.cancelled)
+    if lower.mirrored is None:
+        return lower, None
     note = (
         "This shape is a minimum only among mirrored ones: without the symmetries it leaves for "
-        f"one with {1.0 - found.energy_n_mm / cell.energy_n_mm:.1%} less energy, "
-        f"{found.cell_course_mm:.2f} x {found.cell_wale_mm:.2f} mm a stitch."
+        f"one with {1.0 - lower.energy_n_mm / cell.energy_n_mm:.1%} less energy, "
+        f"{lower.cell_course_mm:.2f} x {lower.cell_wale_mm:.2f} mm a stitch."
     )
-    return replace(cell, minimum=False, notes=(*cell.notes, note)), found
+    return replace(cell, minimum=False, notes=(*cell.notes, note)), lower
 
 
 def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> FoundGauge | None:
@@ -260,13 +260,13 @@ def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> Foun
     usual = RelaxRequest(
         chart=request.chart, material=request.material, convention=request.convention
     )
-    asked = request.model_copy(update={"fresh": False, "centre_lines": False})
+    plain = request.model_copy(update={"fresh": False, "centre_lines": False})
     alike = usual, usual.model_copy(update={"branch": Branch.MIRRORED})
     material, repeat = context.material(request.material), request.repeat()
     known = (
         result if result.branch is Branch.MIRRORED or not has_mirrors(repeat) else result.mirrored
     )
-    if known is None or asked not in alike:
+    if known is None or plain not in alike:
         return None
     if not material.is_simulated or pure_fabric(repeat) is not None:
         return None

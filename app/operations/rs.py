@@ -54,10 +54,10 @@ def rs(request: RSRequest, context: Context) -> RSResult:
     """Moduli from segments as springs in series and in parallel, with the paper's values."""
     del context
     fabrics = {}
-    for fabric, found in rs_fabrics(request.material).items():
-        segments = {d: found.segment(d) for d in Direction}
+    for fabric, model in rs_fabrics(request.material).items():
+        segments = {d: model.segment(d) for d in Direction}
         fabrics[fabric] = RSFabricResult.of(
-            found,
+            model,
             segments={
                 d: RSSegment.of(
                     s.geometry,
@@ -74,8 +74,8 @@ def rs(request: RSRequest, context: Context) -> RSResult:
 
 def _lines(result: RSResult) -> list[str]:
     lines = [f"{'':24}{'Y N/mm':>9} {'published':>10}   segment"]
-    for fabric, found in result.fabrics.items():
-        for direction, s in found.segments.items():
+    for fabric, model in result.fabrics.items():
+        for direction, s in model.segments.items():
             published = "" if s.published_n_per_mm is None else f"{s.published_n_per_mm:.3f}"
             angle = "" if s.angle_rad is None else f", phi {s.angle_rad:.3f}"
             lines.append(

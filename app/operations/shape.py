@@ -83,7 +83,7 @@ def shape(request: ShapeRequest, context: Context) -> ShapeResult:
 
 
 def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResult:
-    found = request.pass_to(
+    shaped = request.pass_to(
         fill_shape,
         np.array([np.nan if w is None else w for w in request.width], dtype=float),
         material=context.material(request.material),
@@ -92,7 +92,7 @@ def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResul
         cancelled=context.cancelled,
     )
     return ShapeResult.of(
-        found, rows=found.chart.rows, columns=found.chart.columns, chart=found.chart.text
+        shaped, rows=shaped.chart.rows, columns=shaped.chart.columns, chart=shaped.chart.text
     )
 
 

@@ -177,7 +177,7 @@ def _result(
             )
             seconds += both[d].seconds
         law = fit_sweeps(both[Direction.COURSE], both[Direction.WALE])
-        notes += [note for found in both.values() for note in _jumps_fitted(found, law)]
+        notes += [note for sweep in both.values() for note in _jumps_fitted(sweep, law)]
     except KnitcoreError as error:
         if context.cancelled():
             raise

@@ -71,7 +71,7 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
     flat = relax(
         repeat, used.yarn, used.loop_length_mm, branch="mirrored", cancelled=context.cancelled
     )
-    found = in_the_round(
+    round_cell = in_the_round(
         flat, request.wales, face_outside=request.face_outside, cancelled=context.cancelled
     )
     leads_to = lowest(flat, cancelled=context.cancelled)
@@ -84,10 +84,10 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
         )
     around, up, across = (
         log_interval(size, YARN_LEVEL_SIZE_LOG_SD)
-        for size in (found.cell_course_mm, found.cell_wale_mm, found.diameter_mm)
+        for size in (round_cell.cell_course_mm, round_cell.cell_wale_mm, round_cell.diameter_mm)
     )
     return TubeResult.of(
-        found,
+        round_cell,
         cell_course_interval_mm=around,
         cell_wale_interval_mm=up,
         diameter_interval_mm=across,

@@ -112,7 +112,7 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
         "asked": request.model_dump(mode="json", include={"flat", "convention"}),
     }
     before = context.kept.found(KeptSheet, inputs)
-    found = relax_whole(
+    relaxed = relax_whole(
         chart, used.yarn, used.loop_length_mm, convention=request.convention, flat=request.flat,
         tolerance=request.tolerance, rounds=request.rounds,
         resume=None if before is None else before.sheet(),
@@ -121,17 +121,17 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
     )  # fmt: skip
     after = 0 if before is None else before.earlier + len(before.rounds)
     resumed = f"Continued after {after} round{'' if after == 1 else 's'} of an earlier run."
-    course, wale = size_intervals(found)
+    course, wale = size_intervals(relaxed)
     return WholeResult.of(
-        found,
-        notes=[*found.notes, resumed] if after else [*found.notes],
+        relaxed,
+        notes=[*relaxed.notes, resumed] if after else [*relaxed.notes],
         rows=chart.rows,
         columns=chart.columns,
         cell_course_interval_mm=course,
         cell_wale_interval_mm=wale,
         interval_source=YARN_LEVEL_ERRORS,
         yarn=YarnResult.of_chart(used),
-        centre_lines_mm=[line.tolist() for line in found.centre_lines]
+        centre_lines_mm=[line.tolist() for line in relaxed.centre_lines]
         if request.centre_lines
         else None,
     )

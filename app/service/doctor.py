@@ -50,9 +50,9 @@ class Checks(BaseModel):
 
 def examine(settings: Settings) -> Checks:
     """Look at settings, folder, database and cluster; changes nothing."""
-    found = _examine(settings, partial(_check_database, settings), _cluster_check(settings))
-    found.checks.append(_checked("service", partial(_holder, settings)))
-    return found
+    checks = _examine(settings, partial(_check_database, settings), _cluster_check(settings))
+    checks.checks.append(_checked("service", partial(_holder, settings)))
+    return checks
 
 
 def examine_start(settings: Settings, database: Database) -> Checks:

@@ -56,15 +56,15 @@ async def readyz(request: Request) -> Readiness:
     state = request.app.state
     try:
         async with asyncio.timeout(PATIENCE_S):
-            found = await asyncio.to_thread(
+            report = await asyncio.to_thread(
                 examine_running, state.settings, state.database, state.cluster
             )
     except TimeoutError:
         raise NotReadyError("The database or the cluster does not answer.") from None
-    for check in found.failed:
+    for check in report.failed:
         if check.name in NEEDED:
             raise NotReadyError(check.problem or check.name, remedy=check.remedy)
-    return Readiness(checks={check.name: check.ok for check in found.checks})
+    return Readiness(checks={check.name: check.ok for check in report.checks})
 
 
 @router.get("/metrics", summary="Numbers for Prometheus", response_class=Response)

@@ -126,10 +126,10 @@ def _move(handle: Any, copies: dict[str, Any]) -> None:
 def _distinct(shapes: StitchShapes) -> StitchShapes:
     """Every shape once."""
     count, *size = shapes.lines.shape
-    found, number = np.unique(
+    distinct, number = np.unique(
         shapes.lines.astype(np.float32).reshape(count, -1), axis=0, return_inverse=True
     )
-    lines = found.astype(float).reshape(-1, *size)
+    lines = distinct.astype(float).reshape(-1, *size)
     return replace(shapes, lines=lines, index=number.ravel()[shapes.index])
 
 

@@ -78,7 +78,7 @@ class _Picture(
 _decoder = msgspec.msgpack.Decoder(_Camera | _Pointer | _Click | _Picture)
 
 
-def passed_on(data: bytes | str, wanted: WantedPicture | None) -> bytes | None:
+def passed_on(data: bytes | str, picture: WantedPicture | None) -> bytes | None:
     """What viser gets of a browser's message; None if nothing.
 
     Raises
@@ -86,7 +86,7 @@ def passed_on(data: bytes | str, wanted: WantedPicture | None) -> bytes | None:
     RefusedMessageError
         If it is larger than any that a page sends, or a picture other than that asked for.
     """
-    if len(data) > (MAX_BYTES if wanted is None else MAX_PICTURE_BYTES):
+    if len(data) > (MAX_BYTES if picture is None else MAX_PICTURE_BYTES):
         raise RefusedMessageError("the message is too large")
     if isinstance(data, str):
         return None
@@ -98,7 +98,7 @@ def passed_on(data: bytes | str, wanted: WantedPicture | None) -> bytes | None:
         if len(data) > MAX_BYTES:
             raise RefusedMessageError("the message is too large")
         return data
-    if wanted is None:
+    if picture is None:
         return None
-    wanted.accept(message.payload)
+    picture.accept(message.payload)
     return msgspec.msgpack.encode(_Picture(ONE_PIXEL, message.render_uuid))

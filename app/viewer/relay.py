@@ -117,7 +117,7 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
             try:
                 if rate.take("")[1]:
                     raise RefusedMessageError("too many messages")
-                kept = passed_on(data, view.wanted)
+                kept = passed_on(data, view.picture)
             except RefusedMessageError as refused:
                 log.warning("a browser's connection to a view is closed: %s", refused)
                 code = 1008

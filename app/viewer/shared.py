@@ -38,22 +38,22 @@ Found = StretchView | PosedView | None
 
 
 def shared_page(
-    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Found, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """A page that needs neither the service nor the network."""
-    scenes = _scenes(request, found, Context(data_dir, cancelled=cancelled))
+    scenes = _scenes(request, computed, Context(data_dir, cancelled=cancelled))
     return page_html(scenes, dark=request.dark).encode()
 
 
 def shared_recording(
-    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Found, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """A ``.viser`` recording."""
-    return recording(_scenes(request, found, Context(data_dir, cancelled=cancelled)))
+    return recording(_scenes(request, computed, Context(data_dir, cancelled=cancelled)))
 
 
 def shared_solid(
-    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Found, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """The yarn as binary glTF.
 
@@ -63,12 +63,12 @@ def shared_solid(
         If there are too many stitches for a solid of use.
     """
     _check_size(request, MAX_SOLID)
-    return solid_glb(build_scene(request, found, Context(data_dir, cancelled=cancelled)))
+    return solid_glb(build_scene(request, computed, Context(data_dir, cancelled=cancelled)))
 
 
 def shared_still(
     request: ViewRequest,
-    found: Found,
+    computed: Found,
     data_dir: Path,
     width: int,
     height: int,
@@ -76,21 +76,21 @@ def shared_still(
     cancelled: Callable[[], bool],
 ) -> bytes:
     """A picture without background, with this many pixels: a PNG."""
-    scene = build_scene(request, found, Context(data_dir, cancelled=cancelled))
+    scene = build_scene(request, computed, Context(data_dir, cancelled=cancelled))
     return still_png(scene.drawing(), width, height)
 
 
-def _scenes(request: SharedViewRequest, found: Found, context: Context) -> Iterator[FabricScene]:
+def _scenes(request: SharedViewRequest, computed: Found, context: Context) -> Iterator[FabricScene]:
     _check_size(request, MAX_SHARED_STITCHES)
-    scene = build_scene(request, found, context)
-    if not request.animated or request.stretch is None or not isinstance(found, StretchView):
+    scene = build_scene(request, computed, context)
+    if not request.animated or request.stretch is None or not isinstance(computed, StretchView):
         yield scene
         return
-    for step in range(len(found.positions_mm)):
+    for step in range(len(computed.positions_mm)):
         if context.cancelled():
             return
         at = StretchStep(id=request.stretch.id, step=step)
-        yield build_scene(request.model_copy(update={"stretch": at}), found, context)
+        yield build_scene(request.model_copy(update={"stretch": at}), computed, context)
 
 
 def _check_size(request: SharedViewRequest, most: int) -> None:

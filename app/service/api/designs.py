@@ -114,10 +114,10 @@ def get_design(
     if_none_match: Annotated[str | None, Header(max_length=200)] = None,
 ) -> Design | Response:
     """The document and its ETag; 304 if the caller has it already."""
-    found = store.get(owner, design)
-    if if_none_match is not None and knows(if_none_match, found.revision):
-        return Response(status_code=304, headers={"ETag": etag(found.revision)})
-    return _tagged(response, found)
+    stored = store.get(owner, design)
+    if if_none_match is not None and knows(if_none_match, stored.revision):
+        return Response(status_code=304, headers={"ETag": etag(stored.revision)})
+    return _tagged(response, stored)
 
 
 @router.get(

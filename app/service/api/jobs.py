@@ -46,10 +46,10 @@ async def post_job(
 ) -> JobStatus:
     """Waits for its turn among all users; if the result is known, the job is done at once."""
     if isinstance(body, Undecoded):
-        kind, wanted = await runner.read(request.is_disconnected, body.content)
+        kind, text = await runner.read(request.is_disconnected, body.content)
     else:
-        kind, wanted = body.kind, body.request.model_dump_json()
-    status = await runner.submit(owner, kind, wanted, retry(kind, wanted))
+        kind, text = body.kind, body.request.model_dump_json()
+    status = await runner.submit(owner, kind, text, retry(kind, text))
     response.headers["Location"] = f"/api/v1/jobs/{status.id}"
     return status
 
@@ -89,12 +89,12 @@ async def get_job_events(
 async def _states(
     status: JobStatus, job: str, request: Request, runner: JobRunner, owner: str
 ) -> AsyncGenerator[str | None]:
-    told = ""
+    sent = ""
     with contextlib.suppress(NotFoundError):  # deleted while it was followed
         while not request.app.state.stopping:
             text = status.model_dump_json()
-            yield None if text == told else f"event: status\ndata: {text}\n\n"
-            told = text
+            yield None if text == sent else f"event: status\ndata: {text}\n\n"
+            sent = text
             if status.state.is_final:
                 return
             await asyncio.sleep(EVENT_PERIOD_S)

@@ -38,9 +38,9 @@ async def post_material(body: MaterialDocument, owner: Owner, context: Here) -> 
 @router.get("/materials/{identifier}/document", summary="A material as a file")
 async def get_material_document(identifier: Identifier, context: Here) -> MaterialDocument:
     """What `knitcore` reads as a material file, and this service adds as one of your own."""
-    found = await run_in_threadpool(context.material, identifier)
-    plain = found.identifier.removeprefix("own:").rpartition(".")
-    document = MaterialDocument.from_material(found)
+    material = await run_in_threadpool(context.material, identifier)
+    plain = material.identifier.removeprefix("own:").rpartition(".")
+    document = MaterialDocument.from_material(material)
     return document.model_copy(update={"identifier": plain[0] or document.identifier})
 
 

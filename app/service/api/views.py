@@ -90,16 +90,16 @@ class CameraRequest(RequestModel):
 async def put_view(design: DesignId, body: ViewRequest, request: Request) -> ViewResult:
     """Draw the design's scene; everyone who watches `/view/{design}/` sees it change at once."""
     state = request.app.state
-    found, name = _found(body, request), private_name(design)
+    computed, name = _computed(body, request), private_name(design)
     context = state.answers.context()
     passes: Passes = state.passes
     code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
     large: Drawing | None = None
-    if found is None and is_large(body):
+    if computed is None and is_large(body):
         large = await _by_worker(request, build_drawing, body, context.data_dir)
 
     def draw() -> ViewResult:
-        drawing = large or build_scene(body, found, context).drawing()
+        drawing = large or build_scene(body, computed, context).drawing()
         return ViewResult(
             stitches=state.views.open(name, drawing.weight).show(drawing),
             source=drawing.part.shapes.source,
@@ -219,7 +219,7 @@ async def post_still(
     Of a chart of more than 40,000 stitches only what the view draws as yarn.
     """
     data_dir = request.app.state.answers.context().data_dir
-    draw = partial(shared_still, body, _found(body, request), data_dir, width, height)
+    draw = partial(shared_still, body, _computed(body, request), data_dir, width, height)
     gate: Gate = request.app.state.drawing
     if size_of_chart(body.chart) > MAX_STILL_HERE:
         content = await _by_worker(request, draw)
@@ -237,7 +237,7 @@ async def _shared(
     ending: str,
 ) -> Response:
     data_dir = request.app.state.answers.context().data_dir
-    content = await _by_worker(request, make, body, _found(body, request), data_dir)
+    content = await _by_worker(request, make, body, _computed(body, request), data_dir)
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
 
@@ -255,10 +255,10 @@ async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: An
     return await loop.run_in_executor(threads, context.run, function, *args)
 
 
-def _found(body: ViewRequest, request: Request) -> Found:
+def _computed(body: ViewRequest, request: Request) -> Found:
     """What a test or a shape that was computed before shows."""
-    wanted = body.stretch or body.curl
-    answer: Reply | None = request.app.state.recent.get(wanted.id) if wanted else None
+    reference = body.stretch or body.curl
+    answer: Reply | None = request.app.state.recent.get(reference.id) if reference else None
     view = answer.view if answer else None
     return view if isinstance(view, StretchView | PosedView) else None
 

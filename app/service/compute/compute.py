@@ -92,12 +92,12 @@ class Compute:
         owner = owner or current_user.get()
         self.spent.check(owner)
         ticket = self.turns.enter(owner, background=background)
-        asked = asyncio.get_running_loop().time()
+        entered = asyncio.get_running_loop().time()
         try:
             while not (await asyncio.wait([ticket.place], timeout=POLL_S))[0]:
                 if await abandoned():
                     raise AbandonedError("The computation was abandoned.")
-                if not background and asyncio.get_running_loop().time() > asked + self._timeout_s:
+                if not background and asyncio.get_running_loop().time() > entered + self._timeout_s:
                     raise NotBegunError(f"No worker was free for {self._timeout_s:g} s.")
             worker = ticket.place.result()
             self.spent.check(owner)  # jobs of the same user may have run meanwhile

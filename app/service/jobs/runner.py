@@ -198,11 +198,11 @@ class JobRunner:
         log.info("job waits", extra=extra)
         try:
             large = len(request) > SMALL_BYTES
-            wanted = request.encode() if large else described.request.model_validate_json(request)
+            body = request.encode() if large else described.request.model_validate_json(request)
             answer = await self._begun(
                 abandoned,
                 described,
-                wanted,
+                body,
                 owner=owner,
                 background=True,
                 timeout_s=self.timeout_s,

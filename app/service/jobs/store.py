@@ -210,10 +210,10 @@ class JobStore:
     def knows(self, key: str) -> bool:
         """Whether the result of this content is stored; if so, renew its time of use."""
         with self._database.read() as connection:
-            found = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
-        if found is not None:
+            stored = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
+        if stored is not None:
             self._used(key)
-        return found is not None
+        return stored is not None
 
     def _used(self, key: str) -> None:
         used = update(results).where(results.c.key == key).values(used_at=now())

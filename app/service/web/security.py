@@ -390,8 +390,8 @@ def _who(login: Login, token: str, link: str, cookie: str) -> tuple[str, str, st
     """(token's id, user, session) of a request."""
     if token:  # a header with a token overrides link and cookie
         return *login.by_token(token), ""
-    if link and (found := login.by_token(link))[1]:
-        return *found, ""
+    if link and (who := login.by_token(link))[1]:
+        return *who, ""
     session, user = login.by_session(cookie) if cookie else ("", "")
     return "", user, session
 

@@ -85,8 +85,8 @@ class Tokens:
         """Every token, including those that no longer work."""
         with self._database.read() as connection:
             rows = connection.execute(select(access_tokens).order_by(access_tokens.c.created_at))
-            found = [TokenSummary.model_validate(row, from_attributes=True) for row in rows]
-        return TokenList(tokens=found)
+            summaries = [TokenSummary.model_validate(row, from_attributes=True) for row in rows]
+        return TokenList(tokens=summaries)
 
     def revoke(self, token: str) -> None:
         """Close a token, by its id.
@@ -135,11 +135,11 @@ class Tokens:
         """The key that signs sessions, made when it is first needed."""
 
         def action(connection: Connection) -> str:
-            wanted = select(service_keys.c.value).where(service_keys.c.name == "session")
-            if connection.execute(wanted).scalar_one_or_none() is None:
+            query = select(service_keys.c.value).where(service_keys.c.name == "session")
+            if connection.execute(query).scalar_one_or_none() is None:
                 new = self._database.insert_new(service_keys)
                 connection.execute(new.values(name="session", value=secrets.token_urlsafe(32)))
-            return str(connection.execute(wanted).scalar_one())
+            return str(connection.execute(query).scalar_one())
 
         return self._database.write(action)
 
@@ -219,8 +219,8 @@ class Login:
         known = self._remembered.get((by, value))
         if known is not None and at - known[0] < REMEMBERED_S:
             return known[1]
-        found = self._find(by, value)
+        login = self._find(by, value)
         if len(self._remembered) >= MAX_REMEMBERED:
             self._remembered.clear()
-        self._remembered[by, value] = (at, found)
-        return found
+        self._remembered[by, value] = (at, login)
+        return login
