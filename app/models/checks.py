@@ -49,7 +49,7 @@ def with_others(error: InputError, others: Iterable[InputError]) -> InputError:
 def faults_of(
     model: type[BaseModel], values: dict[str, Any], context: Context
 ) -> Iterator[InputError]:
-    """What the library finds wrong in the values of some fields of a request."""
+    """Yield the errors that the library finds in the values of some fields of a request."""
     for name, value in values.items():
         field = model.model_fields[name]
         yield from _faults(field.annotation, field.metadata, value, context)

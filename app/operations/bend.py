@@ -35,7 +35,10 @@ class BendRequest(StitchRequest, LawsRequest):
     """A repeat and its yarn."""
 
     linear_density_g_per_m: float | None = Field(
-        None, gt=0, le=100, description="Of the yarn; needed for the bending lengths."
+        None,
+        gt=0,
+        le=100,
+        description="Linear density of the yarn, g/m; needed for the bending lengths.",
     )
 
 
@@ -61,22 +64,23 @@ class BendResult(ResultModel):
     )
     strain_across_wale_mm: float
     shear_modulus_n_per_mm: float | None = Field(
-        description="Null where no stable state was found."
+        description="Shear modulus; null where no stable state was found."
     )
     twist_n_mm: float | None = Field(
         description="Rigidity of twist D66; null, as is the coupling, without a stable state."
     )
     coupling_n_mm: float | None = Field(description="Coupling D1 of the two curvatures.")
     thickness_mm: float
-    curl: str = Field(description="How free edges curl.")
+    curl: str = Field(description="Curl of free edges, in words.")
     curl_course: Curl = Field(description="The way the sides curl.")
     curl_wale: Curl = Field(description="The way the top and bottom curl.")
     bending_length_course_mm: float | None = Field(
-        description="Peirce's, of a strip cut along the rows; null where the weight is not known."
+        description="Peirce's bending length of a strip cut along the rows; null where the weight "
+        "is not known."
     )
     bending_length_wale_mm: float | None
     stable: bool = Field(
-        description="Whether the state is still a minimum when it may lose its symmetries."
+        description="True if the state is still a minimum when it may lose its symmetries."
     )
     provenance: str
     yarn: YarnResult

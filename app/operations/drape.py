@@ -28,7 +28,7 @@ from .perform import Viewed
 from .registry import Command, Operation
 
 DISC_THICK_MM = 10.0
-"""Of the disc that is shown."""
+"""Thickness of the disc in the 3D view, mm."""
 
 
 class DrapeRequest(WeighedRequest):
@@ -51,10 +51,10 @@ class DrapeResult(ResultModel):
         description="Share of the ring outside the disc that its shadow covers: 1 for a board."
     )
     coefficient_of_states: Ends = Field(
-        description="Smallest and largest of the states found: draped cloth has several."
+        description="Smallest and largest coefficient of the states: draped cloth has several."
     )
-    folds: int = Field(description="Around the rim.")
-    fall_mm: float = Field(description="From the disc to the lowest point.")
+    folds: int = Field(description="Number of folds around the rim.")
+    fall_mm: float = Field(description="Height from the disc down to the lowest point.")
     bending_length_course_mm: float
     bending_length_wale_mm: float
     weight_g_per_m2: float

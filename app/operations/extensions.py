@@ -1,4 +1,4 @@
-"""What installed packages add, and which of them cannot be used."""
+"""Additions of installed packages, and problems of those that cannot be used."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class ExtensionResult(ResultModel):
 
     name: str
     group: Group
-    package: str = Field(description="Its name and version.")
-    offers: list[str] = Field(description="Identifiers.")
-    problem: str | None = Field(description="Why it cannot be used; null if it can.")
+    package: str = Field(description="Name and version of the package.")
+    offers: list[str] = Field(description="Identifiers of what it adds.")
+    problem: str | None = Field(description="Reason why it cannot be used; null if it can.")
 
 
 class Extensions(ResultModel):

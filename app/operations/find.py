@@ -28,7 +28,8 @@ from .registry import Command, Operation
 MAX_MATERIALS = 16
 MAX_TARGETS = 20
 ELSEWHERE = 3
-"""Most fabrics of other yarns to offer where none of those asked for meets the targets."""
+"""Largest number of fabrics of other yarns to offer where none of those asked for meets the
+targets."""
 
 
 class LimbInput(RequestModel):
@@ -44,7 +45,10 @@ class TargetInput(RequestModel):
     quantity: Quantity
     value: float = Field(ge=-10, le=1e6, description="Stretch as a strain: 0.5 is 50 %.")
     tolerance: float = Field(
-        0.10, gt=0, le=10, description="Relative (0.1 is 10 %); a difference for Poisson's ratios."
+        0.10,
+        gt=0,
+        le=10,
+        description="Relative tolerance (0.1 is 10 %); a difference for Poisson's ratios.",
     )
     weight: float = Field(1.0, gt=0, le=1000)
     load_n_per_mm: float = Field(
@@ -53,10 +57,10 @@ class TargetInput(RequestModel):
         le=0.5,
         description="Load of a target stretch, per width of cloth.",
     )
-    limb: LimbInput | None = Field(None, description="For a pressure.")
+    limb: LimbInput | None = Field(None, description="Tube and limb of a target pressure.")
 
     def target(self) -> Target:
-        """As the library knows it."""
+        """The target as an object of the library."""
         return self.pass_to(Target, limb=self.limb.pass_to(WornTube) if self.limb else None)
 
 
@@ -101,7 +105,7 @@ class CandidateResult(ResultModel):
         description="90 % intervals; null where an end lies beyond the computed curve."
     )
     deviations: dict[str, Known] = Field(
-        description="Predicted over wanted, minus one; the difference for Poisson's ratios."
+        description="Prediction over target, minus one; the difference for Poisson's ratios."
     )
     chance: float = Field(
         description="Probability that all quantities are within their tolerances, by the intervals."

@@ -23,7 +23,7 @@ from ..models.uploads import UploadedFile, example_file, stored
 from .registry import Command, Operation
 
 PLOTTED_POINTS = 2000
-"""Most points of a residual plot: more than a screen resolves."""
+"""Largest number of points of a residual plot: more than a screen resolves."""
 
 
 def _read(file: UploadedFile, _: Context) -> None:
@@ -35,13 +35,13 @@ class FitRequest(RequestModel):
     """Two stretch tests of one fabric."""
 
     test_course: Annotated[UploadedFile, CheckedBy(_read)] = Field(
-        description="Pulled along the rows; HDF5, CSV or XLSX."
+        description="Test pulled along the rows; HDF5, CSV or XLSX."
     )
     test_wale: Annotated[UploadedFile, CheckedBy(_read)] = Field(
-        description="Pulled along the columns."
+        description="Test pulled along the columns."
     )
     format: Literal["csv", "h5"] | None = Field(
-        None, description="Recognised from the content if not given."
+        None, description="Format of the tests; recognised from the content if not given."
     )
     reduction: Reduction = Field(
         Reduction.RECOMMENDED,
@@ -51,15 +51,19 @@ class FitRequest(RequestModel):
     width_course_mm: float | None = Field(
         None, ge=5, le=10_000, description="Clamped width, in place of the course-wise test's."
     )
-    width_wale_mm: float | None = Field(None, ge=5, le=10_000, description="The same, wale-wise.")
-    residuals: bool = Field(False, description="Whether to return residuals at each point.")
+    width_wale_mm: float | None = Field(
+        None, ge=5, le=10_000, description="Clamped width, in place of the wale-wise test's."
+    )
+    residuals: bool = Field(False, description="Return residuals at each point too.")
 
 
 class LawErrors(ElasticConstants, LawConstants):
     """Standard errors of a law's constants."""
 
     shear_modulus_n_per_mm: float | None = Field(
-        None, description="Recommended reduction only; mostly that of its prior, a factor of 1.5."
+        None,
+        description="Error with the recommended reduction only; mostly that of its prior, a factor "
+        "of 1.5.",
     )
     kappa_xx: float | None = None
     kappa_yy: float | None = None
@@ -83,12 +87,14 @@ class FitResult(ElasticConstants, LawResult):
     rms_course_n_per_mm: float
     rms_wale_n_per_mm: float
     largest_strain: dict[Direction, float] = Field(description="Largest strain of the fit.")
-    runs: dict[Direction, int] = Field(description="Pulls used.")
+    runs: dict[Direction, int] = Field(description="Number of pulls used.")
     reduction: Reduction
     error_method: str
     notes: list[str]
     waist_rms: dict[Direction, float] | None = Field(
-        None, description="Simulated minus measured strain of the waist (recommended reduction)."
+        None,
+        description="Rms of the simulated minus the measured strain of the waist (recommended "
+        "reduction).",
     )
     residuals: dict[Direction, ResidualPoints] | None = None
     curves: dict[Direction, CurveDocument] = Field(

@@ -42,7 +42,7 @@ class GlovePart(LimbPlaceResult):
 
 
 class GloveResult(IntervalResult):
-    """How the glove sits; no medical class."""
+    """Fit of the glove; no medical class."""
 
     kind: Literal["glove"] = "glove"
     id: str = Field(description="Name of the shape, for 3D views of the glove's chart.")

@@ -33,7 +33,10 @@ class HangRequest(WeighedRequest):
 
     chart: ChartInput
     outline: OutlineInput = None
-    by: HungBy = Field(HungBy.EDGE, description="The edge of the highest stitches, or its ends.")
+    by: HungBy = Field(
+        HungBy.EDGE,
+        description="Hold the piece by the edge of its highest stitches, or by its ends.",
+    )
     corners: WantsCorners = False
     time_limit_s: TimeLimit = TIME_LIMIT_S
 
@@ -44,7 +47,7 @@ class HangResult(ResultModel):
     kind: Literal["hang"] = "hang"
     id: str = Field(description="Name of the shape, for 3D views.")
     weight_g: float
-    drop_mm: float = Field(description="From the highest point to the lowest.")
+    drop_mm: float = Field(description="Height from the highest point to the lowest.")
     width_mm: float
     depth_mm: float
     lengthening: float = Field(description="Strain of the middle column.")

@@ -25,7 +25,9 @@ from .registry import Command, Operation
 class HysteresisRequest(StitchRequest, LawsRequest):
     """A repeat, its yarn and the pull."""
 
-    direction: Direction = Field(Direction.COURSE, description="Along rows, or along columns.")
+    direction: Direction = Field(
+        Direction.COURSE, description="Direction of the pull: along rows, or along columns."
+    )
     max_strain: float = Field(0.3, gt=0, le=5, description="Largest strain: 0.5 is 50 %.")
     friction: float | None = Field(
         None,
@@ -46,7 +48,7 @@ class LoopLeg(ResultModel):
     """One way of a cycle."""
 
     loading: bool
-    strain: Floats = Field(description="From the rest size without friction.")
+    strain: Floats = Field(description="Strain, from the rest size without friction.")
     transverse_strain: Floats
     stress_n_per_mm: Floats
 
@@ -58,17 +60,18 @@ class HysteresisResult(IntervalResult):
     direction: Direction
     friction: float = Field(description="Coefficient of friction that was used.")
     friction_interval: tuple[float, float] | None = Field(
-        description="Of the yarn or its fibre; null where the request gave the coefficient."
+        description="Interval of the yarn or its fibre; null if the request gave the coefficient."
     )
     friction_source: str
-    legs: list[LoopLeg] = Field(description="Loading and unloading in turn.")
+    legs: list[LoopLeg] = Field(description="Legs of the cycles, loading and unloading in turn.")
     lost_per_cycle_n_per_mm: float = Field(
         description="Energy that the last cycle loses per area of fabric, N·mm/mm²."
     )
     lost_per_cycle_interval_n_per_mm: Ends | None = Field(
-        None, description="Over the interval of friction, as all further intervals."
+        None,
+        description="Interval of the loss over that of friction, as are all further intervals.",
     )
-    lost_share: float = Field(description="The same as a share of the work of the pull.")
+    lost_share: float = Field(description="Energy lost, as a share of the work of the pull.")
     lost_share_interval: Ends | None = None
     left_strain: float = Field(description="Strain that remains after unloading.")
     left_strain_interval: Ends | None = None

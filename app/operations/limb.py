@@ -39,7 +39,7 @@ from .perform import Viewed
 from .registry import Command, Operation
 
 MAX_STITCHES = 40_000
-"""Of a chart that is itself the tube."""
+"""Largest number of stitches of a chart that is itself the tube."""
 FREE_ALONG = (
     "Nothing holds the tube along the limb here, so it shortens freely; friction may keep it "
     "longer."
@@ -54,24 +54,29 @@ BY_PATCHES = (
 class TubeGirth(RequestModel):
     """Circumferences at one place."""
 
-    at_mm: float = Field(ge=0, le=3000, description="Along the limb, from where the tube begins.")
-    girth_mm: float = Field(ge=LEAST_GIRTH_MM, le=3000, description="Around the limb.")
+    at_mm: float = Field(
+        ge=0, le=3000, description="Distance along the limb, from where the tube begins."
+    )
+    girth_mm: float = Field(ge=LEAST_GIRTH_MM, le=3000, description="Circumference of the limb.")
     rest_mm: float | None = Field(
         None,
         ge=LEAST_GIRTH_MM,
         le=3000,
-        description="Around the unworn tube. Left out at all places, the whole chart is the tube.",
+        description="Circumference of the unworn tube. If it is left out at all places, the whole "
+        "chart is the tube.",
     )
 
 
 class LimbRequest(FabricRequest):
     """A tube of a chart, and a limb by its girths."""
 
-    direction: Direction = Field(Direction.COURSE, description="Around the limb.")
+    direction: Direction = Field(
+        Direction.COURSE, description="Direction of the chart that runs around the limb."
+    )
     girths: list[TubeGirth] = Field(
         min_length=2,
         max_length=MAX_GIRTHS,
-        description="From one end to the other; between them sizes change evenly.",
+        description="Girths from one end to the other; between them sizes change evenly.",
     )
 
 
@@ -79,23 +84,23 @@ class LimbPlaceResult(ResultModel):
     """Fit at one place along the limb."""
 
     at_mm: float
-    rest_mm: float = Field(description="Around the unworn tube.")
-    girth_mm: float = Field(description="Around the limb.")
+    rest_mm: float = Field(description="Circumference of the unworn tube.")
+    girth_mm: float = Field(description="Circumference of the limb.")
     ease: float = Field(description="Tube over limb, minus one; negative where it is stretched.")
     mmhg: Ends | None = Field(
         description="Mean pressure, from axially free to axially fixed; null where there is none."
     )
     mmhg_with_spread: Ends | None = Field(
-        description="The same, widened by the 90 % interval of the chart's stress."
+        description="Mean pressure, widened by the 90 % interval of the chart's stress."
     )
     lock_up_share: float = Field(
         description="Strain around the limb over that at which the chart is locked."
     )
-    problem: str = Field(description="Why there is no pressure, such as a loose fit.")
+    problem: str = Field(description="Reason why there is no pressure, such as a loose fit.")
 
     @classmethod
     def of_place(cls, place: LimbPlace, **more: Any) -> Self:
-        """In mmHg."""
+        """Make the result of a place, with its pressure in mmHg."""
         kpa = place.pressure and place.pressure.kpa
         spread = place.pressure and place.pressure.kpa_with_spread
         return cls.of(
@@ -107,7 +112,7 @@ class LimbPlaceResult(ResultModel):
 
     @property
     def line(self) -> str:
-        """In words, for a table."""
+        """The place in words, for a table."""
         if self.mmhg is None or self.mmhg_with_spread is None:
             pressure = "loose" if self.ease > 0.0 else self.problem
         else:
@@ -127,13 +132,13 @@ class LimbResult(IntervalResult):
 
     kind: Literal["limb"] = "limb"
     places: list[LimbPlaceResult]
-    tightest_mm: float = Field(description="Where the tube is nearest to its lock-up.")
+    tightest_mm: float = Field(description="Place where the tube is nearest to its lock-up.")
     loose_mm: float = Field(description="Length along the limb on which the tube is loose.")
     id: str | None = Field(
         None, description="Name of the shape, for 3D views, if the whole chart is the tube."
     )
     length_mm: float | None = Field(
-        None, description="Of the whole chart on the limb, held by nothing along it."
+        None, description="Length of the whole chart on the limb, held by nothing along it."
     )
     relaxed_length_mm: float | None = None
     notes: list[str]

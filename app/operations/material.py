@@ -107,7 +107,9 @@ class MaterialSummary(ResultModel):
     name: str
     description: str
     fabrics: dict[Fabric, FabricSummary]
-    added_by_you: bool = Field(description="You may replace and remove it.")
+    added_by_you: bool = Field(
+        description="True if you added the material, and may replace and remove it."
+    )
 
 
 class MaterialDetail(ResultModel):
@@ -123,7 +125,7 @@ class MaterialDetail(ResultModel):
     compression_exponent: float | None
     fabrics: dict[Fabric, FabricDetail]
     stitch_table: StitchTableResult | None = Field(
-        description="Null for a material that lacks one of the four fabrics."
+        description="Values per stitch; null for a material that lacks one of the four fabrics."
     )
     curves: dict[Fabric, dict[Direction, LawCurve]] = Field(description="Curves of the laws.")
     measured: dict[Fabric, dict[Direction, CurveDocument]] = Field(

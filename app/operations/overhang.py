@@ -28,16 +28,21 @@ from .perform import Viewed
 from .registry import Command, Operation
 
 TABLE_MM = 40.0
-"""Of the table that is shown, from its edge to the back."""
+"""Depth of the table in the 3D view, from its edge to the back, mm."""
 
 
 class OverhangRequest(WeighedRequest):
     """A fabric, and how far a strip of it hangs over the edge of a table."""
 
     chart: RepeatInput
-    direction: Direction = Field(Direction.COURSE, description="Along the strip.")
+    direction: Direction = Field(
+        Direction.COURSE, description="Direction of the chart that runs along the strip."
+    )
     overhang_mm: float | None = Field(
-        None, gt=0, le=2000, description="Beyond the edge; that which falls by 41.5° if left out."
+        None,
+        gt=0,
+        le=2000,
+        description="Overhang; by default the length whose tip drops 41.5° (Peirce).",
     )
     corners: WantsCorners = False
 
@@ -47,12 +52,18 @@ class OverhangResult(ResultModel):
 
     kind: Literal["overhang"] = "overhang"
     overhang_mm: float
-    angle_deg: float = Field(description="From the edge to the tip, below the horizontal.")
-    reach_mm: float = Field(description="How far out the tip is.")
-    fall_mm: float = Field(description="How far down the tip is.")
-    bending_length_mm: float = Field(description="By Peirce's formula from overhang and angle.")
-    rigidity_n_mm: float = Field(description="Weight per area times the bending length cubed.")
-    yarn_level_rigidity_n_mm: float = Field(description="That with which the strip was bent.")
+    angle_deg: float = Field(
+        description="Angle of the line from the edge to the tip, below the horizontal."
+    )
+    reach_mm: float = Field(description="Horizontal distance from the edge to the tip.")
+    fall_mm: float = Field(description="Height from the edge down to the tip.")
+    bending_length_mm: float = Field(
+        description="Bending length by Peirce's formula, from overhang and angle."
+    )
+    rigidity_n_mm: float = Field(
+        description="Rigidity: weight per area times the bending length cubed."
+    )
+    yarn_level_rigidity_n_mm: float = Field(description="Rigidity with which the strip was bent.")
     weight_g_per_m2: float
     converged: bool
     piece: ClothPiece

@@ -42,7 +42,7 @@ class Viewed(Generic[Result]):
 
 @dataclass(frozen=True, eq=False)
 class Reply:
-    """What came of a request.
+    """Answer to a request.
 
     Attributes
     ----------

@@ -29,7 +29,7 @@ class PieceRequest(PieceTestRequest):
     """Cloth, the piece cut from it, and the conditions on its edges."""
 
     piece: Annotated[PieceInput, CheckedBy(lambda cut, _: cut.piece())]
-    fields: bool = Field(False, description="Whether to return the final shape and strains.")
+    fields: bool = Field(False, description="Return the final shape and strains too.")
 
 
 class LoadedEdge(ResultModel):
@@ -50,16 +50,18 @@ class LoadedEdge(ResultModel):
 class DeformedPiece(ResultModel):
     """The mesh after the last step."""
 
-    corners_mm: list[tuple[float, float]] = Field(description="At rest.")
+    corners_mm: list[tuple[float, float]] = Field(description="Corners of the mesh at rest.")
     moved_mm: list[tuple[float, float]] = Field(description="Displacement of each corner.")
     elements: list[list[int]] = Field(description="Corner numbers of each element, from 0.")
-    strain_course: Floats = Field(description="Per element, like the fields below.")
+    strain_course: Floats = Field(description="Strain of each element, like the fields below.")
     strain_wale: Floats
-    shear_angle: Floats = Field(description="In radians.")
-    stress_course: Floats = Field(description="N/mm.")
+    shear_angle: Floats = Field(description="Shear angle in radians.")
+    stress_course: Floats = Field(description="Stress, N/mm.")
     stress_wale: Floats
     stress_shear: Floats
-    utilisation: Floats = Field(description="alpha * strain; 1 is the lock-up.")
+    utilisation: Floats = Field(
+        description="Nearness to the lock-up: alpha * strain; 1 is the lock-up."
+    )
 
 
 class PieceResult(PieceTestResult):
@@ -68,7 +70,7 @@ class PieceResult(PieceTestResult):
     kind: Literal["piece"] = "piece"
     share: Floats = Field(description="Share of the load at each step.")
     area_mm2: float
-    edges: list[LoadedEdge] = Field(description="In the order of the conditions.")
+    edges: list[LoadedEdge] = Field(description="Loaded edges, in the order of the conditions.")
     shape: DeformedPiece | None
 
 

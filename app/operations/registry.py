@@ -111,7 +111,7 @@ class Operation(Generic[Request, Result]):
 
     @cached_property
     def is_viewed(self) -> bool:
-        """Whether its results come with what a 3D view shows of them."""
+        """True if its results come with data for the 3D view."""
         return get_origin(get_type_hints(self.run)["return"]) is Viewed
 
     @property

@@ -37,15 +37,16 @@ class RelaxRequest(RubbedRequest):
 
     branch: Branch | None = Field(
         None,
-        description="By default symmetry is only the start: the mirrored shape is followed to the "
-        "minimum that it leads to without the symmetries of the chart. Shapes that are held, or "
+        description="Branch to relax in. By default symmetry is only the start: the mirrored shape "
+        "is followed to the minimum to which it leads without the symmetries of the chart. Shapes "
+        "that are held, or "
         f"have friction, keep them; repeats of more than {FOLLOWED_UP_TO} stitches are relaxed in "
         "the free branch.",
     )
     history: History | None = Field(
         None,
-        description="What happened to the fabric before it came to rest, with the friction of the "
-        "yarn unless a coefficient is given. If only a coefficient is given, as-knitted.",
+        description="History of the fabric before it came to rest, with the friction of the yarn "
+        "unless a coefficient is given. As-knitted if only a coefficient is given.",
     )
 
     cell_course_mm: float | None = Field(
@@ -58,7 +59,7 @@ class RelaxRequest(RubbedRequest):
 
     @property
     def has_friction(self) -> bool:
-        """Whether a coefficient or a history is given."""
+        """True if a coefficient or a history is given."""
         return self.friction is not None or self.history is not None
 
     def with_friction(self, context: Context) -> Self:
@@ -105,7 +106,9 @@ class RelaxResult(IntervalResult):
     kind: Literal["relax"] = "relax"
     branch: Branch
     convention: Convention
-    repeat_rows: int = Field(description="At least 2 in the free branch, as are the columns.")
+    repeat_rows: int = Field(
+        description="Rows of the repeat; at least 2 in the free branch, as are the columns."
+    )
     repeat_columns: int
     cell_course_mm: float
     cell_wale_mm: float
@@ -123,8 +126,10 @@ class RelaxResult(IntervalResult):
     force_wale_n: float | None
     min_distance_mm: float | None
     seconds: float = Field(description="CPU time of the solve, when it was first run.")
-    known: bool = Field(False, description="Whether the result was already stored.")
-    evaluations: int = Field(description="Of the energy; the steps of a history are not counted.")
+    known: bool = Field(False, description="True if the result was already stored.")
+    evaluations: int = Field(
+        description="Evaluations of the energy; steps of a history are not counted."
+    )
     converged: bool
     yarn: YarnResult
     starts: list[StartResult]
@@ -132,7 +137,7 @@ class RelaxResult(IntervalResult):
         None, description="Coefficient of friction that was used; null without friction."
     )
     history: History | None = Field(
-        None, description="What the fabric comes to rest after; null without friction."
+        None, description="History after which the fabric comes to rest; null without friction."
     )
     rest_sizes: list[RestSizeResult] | None = Field(
         None,
@@ -141,7 +146,7 @@ class RelaxResult(IntervalResult):
     )
     minimum: bool | None = Field(
         None,
-        description="Whether the shape is a minimum without the mirror symmetries of the chart; "
+        description="True if the shape is a minimum without the mirror symmetries of the chart; "
         "null where that was not checked: for shapes that are held, have friction or are of the "
         f"published branch, for mirrored ones whose free cell has more than {FOLLOWED_UP_TO} "
         f"stitches, and for cells of {WINDOWS_FROM} stitches and more.",
@@ -164,14 +169,15 @@ class RelaxResult(IntervalResult):
     )
     gauge: FoundGauge | None = Field(
         None,
-        description="For the `gauge` of other requests about this chart and material, which makes "
-        "their answers more certain. Null unless the material is simulated, and for pure fabrics, "
+        description="Gauge for other requests about this chart and material, which makes their "
+        "answers more certain. Null unless the material is simulated, and for pure fabrics, "
         "other branches, shapes that are held, other loop lengths than the material's, and "
         "friction.",
     )
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = Field(
-        None, description="Bottom course first; each runs once across the repeat."
+        None,
+        description="Lines of the yarn, the bottom course first; each runs once across the repeat.",
     )
 
 

@@ -26,10 +26,10 @@ class RSSegment(ResultModel):
     """The connecting segments of one direction."""
 
     parity: Parity
-    separation_mm: float = Field(description="lambda, distance of the segment's ends.")
-    length_mm: float = Field(description="L, yarn between them.")
-    slope: float = Field(description="v, the ends' tangent across the line between them.")
-    angle_rad: float | None = Field(description="phi, tilt out of the cloth; odd segments only.")
+    separation_mm: float = Field(description="Distance of the segment's ends, lambda.")
+    length_mm: float = Field(description="Length L of the yarn between them.")
+    slope: float = Field(description="Slope v of the ends' tangent across the line between them.")
+    angle_rad: float | None = Field(description="Tilt phi out of the cloth; odd segments only.")
     delta: float
     rigidity_n_per_mm: float
     modulus_n_per_mm: float

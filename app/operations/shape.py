@@ -39,7 +39,7 @@ class ShapeRequest(LawsRequest):
 
     material: MaterialName
     direction: Direction = Field(Direction.WALE, description="Direction of the pull.")
-    strain: float = Field(gt=0, le=5, description="From clamp to clamp: 0.3 is 30 %.")
+    strain: float = Field(gt=0, le=5, description="Strain from clamp to clamp: 0.3 is 30 %.")
     width: list[Width] = Field(
         min_length=3,
         max_length=1000,
@@ -56,7 +56,9 @@ class BandResult(ResultModel):
     """A band of lines of one repeat."""
 
     repeat: RepeatText
-    first: int = Field(ge=1, description="Its first line: from 1, at the bottom or the left.")
+    first: int = Field(
+        ge=1, description="First line of the band, counted from 1 at the bottom or the left."
+    )
     lines: int
 
 

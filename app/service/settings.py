@@ -35,7 +35,7 @@ NO_SETTINGS = frozenset(
 
 
 class Settings(BaseSettings):
-    """How the service runs."""
+    """Settings of the service."""
 
     model_config = SettingsConfigDict(env_prefix="KNITCORE_", frozen=True)
 
@@ -145,7 +145,7 @@ class Settings(BaseSettings):
 
     @cached_property
     def is_loopback(self) -> bool:
-        """Whether the service can only be reached from this machine."""
+        """True if the service can only be reached from this machine."""
         if self.host == "localhost":
             return True
         try:
@@ -155,7 +155,7 @@ class Settings(BaseSettings):
 
     @property
     def asks_for_login(self) -> bool:
-        """Whether requests need a token or a session."""
+        """True if requests need a token or a session."""
         return self.token is not None or self.require_login
 
     @property

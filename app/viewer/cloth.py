@@ -42,8 +42,8 @@ class ShownStitches:
     """The stitches of a scene.
 
     A shape keeps its node: a stretch, a colour or a stroke moves stitches from node to node, and
-    browsers build what is new. They go on showing what is not wanted any more until they have
-    built the rest (frontend/viser/frame.js).
+    browsers build what is new. They show removed nodes until they have built the rest
+    (frontend/viser/frame.js).
     """
 
     def __init__(self, server: viser.ViserServer) -> None:
@@ -134,7 +134,7 @@ def _distinct(shapes: StitchShapes) -> StitchShapes:
 
 
 def _copies(scene: FabricScene, middle_mm: Array, drawn: Array) -> dict[str, Any]:
-    """What viser takes of every stitch, in the order of the chart's cells.
+    """Make viser's arguments for every stitch, in the order of the chart's cells.
 
     Parameters
     ----------

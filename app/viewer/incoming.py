@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import msgspec
 
 MAX_BYTES = 64_000
-"""Of a message; clicks and cameras have less than 1,000."""
+"""Largest size of a message; clicks and cameras have less than 1,000 bytes."""
 MAX_PICTURE_BYTES = 16_000_000
 PER_S, BURST = 300.0, 1_200
 """Messages of one browser; while the view is turned it sends one a frame."""
@@ -54,7 +54,7 @@ class WantedPicture:
 
 
 class _Camera(msgspec.Struct, tag_field="type", tag="ViewerCameraMessage"):
-    """Where the browser looks from."""
+    """The place from which the browser looks."""
 
 
 class _Pointer(msgspec.Struct, tag_field="type", tag="ScenePointerMessage"):
@@ -79,7 +79,7 @@ _decoder = msgspec.msgpack.Decoder(_Camera | _Pointer | _Click | _Picture)
 
 
 def passed_on(data: bytes | str, picture: WantedPicture | None) -> bytes | None:
-    """What viser gets of a browser's message; None if nothing.
+    """Return the part of a browser's message that viser gets; None if nothing.
 
     Raises
     ------

@@ -25,7 +25,7 @@ log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
 OPENING_S = 8.0
-"""So long a browser waits for a view: its page is loaded while the first scene is being made."""
+"""Time for which a browser waits for a view: its page may load before its first scene is made."""
 LOOK_AGAIN_S = 0.05
 ENDS = (NoneType, asyncio.CancelledError, WebSocketDisconnect, websockets.ConnectionClosed)
 """Ends of the two directions of a connection, whichever side left."""

@@ -26,7 +26,7 @@ PAGE_POLICY = (
 
 
 class NoPictureError(ServiceError):
-    """No picture of the view can be taken now."""
+    """Error: no picture of the view can be taken now."""
 
     status, type, title = 409, "conflict", "No picture can be taken"
 

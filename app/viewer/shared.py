@@ -30,15 +30,15 @@ class SharedViewRequest(ViewRequest):
     dark: bool = Field(False, description="Dark background of a page.")
 
 
-Found = StretchView | PosedView | None
-"""What the view shows of a stretch test or a shape that was computed before."""
+Computed = StretchView | PosedView | None
+"""Data for the view of a stretch test or a shape that was computed before."""
 
 
 # These run in workers.
 
 
 def shared_page(
-    request: SharedViewRequest, computed: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """A page that needs neither the service nor the network."""
     scenes = _scenes(request, computed, Context(data_dir, cancelled=cancelled))
@@ -46,14 +46,14 @@ def shared_page(
 
 
 def shared_recording(
-    request: SharedViewRequest, computed: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """A ``.viser`` recording."""
     return recording(_scenes(request, computed, Context(data_dir, cancelled=cancelled)))
 
 
 def shared_solid(
-    request: SharedViewRequest, computed: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """The yarn as binary glTF.
 
@@ -68,7 +68,7 @@ def shared_solid(
 
 def shared_still(
     request: ViewRequest,
-    computed: Found,
+    computed: Computed,
     data_dir: Path,
     width: int,
     height: int,
@@ -80,7 +80,9 @@ def shared_still(
     return still_png(scene.drawing(), width, height)
 
 
-def _scenes(request: SharedViewRequest, computed: Found, context: Context) -> Iterator[FabricScene]:
+def _scenes(
+    request: SharedViewRequest, computed: Computed, context: Context
+) -> Iterator[FabricScene]:
     _check_size(request, MAX_SHARED_STITCHES)
     scene = build_scene(request, computed, context)
     if not request.animated or request.stretch is None or not isinstance(computed, StretchView):

@@ -24,10 +24,10 @@ from ..web.events import abandoned
 from ..web.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
 
 MAX_LIGHT = 2_500
-"""Most stitches of a request that the service answers itself. A larger one goes to a worker, with
-its limits on memory and time: a mixed chart of 10,000 stitches takes 0.3 s."""
+"""Largest number of stitches of a request that the service answers itself. A larger one goes to a
+worker, with its limits on memory and time: a mixed chart of 10,000 stitches takes 0.3 s."""
 MISSING: dict[int | str, dict[str, Any]] = {
-    404: {"model": Problem, "description": "Nothing has that name."}
+    404: {"model": Problem, "description": "Not found: nothing has that name."}
 }
 
 

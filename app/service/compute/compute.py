@@ -24,11 +24,11 @@ log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")
 
 POLL_S = 0.05
-"""How soon a computation that nobody waits for is noticed."""
+"""Period in which a computation that nobody waits for is noticed."""
 GRACE_S = 3.0
-"""How long a job may take to notice that it was cancelled before its process is stopped."""
+"""Time in which a job must notice that it was cancelled before its process is stopped."""
 START_S = 120.0
-"""How long a job may take to start: a new process loads, a cluster looks for a worker."""
+"""Time in which a job must start: a new process loads, a cluster looks for a worker."""
 
 
 class Compute:

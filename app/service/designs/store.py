@@ -45,7 +45,7 @@ from .idempotency import Retry, once
 from .painting import kinds_around, paint
 
 DELETED_KEPT_S = 30 * 86_400.0
-"""How long a deleted design can be recovered."""
+"""Time for which a deleted design can be recovered."""
 
 _SUMMARY = [designs.c[name] for name in DesignSummary.model_fields]
 _VERSION_SUMMARY = [design_versions.c[name] for name in VersionSummary.model_fields]

@@ -141,7 +141,7 @@ class JobStore:
         return self._database.write(lambda connection: connection.execute(change).rowcount == 1)
 
     def adopt(self) -> list[tuple[str, str]]:
-        """After a start: mark running jobs as interrupted; (id, owner) of those waiting."""
+        """Mark running jobs as interrupted after a start; return (id, owner) of waiting ones."""
         return self._take(jobs.c.process == self.process)
 
     def adopt_orphans(self) -> list[tuple[str, str]]:
@@ -208,7 +208,7 @@ class JobStore:
         return body
 
     def knows(self, key: str) -> bool:
-        """Whether the result of this content is stored; if so, renew its time of use."""
+        """Return whether the result of this content is stored; if so, renew its time of use."""
         with self._database.read() as connection:
             stored = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
         if stored is not None:

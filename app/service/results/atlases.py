@@ -19,7 +19,7 @@ from knitcore.yarn.library.fingerprint import code_version
 log = logging.getLogger("knitcore.atlas")
 
 FOLDER = "atlases"
-"""Of the data folder; it may be emptied at any time."""
+"""Folder of atlases in the data folder; it may be emptied at any time."""
 DECIDING = ("knitcore.design.atlas_build", "knitcore.chart.repeats")
 """Modules whose code and data decide an atlas."""
 

@@ -124,7 +124,7 @@ def remove_material(identifier: str, owner: str, data_dir: Path) -> bool:
 
 
 def _replaced(file: Path) -> Path:
-    """Where the material is kept that ``file`` replaced."""
+    """Path of the material that ``file`` replaced."""
     return file.parent / REPLACED / file.name
 
 

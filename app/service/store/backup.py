@@ -43,7 +43,7 @@ class BackupReport(BaseModel):
 
     @property
     def text(self) -> str:
-        """For people."""
+        """The report in words."""
         return f"{self.file}: {', '.join(f'{n} {name}' for name, n in self.tables.items())}"
 
 

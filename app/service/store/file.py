@@ -39,7 +39,7 @@ class Holder(NamedTuple):
 
     @property
     def text(self) -> str:
-        """In a line of its lock's file for itself, and one for each of its files."""
+        """Text of the lock's file: a line for the holder, and one for each of its files."""
         files = "".join(f"\n{inode} {name}" for name, inode in self.files.items())
         return f"{self.process} {self.address}".strip() + files
 

@@ -41,7 +41,7 @@ wrong is reported once the rest is valid."""
 
 
 def also_wrong(error: RequestValidationError, request: Request) -> Iterator[InputError]:
-    """What the library finds wrong in the fields whose types are right."""
+    """Yield the library's errors in the fields whose types are right."""
     if int(request.headers.get("Content-Length", MAX_BYTES + 1)) > MAX_BYTES:
         return
     body, model = error.body, _model(request)

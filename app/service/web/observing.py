@@ -1,4 +1,4 @@
-"""What operators see: a log line and numbers for every request, with an id to find them by."""
+"""Log lines and numbers for operators: one for every request, with an id to find it by."""
 
 from __future__ import annotations
 

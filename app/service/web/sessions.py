@@ -19,17 +19,19 @@ class SessionSummary(BaseModel):
 
     id: str
     created_at: AwareDatetime
-    is_this: bool = Field(description="Whether it is the session of this request.")
+    is_this: bool = Field(description="True if it is the session of this request.")
 
 
 class SignedIn(BaseModel):
     """The user of this request, with all sessions, and what is used of the limits of one user."""
 
     user: str = Field(examples=["ada"])
-    sessions: list[SessionSummary] = Field(description="Latest first; scripts have none.")
+    sessions: list[SessionSummary] = Field(
+        description="Sessions, the latest first; scripts have none."
+    )
     use: dict[str, Use] = Field(
-        description="By the name that a refusal has in `field`. Where there are several processes, "
-        "figures are of this one, except those of stored things."
+        description="Use of each limit, by the name that a refusal has in `field`. Where there are "
+        "several processes, figures are of this one, except those of stored things."
     )
 
 
