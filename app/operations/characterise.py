@@ -38,7 +38,7 @@ from .registry import Command, Operation
 
 MAX_SETTINGS = 24
 QUANTITIES = ("strain", "transverse_strain", "stress_n_per_mm", "bending_share", "contact_share")
-"""Of each point of a curve."""
+"""Quantities of each point of a curve."""
 FINISHED = "finished"
 """Folder of finished stitches inside the results folder, from which a stopped batch continues."""
 
@@ -88,8 +88,10 @@ class CharacteriseRequest(CharacteriseOptions):
 
     @model_validator(mode="after")
     def _one_yarn(self) -> Self:
-        if (self.material is None) == (self.yarn is None):
-            raise ValueError("give either a material or a yarn")
+        if self.material is None and self.yarn is None:
+            raise ValueError("material and yarn are missing; give one of them")
+        if self.material is not None and self.yarn is not None:
+            raise ValueError("material and yarn are both given; give one of them")
         return self
 
 
@@ -160,7 +162,7 @@ class CharacteriseResult(ResultModel):
     kind: Literal["characterise"] = "characterise"
     identifier: str
     provenance: str
-    estimated: bool = Field(description="Whether contact data were estimated.")
+    estimated: bool = Field(description="True if contact data were estimated.")
     branch: Branch
     convention: Convention
     reference: str = Field(description="The setting that `material` was made at.")
@@ -267,10 +269,10 @@ def _command(
         yarns.append(request.yarn)
     plans = [_plan(yarn, request) for yarn in yarns]
     names = [plan.identifier for plan in plans]
-    if not plans or len(set(names)) < len(names):
-        raise InputError(
-            "material", "is missing or named twice.", "Name materials, or give a --yarn."
-        )
+    if not plans:
+        raise InputError("material", "is missing.", "Name materials, or give a --yarn.")
+    if len(set(names)) < len(names):
+        raise InputError("material", "is named twice.", "Name each once.")
     if fresh:
         shutil.rmtree(out / FINISHED, ignore_errors=True)
     tables = characterise_yarns(

@@ -70,10 +70,10 @@ def _law_and_model(request: CompareRequest, context: Context) -> tuple[Constitut
     if request.law is not None and request.material is None:
         with stored([request.law]) as (path,):
             return load_law(path).law, model
-    if request.law is not None or request.material is None:
-        raise InputError(
-            "law", "give either a law file or a material.", "Use --law, or --material and --fabric."
-        )
+    if request.law is not None:
+        raise InputError("law", "material is given as well.", "Give one of the two.")
+    if request.material is None:
+        raise InputError("material", "is missing.", "Give a material and a fabric, or a law file.")
     if request.fabric is None:
         raise InputError("fabric", "is missing.", "Name the fabric of the material.")
     return context.material(request.material).law(request.fabric), model

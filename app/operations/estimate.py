@@ -47,10 +47,10 @@ class SwatchInput(RequestModel):
 
 
 class YarnFacts(RequestModel):
-    """What a command says of the yarn and the product in plain options."""
+    """Facts of the yarn and the product that a command takes as plain options."""
 
     bending_modulus_n_mm2: float | None = Field(
-        None, description="B of the yarn (`measure bending`)."
+        None, description="Bending modulus B of the yarn (`measure bending`)."
     )
     product_setting: str = Field(
         "", max_length=200, description="Needle or stitch setting of the product."
@@ -58,9 +58,11 @@ class YarnFacts(RequestModel):
 
 
 class EstimateRequest(YarnFacts):
-    """What is known of the yarn and the product."""
+    """The yarn, the product, and swatches of the yarn that were measured."""
 
-    bending_modulus_n_mm2: float = Field(description="B of the yarn (`measure bending`).")
+    bending_modulus_n_mm2: float = Field(
+        description="Bending modulus B of the yarn (`measure bending`)."
+    )
     loop_length_mm: float | dict[Fabric, float] = Field(description="Yarn per stitch.")
     swatches: list[SwatchInput] = Field(default_factory=list, max_length=4)
 
@@ -70,7 +72,7 @@ class FabricEstimateResult(ResultModel):
 
     strain_at_0_1_n_per_mm: dict[Direction, float]
     strain_at_0_1_n_per_mm_interval: dict[Direction, Ends] = Field(
-        description="Without width where the fabric is measured, like all intervals here."
+        description="Interval of the strain. Intervals have no width where the fabric is measured."
     )
     modulus_n_per_mm: dict[Direction, float]
     modulus_interval_n_per_mm: dict[Direction, Ends]
@@ -87,7 +89,9 @@ class EstimateResult(IntervalResult):
     """All four fabrics of the yarn."""
 
     fabrics: dict[Fabric, FabricEstimateResult]
-    left_out: LeftOutResult | None = Field(description="None if all fabrics are measured.")
+    left_out: LeftOutResult | None = Field(
+        description="Errors for yarns left out; null if all fabrics are measured."
+    )
     material: MaterialDocument = Field(description="A material file of the four fabrics.")
     warnings: list[str]
 
@@ -169,7 +173,7 @@ def _values(fabric: FabricEstimate) -> dict[str, Any]:
     "swatch_lengths",
     multiple=True,
     metavar="MM | FABRIC=MM",
-    help="Of the swatches; by default that of the material, or the product's.",
+    help="Yarn per stitch of the swatches; by default that of the material, or the product's.",
 )
 @click.option("--swatch-setting", default="", help="Needle or stitch setting of the swatches.")
 @out_option("--out", help="Write a material file.")
@@ -191,12 +195,12 @@ def _command(
 ) -> EstimateResult | ModelReport:
     if with_report:
         return report()
-    if request.bending_modulus_n_mm2 is None or not lengths:
+    if request.bending_modulus_n_mm2 is None:
         raise InputError(
-            "bending_modulus_n_mm2",
-            "the bending modulus and a loop length are needed.",
-            "Measure them: `knitcore measure bending`, and unravel ten stitches.",
+            "bending_modulus_n_mm2", "is missing.", "Measure it: `knitcore measure bending`."
         )
+    if not lengths:
+        raise InputError("loop_length_mm", "is missing.", "Unravel ten stitches and measure.")
     product = _lengths(lengths, "loop_length_mm")
     own = _lengths(swatch_lengths, "swatch_loop_length_mm") if swatch_lengths else {}
     measured = [_swatch(text, own, product, swatch_setting, context) for text in swatches]

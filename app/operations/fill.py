@@ -76,13 +76,19 @@ class FillRequest(LawsRequest):
 
     material: MaterialName
     modulus_course_n_per_mm: Map | None = Field(
-        None, description="[row][column], the bottom row first; null where any value will do."
+        None,
+        description="Moduli [row][column], the bottom row first; null where any value will do.",
     )
     modulus_wale_n_per_mm: Map | None = None
-    rows: int | None = Field(None, ge=1, le=1000, description="Of the chart, if wishes are given.")
+    rows: int | None = Field(
+        None, ge=1, le=1000, description="Rows of the chart, if wishes are given."
+    )
     columns: int | None = Field(None, ge=1, le=1000)
     wishes: list[WishInput] | None = Field(
-        None, min_length=1, max_length=MAX_WISHES, description="In place of the two maps."
+        None,
+        min_length=1,
+        max_length=MAX_WISHES,
+        description="Targets of parts, in place of the two maps.",
     )
     chart: ChartText | None = Field(
         None,
@@ -111,16 +117,18 @@ class PatchResult(ResultModel):
 
     repeat: RepeatText
     stitches: int
-    row: Row = Field(description="Of its first stitch: from 0, the bottom row.")
+    row: Row = Field(description="Row of its first stitch, counted from 0 at the bottom.")
     column: Column
-    deviation_course: Known = Field(description="Of the repeat; null without a target.")
+    deviation_course: Known = Field(
+        description="Deviation of the repeat from the target; null without a target."
+    )
     deviation_wale: Known
     swatch_course: Known = Field(
-        description="Of the patch in the finite swatch; null if it was not pulled."
+        description="Deviation of the patch in the finite swatch; null if it was not pulled."
     )
     swatch_wale: Known
     modulus_course_n_per_mm: float = Field(
-        description="Of the patch, in the finite swatch if it was pulled there."
+        description="Modulus of the patch, in the finite swatch if it was pulled there."
     )
     modulus_course_interval_n_per_mm: Ends = Field(
         description="90 % interval; includes that of a large cloth of the repeat."
@@ -154,7 +162,7 @@ def fill(request: FillRequest, context: Context) -> FillResult:
     targets = _wanted(request)
     if targets[0].size > MAX_STITCHES:
         raise InputError(
-            "target",
+            "rows" if request.wishes else MAPS[0],
             f"{targets[0].size} stitches are too many here.",
             f"Use at most {MAX_STITCHES}, or the command line.",
         )
@@ -192,7 +200,9 @@ def _wanted(request: FillRequest) -> Maps:
         course, wale = (_array(rows, name) for name, rows in maps.items())
         return course, wale, None
     if any(rows is not None for rows in maps.values()):
-        raise InputError("wishes", "are given together with maps.", "Give either.")
+        raise InputError(
+            "wishes", "are given together with maps.", "Give maps or wishes, not both."
+        )
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
     targets = [wish.target() for wish in request.wishes]
