@@ -112,7 +112,7 @@ class ViewResult(BaseModel):
     """The view of a design and its address."""
 
     stitches: int = Field(description="Stitches drawn as yarn.")
-    source: str = Field(description="Where the shapes of the stitches come from.")
+    source: str = Field(description="Source of the stitches' shapes.")
     scale_mm: float = Field(description="Length of the line below the fabric.")
     url: str = Field(
         description="Address of the view for a browser; the pass to watch it follows the #."

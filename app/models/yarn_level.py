@@ -67,8 +67,8 @@ class YarnLevelRequest(StitchRequest):
         None,
         min_length=1,
         max_length=MAX_STITCHES_PER_SIDE,
-        description="Instead of one length: a list for every row of the chart, the bottom row "
-        "first, of one length for all its stitches or one for each.",
+        description="Yarn per stitch, in place of one length: a list for every row of the chart, "
+        "the bottom row first, of one length for all its stitches or one for each.",
         examples=[[[14.0], [12.0]]],
     )
     flat: bool = Field(

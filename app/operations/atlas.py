@@ -104,7 +104,7 @@ def _result(atlas: Atlas) -> AtlasResult:
     type=click.IntRange(1, 64),
     default=MAX_STITCHES,
     show_default=True,
-    help="Of the largest repeat to relax at the yarn level.",
+    help="Stitches of the largest repeat to relax at the yarn level.",
 )
 @click.option("--workers", type=click.IntRange(1), help="Processes; all cores if left out.")
 @click.option("--scheduler", metavar="tcp://…", help="Address of a Dask cluster to work on.")

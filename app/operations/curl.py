@@ -74,7 +74,9 @@ class CurlResult(ResultModel):
     flat_width_mm: float = Field(description="Extent of the piece laid flat.")
     flat_height_mm: float
     thickness_mm: float
-    converged: bool = Field(description="If false, the shape is only a preview.")
+    converged: bool = Field(
+        description="True if the shape is at rest; otherwise it is only a preview."
+    )
     seconds: float = Field(description="CPU time.")
     corners_mm: Corners = None
     notes: list[str]
@@ -163,7 +165,7 @@ def _where(curl_mm: float, thickness_mm: float) -> str:
 OPERATION = Operation(
     curl,
     tag="mechanics",
-    summary="How a piece curls and folds",
+    summary="Curling and folding of a piece",
     example={"chart": {"fabric": "stockinette", "columns": 6, "rows": 4}, "material": "acrylic"},
     job=True,
     command=Command(

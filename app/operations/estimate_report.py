@@ -102,5 +102,5 @@ OPERATION = Operation(
     method="GET",
     path="/estimate/report",
     tag="materials",
-    summary="How well left-out yarns are predicted",
+    summary="Accuracy of predictions for left-out yarns",
 )

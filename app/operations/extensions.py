@@ -63,6 +63,6 @@ OPERATION = Operation(
     extensions,
     method="GET",
     tag="materials",
-    summary="What installed packages add",
+    summary="Additions of installed packages",
     command=Command(_lines, help="List what installed packages add to Knitcore."),
 )

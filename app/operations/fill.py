@@ -56,7 +56,7 @@ class WishInput(RequestModel):
     runs: list[StitchRun] = Field(
         min_length=1,
         max_length=MAX_RUNS,
-        description="Its stitches as runs [row, first column, length], with row 0 at the bottom.",
+        description="Stitches as runs [row, first column, length], with row 0 at the bottom.",
     )
     modulus_course_n_per_mm: Modulus = None
     modulus_wale_n_per_mm: Modulus = None
@@ -105,7 +105,12 @@ class FillRequest(LawsRequest):
         description="Single stitches may be turned over where that comes nearer; otherwise every "
         "patch is a repeat, or stripes of two.",
     )
-    seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
+    seed: int = Field(
+        0,
+        ge=0,
+        le=2**32 - 1,
+        description="Seed of random choices: the same one gives the same chart.",
+    )
     check: bool = Field(
         True,
         description="Pull the chart in the finite swatch; choose again where the result differs.",

@@ -228,7 +228,7 @@ def _asked(
 @click.option(
     "--elsewhere",
     is_flag=True,
-    help="If nothing meets the targets, search the library's other yarns.",
+    help="Search the library's other yarns if nothing meets the targets.",
 )
 def _command(
     request: FindRequest,

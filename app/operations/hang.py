@@ -51,7 +51,9 @@ class HangResult(ResultModel):
     width_mm: float
     depth_mm: float
     lengthening: float = Field(description="Strain of the middle column.")
-    converged: bool = Field(description="If false, the shape is only a preview.")
+    converged: bool = Field(
+        description="True if the shape is at rest; otherwise it is only a preview."
+    )
     corners_mm: Corners = None
     notes: list[str]
 
@@ -87,7 +89,7 @@ def _lines(r: HangResult) -> list[str]:
 OPERATION = Operation(
     hang,
     tag="mechanics",
-    summary="How a piece hangs under its own weight",
+    summary="Shape of a piece that hangs under its own weight",
     example={
         "chart": {"fabric": "garter", "columns": 6, "rows": 8},
         "material": "acrylic",

@@ -230,8 +230,8 @@ def _fit(
     metavar="AT:GIRTH[:REST]",
     multiple=True,
     required=True,
-    help="In mm, two or more: along the limb, around it, and around the unworn tube there. Without "
-    "REST the whole chart is the tube.",
+    help="Places in mm, two or more: along the limb, around it, and around the unworn tube there. "
+    "Without REST the whole chart is the tube.",
 )
 def _girths(girths: tuple[str, ...]) -> dict[str, Any]:
     names = ("at_mm", "girth_mm", "rest_mm")

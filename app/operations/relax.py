@@ -141,8 +141,8 @@ class RelaxResult(IntervalResult):
     )
     rest_sizes: list[RestSizeResult] | None = Field(
         None,
-        description="With friction, the size after each history: the range in which the fabric "
-        "may rest.",
+        description="Size after each history, with friction: the range in which the fabric may "
+        "rest.",
     )
     minimum: bool | None = Field(
         None,
@@ -159,8 +159,8 @@ class RelaxResult(IntervalResult):
     )
     unmirrored: OtherShapeResult | None = Field(
         None,
-        description="In the mirrored branch: the lower shape that it leads to without its "
-        "symmetries, if it is not a minimum.",
+        description="Lower shape to which the mirrored branch leads without its symmetries, if it "
+        "is not a minimum.",
     )
     other_minima_mm: list[tuple[float, float]] = Field(
         default_factory=list,

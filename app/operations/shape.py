@@ -49,7 +49,12 @@ class ShapeRequest(LawsRequest):
     across: int = Field(ge=3, le=1000, description="Stitches in a line.")
     repeats: Extent = "small"
     smallest_band: int = Field(4, ge=1, le=100, description="Fewest lines in a band.")
-    seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
+    seed: int = Field(
+        0,
+        ge=0,
+        le=2**32 - 1,
+        description="Seed of random choices: the same one gives the same chart.",
+    )
 
 
 class BandResult(ResultModel):

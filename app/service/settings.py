@@ -46,7 +46,7 @@ class Settings(BaseSettings):
     )
     require_login: bool = Field(
         False,
-        description="Whether every user must bring a token of their own (`knitcore token create`).",
+        description="Require of every user a token of their own (`knitcore token create`).",
     )
     requests_per_s: float = Field(
         50.0, gt=0, description="Requests per second of one user, where a login is required."

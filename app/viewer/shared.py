@@ -26,7 +26,7 @@ MAX_SHARED_STITCHES = 40_000
 class SharedViewRequest(ViewRequest):
     """A design, as it lies or with its stretch test as an animation."""
 
-    animated: bool = Field(False, description="All steps of the stretch test, not only the one.")
+    animated: bool = Field(False, description="Show all steps of the stretch test, not only one.")
     dark: bool = Field(False, description="Dark background of a page.")
 
 
