@@ -30,5 +30,5 @@ class StretchView:
 
     @property
     def size_bytes(self) -> int:
-        """How much memory it takes."""
+        """Memory that it takes, bytes."""
         return sum(array.nbytes for array in (self.positions_mm, self.strain, self.utilisation))
