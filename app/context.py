@@ -1,4 +1,5 @@
-"""What an operation needs besides its request, in the service and on the command line."""
+"""Context of an operation: all it needs besides its request, in the service and on the command
+line."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ NO_FORCE_N = 1e-5
 NOT_COMPARED = ("seconds", "evaluations", "iterations", "steps", "rounds", "starts", "notes")
 """Fields that tell how an answer was found, not what it is."""
 LEFT_OVER = ("energy_change", "size_change", "may_fall", "largest_force_n")
-"""What an iteration leaves; it is bounded, not the same."""
+"""Fields for the rest that an iteration leaves; it is bounded, not the same."""
 
 _V3 = ("X86_V3",)
 _V4 = ("X86_V4", "AVX512_ICL", "AVX512_SPR")
@@ -88,11 +88,11 @@ INSTRUCTION_SETS = {
 
 def cases() -> dict[str, tuple[str, dict[str, Any]]]:
     """Questions by name: an operation and its request."""
-    found: dict[str, tuple[str, dict[str, Any]]] = {}
+    requests: dict[str, tuple[str, dict[str, Any]]] = {}
 
     def ask(operation: str, chart: str, material: str, **fields: Any) -> None:
         name = " ".join([operation, chart, material, *(f"{k}={v}" for k, v in fields.items())])
-        found[name] = operation, {"chart": chart, "material": material, **fields}
+        requests[name] = operation, {"chart": chart, "material": material, **fields}
 
     small = ("K", "K/P", "KP", "KP/PK", "KKP", "KKPP", "KKKKP", "KP/KK", "KKP/PKK", "K/K/P/P")
     for chart in small:
@@ -124,17 +124,20 @@ def cases() -> dict[str, tuple[str, dict[str, Any]]]:
         ask("curve", chart, "cotton", direction="course", stress_n_per_mm=[0.0, 0.05, 0.1])
     for fabric, rows in (("stockinette", 12), ("rib", 8)):
         piece = {"fabric": fabric, "columns": 12, "rows": rows}
-        found[f"curl {fabric} 12x{rows}"] = "curl", {"chart": piece, "material": "acrylic"}
+        requests[f"curl {fabric} 12x{rows}"] = "curl", {"chart": piece, "material": "acrylic"}
     for fabric, direction in (("garter", "wale"), ("seed", "course")):
-        found[f"stretch {fabric} 20x20 {direction}"] = "stretch", {
+        requests[f"stretch {fabric} 20x20 {direction}"] = "stretch", {
             "chart": {"fabric": fabric, "columns": 20, "rows": 20}, "material": "acrylic",
             "direction": direction, "strain": 0.5, "steps": 5,
         }  # fmt: skip
     weight = {"linear_density_g_per_m": 0.5}
-    found["border K"] = "border", {"chart": "K", "material": "acrylic", "border": "rib", **weight}
-    found["drape K/P"] = "drape", {"chart": "K/P", "material": "acrylic", "across": 10, **weight}
-    found["overhang K/P"] = "overhang", {"chart": "K/P", "material": "acrylic", **weight}
-    return found
+    requests["border K"] = (
+        "border",
+        {"chart": "K", "material": "acrylic", "border": "rib", **weight},
+    )
+    requests["drape K/P"] = "drape", {"chart": "K/P", "material": "acrylic", "across": 10, **weight}
+    requests["overhang K/P"] = "overhang", {"chart": "K/P", "material": "acrylic", **weight}
+    return requests
 
 
 SHORT = (
@@ -163,11 +166,11 @@ def answered(names: list[str]) -> Iterator[tuple[str, Any]]:
             known = operations()[operation]
             clock = time.process_time()
             try:
-                found = known.run(known.request.model_validate(request), Context(Path(folder)))
+                answer = known.run(known.request.model_validate(request), Context(Path(folder)))
             except KnitcoreError as error:
                 yield name, {"error": str(error)}
             else:
-                result = found.result if isinstance(found, Viewed) else found
+                result = answer.result if isinstance(answer, Viewed) else answer
                 yield name, result.model_dump(mode="json")
             print(f"  {name}: {time.process_time() - clock:.1f} s", file=sys.stderr, flush=True)
 
@@ -185,10 +188,10 @@ def flattened(answer: Any, path: str = "") -> Iterator[tuple[str, Any]]:
         yield path, answer
 
 
-def difference(one: Any, other: Any) -> tuple[float, float, str]:
+def difference(answer: Any, other: Any) -> tuple[float, float, str]:
     """Largest relative difference of energies and sizes, and of other numbers, of two answers, and
     the place of the worst, measured by what is agreed; infinite where words or shapes differ."""
-    first, second = dict(flattened(one)), dict(flattened(other))
+    first, second = dict(flattened(answer)), dict(flattened(other))
     largest = {SIZES: 0.0, OTHERS: 0.0}
     worst, where = 0.0, ""
     for place in first.keys() | second.keys():
@@ -206,14 +209,14 @@ def difference(one: Any, other: Any) -> tuple[float, float, str]:
 def relative(a: Any, b: Any, nothing: float = NOTHING) -> float:
     """Relative difference of two numbers, or of two lists by the largest in them; none where all
     are as small as ``nothing``."""
-    one, other = (v if isinstance(v, list) else [v] for v in (a, b))
-    numbers = all(isinstance(v, float | int) and not isinstance(v, bool) for v in (*one, *other))
-    if not numbers or len(one) != len(other):
+    left, right = (v if isinstance(v, list) else [v] for v in (a, b))
+    numbers = all(isinstance(v, float | int) and not isinstance(v, bool) for v in (*left, *right))
+    if not numbers or len(left) != len(right):
         return 0.0 if a == b else float("inf")
-    scale = max((abs(v) for v in (*one, *other)), default=0.0)
+    scale = max((abs(v) for v in (*left, *right)), default=0.0)
     if scale < nothing:
         return 0.0
-    return max((abs(v - w) for v, w in zip(one, other, strict=True)), default=0.0) / scale
+    return max((abs(v - w) for v, w in zip(left, right, strict=True)), default=0.0) / scale
 
 
 def playable() -> list[str]:
@@ -235,8 +238,8 @@ def run_set(name: str, names: list[str], folder: Path) -> dict[str, Any]:
         [sys.executable, "-m", "scripts.any_machine", "--answer", str(out), *names],
         env=os.environ | INSTRUCTION_SETS[name].environment | cache, check=True,
     )  # fmt: skip
-    found: dict[str, Any] = json.loads(out.read_text(encoding="utf-8"))
-    return found
+    answers: dict[str, Any] = json.loads(out.read_text(encoding="utf-8"))
+    return answers
 
 
 def table(answers: dict[str, dict[str, Any]]) -> tuple[list[str], int]:
@@ -246,10 +249,10 @@ def table(answers: dict[str, dict[str, Any]]) -> tuple[list[str], int]:
     heads = [f"{name:>17}" for name in others]
     lines = [f"{'relative to ' + first:{width}} {' '.join(heads)}"]
     beyond = 0
-    for name, one in answers[first].items():
+    for name, answer in answers[first].items():
         cells, notes = [], []
         for other in others:
-            sizes, rest, where = difference(one, answers[other][name])
+            sizes, rest, where = difference(answer, answers[other][name])
             differs = sizes > SIZES or rest > OTHERS
             beyond += differs
             cells.append(f"{sizes:8.0e} {rest:7.0e}{'*' if differs else ' '}")
@@ -292,8 +295,8 @@ def main() -> int:
         folder.mkdir(parents=True, exist_ok=True)
         sets = given.sets or playable()
         with ThreadPoolExecutor(given.processes) as pool:
-            found = pool.map(lambda name: run_set(name, names, folder), sets)
-            answers = dict(zip(sets, found, strict=True))
+            answered_sets = pool.map(lambda name: run_set(name, names, folder), sets)
+            answers = dict(zip(sets, answered_sets, strict=True))
     lines, beyond = table(answers)
     print("\n".join(lines))
     return 1 if beyond else 0

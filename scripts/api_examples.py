@@ -56,9 +56,9 @@ def short(value: Any) -> Any:
     return value[:MAX_CHARACTERS] if isinstance(value, str) else value
 
 
-def in_order(found: Iterable[str]) -> list[str]:
+def in_order(names: Iterable[str]) -> list[str]:
     """Operations in an order in which each finds the resources it needs."""
-    between = [name for name in found if name not in (*FIRST, *LAST)]
+    between = [name for name in names if name not in (*FIRST, *LAST)]
     return [*FIRST, *between, *LAST]
 
 
@@ -75,12 +75,12 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
     place["session"] = sessions.begin("a token's id", LOCAL_USER)
     own: dict[str, Any] = {}
     answers = {}
-    found = dict(documented_operations(client.get("/openapi.json").json()))
-    for name in in_order(found):
+    documented = dict(documented_operations(client.get("/openapi.json").json()))
+    for name in in_order(documented):
         method, path = name.split()
         if path.endswith(ENDLESS):
             continue
-        body = _request(found[name])
+        body = _request(documented[name])
         if path.startswith("/api/v1/jobs/") and method == "GET":
             while client.get(f"/api/v1/jobs/{place['job']}").json()["state"] in OPEN:
                 time.sleep(0.1)

@@ -25,10 +25,10 @@ def bend(task: StoredTask) -> Document:
     leaves out.
     """
     energy, state = task.begun(mirrored_cell)
-    found = minimise(energy, state, options=TIGHT)
+    minimum = minimise(energy, state, options=TIGHT)
     relaxed = relaxed_repeat(
-        StitchChart.parse(task.chart), energy, Branch.MIRRORED, found, seconds=0.0,
-        evaluations=found.evaluations,
+        StitchChart.parse(task.chart), energy, Branch.MIRRORED, minimum, seconds=0.0,
+        evaluations=minimum.evaluations,
     )  # fmt: skip
     return document_of(repeat_bending(relaxed))
 

@@ -14,7 +14,7 @@ from knitcore.cloth.space.bending_constants import Bend, computed
 from knitcore.materials.library import load_library
 from knitcore.yarn.library.store import MATERIALS
 
-FILE = Path(__file__).parent.parent / "knitcore" / "shell" / "data" / "bends.csv"
+FILE = Path(__file__).parent.parent / "knitcore" / "cloth" / "space" / "data" / "bends.csv"
 
 if __name__ == "__main__":
     names = [field.name for field in fields(Bend)]

@@ -73,21 +73,21 @@ def _sync(text: str) -> str:
 
 def _models() -> str:
     made = operations().values()
-    asked = shapes([*(one.request for one in made), *ASKED, DesignDocument], "validation")
-    answered = shapes([*(one.result for one in made), *ANSWERED], "serialization")
+    given = shapes([*(known.request for known in made), *ASKED, DesignDocument], "validation")
+    answered = shapes([*(known.result for known in made), *ANSWERED], "serialization")
     version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     parts = [
         HEAD.format("Requests and answers of the service")
         + "from pathlib import Path\n"
         + "from typing import Any, Literal, NotRequired, TypedDict\n\n"
         + "from pydantic import AwareDatetime, BaseModel, RootModel\n",
-        f'VERSION = "{version}"\n"""Of the program that it was made from."""',
+        f'VERSION = "{version}"\n"""Version of the program that it was made from."""',
     ]
-    for name, shape in sorted((asked | answered).items(), key=lambda item: "enum" not in item[1]):
+    for name, shape in sorted((given | answered).items(), key=lambda item: "enum" not in item[1]):
         if "properties" not in shape:
             parts.append(_alias(name, shape))
         elif name in answered:
-            parts.append(_class(name, asked.get(name, shape), "BaseModel"))
+            parts.append(_class(name, given.get(name, shape), "BaseModel"))
         else:
             parts.append(_class(name, shape, "TypedDict"))
     results = " | ".join(operation.result.__name__ for operation in KINDS.values())
@@ -160,11 +160,11 @@ def _object(of: Schema) -> str:
 
 
 def _operations() -> str:
-    asked = "\n\n".join(
-        map(_method, (one for one in operations().values() if one.path is not None))
+    methods = "\n\n".join(
+        map(_method, (known for known in operations().values() if known.path is not None))
     )
-    submit = "".join(_kind(one, "submit", "JobStatus") for one in KINDS.values())
-    run = "".join(_kind(one, "run", one.result.__name__) for one in KINDS.values())
+    submit = "".join(_kind(known, "submit", "JobStatus") for known in KINDS.values())
+    run = "".join(_kind(known, "run", known.result.__name__) for known in KINDS.values())
     both = [
         f'''class AsyncOperations:
     """Every operation of the service, as a method."""
@@ -178,7 +178,7 @@ def _operations() -> str:
     async def _run(self, kind: str, request: Any) -> JobResult:
         raise NotImplementedError
 
-{asked}
+{methods}
 
 {submit}
     async def submit(self, kind: Any, **request: Any) -> JobStatus:
@@ -192,8 +192,8 @@ def _operations() -> str:
 '''
     ]
     both.append(_synchronous(both[0]))
-    used = {one.request.__name__ for one in operations().values()} - {"NoRequest"}
-    used |= {one.result.__name__ for one in operations().values()} | {"JobStatus", "JobResult"}
+    used = {known.request.__name__ for known in operations().values()} - {"NoRequest"}
+    used |= {known.result.__name__ for known in operations().values()} | {"JobStatus", "JobResult"}
     return (
         HEAD.format("A method for every operation")
         + "from typing import Any, Literal, TypeVar, Unpack, overload\n\n"

@@ -1,4 +1,4 @@
-"""What scripts compute from every stored repeat, beginning with its relaxed shape."""
+"""Computations of scripts on every stored repeat, beginning with its relaxed shape."""
 
 from __future__ import annotations
 
@@ -106,11 +106,11 @@ class FromStore:
                     digest = content_key(asdict(task), (self.code,))
                     label[key] = f"{key.replace('/', '-')}.{digest}"
                     tasks[label[key]] = task
-        found = run_batch(self.compute, tasks, keep=keep, workers=workers, progress=tell)
+        batch = run_batch(self.compute, tasks, keep=keep, workers=workers, progress=tell)
         lines = ",\n".join(
-            f"{json.dumps(key)}: {json.dumps(found.results[name])}"
+            f"{json.dumps(key)}: {json.dumps(batch.results[name])}"
             for key, name in label.items()
-            if name in found.results
+            if name in batch.results
         )
         path.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
 

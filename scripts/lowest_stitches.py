@@ -26,17 +26,17 @@ def follow(task: StoredTask) -> Document:
     """
     energy, state = task.begun(free_cell)
     try:
-        found, _ = followed(energy, state)
+        minimum, _ = followed(energy, state)
     except (ConvergenceError, UnravelledError) as error:
         return {"failure": str(error)}
-    reached = found.terms.energy / energy.cell.stitches
+    reached = minimum.terms.energy / energy.cell.stitches
     lower = 1.0 - reached / task.energy_n_mm
     return {
-        "minimum": bool(found.stable and lower < SAME_ENERGY),
-        "cell_course_mm": float(f"{found.state[-2]:.7g}"),
-        "cell_wale_mm": float(f"{found.state[-1]:.7g}"),
+        "minimum": bool(minimum.stable and lower < SAME_ENERGY),
+        "cell_course_mm": float(f"{minimum.state[-2]:.7g}"),
+        "cell_wale_mm": float(f"{minimum.state[-1]:.7g}"),
         "energy_n_mm": float(f"{reached:.7g}"),
-        "converged": found.converged,
+        "converged": minimum.converged,
     }
 
 

@@ -67,13 +67,13 @@ SIMPLE = {
 def page_types() -> str:
     """The content of the file."""
     made = operations().values()
-    asked = [*(operation.request for operation in made), *ASKED]
+    requests = [*(operation.request for operation in made), *ASKED]
     answered = [*(operation.result for operation in made), *ANSWERED]
-    found = shapes(asked, "validation")
+    declared = shapes(requests, "validation")
     for name, shape in shapes(answered, "serialization").items():
         required = shape.get("required") if name == "Problem" else list(shape.get("properties", ()))
-        found[name] = shape | {"required": required}
-    parts = [_declared(name, shape) for name, shape in sorted(found.items())]
+        declared[name] = shape | {"required": required}
+    parts = [_declared(name, shape) for name, shape in sorted(declared.items())]
     return "\n\n".join([HEAD, *parts, _addresses()]) + "\n"
 
 
@@ -100,8 +100,8 @@ def shapes(
 ) -> dict[str, Schema]:
     """JSON schemas of models and of the models in their fields, by name."""
     _, schema = models_json_schema([(model, mode) for model in models])
-    found: dict[str, Schema] = schema["$defs"]
-    return found
+    definitions: dict[str, Schema] = schema["$defs"]
+    return definitions
 
 
 def _name(of: dict[str, Any]) -> str:

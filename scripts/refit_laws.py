@@ -48,7 +48,7 @@ SAME_RIG = ("cotton",)
 Key = tuple[Fabric, Direction]
 Array = NDArray[np.float64]
 _MIN_HELD = 0.05
-"""Of 1 - nu_xy nu_yx, so that a converted law stays stable."""
+"""Least 1 - nu_xy nu_yx at which a converted law stays stable."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +76,9 @@ class ClampCorrection:
         return cls(published / held, -waist / (ratio * published))
 
     @classmethod
-    def mean(cls, found: Sequence[ClampCorrection]) -> ClampCorrection:
+    def mean(cls, corrections: Sequence[ClampCorrection]) -> ClampCorrection:
         """The geometric mean of several corrections."""
-        logs = np.log([(c.strain_ratio, c.waist_ratio) for c in found])
+        logs = np.log([(c.strain_ratio, c.waist_ratio) for c in corrections])
         strain, waist = np.exp(logs.mean(axis=0)).tolist()
         return cls(strain, waist)
 
@@ -161,7 +161,7 @@ def carried(folder: Path) -> LeftOutFabrics:
 def corrections_of(
     folder: Path, tests: dict[Key, StretchTest], published: Material
 ) -> dict[Key, ClampCorrection]:
-    """What turns each published law into one of clamp-to-clamp strain."""
+    """Corrections that turn each published law into one of clamp-to-clamp strain."""
     return {
         (f, d): ClampCorrection.of(
             read(folder, f, d, Marks.CENTRE), tests[f, d], published.law(f), d
@@ -299,9 +299,9 @@ def left_out(
             print(f"  {fabric:12} {direction:7}", np.round(force / STRESSES, 2), np.round(off, 3))
         for name in ("modulus_course", "modulus_wale") if fabric in own else ():
             print(f"    {name} {getattr(law, name) / getattr(own[fabric].law, name):.2f}")
-    found = LeftOutFabrics(np.array(errors), np.array(waists))
-    print(f"  {found}")
-    return found
+    errors_left_out = LeftOutFabrics(np.array(errors), np.array(waists))
+    print(f"  {errors_left_out}")
+    return errors_left_out
 
 
 def simulated(strip: MeasuredStrip, law: ConstitutiveLaw) -> tuple[Array, Array]:
@@ -315,9 +315,9 @@ def simulated(strip: MeasuredStrip, law: ConstitutiveLaw) -> tuple[Array, Array]
 
 
 def _log_rms(errors: list[Array]) -> float:
-    found = math.sqrt(float(np.nanmean(np.square(errors))))
-    print(f"  rms factor {math.exp(found):.2f}")
-    return found
+    log_factor = math.sqrt(float(np.nanmean(np.square(errors))))
+    print(f"  rms factor {math.exp(log_factor):.2f}")
+    return log_factor
 
 
 def mended(law: ConstitutiveLaw) -> ConstitutiveLaw:

@@ -31,7 +31,7 @@ LOOPS_PX = 5000
 """Coloured pixels of a drawn fabric."""
 
 ALIKE = 10
-"""Of 255: colours that differ by less are one to a palette."""
+"""Difference, of 255, below which colours are one to a palette."""
 
 Scene = Callable[[Page], str | None]
 """Brings the page into a state and names the part to picture; all of it if None."""
@@ -337,22 +337,20 @@ def palette(image: Image.Image, colours: int) -> Image.Image:
     return chosen
 
 
-def pictures(
-    browser: Browser, url: str, theme: Literal["light", "dark"], wanted: list[str]
-) -> None:
+def pictures(browser: Browser, url: str, theme: Literal["light", "dark"], names: list[str]) -> None:
     """All wanted pictures in one theme."""
     page = visit(browser, url, theme, flat=True)
-    for name in [name for name in PARTS if name in wanted]:
+    for name in [name for name in PARTS if name in names]:
         picture(page, PARTS[name], f"{name}-{theme}")
         leave(page)
     page.context.close()
-    for name in [name for name in WHOLE if name in wanted]:
+    for name in [name for name in WHOLE if name in names]:
         page = visit(browser, url, theme, flat=False)
         picture(page, WHOLE[name], f"{name}-{theme}")
         page.context.close()
 
 
-def main(wanted: list[str]) -> None:
+def main(names: list[str]) -> None:
     subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True)
     IMAGES.mkdir(exist_ok=True)
     with sync_playwright() as playwright:
@@ -362,7 +360,7 @@ def main(wanted: list[str]) -> None:
                 service = Service(Path(folder))  # one that has no designs yet
                 service.start().close()
                 try:
-                    pictures(browser, service.url, theme, wanted)
+                    pictures(browser, service.url, theme, names)
                 finally:
                     service.stop()
         browser.close()

@@ -206,17 +206,17 @@ def run(markdown: str) -> str:
 
 
 def _shown(code: str, names: dict[str, Any]) -> str:
-    """What a cell prints, and the picture of its last expression, as HTML."""
+    """The output of a cell and the picture of its last expression, as HTML."""
     *statements, last = ast.parse(code).body
-    told = io.StringIO()
+    printed = io.StringIO()
     value = None
-    with contextlib.redirect_stdout(told):
+    with contextlib.redirect_stdout(printed):
         if not isinstance(last, ast.Expr):
             statements.append(last)
         exec(compile(ast.Module(statements, []), "notebook", "exec"), names)
         if isinstance(last, ast.Expr):
             value = eval(compile(ast.Expression(last.value), "notebook", "eval"), names)
-    parts = [f"<pre>{escape(told.getvalue())}</pre>"] if told.getvalue() else []
+    parts = [f"<pre>{escape(printed.getvalue())}</pre>"] if printed.getvalue() else []
     if value is not None:
         show = getattr(value, "_repr_html_", None)
         parts.append(show() if show else f"<pre>{escape(repr(value))}</pre>")
@@ -228,9 +228,9 @@ def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -
     del page, config, files
     from latex2mathml.converter import convert
 
-    def formula(found: re.Match[str]) -> str:
-        display = "block" if found[2] == "[" else "inline"
-        made = str(convert(unescape(found[3]).strip(), display=display))
+    def formula(match: re.Match[str]) -> str:
+        display = "block" if match[2] == "[" else "inline"
+        made = str(convert(unescape(match[3]).strip(), display=display))
         return f'<div class="formula">{made}</div>' if display == "block" else made
 
     html = ROLE.sub(lambda role: f"<code>{_short(role[2]) if role[1] else role[2]}</code>", html)

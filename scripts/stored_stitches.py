@@ -27,7 +27,7 @@ from knitcore.yarn.library.store import MATERIALS
 from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.study.relax import Branch
 
-DATA = Path(__file__).parent.parent / "knitcore" / "yarnlibrary" / "data"
+DATA = Path(__file__).parent.parent / "knitcore" / "yarn" / "library" / "data"
 COMMON: dict[str, str] = {
     "stockinette": "K",
     "garter": "P\nK",
@@ -77,7 +77,7 @@ def build(
     """
     tasks = _tasks(most_stitches)
     named = {f"{name}.{task.key}": task for name, task in tasks.items()}
-    found = run_batch(
+    batch = run_batch(
         characterise_repeat, named, scheduler=scheduler, workers=workers, keep=keep,
         progress=tell,
     )  # fmt: skip
@@ -88,12 +88,12 @@ def build(
         for chart, name in names.items():
             label = _label(material_id, chart, Branch.MIRRORED)
             key = f"{material_id}/{chart.key}"
-            document = _found(found, label, tasks[label])
+            document = _found(batch, label, tasks[label])
             provenance = yarn_for(material(material_id), chart).provenance
             entries[key] = _entry(document, tasks[label], provenance, name)
             free = _label(material_id, chart, Branch.FREE)
             if free in tasks:
-                entries[key]["free"] = _free(_found(found, free, tasks[free]))
+                entries[key]["free"] = _free(_found(batch, free, tasks[free]))
             if "controls" in document:
                 controls[key] = np.asarray(document["controls"], dtype=np.float32)
     write_store(folder, entries, controls)
@@ -129,9 +129,9 @@ def _label(material_id: str, chart: StitchChart, branch: Branch) -> str:
     return f"{material_id}.{chart.key.replace('/', '-')}.{branch}"
 
 
-def _found(found: BatchResult, label: str, task: RepeatTask) -> Document:
+def _found(batch: BatchResult, label: str, task: RepeatTask) -> Document:
     key = f"{label}.{task.key}"
-    return found.results.get(key) or {"failure": found.failures[key]}
+    return batch.results.get(key) or {"failure": batch.failures[key]}
 
 
 def _entry(document: Document, task: RepeatTask, provenance: str, name: str) -> dict[str, Any]:

@@ -35,9 +35,9 @@ def errors() -> dict[str, np.ndarray]:
             record = knitted.record(fabric)
             for direction in Direction:
                 knitted_mm = record.stitch_size_mm(direction)
-                for shape, found in ((stored, sizes), (stored.unmirrored, free_sizes)):
+                for shape, ratios in ((stored, sizes), (stored.unmirrored, free_sizes)):
                     size = direction.of(shape.cell_course_mm, shape.cell_wale_mm)
-                    found.append(size / knitted_mm)
+                    ratios.append(size / knitted_mm)
                 strains.append(
                     free_strains_at_stress(stored.law, direction, STRESSES)
                     / free_strains_at_stress(record.law, direction, STRESSES)

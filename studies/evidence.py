@@ -189,17 +189,17 @@ def pressures(folder: Path) -> list[str]:
                 worn = rest * (1 + strain)
                 held = 2 * math.pi * stress / worn * 1000 * MMHG_PER_KPA
                 free = held / (1 + waist)
-                found = limb_pressure(record.law, strip.direction, rest, worn).mmhg
+                interval = limb_pressure(record.law, strip.direction, rest, worn).mmhg
                 sd = float(record.uncertainty.log_stress(strip.direction, stress))
                 factor = math.exp(Z_SCORE * sd)
-                low, high = found.low / factor, found.high * factor
+                low, high = interval.low / factor, interval.high * factor
                 inside += int(low <= free and held <= high)
                 ranges.append((fabric, Interval(held, free), Interval(low, high)))
                 total += 1
                 if share == 0.5:
                     lines.append(
                         f"| {fabric} {strip.direction}-wise | {worn:.0f} | {stress:.3f} "
-                        f"| {held:.0f} to {free:.0f} | {found.low:.0f} to {found.high:.0f} "
+                        f"| {held:.0f} to {free:.0f} | {interval.low:.0f} to {interval.high:.0f} "
                         f"| {low:.0f} to {high:.0f} |"
                     )
     figures.pressures(ranges)
@@ -220,16 +220,16 @@ def bending(folder: Path) -> list[str]:
     """Bending modulus of acrylic from the authors' photos."""
     photos = sorted(folder.glob("*.jpg"))
     lengths = [10.0 * float(photo.stem.split("_")[0]) for photo in photos]
-    found = measure_bending(photos, linear_density_g_per_m=DENSITY_G_PER_M, length_mm=lengths)
+    bent = measure_bending(photos, linear_density_g_per_m=DENSITY_G_PER_M, length_mm=lengths)
     paper = paper_figures().get("acrylic", "B")
-    figures.bending(found, paper.corrected / 1000)
+    figures.bending(bent, paper.corrected / 1000)
     return [
         "## Bending of the yarn",
         "",
         "![Bending modulus of every photo](figures/evidence-bending.svg)",
         "",
         f"{len(photos)} photos of acrylic yarn hanging over an edge, 10 to 25 cm long: B is",
-        f"{1000 * found.bending_modulus_n_mm2:.1f} ± {1000 * (found.standard_deviation or 0):.1f}"
+        f"{1000 * bent.bending_modulus_n_mm2:.1f} ± {1000 * (bent.standard_deviation or 0):.1f}"
         f" mN·mm² (one photo), the paper has {paper.corrected:g}. B is proportional to the linear",
         f"density, taken as {DENSITY_G_PER_M} g/m. *Not shown*: the other yarns, and any",
         "set of the",
@@ -249,9 +249,9 @@ def yarn_models() -> list[str]:
         "| | rms factor | values |",
         "|---|---|---|",
     ]
-    found = errors()
-    figures.yarn_models(found)
-    for name, logs in found.items():
+    by_model = errors()
+    figures.yarn_models(by_model)
+    for name, logs in by_model.items():
         lines.append(f"| {name} | {np.exp(rms(logs)):.2f} | {logs.size} |")
     lines += [
         "",
@@ -380,10 +380,10 @@ def field(folder: Path) -> list[str]:
     ]
     across = {}
     for name, law, model, edges in rows:
-        found = compare(pictures, law, Direction.WALE, edges=edges, model=model).frames
-        told = (f"{f.ux_rms_percent_width:.2f} / {f.uy_rms_percent_width:.2f}" for f in found)
-        lines.append(f"| {name} | {' | '.join(told)} |")
-        across[name] = [f.ux_rms_percent_width for f in found]
+        frames = compare(pictures, law, Direction.WALE, edges=edges, model=model).frames
+        cells = (f"{f.ux_rms_percent_width:.2f} / {f.uy_rms_percent_width:.2f}" for f in frames)
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+        across[name] = [f.ux_rms_percent_width for f in frames]
     drawn = {name: across[name] for name in DRAWN}
     figures.field(drawn, list(map(pictures.stretch, pictures.frames)), FIELD_NOISE_PERCENT)
     loaded = first.force_ratio[1:]
@@ -418,8 +418,8 @@ def compression(folder: Path) -> list[str]:
     ]
     for yarn in ("acrylic", "cotton"):
         k, p = (paper_figures().get(yarn, name).corrected for name in ("k", "p"))
-        paper[yarn], found = (k, p), means[yarn]
-        lines.append(f"| {yarn} | {1000 * found.k_n_per_mm3:.3g} ({k:g}) | {found.p:.3f} ({p:g}) |")
+        paper[yarn], mean = (k, p), means[yarn]
+        lines.append(f"| {yarn} | {1000 * mean.k_n_per_mm3:.3g} ({k:g}) | {mean.p:.3f} ({p:g}) |")
     figures.compression(samples, paper)
     lines += ["", "![Constants of every sample](figures/evidence-compression.svg)"]
     lines += ["", "*Not shown*: the other six yarns, which have no compression tests.", ""]
@@ -447,12 +447,12 @@ def shear(folder: Path) -> list[str]:
         for length in LENGTHS_MM:
             ratio = test.matching_ratio(length)
             forces = test.bias_force(ratio, length, STRAINS) / test.force_n
-            told = " | ".join(f"{force:.2f}" for force in forces)
+            cells = " | ".join(f"{force:.2f}" for force in forces)
             matched.setdefault(name, []).append(ratio)
             missed.setdefault(name, []).append(forces)
             worst[name] = max(worst.get(name, 1.0), *np.exp(np.abs(np.log(forces))))
             if (poisson, length) == (0.3, 100):
-                lines.append(f"| {name} | {poisson}, {length:.0f} mm | {ratio:.2f} | {told} |")
+                lines.append(f"| {name} | {poisson}, {length:.0f} mm | {ratio:.2f} | {cells} |")
     shares = []
     for fabric in Fabric:
         law = material("acrylic").law(fabric)
@@ -488,11 +488,11 @@ def strains() -> str:
 
 def wrapped(lines: list[str]) -> list[str]:
     """The lines, those of a paragraph joined and broken anew."""
-    found = []
+    text = []
     for kept, group in groupby(lines, lambda line: not line or line[0] in "|#!- "):
         part = list(group)
-        found += part if kept else textwrap.wrap(" ".join(part), 100)
-    return found
+        text += part if kept else textwrap.wrap(" ".join(part), 100)
+    return text
 
 
 def main() -> None:

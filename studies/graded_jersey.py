@@ -33,7 +33,7 @@ from knitcore.materials import material
 
 Array = NDArray[np.float64]
 Ends = tuple[str, ...]
-"""Which ends of a measured band are meant; their geometric mean is taken."""
+"""Ends of a measured band that count; their geometric mean is taken."""
 
 WIDTH_MM = 50.0
 LENGTHS_MM = (50.0, 100.0, 200.0)
@@ -86,11 +86,11 @@ class Graded:
 
     def matching_ratio(self, length_mm: float) -> float:
         """Shear modulus over the geometric mean of Young's moduli that has the force at 10 %."""
-        wanted = float(np.interp(MATCHED, STRAINS, self.force_n))
+        target = float(np.interp(MATCHED, STRAINS, self.force_n))
 
         def off(log_ratio: float) -> float:
             (force,) = self.bias_force(math.exp(log_ratio), length_mm, np.array([MATCHED]))
-            return math.log(force / wanted)
+            return math.log(force / target)
 
         return math.exp(brentq(off, math.log(0.02), math.log(5.0), xtol=0.02))
 
@@ -181,9 +181,9 @@ def _coupled(
         return replace(plain, kappa_xx=jersey.kappa_xx, kappa_yy=jersey.kappa_yy)
 
     def off(logs: Array) -> Array:
-        found = law(logs)
-        across = free_transverse_strains(found, Direction.WALE, FITTED)
-        return found.stress(across, FITTED)[1] / stress - 1
+        coupled = law(logs)
+        across = free_transverse_strains(coupled, Direction.WALE, FITTED)
+        return coupled.stress(across, FITTED)[1] / stress - 1
 
     logs = np.log([start.modulus_wale, start.alpha_yy, start.beta_yy])
     most = np.array([np.inf, math.log(ALPHA_SHARE / FITTED[-1]), np.inf])

@@ -100,11 +100,11 @@ def recovered(atlas: Atlas) -> None:
                     atlas,
                     check=False,
                 )
-                found = local_moduli(field.chart, ACRYLIC)
+                moduli = local_moduli(field.chart, ACRYLIC)
                 ratio = np.stack(
                     [
-                        found.modulus_course_n_per_mm / local.modulus_course_n_per_mm,
-                        found.modulus_wale_n_per_mm / local.modulus_wale_n_per_mm,
+                        moduli.modulus_course_n_per_mm / local.modulus_course_n_per_mm,
+                        moduli.modulus_wale_n_per_mm / local.modulus_wale_n_per_mm,
                     ]
                 )
                 shares.append(float((np.abs(ratio - 1) > 0.1).any(axis=0).mean()))
@@ -128,9 +128,10 @@ def uniform(atlas: Atlas, count: int) -> None:
         if field.regions:
             off = max(abs(field.regions[0].deviation_course), abs(field.regions[0].deviation_wale))
         else:
-            found = predict_repeat(field.chart, ACRYLIC)
+            prediction = predict_repeat(field.chart, ACRYLIC)
             off = max(
-                abs(found.modulus_n_per_mm(d) / w - 1) for d, w in zip(Direction, wish, strict=True)
+                abs(prediction.modulus_n_per_mm(d) / w - 1)
+                for d, w in zip(Direction, wish, strict=True)
             )
         met += off <= 0.05
     print(
@@ -158,12 +159,12 @@ def outlines(atlas: Atlas, count: int) -> None:
         test = strip_test(chart, ACRYLIC, direction, strain, steps=4)
         rest, moved = (test.y_mm.T, test.uy_mm[-1].T) if course else (test.x_mm, test.ux_mm[-1])
         size_mm = rest[1::2, -1] - rest[1::2, 0]
-        wanted = 1 + (moved[1::2, -1] - moved[1::2, 0]) / size_mm
+        widening = 1 + (moved[1::2, -1] - moved[1::2, 0]) / size_mm
         begun = time.process_time()
-        found = fill_shape(wanted, 24, direction, strain, ACRYLIC, atlas)
+        filled = fill_shape(widening, 24, direction, strain, ACRYLIC, atlas)
         cpu.append(time.process_time() - begun)
-        rms.append(found.rms)
-        largest.append(found.largest)
+        rms.append(filled.rms)
+        largest.append(filled.largest)
     print(
         f"outlines: rms {np.mean(rms):.2%} of the width in the mean, {max(rms):.2%} at most; "
         f"largest difference {max(largest):.2%}; {np.mean(cpu):.1f} s CPU each"

@@ -51,7 +51,7 @@ def main() -> None:
         print(f"{row[0]:28}", *(np.round(part, 2) for part in row[1:]))
     print("swatch, measured width and height over stockinette's, predicted, interval factor")
     made_of = [densities(chart) for chart in charts]
-    mixture = np.log([Mixture.of(found.shares, of).size_mm for found in made_of])
+    mixture = np.log([Mixture.of(composition.shares, of).size_mm for composition in made_of])
     mixture -= mixture[first]
     for name, logs in (("predicted", ratio), ("mixture, no folds", mixture), ("null", 0 * true)):
         print(f"{name:18} rms {factor(logs - true)}  rank {ranks(logs, true)}")
@@ -61,7 +61,7 @@ def main() -> None:
 
     def missed(most: float) -> Array:
         fitted_to = replace(model, most_folded=most)
-        sizes = np.log([fitted_to.response(found, of).size_mm for found in made_of])
+        sizes = np.log([fitted_to.response(composition, of).size_mm for composition in made_of])
         return np.asarray(sizes - sizes[first] - true)
 
     best, left_out = fitted(missed, len(names))
@@ -103,8 +103,8 @@ def ranks(logs: np.ndarray, true: np.ndarray) -> str:
     """Spearman's correlations of widths and heights."""
     if not np.ptp(logs):
         return "none"
-    found = [spearmanr(logs[:, i], true[:, i]).statistic for i in range(2)]
-    return f"width {found[0]:.2f}, height {found[1]:.2f}"
+    correlations = [spearmanr(logs[:, i], true[:, i]).statistic for i in range(2)]
+    return f"width {correlations[0]:.2f}, height {correlations[1]:.2f}"
 
 
 if __name__ == "__main__":

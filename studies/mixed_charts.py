@@ -127,8 +127,8 @@ def record(
         true = np.array(entry["strain"][str(direction)])
         off = np.log(strains(direction, stress) / true)
         spread = strain_sd(direction, stress) if strain_sd else np.full(len(stress), np.nan)
-        for at, one, sd in zip(stress, off, spread, strict=True):
-            missed[kind, f"{direction} {at:g}", name].append((one, sd))
+        for at, log, sd in zip(stress, off, spread, strict=True):
+            missed[kind, f"{direction} {at:g}", name].append((log, sd))
 
 
 if __name__ == "__main__":

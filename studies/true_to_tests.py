@@ -43,13 +43,13 @@ class LeftOut(NamedTuple):
 
 def strips(folder: Path, fabric: Fabric) -> list[MeasuredStrip]:
     """The two tests of a fabric."""
-    found = []
+    measured = []
     for direction, axis in zip(Direction, "XY", strict=True):
         test = read_stretch_test(folder / f"outputData_Acrylic Yarn {fabric.title()} {axis}.h5")
         if fabric is Fabric.GARTER and direction is Direction.COURSE:
             test = test.with_width(GARTER_WIDTH_MM)
-        found.append(MeasuredStrip.of(test, direction))
-    return found
+        measured.append(MeasuredStrip.of(test, direction))
+    return measured
 
 
 def compared(
@@ -62,11 +62,11 @@ def compared(
     """
     stress, waist = strip.means
     known = np.isfinite(stress)
-    wanted = np.minimum(STRESSES, stress[known].max())  # one test ends just below the last
-    at = np.interp(wanted, stress[known], strip.strain[known])
+    target = np.minimum(STRESSES, stress[known].max())  # one test ends just below the last
+    at = np.interp(target, stress[known], strip.strain[known])
     at = np.minimum(at, 0.95 * law.lock_up_strain(strip.direction))
     force, narrowing = strip.simulate(law, at)
-    ratio = force / wanted
+    ratio = force / target
     sd = spread.log_stress(strip.direction, STRESSES)
     if same_sample:
         sd = np.sqrt(sd**2 - LOG_WIDTH_READING**2)
@@ -156,8 +156,8 @@ def main() -> None:
         print(f"{laws} laws: force over measured at {STRESSES} N/mm, waist less measured, inside")
         rows = of_library(folder, laws)
         for (fabric, direction), row in rows.items():
-            found = np.round(row[0], 2), np.round(row[1], 3), row[2].astype(int)
-            print(f"  {fabric:12}{direction:8}", *found)
+            columns = np.round(row[0], 2), np.round(row[1], 3), row[2].astype(int)
+            print(f"  {fabric:12}{direction:8}", *columns)
         print(" ", Summary.of(list(rows.values())))
     if "--left-out" in sys.argv:
         pulls = left_out(folder)

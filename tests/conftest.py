@@ -1,4 +1,4 @@
-"""What all tests share."""
+"""Settings that all tests share."""
 
 from __future__ import annotations
 
@@ -32,5 +32,5 @@ atexit.register(shutil.rmtree, _DATA, ignore_errors=True)
 
 
 def pytest_collection_finish() -> None:
-    """What has been imported and collected stays to the end; nobody need look through it again."""
+    """Spare the collector everything imported so far: it stays to the end."""
     gc.freeze()

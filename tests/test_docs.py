@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pkgutil
 import re
 import shlex
+import tomllib
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,14 +17,28 @@ from httpx2 import Response
 from app.cli.main import main
 from app.service.main import create_app
 from app.service.settings import Settings
+from knitcore.base.extensions import Group
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted([*ROOT.glob("docs/**/*.md"), ROOT / "README.md"])
+MORE_PAGES = [
+    *(ROOT / name for name in ("CHANGELOG.md", "CONTRIBUTING.md", "frontend/README.md")),
+    *ROOT.glob("examples/*/README.md"),
+]
 NOTEBOOKS = ROOT / "docs" / "notebooks"
 MADE = (ROOT / "docs" / "reference", ROOT / "docs" / "gallery.md")
 """Pages of the site that are made from code; the strict build checks links to them."""
 FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SHELL = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+ROOMS = "app|client|deploy|docs|examples|frontend|knitcore|scripts|studies|tests"
+PATH = re.compile(
+    rf"`((?:[\w.-]+/)*[\w.-]+\.(?:js|mjs|py)|(?:[\w.-]+/)+|(?:{ROOMS})/[\w./-]+)`",
+)
+"""A program, a folder with its slash, or a path that begins in one of our folders."""
+DOTTED = re.compile(r"`((?:knitcore|app|scripts|studies)(?:\.\w+)+)`")
+BUILT = {"frontend/dist"}
+"""Folders that are made."""
 
 
 def _id(page: Path) -> str:
@@ -47,6 +63,22 @@ def test_links_between_pages_lead_somewhere(page: Path) -> None:
     targets = re.findall(r"\]\(((?!https?:|mailto:|#)[^)#\s]+)", page.read_text())
     found = [(page.parent / target).resolve() for target in targets]
     assert not [to for to in found if not to.exists() and not {to, *to.parents} & {*MADE}]
+
+
+@pytest.mark.parametrize("page", [*PAGES, *MORE_PAGES], ids=_id)
+def test_files_folders_and_modules_that_pages_name_exist(page: Path) -> None:
+    text = page.read_text()
+    homes = (ROOT, page.parent)
+    paths = set(PATH.findall(text)) - BUILT
+    assert not {path for path in paths if not any((home / path).exists() for home in homes)}
+    for name in set(DOTTED.findall(text)) - set(map(str, Group)):
+        assert pkgutil.resolve_name(name) is not None
+
+
+def test_the_files_that_mutation_tests_change_and_run_exist() -> None:
+    mutmut = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mutmut"]
+    for name in mutmut["only_mutate"] + mutmut["pytest_add_cli_args_test_selection"]:
+        assert list(ROOT.glob(name)), name
 
 
 def _send(client: TestClient, command: str) -> Response:

@@ -11,6 +11,7 @@ import socket
 import subprocess
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx2 as httpx
@@ -179,4 +180,5 @@ def test_a_view_is_watched_through_a_websocket(url: str) -> None:
             ) as view:
                 return await asyncio.wait_for(view.recv(), PATIENCE_S)
 
-        assert asyncio.run(first_message())
+        with ThreadPoolExecutor(1) as own_loop:  # this thread may have a loop that runs
+            assert own_loop.submit(lambda: asyncio.run(first_message())).result(PATIENCE_S)

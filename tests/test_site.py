@@ -53,7 +53,7 @@ def test_formulas_on_their_own_scroll_on_narrow_screens(site: ModuleType) -> Non
 
 
 def test_references_of_docstrings_are_plain_names(site: ModuleType) -> None:
-    html = "see :func:<code>~knitcore.answer.curve.curve</code> and :class:<code>Fit</code>"
+    html = "see :func:<code>~knitcore.prediction.curve.curve</code> and :class:<code>Fit</code>"
     shown = "see <code>curve</code> and <code>Fit</code>"
     assert site.on_page_content(html, None, None, None) == shown
 

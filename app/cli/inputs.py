@@ -23,6 +23,7 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import click
+from click.core import ParameterSource
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
@@ -135,14 +136,15 @@ class Inputs:
         if kind is bool:
             both = f"{option}/--no-{option.removeprefix('--')}" if field.default else option
             return click.Option([both, name], is_flag=True, default=field.default, help=text)
-        default = field.get_default(call_default_factory=True)
+        default = _shown(field.get_default(call_default_factory=True))
+        shown = {} if default is None else {"default": default}  # None is a value, too
         return click.Option(
             [option, name],
             type=_click_type(kind),
             multiple=is_list,
             required=field.is_required(),
-            default=_shown(default),
             show_default=True,
+            **shown,
             help=MATERIAL_HELP if name == "material" else text,
         )
 
@@ -201,7 +203,8 @@ def _design_fields(file: Path, model: type[BaseModel]) -> dict[str, Any]:
 
 def _value_of(name: str) -> Callable[[Given], dict[str, Any]]:
     def fields(given: Given) -> dict[str, Any]:
-        value = _sent(given[name])
+        source = click.get_current_context().get_parameter_source(name)
+        value = None if source is ParameterSource.DEFAULT else _sent(given[name])
         return {} if value is None else {name: value}
 
     return fields

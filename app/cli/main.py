@@ -17,14 +17,14 @@ from .options import CHART_HELP
 GROUPS = {"measure": "Measure a yarn's bending and its compression."}
 """Groups of commands, which are operations."""
 SERVICE = {
-    "serve": "app.cli.serve:command",
-    "doctor": "app.cli.machine:doctor",
-    "warm-up": "app.cli.machine:warm_up",
-    "token": "app.cli.token:command",
-    "backup": "app.cli.backups:backup",
-    "restore": "app.cli.backups:restore",
+    "serve": ".serve:command",
+    "doctor": ".machine:doctor",
+    "warm-up": ".machine:warm_up",
+    "token": ".token:command",
+    "backup": ".backups:backup",
+    "restore": ".backups:restore",
 }
-"""Commands that are no operations, and where each is."""
+"""Commands that are no operations, and where each is in this package."""
 SECTIONS: dict[str, tuple[str, ...]] = {
     "Design": ("find", "fill", "shape", "atlas"),
     "Fabric": (
@@ -102,7 +102,7 @@ class Commands(Operations):
         if cmd_name in SERVICE:
             module, _, name = SERVICE[cmd_name].partition(":")
             try:
-                command: click.Command = getattr(importlib.import_module(module), name)
+                command: click.Command = getattr(importlib.import_module(module, __package__), name)
             except ModuleNotFoundError as error:
                 return _not_installed(cmd_name, error)
             return command

@@ -210,7 +210,7 @@ def _chart_of_name(name: str) -> StitchChart | None:
 
 
 def _no_chart(chart: str) -> InputError:
-    names = ", ".join([*map(str, Fabric), *(pattern.identifier for pattern in PATTERNS)])
+    names = ", ".join(pattern.identifier for pattern in PATTERNS)
     problem = "is neither a file, a repeat in one line nor the name of a fabric"
     if os.path.isdir(chart):
         problem = "is a folder, not a file"

@@ -21,7 +21,7 @@ FABRIC_COLOURS: dict[Fabric, str] = {
 
 SKIN = (226, 205, 188)
 UNDYED = "d8c6ab"
-"""Of wool, where a yarn's name holds no colour."""
+"""Colour of undyed wool, for yarns whose names hold no colour."""
 MAKERS_COLOURS = {
     "white": "f1ede4",
     "black": "2b2a2c",
@@ -32,7 +32,7 @@ MAKERS_COLOURS = {
     "brume": "b4bac0",
     "sapphire": "1f4aa8",
 }
-"""What makers of yarns mean by these words, which web pages lack or mean as pure light."""
+"""Yarn makers' colours by name. Web colours lack these names, or use them for pure light."""
 
 BATLOW = (
     "011959 08255b 0d315d 0f3b5f 114360 134b61 175262 1b5962 226061 2b655e 356a59 "
@@ -98,7 +98,7 @@ def fabric_mix(fractions: NDArray[np.float64], palette: Colours | None = None) -
 
 
 def rgb(colour: str) -> tuple[int, int, int]:
-    """Of a hexadecimal colour, with or without #."""
+    """Red, green and blue of a hexadecimal colour, with or without #."""
     red, green, blue = bytes.fromhex(colour.removeprefix("#"))
     return red, green, blue
 

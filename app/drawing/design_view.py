@@ -46,12 +46,12 @@ from .stitch_colours import (
 
 MAX_REGIONS = 200
 MAX_LETTERS = 41_000
-"""Of a chart whose stitches the service lays itself: one that is drawn whole, with its line ends.
-That takes 0.1 s of CPU and 25 MB."""
+"""Letters, with line ends, of the largest chart whose stitches the service lays itself. Such a
+chart is drawn whole, which takes 0.1 s of CPU and 25 MB."""
 
 
 class RectangleGroups(StrEnum):
-    """What one extensibility rectangle stands for."""
+    """Part of the fabric that one extensibility rectangle stands for."""
 
     STITCH = "stitch"
     BLOCK = "block"
@@ -89,7 +89,9 @@ class ViewRequest(RequestModel):
     colour: Colour = Colour.FABRIC
     field: FieldColours | None = Field(None, description="Values for the colour `field`.")
     regions: list[DesignRegion] = Field(
-        [], max_length=MAX_REGIONS, description="Of the design; coloured by `yarn` and `region`."
+        [],
+        max_length=MAX_REGIONS,
+        description="Regions of the design, for the colours `yarn` and `region`.",
     )
     palette: Palette = Palette()
     rectangles: bool = False
@@ -97,10 +99,12 @@ class ViewRequest(RequestModel):
     rectangle_block: int = Field(4, ge=1, le=400, description="Stitches on a side of a block.")
     stretch: StretchStep | None = None
     curl: Curled | None = Field(
-        None, description="Show it as it lies, hangs or is worn; not while it is stretched."
+        None,
+        description="Show the fabric as it lies, hangs or is worn; not together with `stretch`.",
     )
     focus: Focus | None = Field(
-        None, description="Around it a chart is drawn as yarn that is too large to be drawn whole."
+        None,
+        description="Stitch around which a chart too large to be drawn whole is drawn as yarn.",
     )
 
 
@@ -108,25 +112,30 @@ class ViewResult(BaseModel):
     """The view of a design and its address."""
 
     stitches: int = Field(description="Stitches drawn as yarn.")
-    source: str = Field(description="Where the shapes of the stitches come from.")
+    source: str = Field(description="Source of the stitches' shapes.")
     scale_mm: float = Field(description="Length of the line below the fabric.")
-    url: str = Field(description="For a browser; after the # the pass to watch this view.")
+    url: str = Field(
+        description="Address of the view for a browser; the pass to watch it follows the #."
+    )
 
 
 def is_large(request: ViewRequest) -> bool:
-    """Whether a worker should lay its stitches: it is not drawn whole, and no test is as large."""
+    """Return whether a worker should lay the stitches of the chart.
+
+    Such a chart is not drawn whole, and no stretch test is as large.
+    """
     return size_of_chart(request.chart) > MAX_LETTERS
 
 
 def build_drawing(
     request: ViewRequest, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> Drawing:
-    """In a worker: what a view shows of a large chart, which has no stretch test or shape."""
+    """Make the drawing of a large chart, which has no stretch test or shape; runs in a worker."""
     return build_scene(request, None, Context(data_dir, cancelled=cancelled)).drawing()
 
 
 def build_scene(
-    request: ViewRequest, found: StretchView | PosedView | None, context: Context
+    request: ViewRequest, computed: StretchView | PosedView | None, context: Context
 ) -> FabricScene:
     """The scene of a design: flat, in a shape of its own, or at one step of its stretch test.
 
@@ -137,8 +146,8 @@ def build_scene(
     """
     chart, material = to_chart(request.chart), context.material(request.material)
     drawn = _drawn(request, chart)
-    stretch = found if isinstance(found, StretchView) else None
-    posed = _posed(request, found, chart)
+    stretch = computed if isinstance(computed, StretchView) else None
+    posed = _posed(request, computed, chart)
     step = _checked_step(request, stretch, chart)
     shapes = stitch_shapes(chart, material, folded=posed is None)
     placement, room = unstretched(shapes), None
@@ -172,17 +181,17 @@ def build_scene(
 
 
 def _posed(
-    request: ViewRequest, found: StretchView | PosedView | None, chart: StitchChart
+    request: ViewRequest, computed: StretchView | PosedView | None, chart: StitchChart
 ) -> PosedView | None:
     if request.curl is None:
         return None
     if request.stretch is not None:
-        raise InputError("curl", "stretch is given as well.", "Leave one of them out.")
-    if not isinstance(found, PosedView):
+        raise InputError("curl", "stretch is given as well.", "Give one of the two.")
+    if not isinstance(computed, PosedView):
         raise InputError("curl.id", "is not known any more.", "Compute the shape again.")
-    if found.corners_mm.shape[:2] != (chart.rows + 1, chart.columns + 1):
+    if computed.corners_mm.shape[:2] != (chart.rows + 1, chart.columns + 1):
         raise InputError("curl.id", "belongs to another chart.", "Compute it for this one.")
-    return found
+    return computed
 
 
 def _checked_step(request: ViewRequest, stretch: StretchView | None, chart: StitchChart) -> int:
@@ -199,7 +208,7 @@ def _checked_step(request: ViewRequest, stretch: StretchView | None, chart: Stit
 
 
 def _drawn(request: ViewRequest, chart: StitchChart) -> NDArray[np.bool_] | None:
-    """Where there are stitches; an outline in several parts is shown as it is."""
+    """Mask of the stitches; an outline in several parts is shown as it is."""
     if request.outline is None:
         return None
     drawn = outline_marks(request.outline)

@@ -21,9 +21,9 @@ Colours = NDArray[np.uint8]
 RECTANGLE = 20
 """Stitches that take as much memory of a view as an extensibility rectangle."""
 NEARER = 0.25
-"""What lies so high over the plane, towards the eye, looks this share of it farther out."""
+"""Allowance for perspective: a point at height h above the plane appears 0.25 h farther out."""
 BESIDE = 0.8
-"""So many stitches from a stitch's centre a click still means it."""
+"""A click selects a stitch if it lands within this many stitch widths of its centre."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Box:
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """Where all stitches of a fabric lie: for clicks, marks, the scale and the camera.
+    """Places of all stitches of a fabric, for clicks, marks, the scale and the camera.
 
     Attributes
     ----------
@@ -146,13 +146,13 @@ class FabricScene:
 
     @cached_property
     def top_mm(self) -> float:
-        """How high the yarn reaches above the middle plane."""
+        """Height of the yarn above the middle plane, mm."""
         highest = self.placement.depth * np.abs(self.shapes.lines[..., 2]).max()
         return float(highest + self.shapes.yarn_radius_mm)
 
     @cached_property
     def ground(self) -> Ground:
-        """Where all its stitches lie."""
+        """Places of all its stitches."""
         places = self.placement
         return Ground(
             centres_mm=places.centres_mm.astype(np.float32),
@@ -179,7 +179,7 @@ class FabricScene:
         return np.stack([(plane - out).min(axis=0), (plane + out).max(axis=0)])
 
     def drawing(self) -> Drawing:
-        """What a view shows of it, and keeps."""
+        """Make the drawing that a view shows and keeps."""
         part, picture = self.window(), self.colours
         if part is self:
             return Drawing(self, self.ground)
@@ -215,7 +215,7 @@ class FabricScene:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What a view shows of a fabric, and keeps: little of one that is too large to be drawn whole.
+    """Part of a fabric that a view shows and keeps: little of one too large to be drawn whole.
 
     Attributes
     ----------

@@ -53,7 +53,9 @@ class Colour(StrEnum):
 class Palette(RequestModel):
     """Colours that carry a meaning; the page sends those of its theme."""
 
-    yarn: HexColour | None = Field(None, description="By default that of the yarn's name.")
+    yarn: HexColour | None = Field(
+        None, description="Colour of the yarn; by default that of its name."
+    )
     stockinette: HexColour = f"#{FABRIC_COLOURS[Fabric.STOCKINETTE]}"
     garter: HexColour = f"#{FABRIC_COLOURS[Fabric.GARTER]}"
     rib: HexColour = f"#{FABRIC_COLOURS[Fabric.RIB]}"
@@ -68,7 +70,8 @@ class FieldColours(RequestModel):
     """Any value of each stitch on a colour map."""
 
     values: list[float] = Field(
-        max_length=MAX_FIELD, description="Row by row from the bottom, each from the left."
+        max_length=MAX_FIELD,
+        description="Values row by row from the bottom, each row from the left.",
     )
     low: float
     high: float
@@ -136,7 +139,7 @@ def _stretched(colour: Colour, stretch: StretchView | None, step: int) -> Colour
 
 
 def _pressed(mmhg: NDArray[np.float32] | None) -> Colours:
-    """From no pressure to the largest there is."""
+    """Colours of pressures, from none to the largest there is."""
     if mmhg is None:
         raise InputError("colour", "needs a tube on a limb.", "Compute one and name its id.")
     pressed = np.nan_to_num(mmhg)

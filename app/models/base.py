@@ -25,7 +25,7 @@ UNIT = "_n_per_mm"
 
 
 class MissingError(InputError):
-    """Nothing has the name that the address gives."""
+    """Error: nothing has the name that the address gives."""
 
 
 class InvalidRequestError(Exception):
@@ -36,7 +36,7 @@ class InvalidRequestError(Exception):
         self._errors = errors
 
     def errors(self) -> list[Any]:
-        """Those of pydantic, without the inputs."""
+        """Pydantic's errors, with the inputs removed."""
         return self._errors
 
 
@@ -50,9 +50,9 @@ def read(model: Any, content: bytes | str) -> Any:
     try:
         return TypeAdapter(model).validate_json(content)
     except ValidationError as error:
-        found = error.errors(include_url=False, include_input=False)
+        faults = error.errors(include_url=False, include_input=False)
         raise InvalidRequestError(
-            [fault | {"loc": ("body", *fault["loc"])} for fault in found]
+            [fault | {"loc": ("body", *fault["loc"])} for fault in faults]
         ) from None
 
 
@@ -68,7 +68,7 @@ class RequestModel(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     def pass_to(self, function: Callable[..., T], *first: Any, **more: Any) -> T:
-        """What a function or a class of the library makes of these fields and the values given.
+        """Call a function or a class of the library with these fields and the values given.
 
         A parameter that is not given takes the field of its name, or of its name and the unit N/mm.
         """
@@ -96,7 +96,7 @@ class ResultModel(BaseModel):
 class IntervalResult(ResultModel):
     """A result, or a part of one, with 90 % intervals."""
 
-    interval_source: str = Field(description="What the 90 % intervals rest on.")
+    interval_source: str = Field(description="Source of the 90 % intervals.")
 
 
 def _listed(value: Any) -> Any:

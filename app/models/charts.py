@@ -50,9 +50,9 @@ RepeatText = Annotated[
 CellLines = Annotated[
     str, Field(description="Lines of x (part of it) and . (not part of it), the top row first.")
 ]
-"""Which stitches are meant, in an answer."""
-Row = Annotated[int, Field(ge=0, description="From 0, the bottom row.")]
-Column = Annotated[int, Field(ge=0, description="From 0, at the left.")]
+"""Stitches of a part, in an answer."""
+Row = Annotated[int, Field(ge=0, description="Row, counted from 0 at the bottom.")]
+Column = Annotated[int, Field(ge=0, description="Column, counted from 0 at the left.")]
 TEXT_TAG, FABRIC_TAG = "K/P text", "pure fabric"
 """Tags of the two ways to give a chart; errors leave them out of the field's name."""
 

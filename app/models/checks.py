@@ -40,16 +40,16 @@ def all_faults(error: InputError, request: BaseModel, context: Context) -> Input
 
 def with_others(error: InputError, others: Iterable[InputError]) -> InputError:
     """An error together with others, without repetitions."""
-    found = {(other.field, other.problem): other for other in others}
-    found.pop((error.field, error.problem), None)
-    error.others = tuple(found.values())
+    distinct = {(other.field, other.problem): other for other in others}
+    distinct.pop((error.field, error.problem), None)
+    error.others = tuple(distinct.values())
     return error
 
 
 def faults_of(
     model: type[BaseModel], values: dict[str, Any], context: Context
 ) -> Iterator[InputError]:
-    """What the library finds wrong in the values of some fields of a request."""
+    """Yield the errors that the library finds in the values of some fields of a request."""
     for name, value in values.items():
         field = model.model_fields[name]
         yield from _faults(field.annotation, field.metadata, value, context)
@@ -72,6 +72,6 @@ def _faults(
     for part in get_args(kind):
         own = get_args(part)[1:] if get_origin(part) is Annotated else ()
         bare = get_args(part)[0] if own else part
-        for one in value if isinstance(value, list) else [value]:
-            if not isinstance(one, BaseModel) or one is not value:
-                yield from _faults(bare, own, one, context)
+        for item in value if isinstance(value, list) else [value]:
+            if not isinstance(item, BaseModel) or item is not value:
+                yield from _faults(bare, own, item, context)

@@ -25,7 +25,7 @@ HISTORIES = (
     f"As-knitted: pulled along the columns by {TAKE_DOWN_N_PER_MM:g} N/mm, then released; "
     f"stretched: by {WORN_N_PER_MM:g} N/mm. Agitated: shaken until friction holds nothing."
 )
-"""What the histories are, as a note."""
+"""Note that explains the histories."""
 
 
 class RubbedRequest(YarnLevelRequest):
@@ -42,7 +42,7 @@ class RubbedRequest(YarnLevelRequest):
     @property
     @abstractmethod
     def has_friction(self) -> bool:
-        """Whether an option that needs friction is given."""
+        """True if an option that needs friction is given."""
 
     def with_friction(self, context: Context) -> Self:
         """The request with its coefficient of friction, that of the yarn unless it is given.
@@ -69,7 +69,7 @@ class RubbedRequest(YarnLevelRequest):
         return f"Coefficient of friction {self.friction:g}: {source}."
 
     def _against_friction(self) -> Iterator[InputError]:
-        """What the request asks for that cannot be had with friction."""
+        """Yield an error for each option that cannot be had with friction."""
         if self.branch is Branch.PUBLISHED:
             yield InputError(
                 "branch", "the published branch has no friction.", "Use mirrored or free."
@@ -91,7 +91,7 @@ class RubbedRequest(YarnLevelRequest):
 
 
 def on_splines(zero: RelaxedCell) -> RelaxedRepeat:
-    """What a request with friction has relaxed."""
+    """Return the relaxed cell of a request with friction as one on splines."""
     assert isinstance(zero, RelaxedRepeat)  # noqa: S101 - the published branch was refused
     return zero
 
@@ -102,7 +102,9 @@ class RestSizeResult(ResultModel):
     history: History
     course_mm: float
     wale_mm: float
-    course_interval_mm: Ends | None = Field(None, description="Over the interval of friction.")
+    course_interval_mm: Ends | None = Field(
+        None, description="Interval of the size over the interval of friction."
+    )
     wale_interval_mm: Ends | None = None
 
 

@@ -31,7 +31,7 @@ class GaugeInput(RequestModel):
         RelaxedSize.log_sd,
         ge=0.001,
         le=1,
-        description="How uncertain both numbers are: standard deviation of their logarithms.",
+        description="Uncertainty of both numbers: standard deviation of their logarithms.",
     )
     known_by: KnownBy = Field(
         KnownBy.GAUGE, description="`relaxation` for the `gauge` in the result of `relax`."

@@ -23,7 +23,7 @@ class LawsRequest(RequestModel):
 
     laws: Laws | None = Field(
         None,
-        description="Of the library's yarns: refitted clamp to clamp (default), or as published.",
+        description="Laws of library yarns: refitted clamp to clamp (default), or as published.",
     )
 
     @model_validator(mode="after")
@@ -98,9 +98,9 @@ class LawResult(LawConstants):
     """The constants of a constitutive law."""
 
     shear_modulus_n_per_mm: float = Field(
-        description="An assumption unless it was fitted or calibrated."
+        description="Shear modulus; an assumption unless it was fitted or calibrated."
     )
-    kappa_xx: float = Field(description="Share of the strain across in the stiffening.")
+    kappa_xx: float = Field(description="Coupling: share of the strain across in the stiffening.")
     kappa_yy: float
     shear_stiffening: float = Field(
         0.0, description="Growth of the shear stiffness with the angle squared, 1/rad²."

@@ -23,7 +23,8 @@ from .laws import LawsRequest
 
 T = TypeVar("T")
 MAX_ELEMENT_STEPS = 40_000
-"""Most elements times steps over REST, about a minute; the command line accepts more."""
+"""Largest number of elements times steps over REST, about a minute; the command line accepts
+more."""
 MAX_CONDITIONS = 50
 
 Millimetres = Annotated[float, Field(ge=-10_000, le=10_000)]
@@ -39,8 +40,12 @@ class HeldInput(RequestModel):
 
     kind: Literal["held"]
     edge: EdgeName
-    x_mm: Millimetres | None = Field(0.0, description="Moved so far; null lets it slide along x.")
-    y_mm: Millimetres | None = Field(0.0, description="Moved so far; null lets it slide along y.")
+    x_mm: Millimetres | None = Field(
+        0.0, description="Displacement of the edge along x; null lets it slide along x."
+    )
+    y_mm: Millimetres | None = Field(
+        0.0, description="Displacement of the edge along y; null lets it slide along y."
+    )
 
 
 class PulledInput(RequestModel):
@@ -96,11 +101,11 @@ class PieceInput(RequestModel):
     conditions: list[ConditionInput] = Field(min_length=1, max_length=MAX_CONDITIONS)
 
     def piece(self) -> CutPiece:
-        """As the library has it."""
+        """The piece as an object of the library."""
         return self.pass_to(CutPiece)
 
     def loads(self) -> list[Condition]:
-        """The conditions, as the library has them."""
+        """The conditions as objects of the library."""
         return [given.pass_to(_CONDITIONS[given.kind]) for given in self.conditions]
 
 
@@ -111,7 +116,7 @@ class PieceTestRequest(LawsRequest):
     material: MaterialName
     steps: int = Field(10, ge=1, le=1000, description="Steps of the load.")
     shear_modulus_n_per_mm: float | None = Field(
-        None, ge=1e-4, le=10, description="C_xyxy; that of the laws by default."
+        None, ge=1e-4, le=10, description="Shear modulus C_xyxy; that of the laws by default."
     )
     mesh_mm: float | None = Field(
         None,
@@ -160,16 +165,16 @@ class PieceTestResult(IntervalResult):
     messages: list[str]
 
     @classmethod
-    def of_pull(cls, found: Any, material: Material, **more: Any) -> Self:
-        """From a test of a rectangle, with an interval for each force."""
+    def of_pull(cls, pull: Any, material: Material, **more: Any) -> Self:
+        """Make a result from a test of a rectangle, with an interval for each force."""
         ends = {}
         for name in cls.model_fields:
             force, is_interval, _ = name.partition("_interval_n")
             if is_interval:
-                factor = np.exp(Z_SCORE * getattr(found, f"{force}_log_sd"))
-                value = getattr(found, f"{force}_n")
+                factor = np.exp(Z_SCORE * getattr(pull, f"{force}_log_sd"))
+                value = getattr(pull, f"{force}_n")
                 ends[name] = value / factor, value * factor
-        return cls.of(found, **ends, **of_test(found.test, material), **more)
+        return cls.of(pull, **ends, **of_test(pull.test, material), **more)
 
 
 def of_test(test: PieceTest, material: Material) -> dict[str, Any]:

@@ -23,7 +23,7 @@ class PosedView:
     mmhg: Floats | None = None
 
     def upright(self) -> PosedView:
-        """With z, which is up in a test of cloth, up in the view."""
+        """Turn the shape so that z, which is up in a test of cloth, is up in the view."""
         body = self.body and self.body.upright()
         return replace(self, corners_mm=upright(self.corners_mm), body=body)
 

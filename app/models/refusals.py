@@ -1,4 +1,4 @@
-"""What pydantic finds wrong with a request, and what would be accepted, in our words."""
+"""Wording of pydantic's errors: the problem of a request, and the remedy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _PROBLEMS = {
     "too_short": "{actual_length} given, at least {min_length} needed",
     "too_long": "more than {max_length} given",
 }
-"""By pydantic's type of error, where its own message speaks of Python."""
+"""Problems by pydantic's type of error, where its own message speaks of Python."""
 _OBJECTS = "model_attributes_type", "model_type"
 _BODY = "Send a JSON object, with Content-Type: application/json."
 _REMEDIES = {
@@ -33,19 +33,19 @@ _REMEDIES = {
     "int_from_float": "Use a whole number.",
     "float_parsing": "Use a number.",
 }
-"""What would be accepted, by pydantic's type of error; fields in braces are of its context."""
+"""Remedies by pydantic's type of error; fields in braces come from its context."""
 OF_VALUES = frozenset(_REMEDIES) - {"missing", "extra_forbidden", *_OBJECTS}
 """Types of errors whose remedy says nothing of how the value was sent."""
 
 
 def problem_in_words(fault: Mapping[str, Any]) -> str:
-    """What is wrong, without the name of the field and a full stop."""
+    """Describe the problem, without the name of the field and a full stop."""
     words: str = _PROBLEMS.get(fault["type"], "{msg}")
     return words.format_map({"msg": fault["msg"], **fault.get("ctx", {})})
 
 
 def remedy_in_words(fault: Mapping[str, Any], field: str) -> str:
-    """What would be accepted instead."""
+    """Describe what would be accepted instead."""
     if fault["type"] in _OBJECTS and field == "body":
         return _BODY
     words: str = _REMEDIES.get(fault["type"], "{msg}; see /docs.")

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction
 
@@ -21,11 +24,11 @@ class StretchView:
     """
 
     direction: Direction
-    positions_mm: Array
+    positions_mm: NDArray[np.float32]
     strain: Array
     utilisation: Array
 
     @property
     def size_bytes(self) -> int:
-        """How much memory it takes."""
+        """Memory that it takes, bytes."""
         return sum(array.nbytes for array in (self.positions_mm, self.strain, self.utilisation))

@@ -21,7 +21,11 @@ from .laws import LawsRequest
 
 LinearDensity = Annotated[
     float,
-    Field(gt=0, le=20, description="Of the yarn, g/m: weigh some metres; tex divided by 1000."),
+    Field(
+        gt=0,
+        le=20,
+        description="Linear density of the yarn, g/m (tex divided by 1000): weigh some metres.",
+    ),
 ]
 Corner = tuple[float, float, float] | None
 Corners = Annotated[
@@ -64,7 +68,7 @@ class WeighedRequest(LawsRequest):
 
 
 def notes_of(cloth: EvenCloth) -> list[str]:
-    """What a test of cloth that is flat at rest leaves out."""
+    """Notes on what a test of cloth that is flat at rest leaves out."""
     return [
         FRICTIONLESS,
         *([_CURLS] if cloth.curls else []),

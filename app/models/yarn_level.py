@@ -67,8 +67,8 @@ class YarnLevelRequest(StitchRequest):
         None,
         min_length=1,
         max_length=MAX_STITCHES_PER_SIDE,
-        description="Instead of one length: a list for every row of the chart, the bottom row "
-        "first, of one length for all its stitches or one for each.",
+        description="Yarn per stitch, in place of one length: a list for every row of the chart, "
+        "the bottom row first, of one length for all its stitches or one for each.",
         examples=[[[14.0], [12.0]]],
     )
     flat: bool = Field(
@@ -103,8 +103,8 @@ class YarnLevelRequest(StitchRequest):
 
     def inputs(self, repeat: StitchChart, used: ChartYarn) -> dict[str, Any]:
         """Everything that decides a result, from which its stored name is made."""
-        asked = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
-        return {"repeat": repeat.text, "used": asdict(used), "asked": asked}
+        options = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
+        return {"repeat": repeat.text, "used": asdict(used), "asked": options}
 
 
 def _yarn(material: Material, repeat: StitchChart, loop_length_mm: float | None) -> ChartYarn:

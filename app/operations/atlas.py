@@ -73,20 +73,20 @@ def atlas(request: AtlasRequest, context: Context) -> AtlasResult:
     return _result(context.atlas(request.material, request.repeats))
 
 
-def _result(found: Atlas) -> AtlasResult:
+def _result(atlas: Atlas) -> AtlasResult:
     return AtlasResult.of(
-        found,
-        repeats=found.keys,
+        atlas,
+        repeats=atlas.keys,
         interval_source=INTERVAL_SOURCE,
-        **{name: found.column(name) for name in COLUMNS},
+        **{name: atlas.column(name) for name in COLUMNS},
         **{
             f"modulus_{d}_interval_n_per_mm": [
-                found.column(f"modulus_{d}_{end}") for end in ("low", "high")
+                atlas.column(f"modulus_{d}_{end}") for end in ("low", "high")
             ]
             for d in Direction
         },
-        **{name: [getattr(cost, name) for cost in found.costs] for name in COSTS},
-        **{f"stretch_{d}": found.strain_at(d, USUAL_LOAD_N_PER_MM) for d in Direction},
+        **{name: [getattr(cost, name) for cost in atlas.costs] for name in COSTS},
+        **{f"stretch_{d}": atlas.strain_at(d, USUAL_LOAD_N_PER_MM) for d in Direction},
     )
 
 
@@ -104,7 +104,7 @@ def _result(found: Atlas) -> AtlasResult:
     type=click.IntRange(1, 64),
     default=MAX_STITCHES,
     show_default=True,
-    help="Of the largest repeat to relax at the yarn level.",
+    help="Stitches of the largest repeat to relax at the yarn level.",
 )
 @click.option("--workers", type=click.IntRange(1), help="Processes; all cores if left out.")
 @click.option("--scheduler", metavar="tcp://…", help="Address of a Dask cluster to work on.")
@@ -122,11 +122,11 @@ def _command(
     yarn = context.material(request.material)
     place: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
     progress = None if as_json else _teller("repeats")
-    found = build_atlas(yarn, repeats_of(repeats), file=out, progress=progress, **place)
+    atlas = build_atlas(yarn, repeats_of(repeats), file=out, progress=progress, **place)
     if yarn_level:
         progress = None if as_json else _teller("repeats at the yarn level")
-        found = improve_atlas(yarn, out, most_stitches=most_stitches, progress=progress, **place)
-    return _result(found)
+        atlas = improve_atlas(yarn, out, most_stitches=most_stitches, progress=progress, **place)
+    return _result(atlas)
 
 
 def _teller(what: str) -> Callable[[int, int], None]:

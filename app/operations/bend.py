@@ -35,7 +35,10 @@ class BendRequest(StitchRequest, LawsRequest):
     """A repeat and its yarn."""
 
     linear_density_g_per_m: float | None = Field(
-        None, gt=0, le=100, description="Of the yarn; needed for the bending lengths."
+        None,
+        gt=0,
+        le=100,
+        description="Linear density of the yarn, g/m; needed for the bending lengths.",
     )
 
 
@@ -61,22 +64,23 @@ class BendResult(ResultModel):
     )
     strain_across_wale_mm: float
     shear_modulus_n_per_mm: float | None = Field(
-        description="Null where no stable state was found."
+        description="Shear modulus; null where no stable state was found."
     )
     twist_n_mm: float | None = Field(
         description="Rigidity of twist D66; null, as is the coupling, without a stable state."
     )
     coupling_n_mm: float | None = Field(description="Coupling D1 of the two curvatures.")
     thickness_mm: float
-    curl: str = Field(description="How free edges curl.")
+    curl: str = Field(description="Curl of free edges, in words.")
     curl_course: Curl = Field(description="The way the sides curl.")
     curl_wale: Curl = Field(description="The way the top and bottom curl.")
     bending_length_course_mm: float | None = Field(
-        description="Peirce's, of a strip cut along the rows; null where the weight is not known."
+        description="Peirce's bending length of a strip cut along the rows; null where the weight "
+        "is not known."
     )
     bending_length_wale_mm: float | None
     stable: bool = Field(
-        description="Whether the state is still a minimum when it may lose its symmetries."
+        description="True if the state is still a minimum when it may lose its symmetries."
     )
     provenance: str
     yarn: YarnResult
@@ -100,14 +104,14 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     loop = used.loop_length_mm
     stored = stored_for(repeat, used)
     if stored is not None and stored.bending is not None:
-        found, whence = stored.bending, ", stored"
+        bending, whence = stored.bending, ", stored"
         area = stored.cell_course_mm * stored.cell_wale_mm
     else:
         relaxed = relax(repeat, used.yarn, loop, branch="mirrored", cancelled=context.cancelled)
-        found, whence = repeat_bending(relaxed, cancelled=context.cancelled), ""
+        bending, whence = repeat_bending(relaxed, cancelled=context.cancelled), ""
         area = relaxed.cell_course_mm * relaxed.cell_wale_mm
-    shown, stable = found.shown, found.stable
-    notes = [_FRICTIONLESS, *_failures(found), *_compared(found)]
+    shown, stable = bending.shown, bending.stable
+    notes = [_FRICTIONLESS, *_failures(bending), *_compared(bending)]
     density = request.linear_density_g_per_m
     weight = None if density is None else weight_n_per_mm2(density, loop, area)
     if not stable.minimum:
@@ -122,7 +126,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         notes.append("It folds by itself along a diagonal: the rigidity there is not positive.")
     if stable.twist_n_mm is not None and stable.twist_n_mm <= 0.0:
         notes.append("A strip of it twists by itself: the rigidity of twist is not positive.")
-    symmetry = "with" if found.mirrored is not None else "without"
+    symmetry = "with" if bending.mirrored is not None else "without"
     return BendResult.of(
         shown,
         moment_course_n=shown.course.moment_n,
@@ -152,20 +156,20 @@ def _hanging(response: BendingResponse, weight_n_per_mm2: float | None) -> float
     return bending_length_mm(response.rigidity_n_mm, weight_n_per_mm2)
 
 
-def _failures(found: RepeatBending) -> Iterator[str]:
+def _failures(bending: RepeatBending) -> Iterator[str]:
     """Notes on what could not be bent."""
-    if found.failure:
-        yield f"With the symmetries of the chart: {found.failure}"
-    if found.unmirrored_failure:
-        yield f"Without them: {found.unmirrored_failure}"
+    if bending.failure:
+        yield f"With the symmetries of the chart: {bending.failure}"
+    if bending.unmirrored_failure:
+        yield f"Without them: {bending.unmirrored_failure}"
 
 
-def _compared(found: RepeatBending) -> Iterator[str]:
+def _compared(bending: RepeatBending) -> Iterator[str]:
     """Notes where the state without symmetries differs."""
-    if found.unmirrored is None:
+    if bending.unmirrored is None:
         return
-    for direction, factor in found.far_apart.items():
-        free = direction.of(found.unmirrored.course, found.unmirrored.wale)
+    for direction, factor in bending.far_apart.items():
+        free = direction.of(bending.unmirrored.course, bending.unmirrored.wale)
         way = direction.of("along the rows", "along the columns")
         yield (
             f"Bent {way}, the rigidity without the symmetries of the chart is "

@@ -27,7 +27,9 @@ class BendingRequest(RequestModel):
         None,
         description="Hanging length, clamp to free end; one for all photos or one per photo.",
     )
-    px_per_mm: float | None = Field(None, description="Scale, if it is known.")
+    px_per_mm: float | None = Field(
+        None, description="Scale of the photos, pixels per mm, if it is known."
+    )
 
 
 class BendingPhotoResult(ResultModel):
@@ -47,9 +49,9 @@ class BendingResult(ResultModel):
     kind: Literal["bending"] = "bending"
     bending_modulus_n_mm2: float
     standard_deviation: float | None = Field(
-        description="Of a single photo, N·mm²; null if there is only one."
+        description="Standard deviation of a single photo, N·mm²; null if there is only one."
     )
-    standard_error: float | None = Field(description="Of the mean, N·mm².")
+    standard_error: float | None = Field(description="Standard error of the mean, N·mm².")
     photos: list[BendingPhotoResult]
     notes: list[str]
 

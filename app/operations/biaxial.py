@@ -19,8 +19,8 @@ class BiaxialRequest(PieceTestRequest):
 
     strain_x: float = Field(ge=0, le=5, description="Last strain along x.")
     strain_y: float = Field(ge=0, le=5, description="Last strain along y.")
-    width_mm: Size = Field(100.0, description="Along x.")
-    length_mm: Size = Field(100.0, description="Along y.")
+    width_mm: Size = Field(100.0, description="Length along x.")
+    length_mm: Size = Field(100.0, description="Length along y.")
     grain_deg: float = Field(0.0, ge=-180, le=180, description="Angle from the x axis to the rows.")
 
 

@@ -1,4 +1,4 @@
-"""How wide a border keeps a curling piece flat."""
+"""Width of a border that keeps a curling piece flat."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ class BorderRequest(WeighedRequest):
 class EdgesResult(ResultModel):
     """A border along two opposite edges."""
 
-    moment_n: float = Field(description="Per width, with which the piece curls there, N.")
+    moment_n: float = Field(description="Moment per width with which the piece curls there, N.")
     width_mm: float = Field(
-        description="Of a border that its own weight just keeps from being tipped over."
+        description="Width of a border that its own weight just keeps from tipping over."
     )
-    stitches: int = Field(description="That width in stitches, or rows, of the border.")
+    stitches: int = Field(description="The same width in stitches, or rows, of the border.")
     rule_share: float = Field(
         description="Share of the moment that the weight of a border by the knitters' rule holds."
     )
     holds: bool = Field(
-        description="Whether a border 1.2 times as wide keeps a strip on a smooth table from "
+        description="True if a border 1.2 times as wide keeps a strip on a smooth table from "
         "rolling up."
     )
-    ridge_mm: float = Field(description="How high this strip rises beside its borders.")
+    ridge_mm: float = Field(description="Height to which this strip rises beside its borders.")
 
 
 class BorderResult(ResultModel):
@@ -57,13 +57,15 @@ class BorderResult(ResultModel):
 
     kind: Literal["border"] = "border"
     sides: EdgesResult
-    ends: EdgesResult = Field(description="Top and bottom.")
+    ends: EdgesResult = Field(description="Borders at the top and bottom.")
     notes: list[str]
 
 
 def border(request: BorderRequest, context: Context) -> BorderResult:
-    """How wide a border must be to keep a piece flat on a table: its weight against the moment
-    with which the piece curls, and a strip of both to see whether that is enough.
+    """Width of a border that keeps a piece flat on a table.
+
+    The weight of the border balances the moment with which the piece curls; a strip of both shows
+    whether that is enough.
 
     Raises
     ------
@@ -101,7 +103,7 @@ def _told(edges: EdgesResult, unit: str) -> str:
 OPERATION = Operation(
     border,
     tag="mechanics",
-    summary="How wide a border keeps a piece flat",
+    summary="Width of a border that keeps a piece flat",
     example={"chart": "K", "material": "acrylic", "linear_density_g_per_m": 0.5, "border": "rib"},
     job=True,
     command=Command(_lines, help="Compute how wide a border keeps a piece of CHART flat."),

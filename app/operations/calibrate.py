@@ -97,19 +97,19 @@ def _course_first(tests: list[Path]) -> list[Path]:
     return tests
 
 
-def _result(request: CalibrateRequest, found: Calibration) -> CalibrateResult:
+def _result(request: CalibrateRequest, calibration: Calibration) -> CalibrateResult:
     """The result, with the errors at all frames, fitted or not."""
     field, direction = load(request.field), request.direction
-    errors = compare(field, found.law, direction, edges=Edges.MEASURED)
+    errors = compare(field, calibration.law, direction, edges=Edges.MEASURED)
     return CalibrateResult.of_law(
-        found.law,
-        parameters=found.parameters,
-        standard_errors=found.standard_errors,
-        frames=found.frames,
+        calibration.law,
+        parameters=calibration.parameters,
+        standard_errors=calibration.standard_errors,
+        frames=calibration.frames,
         comparison=errors.frames,
-        force_strain=found.force_strain,
-        force_ratio=found.force_ratio,
-        evaluations=found.evaluations,
+        force_strain=calibration.force_strain,
+        force_ratio=calibration.force_ratio,
+        evaluations=calibration.evaluations,
     )
 
 
@@ -126,15 +126,15 @@ def _command(
     if len(tests) > 2:
         raise InputError("tests", f"{len(tests)} tests are too many.", "Give one per direction.")
     request = request.model_copy(update={"tests": tests})
-    found = _calibration(request, context)
-    numbers = ", ".join(str(number) for number in found.frames)
+    calibration = _calibration(request, context)
+    numbers = ", ".join(str(number) for number in calibration.frames)
     source = (
         f"{request.material} {request.fabric}, calibrated {request.direction}-wise on "
         f"{request.field.name}, frames {numbers}"
     )
-    shear = {n: error for n, error in found.standard_errors.items() if n == "shear_modulus"}
-    save_law(LawFile(found.law, source, shear), out)
-    return _result(request, found)
+    shear = {n: error for n, error in calibration.standard_errors.items() if n == "shear_modulus"}
+    save_law(LawFile(calibration.law, source, shear), out)
+    return _result(request, calibration)
 
 
 def _lines(r: CalibrateResult) -> list[str]:

@@ -38,7 +38,7 @@ from .registry import Command, Operation
 
 MAX_SETTINGS = 24
 QUANTITIES = ("strain", "transverse_strain", "stress_n_per_mm", "bending_share", "contact_share")
-"""Of each point of a curve."""
+"""Quantities of each point of a curve."""
 FINISHED = "finished"
 """Folder of finished stitches inside the results folder, from which a stopped batch continues."""
 
@@ -88,8 +88,10 @@ class CharacteriseRequest(CharacteriseOptions):
 
     @model_validator(mode="after")
     def _one_yarn(self) -> Self:
-        if (self.material is None) == (self.yarn is None):
-            raise ValueError("give either a material or a yarn")
+        if self.material is None and self.yarn is None:
+            raise ValueError("material and yarn are missing; give one of them")
+        if self.material is not None and self.yarn is not None:
+            raise ValueError("material and yarn are both given; give one of them")
         return self
 
 
@@ -160,7 +162,7 @@ class CharacteriseResult(ResultModel):
     kind: Literal["characterise"] = "characterise"
     identifier: str
     provenance: str
-    estimated: bool = Field(description="Whether contact data were estimated.")
+    estimated: bool = Field(description="True if contact data were estimated.")
     branch: Branch
     convention: Convention
     reference: str = Field(description="The setting that `material` was made at.")
@@ -197,13 +199,13 @@ def _plan(yarn: Material | YarnInput | None, options: CharacteriseOptions) -> Ya
     InputError
         If no yarn is given, or the options do not apply to it.
     """
-    asked = options.model_dump(include=set(CharacteriseOptions.model_fields))
+    settings = options.model_dump(include=set(CharacteriseOptions.model_fields))
     if isinstance(yarn, Material):
-        return plan_for_material(yarn, **asked)
+        return plan_for_material(yarn, **settings)
     if yarn is None:
         raise InputError("material", "is missing.", "Name a material, or give a yarn.")
-    del asked["tensions"]  # of a material's own lengths
-    return plan_for_yarn(yarn.name, yarn.pass_to(YarnModel), **asked)
+    del settings["tensions"]  # of a material's own lengths
+    return plan_for_yarn(yarn.name, yarn.pass_to(YarnModel), **settings)
 
 
 def _result(table: YarnTable) -> CharacteriseResult:
@@ -267,10 +269,10 @@ def _command(
         yarns.append(request.yarn)
     plans = [_plan(yarn, request) for yarn in yarns]
     names = [plan.identifier for plan in plans]
-    if not plans or len(set(names)) < len(names):
-        raise InputError(
-            "material", "is missing or named twice.", "Name materials, or give a --yarn."
-        )
+    if not plans:
+        raise InputError("material", "is missing.", "Name materials, or give a --yarn.")
+    if len(set(names)) < len(names):
+        raise InputError("material", "is named twice.", "Name each once.")
     if fresh:
         shutil.rmtree(out / FINISHED, ignore_errors=True)
     tables = characterise_yarns(
@@ -294,10 +296,10 @@ def _command(
     return YarnsResult(results)
 
 
-def _show(told: BatchProgress) -> None:
-    failed = f", {told.failed} failed" if told.failed else ""
-    label = told.key.rpartition(".")[0]  # without the digest
-    click.echo(f"{told.done} of {told.total} stitches{failed} {label}".rstrip(), err=True)
+def _show(batch: BatchProgress) -> None:
+    failed = f", {batch.failed} failed" if batch.failed else ""
+    label = batch.key.rpartition(".")[0]  # without the digest
+    click.echo(f"{batch.done} of {batch.total} stitches{failed} {label}".rstrip(), err=True)
 
 
 def _write_materials(result: CharacteriseResult, folder: Path) -> None:

@@ -55,12 +55,12 @@ def compare(request: CompareRequest, context: Context) -> CompareResult:
     """
     field = request.chosen(load(request.field))
     law, model = _law_and_model(request, context)
-    found = request.pass_to(compared, field, law, model=model)
+    comparison = request.pass_to(compared, field, law, model=model)
     return CompareResult.of(
-        found,
+        comparison,
         edges=request.edges,
         model=model.energy,
-        messages=[found.problem] if found.problem else [],
+        messages=[comparison.problem] if comparison.problem else [],
     )
 
 
@@ -70,10 +70,10 @@ def _law_and_model(request: CompareRequest, context: Context) -> tuple[Constitut
     if request.law is not None and request.material is None:
         with stored([request.law]) as (path,):
             return load_law(path).law, model
-    if request.law is not None or request.material is None:
-        raise InputError(
-            "law", "give either a law file or a material.", "Use --law, or --material and --fabric."
-        )
+    if request.law is not None:
+        raise InputError("law", "material is given as well.", "Give one of the two.")
+    if request.material is None:
+        raise InputError("material", "is missing.", "Give a material and a fabric, or a law file.")
     if request.fabric is None:
         raise InputError("fabric", "is missing.", "Name the fabric of the material.")
     return context.material(request.material).law(request.fabric), model

@@ -65,8 +65,10 @@ class CompressionResult(ResultModel):
     k_n_per_mm3: float | None = Field(
         description="Mean of the yarn; null if there are several yarns, whose means are in `mean`."
     )
-    p: float | None = Field(description="The same.")
-    mean: dict[str, CompressionMeanResult] = Field(description="By yarn.")
+    p: float | None = Field(
+        description="Mean exponent p of the yarn; null if there are several yarns."
+    )
+    mean: dict[str, CompressionMeanResult] = Field(description="Means by yarn.")
     samples: list[CompressionSampleResult]
     notes: list[str]
 

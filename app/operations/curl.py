@@ -1,4 +1,4 @@
-"""How a piece curls and folds under no load."""
+"""Curling and folding of a piece under no load."""
 
 from __future__ import annotations
 
@@ -32,15 +32,17 @@ FLAT = 0.02
 class PullInput(RequestModel):
     """Two clamps that hold the outermost rows or columns and move apart."""
 
-    direction: Direction = Field(Direction.WALE, description="Of the pull.")
-    strain: float = Field(gt=0, le=1, description="From clamp to clamp: 0.3 is 30 %.")
+    direction: Direction = Field(Direction.WALE, description="Direction of the pull.")
+    strain: float = Field(gt=0, le=1, description="Strain from clamp to clamp: 0.3 is 30 %.")
 
 
 class CurlRequest(FabricRequest):
     """A whole piece whose edges are free, all or beside two clamps."""
 
     outline: OutlineInput = None
-    pull: PullInput | None = Field(None, description="By clamps, whose free sides curl.")
+    pull: PullInput | None = Field(
+        None, description="Pull by clamps; the free sides between them curl."
+    )
     after: str | None = Field(
         None,
         max_length=128,
@@ -72,7 +74,9 @@ class CurlResult(ResultModel):
     flat_width_mm: float = Field(description="Extent of the piece laid flat.")
     flat_height_mm: float
     thickness_mm: float
-    converged: bool = Field(description="If false, the shape is only a preview.")
+    converged: bool = Field(
+        description="True if the shape is at rest; otherwise it is only a preview."
+    )
     seconds: float = Field(description="CPU time.")
     corners_mm: Corners = None
     notes: list[str]
@@ -161,7 +165,7 @@ def _where(curl_mm: float, thickness_mm: float) -> str:
 OPERATION = Operation(
     curl,
     tag="mechanics",
-    summary="How a piece curls and folds",
+    summary="Curling and folding of a piece",
     example={"chart": {"fabric": "stockinette", "columns": 6, "rows": 4}, "material": "acrylic"},
     job=True,
     command=Command(

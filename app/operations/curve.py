@@ -25,9 +25,12 @@ Stress = Annotated[float, Field(ge=0, le=100)]
 class CurveRequest(GaugedRequest):
     """A chart, a direction and the stresses to ask for."""
 
-    direction: Direction = Field(description="Along rows, or along columns.")
+    direction: Direction = Field(description="Direction of the pull: along rows, or along columns.")
     stress_n_per_mm: Annotated[list[Stress], CheckedBy(lambda s, _: increasing(s))] = Field(
-        list(DEFAULT_STRESS_N_PER_MM), min_length=1, max_length=500, description="Increasing."
+        list(DEFAULT_STRESS_N_PER_MM),
+        min_length=1,
+        max_length=500,
+        description="Stresses, increasing.",
     )
 
 
@@ -37,19 +40,21 @@ class CurveResult(IntervalResult):
     kind: Literal["curve"] = "curve"
     stress_n_per_mm: Floats
     strain: Floats
-    strain_interval: EndsOfList = Field(description="At each stress.")
-    stress_interval_n_per_mm: EndsOfList = Field(description="At each strain; at most 10 N/mm.")
+    strain_interval: EndsOfList = Field(description="Strain interval at each stress.")
+    stress_interval_n_per_mm: EndsOfList = Field(
+        description="Stress interval at each strain; at most 10 N/mm."
+    )
     provenance: str
 
 
 def curve(request: CurveRequest, context: Context) -> CurveResult:
     """Strain at each stress, and the stress interval at each strain, for a chart of any size."""
     check_cancelled(context.cancelled)
-    found = request.pass_to(chart_curve, *request.fabric(context), size=request.relaxed_size)
+    curve = request.pass_to(chart_curve, *request.fabric(context), size=request.relaxed_size)
     return CurveResult.of(
-        found,
-        strain_interval=(found.strain_low, found.strain_high),
-        stress_interval_n_per_mm=(found.stress_low, found.stress_high),
+        curve,
+        strain_interval=(curve.strain_low, curve.strain_high),
+        stress_interval_n_per_mm=(curve.stress_low, curve.stress_high),
     )
 
 

@@ -28,7 +28,7 @@ from .perform import Viewed
 from .registry import Command, Operation
 
 DISC_THICK_MM = 10.0
-"""Of the disc that is shown."""
+"""Thickness of the disc in the 3D view, mm."""
 
 
 class DrapeRequest(WeighedRequest):
@@ -51,10 +51,10 @@ class DrapeResult(ResultModel):
         description="Share of the ring outside the disc that its shadow covers: 1 for a board."
     )
     coefficient_of_states: Ends = Field(
-        description="Smallest and largest of the states found: draped cloth has several."
+        description="Smallest and largest coefficient of the states: draped cloth has several."
     )
-    folds: int = Field(description="Around the rim.")
-    fall_mm: float = Field(description="From the disc to the lowest point.")
+    folds: int = Field(description="Number of folds around the rim.")
+    fall_mm: float = Field(description="Height from the disc down to the lowest point.")
     bending_length_course_mm: float
     bending_length_wale_mm: float
     weight_g_per_m2: float
@@ -73,19 +73,19 @@ def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
     """
     repeat = to_repeat(request.chart)
     cloth = request.cloth(repeat, context)
-    found = request.pass_to(drape_cloth, cloth, cancelled=context.cancelled)
+    draped = request.pass_to(drape_cloth, cloth, cancelled=context.cancelled)
     rectangle = request.piece_mm / request.across
     piece, corners = cloth_piece(
-        found.corners_mm, (rectangle, rectangle), cloth, repeat, OPERATION.key(request)
+        draped.corners_mm, (rectangle, rectangle), cloth, repeat, OPERATION.key(request)
     )
     result = DrapeResult.of(
-        found,
+        draped,
         piece=piece,
         weight_g_per_m2=cloth.weight_g_per_m2,
-        coefficient_of_states=(min(found.coefficients), max(found.coefficients)),
+        coefficient_of_states=(min(draped.coefficients), max(draped.coefficients)),
         bending_length_course_mm=cloth.bending_length_mm(0),
         bending_length_wale_mm=cloth.bending_length_mm(1),
-        corners_mm=corner_lists(found.corners_mm, np.isfinite(found.corners_mm[..., 0]))
+        corners_mm=corner_lists(draped.corners_mm, np.isfinite(draped.corners_mm[..., 0]))
         if request.corners
         else None,
         notes=notes_of(cloth),

@@ -47,10 +47,10 @@ class SwatchInput(RequestModel):
 
 
 class YarnFacts(RequestModel):
-    """What a command says of the yarn and the product in plain options."""
+    """Facts of the yarn and the product that a command takes as plain options."""
 
     bending_modulus_n_mm2: float | None = Field(
-        None, description="B of the yarn (`measure bending`)."
+        None, description="Bending modulus B of the yarn (`measure bending`)."
     )
     product_setting: str = Field(
         "", max_length=200, description="Needle or stitch setting of the product."
@@ -58,9 +58,11 @@ class YarnFacts(RequestModel):
 
 
 class EstimateRequest(YarnFacts):
-    """What is known of the yarn and the product."""
+    """The yarn, the product, and swatches of the yarn that were measured."""
 
-    bending_modulus_n_mm2: float = Field(description="B of the yarn (`measure bending`).")
+    bending_modulus_n_mm2: float = Field(
+        description="Bending modulus B of the yarn (`measure bending`)."
+    )
     loop_length_mm: float | dict[Fabric, float] = Field(description="Yarn per stitch.")
     swatches: list[SwatchInput] = Field(default_factory=list, max_length=4)
 
@@ -70,7 +72,7 @@ class FabricEstimateResult(ResultModel):
 
     strain_at_0_1_n_per_mm: dict[Direction, float]
     strain_at_0_1_n_per_mm_interval: dict[Direction, Ends] = Field(
-        description="Without width where the fabric is measured, like all intervals here."
+        description="Interval of the strain. Intervals have no width where the fabric is measured."
     )
     modulus_n_per_mm: dict[Direction, float]
     modulus_interval_n_per_mm: dict[Direction, Ends]
@@ -87,7 +89,9 @@ class EstimateResult(IntervalResult):
     """All four fabrics of the yarn."""
 
     fabrics: dict[Fabric, FabricEstimateResult]
-    left_out: LeftOutResult | None = Field(description="None if all fabrics are measured.")
+    left_out: LeftOutResult | None = Field(
+        description="Errors for yarns left out; null if all fabrics are measured."
+    )
     material: MaterialDocument = Field(description="A material file of the four fabrics.")
     warnings: list[str]
 
@@ -108,23 +112,23 @@ def estimate(request: EstimateRequest, context: Context) -> EstimateResult:
     return _result(request.pass_to(estimate_yarn, swatches=swatches))
 
 
-def _result(found: YarnEstimate) -> EstimateResult:
-    measured = tuple(f for f, e in found.fabrics.items() if e.measured)
+def _result(estimate: YarnEstimate) -> EstimateResult:
+    measured = tuple(f for f, e in estimate.fabrics.items() if e.measured)
     return EstimateResult.of(
-        found,
+        estimate,
         fabrics={
             fabric: FabricEstimateResult.of(f, law=LawResult.of_law(f.law), **_values(f))
-            for fabric, f in found.fabrics.items()
+            for fabric, f in estimate.fabrics.items()
         },
         interval_source=INTERVAL_SOURCE,
         left_out=left_out(measured) if len(measured) < len(Fabric) else None,
-        material=_document(found),
+        material=_document(estimate),
     )
 
 
-def _document(found: YarnEstimate) -> MaterialDocument:
+def _document(estimate: YarnEstimate) -> MaterialDocument:
     try:
-        return MaterialDocument.from_material(estimated_material(found, "estimated"))
+        return MaterialDocument.from_material(estimated_material(estimate, "estimated"))
     except ValidationError as error:
         fault = error.errors()[0]
         raise InputError(
@@ -135,13 +139,13 @@ def _document(found: YarnEstimate) -> MaterialDocument:
         ) from error
 
 
-def _values(found: FabricEstimate) -> dict[str, Any]:
+def _values(fabric: FabricEstimate) -> dict[str, Any]:
     """Central values and intervals, by direction."""
     by_name = {
-        ("strain_at_0_1_n_per_mm", ""): found.strain_at_load,
-        ("modulus", UNIT): found.modulus,
-        ("alpha", ""): found.alpha,
-        ("beta", UNIT): found.beta,
+        ("strain_at_0_1_n_per_mm", ""): fabric.strain_at_load,
+        ("modulus", UNIT): fabric.modulus,
+        ("alpha", ""): fabric.alpha,
+        ("beta", UNIT): fabric.beta,
     }
     values = {
         f"{name}{unit}": {d: estimate.value for d, estimate in known.items()}
@@ -169,7 +173,7 @@ def _values(found: FabricEstimate) -> dict[str, Any]:
     "swatch_lengths",
     multiple=True,
     metavar="MM | FABRIC=MM",
-    help="Of the swatches; by default that of the material, or the product's.",
+    help="Yarn per stitch of the swatches; by default that of the material, or the product's.",
 )
 @click.option("--swatch-setting", default="", help="Needle or stitch setting of the swatches.")
 @out_option("--out", help="Write a material file.")
@@ -191,12 +195,12 @@ def _command(
 ) -> EstimateResult | ModelReport:
     if with_report:
         return report()
-    if request.bending_modulus_n_mm2 is None or not lengths:
+    if request.bending_modulus_n_mm2 is None:
         raise InputError(
-            "bending_modulus_n_mm2",
-            "the bending modulus and a loop length are needed.",
-            "Measure them: `knitcore measure bending`, and unravel ten stitches.",
+            "bending_modulus_n_mm2", "is missing.", "Measure it: `knitcore measure bending`."
         )
+    if not lengths:
+        raise InputError("loop_length_mm", "is missing.", "Unravel ten stitches and measure.")
     product = _lengths(lengths, "loop_length_mm")
     own = _lengths(swatch_lengths, "swatch_loop_length_mm") if swatch_lengths else {}
     measured = [_swatch(text, own, product, swatch_setting, context) for text in swatches]
@@ -208,7 +212,7 @@ def _command(
 
 
 def _lengths(texts: tuple[str, ...], field: str) -> dict[Fabric, float]:
-    found: dict[Fabric, float] = {}
+    lengths: dict[Fabric, float] = {}
     for text in texts:
         name, _, number = text.rpartition("=")
         try:
@@ -218,10 +222,10 @@ def _lengths(texts: tuple[str, ...], field: str) -> dict[Fabric, float]:
                 field, f"{text!r} is not a length.", "Write MM or FABRIC=MM."
             ) from None
         if name:
-            found[Fabric.parse(name)] = value
+            lengths[Fabric.parse(name)] = value
         else:
-            found = {fabric: found.get(fabric, value) for fabric in Fabric}
-    return found
+            lengths = {fabric: lengths.get(fabric, value) for fabric in Fabric}
+    return lengths
 
 
 def _swatch(

@@ -25,7 +25,7 @@ class LeftOutResult(ResultModel):
     modulus_within_two: float = Field(description="Share predicted within a factor of two.")
     alpha_rms_factor: float
     beta_rms_factor: float
-    modulus_coverage: float = Field(description="Of the 90 % intervals.")
+    modulus_coverage: float = Field(description="Coverage of the 90 % intervals.")
     strain_coverage: float
 
 
@@ -102,5 +102,5 @@ OPERATION = Operation(
     method="GET",
     path="/estimate/report",
     tag="materials",
-    summary="How well left-out yarns are predicted",
+    summary="Accuracy of predictions for left-out yarns",
 )

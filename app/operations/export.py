@@ -45,7 +45,7 @@ class ExportRequest(DesignLayout, LawsRequest):
     to: ExportKind | ExtensionName = Field(
         description=f"{', '.join(ExportKind)}; or a format of an installed extension."
     )
-    material: MaterialName = Field("acrylic", description="Gives sizes and values.")
+    material: MaterialName = Field("acrylic", description="Material that gives sizes and values.")
     construction: Construction = Construction.FLAT
     first_side: Side = Field(Side.RS, description="The side of row 1, in flat knitting.")
     finish: Finish = Field(Finish.WASTE, description="The end of a knitout program.")
@@ -53,7 +53,9 @@ class ExportRequest(DesignLayout, LawsRequest):
         None, description="Known gauge of the chart; its relaxed size is estimated if left out."
     )
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
-    note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$", description="Printed.")
+    note: str = Field(
+        "", max_length=20_000, pattern=r"^[^\x00]*$", description="Note to print with the chart."
+    )
     linear_density_tex: float | None = Field(
         None, gt=0, lt=1e5, description="Linear density of the yarn, for its mass."
     )
@@ -70,8 +72,10 @@ class ExportFacts(ResultModel):
     rows: int
     columns: int
     bytes: int
-    transfers: int | None = Field(None, description="Of a knitout program, without the finish.")
-    carriers: int | None = Field(None, description="Of a knitout program, without waste.")
+    transfers: int | None = Field(
+        None, description="Transfers of a knitout program, without the finish."
+    )
+    carriers: int | None = Field(None, description="Carriers of a knitout program, without waste.")
     notes: list[str]
 
 

@@ -1,4 +1,4 @@
-"""What installed packages add, and which of them cannot be used."""
+"""Additions of installed packages, and problems of those that cannot be used."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class ExtensionResult(ResultModel):
 
     name: str
     group: Group
-    package: str = Field(description="Its name and version.")
-    offers: list[str] = Field(description="Identifiers.")
-    problem: str | None = Field(description="Why it cannot be used; null if it can.")
+    package: str = Field(description="Name and version of the package.")
+    offers: list[str] = Field(description="Identifiers of what it adds.")
+    problem: str | None = Field(description="Reason why it cannot be used; null if it can.")
 
 
 class Extensions(ResultModel):
@@ -38,23 +38,23 @@ class Extensions(ResultModel):
 def extensions(request: NoRequest, context: Context) -> Extensions:
     """Materials and file formats that installed packages add."""
     del request, context
-    found = []
+    results = []
     for group, kind in KINDS.items():
         for extension in installed(group):
             offers: list[str] = []
             problem = None
             try:
-                offers = [one.identifier for one in extension.load(kind)]
+                offers = [offer.identifier for offer in extension.load(kind)]
             except ExtensionError as error:
                 problem = str(error)
-            found.append(ExtensionResult.of(extension, offers=offers, problem=problem))
-    return Extensions(extensions=found)
+            results.append(ExtensionResult.of(extension, offers=offers, problem=problem))
+    return Extensions(extensions=results)
 
 
-def _lines(found: Extensions) -> list[str]:
+def _lines(result: Extensions) -> list[str]:
     lines = [
         f"{e.group:20} {e.name} ({e.package}): {e.problem or ', '.join(e.offers)}"
-        for e in found.extensions
+        for e in result.extensions
     ]
     return lines or ["no extensions are installed"]
 
@@ -63,6 +63,6 @@ OPERATION = Operation(
     extensions,
     method="GET",
     tag="materials",
-    summary="What installed packages add",
+    summary="Additions of installed packages",
     command=Command(_lines, help="List what installed packages add to Knitcore."),
 )

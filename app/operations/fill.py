@@ -56,7 +56,7 @@ class WishInput(RequestModel):
     runs: list[StitchRun] = Field(
         min_length=1,
         max_length=MAX_RUNS,
-        description="Its stitches as runs [row, first column, length], with row 0 at the bottom.",
+        description="Stitches as runs [row, first column, length], with row 0 at the bottom.",
     )
     modulus_course_n_per_mm: Modulus = None
     modulus_wale_n_per_mm: Modulus = None
@@ -76,13 +76,19 @@ class FillRequest(LawsRequest):
 
     material: MaterialName
     modulus_course_n_per_mm: Map | None = Field(
-        None, description="[row][column], the bottom row first; null where any value will do."
+        None,
+        description="Moduli [row][column], the bottom row first; null where any value will do.",
     )
     modulus_wale_n_per_mm: Map | None = None
-    rows: int | None = Field(None, ge=1, le=1000, description="Of the chart, if wishes are given.")
+    rows: int | None = Field(
+        None, ge=1, le=1000, description="Rows of the chart, if wishes are given."
+    )
     columns: int | None = Field(None, ge=1, le=1000)
     wishes: list[WishInput] | None = Field(
-        None, min_length=1, max_length=MAX_WISHES, description="In place of the two maps."
+        None,
+        min_length=1,
+        max_length=MAX_WISHES,
+        description="Targets of parts, in place of the two maps.",
     )
     chart: ChartText | None = Field(
         None,
@@ -99,7 +105,12 @@ class FillRequest(LawsRequest):
         description="Single stitches may be turned over where that comes nearer; otherwise every "
         "patch is a repeat, or stripes of two.",
     )
-    seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
+    seed: int = Field(
+        0,
+        ge=0,
+        le=2**32 - 1,
+        description="Seed of random choices: the same one gives the same chart.",
+    )
     check: bool = Field(
         True,
         description="Pull the chart in the finite swatch; choose again where the result differs.",
@@ -111,16 +122,18 @@ class PatchResult(ResultModel):
 
     repeat: RepeatText
     stitches: int
-    row: Row = Field(description="Of its first stitch: from 0, the bottom row.")
+    row: Row = Field(description="Row of its first stitch, counted from 0 at the bottom.")
     column: Column
-    deviation_course: Known = Field(description="Of the repeat; null without a target.")
+    deviation_course: Known = Field(
+        description="Deviation of the repeat from the target; null without a target."
+    )
     deviation_wale: Known
     swatch_course: Known = Field(
-        description="Of the patch in the finite swatch; null if it was not pulled."
+        description="Deviation of the patch in the finite swatch; null if it was not pulled."
     )
     swatch_wale: Known
     modulus_course_n_per_mm: float = Field(
-        description="Of the patch, in the finite swatch if it was pulled there."
+        description="Modulus of the patch, in the finite swatch if it was pulled there."
     )
     modulus_course_interval_n_per_mm: Ends = Field(
         description="90 % interval; includes that of a large cloth of the repeat."
@@ -151,20 +164,20 @@ def fill(request: FillRequest, context: Context) -> FillResult:
     InputError
         If the maps or wishes cannot be used, or are too large here.
     """
-    wanted = _wanted(request)
-    if wanted[0].size > MAX_STITCHES:
+    targets = _wanted(request)
+    if targets[0].size > MAX_STITCHES:
         raise InputError(
-            "target",
-            f"{wanted[0].size} stitches are too many here.",
+            "rows" if request.wishes else MAPS[0],
+            f"{targets[0].size} stitches are too many here.",
             f"Use at most {MAX_STITCHES}, or the command line.",
         )
     atlas = context.within(0.0, 0.3).atlas(request.material, request.repeats)
-    return _filled(request, wanted, atlas, context.within(0.3, 0.7))
+    return _filled(request, targets, atlas, context.within(0.3, 0.7))
 
 
-def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) -> FillResult:
-    course, wale, parts = wanted
-    found = request.pass_to(
+def _filled(request: FillRequest, targets: Maps, atlas: Atlas, context: Context) -> FillResult:
+    course, wale, parts = targets
+    filled = request.pass_to(
         fill_field,
         course,
         wale,
@@ -177,12 +190,12 @@ def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) 
         cancelled=context.cancelled,
     )
     return FillResult.of(
-        found,
-        rows=found.chart.rows,
-        columns=found.chart.columns,
+        filled,
+        rows=filled.chart.rows,
+        columns=filled.chart.columns,
         interval_source=f"{INTERVAL_SOURCE} Widened to what a patch does in the finite swatch.",
-        chart=found.chart.text,
-        patches=found.regions,
+        chart=filled.chart.text,
+        patches=filled.regions,
     )
 
 
@@ -192,7 +205,9 @@ def _wanted(request: FillRequest) -> Maps:
         course, wale = (_array(rows, name) for name, rows in maps.items())
         return course, wale, None
     if any(rows is not None for rows in maps.values()):
-        raise InputError("wishes", "are given together with maps.", "Give either.")
+        raise InputError(
+            "wishes", "are given together with maps.", "Give maps or wishes, not both."
+        )
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
     targets = [wish.target() for wish in request.wishes]
@@ -223,11 +238,11 @@ def _command(
     atlas: Path | None,
     out: Path | None,
 ) -> FillResult:
-    wanted = *read_wanted_moduli(target), None
+    targets = *read_wanted_moduli(target), None
     if kept is not None:
         request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
     table = context.atlas(request.material, request.repeats, atlas)
-    result = _filled(request, wanted, table, context)
+    result = _filled(request, targets, table, context)
     write_design_of(result.chart, request.material, target.stem, out)
     return result
 

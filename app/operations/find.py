@@ -28,7 +28,8 @@ from .registry import Command, Operation
 MAX_MATERIALS = 16
 MAX_TARGETS = 20
 ELSEWHERE = 3
-"""Most fabrics of other yarns to offer where none of those asked for meets the targets."""
+"""Largest number of fabrics of other yarns to offer where none of those asked for meets the
+targets."""
 
 
 class LimbInput(RequestModel):
@@ -44,7 +45,10 @@ class TargetInput(RequestModel):
     quantity: Quantity
     value: float = Field(ge=-10, le=1e6, description="Stretch as a strain: 0.5 is 50 %.")
     tolerance: float = Field(
-        0.10, gt=0, le=10, description="Relative (0.1 is 10 %); a difference for Poisson's ratios."
+        0.10,
+        gt=0,
+        le=10,
+        description="Relative tolerance (0.1 is 10 %); a difference for Poisson's ratios.",
     )
     weight: float = Field(1.0, gt=0, le=1000)
     load_n_per_mm: float = Field(
@@ -53,10 +57,10 @@ class TargetInput(RequestModel):
         le=0.5,
         description="Load of a target stretch, per width of cloth.",
     )
-    limb: LimbInput | None = Field(None, description="For a pressure.")
+    limb: LimbInput | None = Field(None, description="Tube and limb of a target pressure.")
 
     def target(self) -> Target:
-        """As the library knows it."""
+        """The target as an object of the library."""
         return self.pass_to(Target, limb=self.limb.pass_to(WornTube) if self.limb else None)
 
 
@@ -78,7 +82,7 @@ class FindRequest(LawsRequest):
     """Target properties, and the yarns to search."""
 
     materials: list[MaterialName] = Field(min_length=1, max_length=MAX_MATERIALS)
-    targets: list[Annotated[TargetInput, CheckedBy(lambda one, _: one.target())]] = Field(
+    targets: list[Annotated[TargetInput, CheckedBy(lambda target, _: target.target())]] = Field(
         min_length=1, max_length=MAX_TARGETS
     )
     limits: LimitsInput | None = None
@@ -101,7 +105,7 @@ class CandidateResult(ResultModel):
         description="90 % intervals; null where an end lies beyond the computed curve."
     )
     deviations: dict[str, Known] = Field(
-        description="Predicted over wanted, minus one; the difference for Poisson's ratios."
+        description="Prediction over target, minus one; the difference for Poisson's ratios."
     )
     chance: float = Field(
         description="Probability that all quantities are within their tolerances, by the intervals."
@@ -149,9 +153,9 @@ def _ranked(
     """The best of some atlases, and of other yarns if nothing in those meets the targets."""
     targets = [target.target() for target in request.targets]
     limits = request.limits.pass_to(CostLimits) if request.limits else None
-    found = request.pass_to(find_fabric, atlases, targets, limits=limits)
-    message, elsewhere = found.message, list[Candidate]()
-    if others and not found.reached:
+    ranking = request.pass_to(find_fabric, atlases, targets, limits=limits)
+    message, elsewhere = ranking.message, list[Candidate]()
+    if others and not ranking.reached:
         best = [
             find_fabric([atlas], targets, count=1, limits=limits).candidates[0]
             for atlas in _atlases(others, request.repeats, context)
@@ -162,11 +166,11 @@ def _ranked(
         else:
             message += " Nor does any other yarn of the library reach it."
     return FindResult.of(
-        found,
+        ranking,
         message=message,
         interval_source=INTERVAL_SOURCE,
         searched=sum(len(atlas) for atlas in atlases),
-        candidates=[_candidate(c) for c in found.candidates],
+        candidates=[_candidate(c) for c in ranking.candidates],
         elsewhere=[_candidate(c) for c in elsewhere],
     )
 
@@ -180,12 +184,12 @@ def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atl
     ]
 
 
-def _candidate(found: Candidate) -> CandidateResult:
+def _candidate(candidate: Candidate) -> CandidateResult:
     return CandidateResult.of(
-        found,
-        transfers_per_stitch=found.cost.transfers_per_stitch,
-        crossings_per_stitch=found.cost.crossings_per_stitch,
-        curl=found.cost.curl,
+        candidate,
+        transfers_per_stitch=candidate.cost.transfers_per_stitch,
+        crossings_per_stitch=candidate.cost.crossings_per_stitch,
+        curl=candidate.cost.curl,
     )
 
 
@@ -224,7 +228,7 @@ def _asked(
 @click.option(
     "--elsewhere",
     is_flag=True,
-    help="If nothing meets the targets, search the library's other yarns.",
+    help="Search the library's other yarns if nothing meets the targets.",
 )
 def _command(
     request: FindRequest,

@@ -23,7 +23,7 @@ from ..models.uploads import UploadedFile, example_file, stored
 from .registry import Command, Operation
 
 PLOTTED_POINTS = 2000
-"""Most points of a residual plot: more than a screen resolves."""
+"""Largest number of points of a residual plot: more than a screen resolves."""
 
 
 def _read(file: UploadedFile, _: Context) -> None:
@@ -35,13 +35,13 @@ class FitRequest(RequestModel):
     """Two stretch tests of one fabric."""
 
     test_course: Annotated[UploadedFile, CheckedBy(_read)] = Field(
-        description="Pulled along the rows; HDF5, CSV or XLSX."
+        description="Test pulled along the rows; HDF5, CSV or XLSX."
     )
     test_wale: Annotated[UploadedFile, CheckedBy(_read)] = Field(
-        description="Pulled along the columns."
+        description="Test pulled along the columns."
     )
     format: Literal["csv", "h5"] | None = Field(
-        None, description="Recognised from the content if not given."
+        None, description="Format of the tests; recognised from the content if not given."
     )
     reduction: Reduction = Field(
         Reduction.RECOMMENDED,
@@ -51,15 +51,19 @@ class FitRequest(RequestModel):
     width_course_mm: float | None = Field(
         None, ge=5, le=10_000, description="Clamped width, in place of the course-wise test's."
     )
-    width_wale_mm: float | None = Field(None, ge=5, le=10_000, description="The same, wale-wise.")
-    residuals: bool = Field(False, description="Whether to return residuals at each point.")
+    width_wale_mm: float | None = Field(
+        None, ge=5, le=10_000, description="Clamped width, in place of the wale-wise test's."
+    )
+    residuals: bool = Field(False, description="Return residuals at each point too.")
 
 
 class LawErrors(ElasticConstants, LawConstants):
     """Standard errors of a law's constants."""
 
     shear_modulus_n_per_mm: float | None = Field(
-        None, description="Recommended reduction only; mostly that of its prior, a factor of 1.5."
+        None,
+        description="Error with the recommended reduction only; mostly that of its prior, a factor "
+        "of 1.5.",
     )
     kappa_xx: float | None = None
     kappa_yy: float | None = None
@@ -83,12 +87,14 @@ class FitResult(ElasticConstants, LawResult):
     rms_course_n_per_mm: float
     rms_wale_n_per_mm: float
     largest_strain: dict[Direction, float] = Field(description="Largest strain of the fit.")
-    runs: dict[Direction, int] = Field(description="Pulls used.")
+    runs: dict[Direction, int] = Field(description="Number of pulls used.")
     reduction: Reduction
     error_method: str
     notes: list[str]
     waist_rms: dict[Direction, float] | None = Field(
-        None, description="Simulated minus measured strain of the waist (recommended reduction)."
+        None,
+        description="Rms of the simulated minus the measured strain of the waist (recommended "
+        "reduction).",
     )
     residuals: dict[Direction, ResidualPoints] | None = None
     curves: dict[Direction, CurveDocument] = Field(
@@ -108,24 +114,24 @@ def _fit(request: FitRequest, context: Context) -> LawFit:
         )
 
 
-def _result(found: LawFit, *, residuals: bool) -> FitResult:
-    errors = found.standard_errors
+def _result(fit: LawFit, *, residuals: bool) -> FitResult:
+    errors = fit.standard_errors
     names = {name: name.removesuffix("_n_per_mm") for name in LawErrors.model_fields}
     return FitResult.of_law(
-        found.law,
-        **elastic_constants_of(found.law),
-        rms_n_per_mm=found.rms_n_per_mm,
-        rms_course_n_per_mm=found.rms_course_n_per_mm,
-        rms_wale_n_per_mm=found.rms_wale_n_per_mm,
-        largest_strain=found.largest_strain,
-        runs=found.runs,
-        reduction=found.reduction,
-        error_method=found.error_method,
-        notes=found.notes,
-        waist_rms=found.waist_rms,
+        fit.law,
+        **elastic_constants_of(fit.law),
+        rms_n_per_mm=fit.rms_n_per_mm,
+        rms_course_n_per_mm=fit.rms_course_n_per_mm,
+        rms_wale_n_per_mm=fit.rms_wale_n_per_mm,
+        largest_strain=fit.largest_strain,
+        runs=fit.runs,
+        reduction=fit.reduction,
+        error_method=fit.error_method,
+        notes=fit.notes,
+        waist_rms=fit.waist_rms,
         standard_errors={name: errors.get(constant) for name, constant in names.items()},
-        residuals={d: _points(r) for d, r in found.residuals.items()} if residuals else None,
-        curves={d: CurveDocument.from_curve(c) for d, c in found.curves.items()},
+        residuals={d: _points(r) for d, r in fit.residuals.items()} if residuals else None,
+        curves={d: CurveDocument.from_curve(c) for d, c in fit.curves.items()},
     )
 
 
@@ -144,20 +150,20 @@ def _points(residuals: Residuals) -> ResidualPoints:
 def _command(
     request: FitRequest, context: Context, out: Path | None, residuals: Path | None
 ) -> FitResult:
-    found = _fit(request, context)
+    fit = _fit(request, context)
     if out is not None:
         tests = f"{request.test_course.name} and {request.test_wale.name}"
-        source = f"fitted to {tests}, {found.reduction} reduction"
-        file = LawFile(found.law, source, found.standard_errors, found.largest_strain, found.curves)
+        source = f"fitted to {tests}, {fit.reduction} reduction"
+        file = LawFile(fit.law, source, fit.standard_errors, fit.largest_strain, fit.curves)
         save_law(file, out)
     if residuals is not None:
         points = (
             (direction, *map(float, row))
-            for direction, r in found.residuals.items()
+            for direction, r in fit.residuals.items()
             for row in zip(r.strain_along, r.strain_across, r.stress, r.fitted, strict=True)
         )
         write_table(residuals, ["direction", *ResidualPoints.model_fields], points)
-    return _result(found, residuals=False)
+    return _result(fit, residuals=False)
 
 
 def _lines(r: FitResult) -> list[str]:

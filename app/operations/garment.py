@@ -47,7 +47,7 @@ class GaugeCount(RequestModel):
     fabric: Fabric = Field(Fabric.STOCKINETTE, description="Repeat of the swatch.")
 
     def gauge(self) -> Gauge:
-        """As the library knows it."""
+        """The gauge as an object of the library."""
         return Gauge.of_count(self.stitches, self.rows, _LENGTHS[self.per])
 
 
@@ -59,14 +59,14 @@ _LENGTHS = {
 
 
 class Template(RequestModel):
-    """How tightly a garment fits."""
+    """Tightness of a garment."""
 
     ease: Ease = -0.15
     target_mmhg: TargetPressure = None
 
     @property
     def fit(self) -> Fit:
-        """As the library knows it."""
+        """The fit as an object of the library."""
         return Fit(self.ease, self.target_mmhg)
 
 
@@ -79,7 +79,7 @@ class WristBrace(Template):
     edge_mm: Annotated[float, Field(ge=0, le=500)] = 15.0
 
     def plan(self, **yarn: Any) -> GarmentPlan:
-        """Its plan, for a material, gauges and a linear density."""
+        """The garment's plan, for a material, gauges and a linear density."""
         sizes = self.wrist_mm, self.length_mm
         return wrist_brace(*sizes, fit=self.fit, edge_mm=self.edge_mm, **yarn)
 
@@ -102,7 +102,9 @@ class Limb(Template):
 
     template: Literal["limb"]
     profile: list[tuple[float, Length]] = Field(
-        min_length=2, max_length=200, description="[position_mm, circumference_mm] along the limb."
+        min_length=2,
+        max_length=200,
+        description="Pairs [position_mm, circumference_mm] along the limb.",
     )
     body: Fabric = Fabric.STOCKINETTE
     hem: Fabric = Fabric.RIB
@@ -144,7 +146,7 @@ class Glove(Template):
 
     @property
     def hand(self) -> Hand:
-        """As the library knows it."""
+        """The hand as an object of the library."""
         fingers = self.fingers and tuple(finger.pass_to(Finger) for finger in self.fingers)
         thumb = self.thumb and self.thumb.pass_to(Finger)
         return self.pass_to(Hand, thumb=thumb or _HAND.thumb, fingers=fingers or _HAND.fingers)
@@ -173,7 +175,7 @@ class KnitterRequest(LawsRequest):
     )
 
     def gauges(self, material: Material) -> GaugeSet:
-        """Of the four fabrics."""
+        """The gauges of the four fabrics."""
         if self.gauge is None:
             return GaugeSet.of_material(material)
         return GaugeSet.of_material(material, self.gauge.gauge(), self.gauge.fabric)
@@ -186,7 +188,7 @@ class GarmentRequest(KnitterRequest):
     linear_density_tex: float | None = Field(
         None, gt=0, lt=1e5, description="Linear density of the yarn (g/km), for its mass."
     )
-    intarsia: bool = Field(False, description="Whether each fabric gets a yarn of its own.")
+    intarsia: bool = Field(False, description="Knit each fabric with a yarn of its own.")
 
 
 class RegionResult(Moduli, Extensibility):
@@ -202,7 +204,9 @@ class RegionResult(Moduli, Extensibility):
         description="Size at rest of that many stitches of its fabric, without neighbours."
     )
     height_mm: float
-    width_interval_mm: Ends = Field(description="90 % interval, from that of the gauge.")
+    width_interval_mm: Ends = Field(
+        description="90 % interval of the width, from that of the gauge."
+    )
     height_interval_mm: Ends
     yarn_m: float
     yarn_g: float | None
@@ -252,7 +256,7 @@ class GarmentResult(IntervalResult):
     worn: list[WornResult]
     yarn_m: float
     yarn_g: float | None
-    yarn_interval_m: Ends = Field(description="90 % interval.")
+    yarn_interval_m: Ends = Field(description="90 % interval of the yarn's length.")
     yarn_interval_g: Ends | None
     notes: list[str]
     warnings: list[str] = Field(description="Notes on borders between regions of different gauge.")
@@ -327,15 +331,19 @@ def _gauge(fabric: Fabric, gauge: Gauge) -> GaugeResult:
 
 
 def _worn(place: Worn) -> WornResult:
-    found = place.pressure
-    if found is None:
+    pressure = place.pressure
+    if pressure is None:
         return WornResult.of(place, strain=None, mmhg=None, kpa=None, warnings=[place.problem])
     return WornResult.of(
-        place, strain=found.strain, mmhg=found.mmhg, kpa=found.kpa, warnings=found.warnings
+        place,
+        strain=pressure.strain,
+        mmhg=pressure.mmhg,
+        kpa=pressure.kpa,
+        warnings=pressure.warnings,
     )
 
 
-def measured_options(asked: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
+def measured_options(command: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
     """Options of a garment's measurements; :func:`read_measured` reads them."""
     for option in (
         click.option("--per", type=click.Choice(list(_LENGTHS)), default="10 cm"),
@@ -348,8 +356,8 @@ def measured_options(asked: Callable[..., dict[str, object]]) -> Callable[..., d
             help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
         ),
     ):
-        asked = option(asked)
-    return asked
+        command = option(command)
+    return command
 
 
 def read_measured(
@@ -371,11 +379,11 @@ def read_measured(
             values[name] = json.loads(value)
         except json.JSONDecodeError:
             values[name] = value
-    asked: dict[str, object] = {"garment": values}
+    fields: dict[str, object] = {"garment": values}
     if gauge is not None:
         stitches, _, rows = gauge.lower().replace("×", "x").partition("x")
-        asked["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
-    return asked
+        fields["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
+    return fields
 
 
 @click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))

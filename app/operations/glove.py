@@ -42,7 +42,7 @@ class GlovePart(LimbPlaceResult):
 
 
 class GloveResult(IntervalResult):
-    """How the glove sits; no medical class."""
+    """Fit of the glove; no medical class."""
 
     kind: Literal["glove"] = "glove"
     id: str = Field(description="Name of the shape, for 3D views of the glove's chart.")
@@ -63,19 +63,19 @@ def glove(request: GloveRequest, context: Context) -> Viewed[GloveResult]:
     InputError
         If a measurement or the material cannot be used.
     """
-    found = _worn(request, context)
-    return Viewed(_result(found, request, context), _view(found))
+    worn = _worn(request, context)
+    return Viewed(_result(worn, request, context), _view(worn))
 
 
-def _result(found: GloveOnHand, request: GloveRequest, context: Context) -> GloveResult:
-    rows, columns = found.mmhg.shape
+def _result(worn: GloveOnHand, request: GloveRequest, context: Context) -> GloveResult:
+    rows, columns = worn.mmhg.shape
     support = answer_of(Fabric.STOCKINETTE, context.material(request.material))
     return GloveResult(
         interval_source=in_a_sentence(support.stretch_errors),
         id=OPERATION.key(request),
         rows=rows,
         columns=columns,
-        parts=[GlovePart.of_place(place, name=name) for name, place in found.parts.items()],
+        parts=[GlovePart.of_place(place, name=name) for name, place in worn.parts.items()],
         notes=[ELASTIC_MEAN, SIMPLE],
     )
 
@@ -90,11 +90,11 @@ def _worn(request: GloveRequest, context: Context) -> GloveOnHand:
     )
 
 
-def _view(found: GloveOnHand) -> PosedView:
+def _view(worn: GloveOnHand) -> PosedView:
     return PosedView(
-        found.corners_mm.astype(np.float32),
-        Body.joined([Body.around(part) for part in found.body_mm]),
-        found.mmhg.astype(np.float32),
+        worn.corners_mm.astype(np.float32),
+        Body.joined([Body.around(part) for part in worn.body_mm]),
+        worn.mmhg.astype(np.float32),
     )
 
 
@@ -105,15 +105,15 @@ def _hand(settings: tuple[str, ...], gauge: str | None, per: str) -> dict[str, o
 
 @out_option("--out", help="Write the glove on the hand to FILE.glb.", suffixes=(".glb",))
 def _and_write(request: GloveRequest, context: Context, out: Path | None) -> GloveResult:
-    found = _worn(request, context)
-    result = _result(found, request, context)
+    worn = _worn(request, context)
+    result = _result(worn, request, context)
     if out is not None:
         # the 3D view's libraries take a second to load
         from ..drawing.design_view import Curled, ViewRequest, build_scene
         from ..drawing.solid import solid_glb
         from ..drawing.stitch_colours import Colour
 
-        shaped = found.plan.shaped
+        shaped = worn.plan.shaped
         shown = ViewRequest(
             chart=shaped.chart.text,
             outline=shaped.outline,
@@ -121,7 +121,7 @@ def _and_write(request: GloveRequest, context: Context, out: Path | None) -> Glo
             colour=Colour.PRESSURE,
             curl=Curled(id=result.id),
         )
-        out.write_bytes(solid_glb(build_scene(shown, _view(found), context)))
+        out.write_bytes(solid_glb(build_scene(shown, _view(worn), context)))
     return result
 
 

@@ -33,7 +33,10 @@ class HangRequest(WeighedRequest):
 
     chart: ChartInput
     outline: OutlineInput = None
-    by: HungBy = Field(HungBy.EDGE, description="The edge of the highest stitches, or its ends.")
+    by: HungBy = Field(
+        HungBy.EDGE,
+        description="Hold the piece by the edge of its highest stitches, or by its ends.",
+    )
     corners: WantsCorners = False
     time_limit_s: TimeLimit = TIME_LIMIT_S
 
@@ -44,11 +47,13 @@ class HangResult(ResultModel):
     kind: Literal["hang"] = "hang"
     id: str = Field(description="Name of the shape, for 3D views.")
     weight_g: float
-    drop_mm: float = Field(description="From the highest point to the lowest.")
+    drop_mm: float = Field(description="Height from the highest point to the lowest.")
     width_mm: float
     depth_mm: float
     lengthening: float = Field(description="Strain of the middle column.")
-    converged: bool = Field(description="If false, the shape is only a preview.")
+    converged: bool = Field(
+        description="True if the shape is at rest; otherwise it is only a preview."
+    )
     corners_mm: Corners = None
     notes: list[str]
 
@@ -60,16 +65,16 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
     """
     chart, material = to_chart(request.chart), context.material(request.material)
     stitches = None if request.outline is None else outline_marks(request.outline)
-    found = request.pass_to(
+    hanging = request.pass_to(
         hang_piece, chart, material, stitches=stitches, cancelled=context.cancelled
     )
     result = HangResult.of(
-        found,
+        hanging,
         id=OPERATION.key(request),
-        corners_mm=corner_lists(found.corners_mm, found.used) if request.corners else None,
+        corners_mm=corner_lists(hanging.corners_mm, hanging.used) if request.corners else None,
         notes=[FRICTIONLESS],
     )
-    return Viewed(result, PosedView(found.corners_mm.astype(np.float32)))
+    return Viewed(result, PosedView(hanging.corners_mm.astype(np.float32)))
 
 
 def _lines(r: HangResult) -> list[str]:
@@ -84,7 +89,7 @@ def _lines(r: HangResult) -> list[str]:
 OPERATION = Operation(
     hang,
     tag="mechanics",
-    summary="How a piece hangs under its own weight",
+    summary="Shape of a piece that hangs under its own weight",
     example={
         "chart": {"fabric": "garter", "columns": 6, "rows": 8},
         "material": "acrylic",

@@ -25,7 +25,9 @@ from .registry import Command, Operation
 class HysteresisRequest(StitchRequest, LawsRequest):
     """A repeat, its yarn and the pull."""
 
-    direction: Direction = Field(Direction.COURSE, description="Along rows, or along columns.")
+    direction: Direction = Field(
+        Direction.COURSE, description="Direction of the pull: along rows, or along columns."
+    )
     max_strain: float = Field(0.3, gt=0, le=5, description="Largest strain: 0.5 is 50 %.")
     friction: float | None = Field(
         None,
@@ -46,7 +48,7 @@ class LoopLeg(ResultModel):
     """One way of a cycle."""
 
     loading: bool
-    strain: Floats = Field(description="From the rest size without friction.")
+    strain: Floats = Field(description="Strain, from the rest size without friction.")
     transverse_strain: Floats
     stress_n_per_mm: Floats
 
@@ -58,17 +60,18 @@ class HysteresisResult(IntervalResult):
     direction: Direction
     friction: float = Field(description="Coefficient of friction that was used.")
     friction_interval: tuple[float, float] | None = Field(
-        description="Of the yarn or its fibre; null where the request gave the coefficient."
+        description="Interval of the yarn or its fibre; null if the request gave the coefficient."
     )
     friction_source: str
-    legs: list[LoopLeg] = Field(description="Loading and unloading in turn.")
+    legs: list[LoopLeg] = Field(description="Legs of the cycles, loading and unloading in turn.")
     lost_per_cycle_n_per_mm: float = Field(
         description="Energy that the last cycle loses per area of fabric, N·mm/mm²."
     )
     lost_per_cycle_interval_n_per_mm: Ends | None = Field(
-        None, description="Over the interval of friction, as all further intervals."
+        None,
+        description="Interval of the loss over that of friction, as are all further intervals.",
     )
-    lost_share: float = Field(description="The same as a share of the work of the pull.")
+    lost_share: float = Field(description="Energy lost, as a share of the work of the pull.")
     lost_share_interval: Ends | None = None
     left_strain: float = Field(description="Strain that remains after unloading.")
     left_strain_interval: Ends | None = None
@@ -102,25 +105,25 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     )
 
     def rubbed(friction: float) -> tuple[loops.Hysteresis, tuple[loops.RestSize, ...]]:
-        found = request.pass_to(
+        loop = request.pass_to(
             loops.hysteresis, relaxed, coefficient=friction, cancelled=context.cancelled
         )
         if not request.rest_sizes:
-            return found, ()
-        return found, loops.rest_sizes(relaxed, friction, cancelled=context.cancelled)
+            return loop, ()
+        return loop, loops.rest_sizes(relaxed, friction, cancelled=context.cancelled)
 
-    found, rests = rubbed(coefficient)
-    wanted = request.intervals and given is None and known.low < known.high
-    runs = [(found, rests), rubbed(known.low), rubbed(known.high)] if wanted else []
+    loop, rests = rubbed(coefficient)
+    varied = request.intervals and given is None and known.low < known.high
+    runs = [(loop, rests), rubbed(known.low), rubbed(known.high)] if varied else []
     return HysteresisResult.of(
-        found,
+        loop,
         friction=coefficient,
         friction_interval=(known.low, known.high) if given is None else None,
         interval_source=f"The interval of friction, {known.source}."
         if given is None
         else "No intervals: the request gave the coefficient of friction.",
         friction_source=known.source if given is None else "given",
-        legs=[LoopLeg.of(leg) for leg in found.legs],
+        legs=[LoopLeg.of(leg) for leg in loop.legs],
         lost_per_cycle_interval_n_per_mm=_ends(h.lost_per_cycle_n_per_mm for h, _ in runs),
         lost_share_interval=_ends(h.lost_share for h, _ in runs),
         left_strain_interval=_ends(h.left_strain for h, _ in runs),
@@ -133,13 +136,13 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
             for k, rest in enumerate(rests)
         ],
         yarn=YarnResult.of_chart(used),
-        notes=[*found.notes, HISTORIES],
+        notes=[*loop.notes, HISTORIES],
     )
 
 
 def _ends(values: Iterable[float]) -> Ends | None:
-    found = list(values)
-    return (min(found), max(found)) if found else None
+    numbers = list(values)
+    return (min(numbers), max(numbers)) if numbers else None
 
 
 def _between(interval: Ends | None, form: str) -> str:

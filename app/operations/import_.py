@@ -31,7 +31,7 @@ class FoundDesign(DesignLayout, ResultModel):
     """A design, or the parts of one that a file of another kind holds."""
 
     chart: ChartLines
-    name: str | None = Field(None, description="Of a design.")
+    name: str | None = Field(None, description="Outline of a design.")
     material: str | None = None
     note: str | None = None
 
@@ -43,7 +43,7 @@ class ImportResult(FoundDesign):
     columns: int
     repeat: RepeatText
     notes: list[str] = Field(
-        [], description="What may have been read wrongly or lost, such as a region."
+        [], description="Parts that may have been read wrongly or lost, such as a region."
     )
 
 

@@ -39,7 +39,7 @@ from .perform import Viewed
 from .registry import Command, Operation
 
 MAX_STITCHES = 40_000
-"""Of a chart that is itself the tube."""
+"""Largest number of stitches of a chart that is itself the tube."""
 FREE_ALONG = (
     "Nothing holds the tube along the limb here, so it shortens freely; friction may keep it "
     "longer."
@@ -54,24 +54,29 @@ BY_PATCHES = (
 class TubeGirth(RequestModel):
     """Circumferences at one place."""
 
-    at_mm: float = Field(ge=0, le=3000, description="Along the limb, from where the tube begins.")
-    girth_mm: float = Field(ge=LEAST_GIRTH_MM, le=3000, description="Around the limb.")
+    at_mm: float = Field(
+        ge=0, le=3000, description="Distance along the limb, from where the tube begins."
+    )
+    girth_mm: float = Field(ge=LEAST_GIRTH_MM, le=3000, description="Circumference of the limb.")
     rest_mm: float | None = Field(
         None,
         ge=LEAST_GIRTH_MM,
         le=3000,
-        description="Around the unworn tube. Left out at all places, the whole chart is the tube.",
+        description="Circumference of the unworn tube. If it is left out at all places, the whole "
+        "chart is the tube.",
     )
 
 
 class LimbRequest(FabricRequest):
     """A tube of a chart, and a limb by its girths."""
 
-    direction: Direction = Field(Direction.COURSE, description="Around the limb.")
+    direction: Direction = Field(
+        Direction.COURSE, description="Direction of the chart that runs around the limb."
+    )
     girths: list[TubeGirth] = Field(
         min_length=2,
         max_length=MAX_GIRTHS,
-        description="From one end to the other; between them sizes change evenly.",
+        description="Girths from one end to the other; between them sizes change evenly.",
     )
 
 
@@ -79,23 +84,23 @@ class LimbPlaceResult(ResultModel):
     """Fit at one place along the limb."""
 
     at_mm: float
-    rest_mm: float = Field(description="Around the unworn tube.")
-    girth_mm: float = Field(description="Around the limb.")
+    rest_mm: float = Field(description="Circumference of the unworn tube.")
+    girth_mm: float = Field(description="Circumference of the limb.")
     ease: float = Field(description="Tube over limb, minus one; negative where it is stretched.")
     mmhg: Ends | None = Field(
         description="Mean pressure, from axially free to axially fixed; null where there is none."
     )
     mmhg_with_spread: Ends | None = Field(
-        description="The same, widened by the 90 % interval of the chart's stress."
+        description="Mean pressure, widened by the 90 % interval of the chart's stress."
     )
     lock_up_share: float = Field(
         description="Strain around the limb over that at which the chart is locked."
     )
-    problem: str = Field(description="Why there is no pressure, such as a loose fit.")
+    problem: str = Field(description="Reason why there is no pressure, such as a loose fit.")
 
     @classmethod
     def of_place(cls, place: LimbPlace, **more: Any) -> Self:
-        """In mmHg."""
+        """Make the result of a place, with its pressure in mmHg."""
         kpa = place.pressure and place.pressure.kpa
         spread = place.pressure and place.pressure.kpa_with_spread
         return cls.of(
@@ -107,7 +112,7 @@ class LimbPlaceResult(ResultModel):
 
     @property
     def line(self) -> str:
-        """In words, for a table."""
+        """The place in words, for a table."""
         if self.mmhg is None or self.mmhg_with_spread is None:
             pressure = "loose" if self.ease > 0.0 else self.problem
         else:
@@ -127,13 +132,13 @@ class LimbResult(IntervalResult):
 
     kind: Literal["limb"] = "limb"
     places: list[LimbPlaceResult]
-    tightest_mm: float = Field(description="Where the tube is nearest to its lock-up.")
+    tightest_mm: float = Field(description="Place where the tube is nearest to its lock-up.")
     loose_mm: float = Field(description="Length along the limb on which the tube is loose.")
     id: str | None = Field(
         None, description="Name of the shape, for 3D views, if the whole chart is the tube."
     )
     length_mm: float | None = Field(
-        None, description="Of the whole chart on the limb, held by nothing along it."
+        None, description="Length of the whole chart on the limb, held by nothing along it."
     )
     relaxed_length_mm: float | None = None
     notes: list[str]
@@ -162,14 +167,14 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
         raise InputError(
             "girths", "some places have a rest_mm and others none.", "Give it for all, or for none."
         )
-    found = on_limb(
+    places = on_limb(
         answer.along(request.direction),
         [g.at_mm for g in request.girths],
         [g.girth_mm for g in request.girths],
         rests,
     )
-    length = found[-1].at_mm - found[0].at_mm
-    fit = _fit(found, found, length)
+    length = places[-1].at_mm - places[0].at_mm
+    fit = _fit(places, places, length)
     return Viewed(LimbResult(**fit, interval_source=source, notes=[ELASTIC_MEAN]), None)
 
 
@@ -184,10 +189,10 @@ def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
 def _of_tube(tube: TubeOnLimb, request: LimbRequest, source: str) -> LimbResult:
     repeat = to_chart(request.chart).repeat_cut()
     patched = max(repeat.rows, repeat.columns) > SIDE
-    told = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
+    listed = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
     return LimbResult.of(
         tube,
-        **_fit([tube.places[k] for k in told], tube.places, tube.length_mm),
+        **_fit([tube.places[k] for k in listed], tube.places, tube.length_mm),
         interval_source=source,
         id=OPERATION.key(request),
         notes=[ELASTIC_MEAN, FREE_ALONG, *([BY_PATCHES] if patched else [])],
@@ -208,10 +213,12 @@ def _view(tube: TubeOnLimb, around: Direction) -> PosedView:
     )
 
 
-def _fit(told: Sequence[LimbPlace], every: Sequence[LimbPlace], length_mm: float) -> dict[str, Any]:
+def _fit(
+    listed: Sequence[LimbPlace], every: Sequence[LimbPlace], length_mm: float
+) -> dict[str, Any]:
     loose = sum(place.ease >= 0.0 for place in every) / len(every)
     return {
-        "places": [LimbPlaceResult.of_place(place) for place in told],
+        "places": [LimbPlaceResult.of_place(place) for place in listed],
         "tightest_mm": max(every, key=lambda place: place.lock_up_share).at_mm,
         "loose_mm": loose * length_mm,
     }
@@ -223,8 +230,8 @@ def _fit(told: Sequence[LimbPlace], every: Sequence[LimbPlace], length_mm: float
     metavar="AT:GIRTH[:REST]",
     multiple=True,
     required=True,
-    help="In mm, two or more: along the limb, around it, and around the unworn tube there. Without "
-    "REST the whole chart is the tube.",
+    help="Places in mm, two or more: along the limb, around it, and around the unworn tube there. "
+    "Without REST the whole chart is the tube.",
 )
 def _girths(girths: tuple[str, ...]) -> dict[str, Any]:
     names = ("at_mm", "girth_mm", "rest_mm")

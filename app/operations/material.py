@@ -107,7 +107,9 @@ class MaterialSummary(ResultModel):
     name: str
     description: str
     fabrics: dict[Fabric, FabricSummary]
-    added_by_you: bool = Field(description="You may replace and remove it.")
+    added_by_you: bool = Field(
+        description="True if you added the material, and may replace and remove it."
+    )
 
 
 class MaterialDetail(ResultModel):
@@ -123,7 +125,7 @@ class MaterialDetail(ResultModel):
     compression_exponent: float | None
     fabrics: dict[Fabric, FabricDetail]
     stitch_table: StitchTableResult | None = Field(
-        description="Null for a material that lacks one of the four fabrics."
+        description="Values per stitch; null for a material that lacks one of the four fabrics."
     )
     curves: dict[Fabric, dict[Direction, LawCurve]] = Field(description="Curves of the laws.")
     measured: dict[Fabric, dict[Direction, CurveDocument]] = Field(
@@ -140,46 +142,46 @@ def material(request: MaterialRequest, context: Context) -> MaterialDetail:
         If there is none of that id.
     """
     try:
-        found = context.material(request.identifier)
+        material = context.material(request.identifier)
     except InputError as error:
         raise MissingError("identifier", error.problem, error.remedy) from None
     return MaterialDetail.of(
-        found.yarn,
-        id=found.identifier,
-        name=found.name,
-        description=description(found),
-        notes=[found.note] if found.note else [],
-        fabrics={fabric: _detail(record) for fabric, record in found.fabrics.items()},
-        stitch_table=_table(stitch_table(found), found) if found.is_complete else None,
+        material.yarn,
+        id=material.identifier,
+        name=material.name,
+        description=description(material),
+        notes=[material.note] if material.note else [],
+        fabrics={fabric: _detail(record) for fabric, record in material.fabrics.items()},
+        stitch_table=_table(stitch_table(material), material) if material.is_complete else None,
         curves={
             fabric: {d: _curve(record.law, d) for d in Direction}
-            for fabric, record in found.fabrics.items()
+            for fabric, record in material.fabrics.items()
         },
         measured={
             fabric: {d: CurveDocument.from_curve(c) for d, c in record.measured.items()}
-            for fabric, record in found.fabrics.items()
+            for fabric, record in material.fabrics.items()
             if record.measured
         },
     )
 
 
-def summary(found: Material, *, added_by_you: bool) -> MaterialSummary:
+def summary(material: Material, *, added_by_you: bool) -> MaterialSummary:
     """A material in short."""
     return MaterialSummary.of(
-        found,
-        id=found.identifier,
-        description=description(found),
+        material,
+        id=material.identifier,
+        description=description(material),
         fabrics={
             fabric: FabricSummary.of(record, **moduli_of(record.law))
-            for fabric, record in found.fabrics.items()
+            for fabric, record in material.fabrics.items()
         },
         added_by_you=added_by_you,
     )
 
 
-def description(found: Material) -> str:
+def description(material: Material) -> str:
     """Fibre and product."""
-    return ", ".join(part for part in (found.yarn.fibre, found.yarn.product) if part)
+    return ", ".join(part for part in (material.yarn.fibre, material.yarn.product) if part)
 
 
 def _detail(record: FabricRecord) -> FabricDetail:

@@ -30,10 +30,12 @@ def materials(request: NoRequest, context: Context) -> Materials:
     """The user's own materials, the paper's yarns and their variants, and those of extensions."""
     del request
     library = {**load_library(), **load_variants(), **offered_materials()}
-    found = {**own_materials(context.data_dir), **library}
+    known = {**own_materials(context.data_dir), **library}
     yours = added_by(current_user.get(), context.data_dir)
     return Materials(
-        materials=[summary(one, added_by_you=name in yours) for name, one in found.items()]
+        materials=[
+            summary(material, added_by_you=name in yours) for name, material in known.items()
+        ]
     )
 
 
@@ -44,15 +46,15 @@ def _command(request: NoRequest, context: Context, name: str | None) -> Material
     return material(MaterialRequest(identifier=name), context)
 
 
-def _lines(found: Materials | MaterialDetail) -> list[str]:
-    if isinstance(found, Materials):
-        return [f"{m.id:24} {m.name}: {m.description}" for m in found.materials]
-    lines = [f"{found.name} ({found.id}): {found.description}"]
-    if found.bending_modulus_n_mm2 is not None:
-        deviation = found.bending_modulus_sd_n_mm2
+def _lines(listed: Materials | MaterialDetail) -> list[str]:
+    if isinstance(listed, Materials):
+        return [f"{m.id:24} {m.name}: {m.description}" for m in listed.materials]
+    lines = [f"{listed.name} ({listed.id}): {listed.description}"]
+    if listed.bending_modulus_n_mm2 is not None:
+        deviation = listed.bending_modulus_sd_n_mm2
         spread = "" if deviation is None else f" ± {1000 * deviation:.3g}"
-        lines.append(f"bending modulus {1000 * found.bending_modulus_n_mm2:.4g}{spread} mN mm²")
-    for fabric, record in found.fabrics.items():
+        lines.append(f"bending modulus {1000 * listed.bending_modulus_n_mm2:.4g}{spread} mN mm²")
+    for fabric, record in listed.fabrics.items():
         lines += [
             "",
             f"{fabric}: {record.setting or record.origin}",

@@ -28,16 +28,21 @@ from .perform import Viewed
 from .registry import Command, Operation
 
 TABLE_MM = 40.0
-"""Of the table that is shown, from its edge to the back."""
+"""Depth of the table in the 3D view, from its edge to the back, mm."""
 
 
 class OverhangRequest(WeighedRequest):
     """A fabric, and how far a strip of it hangs over the edge of a table."""
 
     chart: RepeatInput
-    direction: Direction = Field(Direction.COURSE, description="Along the strip.")
+    direction: Direction = Field(
+        Direction.COURSE, description="Direction of the chart that runs along the strip."
+    )
     overhang_mm: float | None = Field(
-        None, gt=0, le=2000, description="Beyond the edge; that which falls by 41.5° if left out."
+        None,
+        gt=0,
+        le=2000,
+        description="Overhang; by default the length whose tip drops 41.5° (Peirce).",
     )
     corners: WantsCorners = False
 
@@ -47,12 +52,18 @@ class OverhangResult(ResultModel):
 
     kind: Literal["overhang"] = "overhang"
     overhang_mm: float
-    angle_deg: float = Field(description="From the edge to the tip, below the horizontal.")
-    reach_mm: float = Field(description="How far out the tip is.")
-    fall_mm: float = Field(description="How far down the tip is.")
-    bending_length_mm: float = Field(description="By Peirce's formula from overhang and angle.")
-    rigidity_n_mm: float = Field(description="Weight per area times the bending length cubed.")
-    yarn_level_rigidity_n_mm: float = Field(description="That with which the strip was bent.")
+    angle_deg: float = Field(
+        description="Angle of the line from the edge to the tip, below the horizontal."
+    )
+    reach_mm: float = Field(description="Horizontal distance from the edge to the tip.")
+    fall_mm: float = Field(description="Height from the edge down to the tip.")
+    bending_length_mm: float = Field(
+        description="Bending length by Peirce's formula, from overhang and angle."
+    )
+    rigidity_n_mm: float = Field(
+        description="Rigidity: weight per area times the bending length cubed."
+    )
+    yarn_level_rigidity_n_mm: float = Field(description="Rigidity with which the strip was bent.")
     weight_g_per_m2: float
     converged: bool
     piece: ClothPiece
@@ -70,20 +81,20 @@ def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResul
     repeat = to_repeat(request.chart)
     cloth = request.cloth(repeat, context)
     axis = 0 if request.direction is Direction.COURSE else 1
-    found = hang_over(cloth, axis, request.overhang_mm, cancelled=context.cancelled)
+    strip = hang_over(cloth, axis, request.overhang_mm, cancelled=context.cancelled)
     if axis == 0:
-        sheet, rectangle = found.corners_mm.transpose(1, 0, 2), found.rectangle_mm
+        sheet, rectangle = strip.corners_mm.transpose(1, 0, 2), strip.rectangle_mm
     else:  # turned about the vertical, so that the face stays above
-        sheet, rectangle = found.corners_mm[:, ::-1], found.rectangle_mm[::-1]
+        sheet, rectangle = strip.corners_mm[:, ::-1], strip.rectangle_mm[::-1]
     piece, corners = cloth_piece(sheet, rectangle, cloth, repeat, OPERATION.key(request))
     table = TABLE_MM * np.array([(-1.0, -0.5), (0.0, -0.5), (0.0, 0.5), (-1.0, 0.5)])
     result = OverhangResult.of(
-        found,
+        strip,
         piece=piece,
         weight_g_per_m2=cloth.weight_g_per_m2,
-        angle_deg=math.degrees(found.angle_rad),
+        angle_deg=math.degrees(strip.angle_rad),
         yarn_level_rigidity_n_mm=cloth.rigidity_n_mm[axis],
-        corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
+        corners_mm=strip.corners_mm.round(3).tolist() if request.corners else None,
         notes=notes_of(cloth),
     )
     return Viewed(result, PosedView(corners, Body.slab(table, 0.25 * TABLE_MM)).upright())

@@ -42,7 +42,7 @@ class Viewed(Generic[Result]):
 
 @dataclass(frozen=True, eq=False)
 class Reply:
-    """What came of a request.
+    """Answer to a request.
 
     Attributes
     ----------
@@ -98,9 +98,11 @@ def perform(
     InvalidRequestError
         If the request came as bytes and is none of the model.
     """
-    wanted: BaseModel = read(model, request) if isinstance(request, bytes) else request
+    decoded: BaseModel = read(model, request) if isinstance(request, bytes) else request
     context = Context(data_dir, cancelled=cancelled, progress=progress, before=before)
-    found = carried_out(run, wanted, context)
-    result, view = (found.result, found.view) if isinstance(found, Viewed) else (found, None)
+    outcome = carried_out(run, decoded, context)
+    result, view = (
+        (outcome.result, outcome.view) if isinstance(outcome, Viewed) else (outcome, None)
+    )
     body = gzip.compress(result.model_dump_json().encode(), LEVEL)
-    return Reply(body, view, "" if wanted is request else key_of(run, wanted))
+    return Reply(body, view, "" if decoded is request else key_of(run, decoded))

@@ -29,7 +29,7 @@ class PieceRequest(PieceTestRequest):
     """Cloth, the piece cut from it, and the conditions on its edges."""
 
     piece: Annotated[PieceInput, CheckedBy(lambda cut, _: cut.piece())]
-    fields: bool = Field(False, description="Whether to return the final shape and strains.")
+    fields: bool = Field(False, description="Return the final shape and strains too.")
 
 
 class LoadedEdge(ResultModel):
@@ -50,16 +50,18 @@ class LoadedEdge(ResultModel):
 class DeformedPiece(ResultModel):
     """The mesh after the last step."""
 
-    corners_mm: list[tuple[float, float]] = Field(description="At rest.")
+    corners_mm: list[tuple[float, float]] = Field(description="Corners of the mesh at rest.")
     moved_mm: list[tuple[float, float]] = Field(description="Displacement of each corner.")
     elements: list[list[int]] = Field(description="Corner numbers of each element, from 0.")
-    strain_course: Floats = Field(description="Per element, like the fields below.")
+    strain_course: Floats = Field(description="Strain of each element, like the fields below.")
     strain_wale: Floats
-    shear_angle: Floats = Field(description="In radians.")
-    stress_course: Floats = Field(description="N/mm.")
+    shear_angle: Floats = Field(description="Shear angle in radians.")
+    stress_course: Floats = Field(description="Stress, N/mm.")
     stress_wale: Floats
     stress_shear: Floats
-    utilisation: Floats = Field(description="alpha * strain; 1 is the lock-up.")
+    utilisation: Floats = Field(
+        description="Nearness to the lock-up: alpha * strain; 1 is the lock-up."
+    )
 
 
 class PieceResult(PieceTestResult):
@@ -68,7 +70,7 @@ class PieceResult(PieceTestResult):
     kind: Literal["piece"] = "piece"
     share: Floats = Field(description="Share of the load at each step.")
     area_mm2: float
-    edges: list[LoadedEdge] = Field(description="In the order of the conditions.")
+    edges: list[LoadedEdge] = Field(description="Loaded edges, in the order of the conditions.")
     shape: DeformedPiece | None
 
 
@@ -97,12 +99,12 @@ def _result(request: PieceRequest, test: PieceTest, material: Material) -> Piece
     margins = dict(zip(values, Z_SCORE * piece_spreads(test, material), strict=True))
     edges = []
     for i, given in enumerate(request.piece.conditions):
-        found: dict[str, Any] = {"edge": given.edge, "kind": given.kind}
+        edge: dict[str, Any] = {"edge": given.edge, "kind": given.kind}
         for (name, (unit, by_edge)), (axis, letter) in product(values.items(), enumerate("xy")):
             value, margin = by_edge[:, i, axis], margins[name][:, i, axis]
-            found[f"{name}_{letter}_{unit}"] = value
-            found[f"{name}_{letter}_interval_{unit}"] = value - margin, value + margin
-        edges.append(found)
+            edge[f"{name}_{letter}_{unit}"] = value
+            edge[f"{name}_{letter}_interval_{unit}"] = value - margin, value + margin
+        edges.append(edge)
     return PieceResult(
         share=test.share,
         area_mm2=test.piece.area_mm2,

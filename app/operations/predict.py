@@ -48,18 +48,21 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
         description="Reuss and Voigt bounds, widened where folds require it."
     )
     modulus_wale_bounds_n_per_mm: Ends
-    shear_modulus_n_per_mm: float = Field(description="An assumption unless it was calibrated.")
+    shear_modulus_n_per_mm: float = Field(
+        description="Shear modulus; an assumption unless it was calibrated."
+    )
     relaxed_course_mm: float = Field(description="Mean width of a stitch at rest.")
     relaxed_wale_mm: float = Field(description="Mean height of a stitch at rest.")
     relaxed_course_interval_mm: Ends
     relaxed_wale_interval_mm: Ends
     relaxed_source: str
-    width_mm: float = Field(description="Of the whole piece at rest, at its widest.")
-    height_mm: float = Field(description="Of the whole piece at rest, at its highest.")
+    width_mm: float = Field(description="Width of the whole piece at rest, at its widest.")
+    height_mm: float = Field(description="Height of the whole piece at rest, at its highest.")
     width_interval_mm: Ends
     height_interval_mm: Ends
     provenance: str = Field(
-        description="measured; estimated; swept; learned; or learned with known size"
+        description="Source of the constants: measured; estimated; swept; learned; or learned with "
+        "known size."
     )
     method: str
     worth_relaxing: str | None = Field(

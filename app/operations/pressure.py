@@ -63,7 +63,7 @@ class PressureResult(IntervalResult):
     mmhg: Ends = Field(description="Mean pressure, from axially free to axially fixed.")
     kpa: Ends
     mmhg_with_law_spread: Ends | None = Field(
-        description="That range, widened by the 90 % interval of the fabric's stress, if known."
+        description="Mean pressure, widened by the 90 % interval of the fabric's stress, if known."
     )
     strain: float = Field(description="Strain around the limb.")
     rest_mm: float
@@ -77,7 +77,7 @@ class PressureResult(IntervalResult):
         description="Sizes that give the target pressure, axially free to axially fixed."
     )
     warnings: list[str]
-    law_source: str = Field(description="Where the law comes from; empty if unknown.")
+    law_source: str = Field(description="Source of the law; empty if unknown.")
 
 
 def pressure(request: PressureRequest, context: Context) -> PressureResult:
@@ -88,15 +88,19 @@ def pressure(request: PressureRequest, context: Context) -> PressureResult:
     InputError
         If neither or both of a law and a material are given, or not one of fabric and chart.
     """
-    if (request.law is None) == (request.material is None):
-        raise InputError("law", "one of law and material is needed.", "Give exactly one.")
+    if request.law is None and request.material is None:
+        raise InputError("material", "is missing.", "Give a material, or a law.")
+    if request.law is not None and request.material is not None:
+        raise InputError("law", "material is given as well.", "Give one of the two.")
     if request.material is None:
         return _of_file(law_from_mapping(request.law or {}), request)
     material = context.material(request.material)
     if request.chart is not None and request.fabric is None:
         return _of_answer(predict(to_chart(request.chart), material), request)
-    if request.chart is not None or request.fabric is None:
-        raise InputError("fabric", "one of fabric and chart is needed.", "Give exactly one.")
+    if request.fabric is None:
+        raise InputError("fabric", "is missing.", "Give a fabric, or a chart.")
+    if request.chart is not None:
+        raise InputError("chart", "fabric is given as well.", "Give one of the two.")
     record = material.record(request.fabric)
     return _of_law(record.law, request, uncertainty=record.uncertainty, source=record.law_source)
 
@@ -104,11 +108,11 @@ def pressure(request: PressureRequest, context: Context) -> PressureResult:
 def _of_answer(answer: Prediction, request: PressureRequest) -> PressureResult:
     along = answer.along(request.direction)
     rest, sizes = _sizes(request, partial(tube_for, along))
-    found = tube_pressure(along, rest, request.worn_mm)
+    pressure = tube_pressure(along, rest, request.worn_mm)
     return PressureResult.of(
-        found,
-        mmhg=found.kpa.scaled(MMHG_PER_KPA),
-        mmhg_with_law_spread=found.kpa_with_spread.scaled(MMHG_PER_KPA),
+        pressure,
+        mmhg=pressure.kpa.scaled(MMHG_PER_KPA),
+        mmhg_with_law_spread=pressure.kpa_with_spread.scaled(MMHG_PER_KPA),
         lock_up_share=None,
         rest_mm_for_target=sizes,
         warnings=[ELASTIC_MEAN],
@@ -123,8 +127,8 @@ def _of_file(file: LawFile, request: PressureRequest) -> PressureResult:
     uncertainty = None
     if error is not None:
         spread = log_deviation(file.law.modulus(direction), error)
-        told = "standard error of the modulus in the law's file"
-        uncertainty = LawUncertainty(spread, spread, 0.0, 0.0, told)
+        source = "standard error of the modulus in the law's file"
+        uncertainty = LawUncertainty(spread, spread, 0.0, 0.0, source)
     tested = file.largest_strain.get(direction)
     return _of_law(file.law, request, uncertainty=uncertainty, source=file.source, tested=tested)
 
@@ -139,18 +143,18 @@ def _of_law(
 ) -> PressureResult:
     direction, worn = request.direction, request.worn_mm
     rest, sizes = _sizes(request, partial(rest_circumference, law, direction))
-    found = limb_pressure(law, direction, rest, worn, tested_strain=tested)
+    pressure = limb_pressure(law, direction, rest, worn, tested_strain=tested)
     widened = None
     if uncertainty is not None:
-        spread = uncertainty.log_stress(direction, found.tension_n_per_mm.low)
+        spread = uncertainty.log_stress(direction, pressure.tension_n_per_mm.low)
         factor = math.exp(Z_SCORE * float(spread))
-        widened = found.mmhg.low / factor, found.mmhg.high * factor
+        widened = pressure.mmhg.low / factor, pressure.mmhg.high * factor
     return PressureResult.of(
-        found,
+        pressure,
         mmhg_with_law_spread=widened,
         rest_mm=rest,
         worn_mm=worn,
-        lock_up_share=found.utilisation,
+        lock_up_share=pressure.utilisation,
         rest_mm_for_target=sizes,
         law_source=source,
         interval_source=in_a_sentence([uncertainty.source]) if uncertainty else NO_INTERVAL,
@@ -163,8 +167,10 @@ def _sizes(
     """The tube's circumference (mm), and the sizes for a wanted pressure if one is given."""
     if request.target_mmhg is None and request.rest_mm is not None:
         return request.rest_mm, None
-    if request.target_mmhg is None or request.rest_mm is not None:
-        raise InputError("rest_mm", "one of rest_mm and target_mmhg is needed.", "Give one.")
+    if request.target_mmhg is None:
+        raise InputError("rest_mm", "is missing.", "Give rest_mm, or a target_mmhg.")
+    if request.rest_mm is not None:
+        raise InputError("target_mmhg", "rest_mm is given as well.", "Give one of the two.")
     sizes = sizes_for(request.worn_mm, request.target_mmhg)
     return math.sqrt(sizes.low * sizes.high), sizes
 
@@ -178,7 +184,7 @@ def _command(request: PressureRequest, context: Context, law: Path | None) -> Pr
     if law is None:
         return pressure(request, context)
     if request.material is not None:
-        raise InputError("law", "--material is given as well.", "Give exactly one.")
+        raise InputError("law", "--material is given as well.", "Give one of the two.")
     return _of_file(load_law(law), request)
 
 

@@ -111,7 +111,7 @@ class Operation(Generic[Request, Result]):
 
     @cached_property
     def is_viewed(self) -> bool:
-        """Whether its results come with what a 3D view shows of them."""
+        """True if its results come with data for the 3D view."""
         return get_origin(get_type_hints(self.run)["return"]) is Viewed
 
     @property
@@ -133,8 +133,8 @@ class Operation(Generic[Request, Result]):
 def operations() -> dict[str, Operation[Any, Any]]:
     """All operations by name, in the order of their modules."""
     modules = [importlib.import_module(f"{package.__name__}.{name}") for name in sorted(_modules())]
-    found = [module.OPERATION for module in modules if hasattr(module, "OPERATION")]
-    return {operation.name: operation for operation in found}
+    declared = [module.OPERATION for module in modules if hasattr(module, "OPERATION")]
+    return {operation.name: operation for operation in declared}
 
 
 def operation_of_command(name: str, group: str = "") -> Operation[Any, Any] | None:
@@ -142,20 +142,20 @@ def operation_of_command(name: str, group: str = "") -> Operation[Any, Any] | No
     module = f"{name}_" if keyword.iskeyword(name) else name
     if module not in _modules():
         return None
-    found = getattr(importlib.import_module(f"{package.__name__}.{module}"), "OPERATION", None)
-    if not isinstance(found, Operation) or found.command is None:
+    operation = getattr(importlib.import_module(f"{package.__name__}.{module}"), "OPERATION", None)
+    if not isinstance(operation, Operation) or operation.command is None:
         return None
-    return found if found.command.group == group else None
+    return operation if operation.command.group == group else None
 
 
 def commands(group: str = "") -> set[str]:
     """Names of all commands made from operations."""
-    found = set()
+    names = set()
     for name in (module.removesuffix("_") for module in _modules()):
         with contextlib.suppress(ModuleNotFoundError):  # the light library has not all packages
             if operation_of_command(name, group) is not None:
-                found.add(name)
-    return found
+                names.add(name)
+    return names
 
 
 @cache

@@ -37,15 +37,16 @@ class RelaxRequest(RubbedRequest):
 
     branch: Branch | None = Field(
         None,
-        description="By default symmetry is only the start: the mirrored shape is followed to the "
-        "minimum that it leads to without the symmetries of the chart. Shapes that are held, or "
+        description="Branch to relax in. By default symmetry is only the start: the mirrored shape "
+        "is followed to the minimum to which it leads without the symmetries of the chart. Shapes "
+        "that are held, or "
         f"have friction, keep them; repeats of more than {FOLLOWED_UP_TO} stitches are relaxed in "
         "the free branch.",
     )
     history: History | None = Field(
         None,
-        description="What happened to the fabric before it came to rest, with the friction of the "
-        "yarn unless a coefficient is given. If only a coefficient is given, as-knitted.",
+        description="History of the fabric before it came to rest, with the friction of the yarn "
+        "unless a coefficient is given. As-knitted if only a coefficient is given.",
     )
 
     cell_course_mm: float | None = Field(
@@ -58,19 +59,19 @@ class RelaxRequest(RubbedRequest):
 
     @property
     def has_friction(self) -> bool:
-        """Whether a coefficient or a history is given."""
+        """True if a coefficient or a history is given."""
         return self.friction is not None or self.history is not None
 
     def with_friction(self, context: Context) -> Self:
         """The request with its coefficient of friction and its history."""
-        asked = super().with_friction(context)
-        if not asked.has_friction:
-            return asked
+        request = super().with_friction(context)
+        if not request.has_friction:
+            return request
         usual = {
-            "history": asked.history or History.KNITTED,
-            "branch": asked.branch or Branch.MIRRORED,
+            "history": request.history or History.KNITTED,
+            "branch": request.branch or Branch.MIRRORED,
         }
-        return asked.model_copy(update=usual)
+        return request.model_copy(update=usual)
 
     def _against_friction(self) -> Iterator[InputError]:
         yield from super()._against_friction()
@@ -105,7 +106,9 @@ class RelaxResult(IntervalResult):
     kind: Literal["relax"] = "relax"
     branch: Branch
     convention: Convention
-    repeat_rows: int = Field(description="At least 2 in the free branch, as are the columns.")
+    repeat_rows: int = Field(
+        description="Rows of the repeat; at least 2 in the free branch, as are the columns."
+    )
     repeat_columns: int
     cell_course_mm: float
     cell_wale_mm: float
@@ -123,8 +126,10 @@ class RelaxResult(IntervalResult):
     force_wale_n: float | None
     min_distance_mm: float | None
     seconds: float = Field(description="CPU time of the solve, when it was first run.")
-    known: bool = Field(False, description="Whether the result was already stored.")
-    evaluations: int = Field(description="Of the energy; the steps of a history are not counted.")
+    known: bool = Field(False, description="True if the result was already stored.")
+    evaluations: int = Field(
+        description="Evaluations of the energy; steps of a history are not counted."
+    )
     converged: bool
     yarn: YarnResult
     starts: list[StartResult]
@@ -132,16 +137,16 @@ class RelaxResult(IntervalResult):
         None, description="Coefficient of friction that was used; null without friction."
     )
     history: History | None = Field(
-        None, description="What the fabric comes to rest after; null without friction."
+        None, description="History after which the fabric comes to rest; null without friction."
     )
     rest_sizes: list[RestSizeResult] | None = Field(
         None,
-        description="With friction, the size after each history: the range in which the fabric "
-        "may rest.",
+        description="Size after each history, with friction: the range in which the fabric may "
+        "rest.",
     )
     minimum: bool | None = Field(
         None,
-        description="Whether the shape is a minimum without the mirror symmetries of the chart; "
+        description="True if the shape is a minimum without the mirror symmetries of the chart; "
         "null where that was not checked: for shapes that are held, have friction or are of the "
         f"published branch, for mirrored ones whose free cell has more than {FOLLOWED_UP_TO} "
         f"stitches, and for cells of {WINDOWS_FROM} stitches and more.",
@@ -154,8 +159,8 @@ class RelaxResult(IntervalResult):
     )
     unmirrored: OtherShapeResult | None = Field(
         None,
-        description="In the mirrored branch: the lower shape that it leads to without its "
-        "symmetries, if it is not a minimum.",
+        description="Lower shape to which the mirrored branch leads without its symmetries, if it "
+        "is not a minimum.",
     )
     other_minima_mm: list[tuple[float, float]] = Field(
         default_factory=list,
@@ -164,14 +169,15 @@ class RelaxResult(IntervalResult):
     )
     gauge: FoundGauge | None = Field(
         None,
-        description="For the `gauge` of other requests about this chart and material, which makes "
-        "their answers more certain. Null unless the material is simulated, and for pure fabrics, "
+        description="Gauge for other requests about this chart and material, which makes their "
+        "answers more certain. Null unless the material is simulated, and for pure fabrics, "
         "other branches, shapes that are held, other loop lengths than the material's, and "
         "friction.",
     )
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = Field(
-        None, description="Bottom course first; each runs once across the repeat."
+        None,
+        description="Lines of the yarn, the bottom course first; each runs once across the repeat.",
     )
 
 
@@ -227,29 +233,29 @@ def _after_history(
     began = time.process_time()
     rests = rest_sizes(zero, friction, cancelled=context.cancelled)
     (cell,) = (rest.state.cell for rest in rests if rest.history is request.history)
-    told = replace(
+    after = replace(
         cell,
         starts=zero.starts,
         evaluations=zero.evaluations,
         seconds=zero.seconds + time.process_time() - began,
         notes=(*zero.notes, request.friction_note(context), HISTORIES),
     )
-    return told, [RestSizeResult.of(rest) for rest in rests]
+    return after, [RestSizeResult.of(rest) for rest in rests]
 
 
 def _unmirrored(cell: RelaxedCell, context: Context) -> tuple[RelaxedCell, RelaxedRepeat | None]:
     """A mirrored shape that knows whether it is a minimum, and the one it leads to otherwise."""
     if not isinstance(cell, RelaxedRepeat):
         return cell, None
-    found = lowest(cell, cancelled=context.cancelled)
-    if found.mirrored is None:
-        return found, None
+    lower = lowest(cell, cancelled=context.cancelled)
+    if lower.mirrored is None:
+        return lower, None
     note = (
         "This shape is a minimum only among mirrored ones: without the symmetries it leaves for "
-        f"one with {1.0 - found.energy_n_mm / cell.energy_n_mm:.1%} less energy, "
-        f"{found.cell_course_mm:.2f} x {found.cell_wale_mm:.2f} mm a stitch."
+        f"one with {1.0 - lower.energy_n_mm / cell.energy_n_mm:.1%} less energy, "
+        f"{lower.cell_course_mm:.2f} x {lower.cell_wale_mm:.2f} mm a stitch."
     )
-    return replace(cell, minimum=False, notes=(*cell.notes, note)), found
+    return replace(cell, minimum=False, notes=(*cell.notes, note)), lower
 
 
 def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> FoundGauge | None:
@@ -260,13 +266,13 @@ def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> Foun
     usual = RelaxRequest(
         chart=request.chart, material=request.material, convention=request.convention
     )
-    asked = request.model_copy(update={"fresh": False, "centre_lines": False})
+    plain = request.model_copy(update={"fresh": False, "centre_lines": False})
     alike = usual, usual.model_copy(update={"branch": Branch.MIRRORED})
     material, repeat = context.material(request.material), request.repeat()
     known = (
         result if result.branch is Branch.MIRRORED or not has_mirrors(repeat) else result.mirrored
     )
-    if known is None or asked not in alike:
+    if known is None or plain not in alike:
         return None
     if not material.is_simulated or pure_fabric(repeat) is not None:
         return None

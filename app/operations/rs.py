@@ -26,10 +26,10 @@ class RSSegment(ResultModel):
     """The connecting segments of one direction."""
 
     parity: Parity
-    separation_mm: float = Field(description="lambda, distance of the segment's ends.")
-    length_mm: float = Field(description="L, yarn between them.")
-    slope: float = Field(description="v, the ends' tangent across the line between them.")
-    angle_rad: float | None = Field(description="phi, tilt out of the cloth; odd segments only.")
+    separation_mm: float = Field(description="Distance of the segment's ends, lambda.")
+    length_mm: float = Field(description="Length L of the yarn between them.")
+    slope: float = Field(description="Slope v of the ends' tangent across the line between them.")
+    angle_rad: float | None = Field(description="Tilt phi out of the cloth; odd segments only.")
     delta: float
     rigidity_n_per_mm: float
     modulus_n_per_mm: float
@@ -54,10 +54,10 @@ def rs(request: RSRequest, context: Context) -> RSResult:
     """Moduli from segments as springs in series and in parallel, with the paper's values."""
     del context
     fabrics = {}
-    for fabric, found in rs_fabrics(request.material).items():
-        segments = {d: found.segment(d) for d in Direction}
+    for fabric, model in rs_fabrics(request.material).items():
+        segments = {d: model.segment(d) for d in Direction}
         fabrics[fabric] = RSFabricResult.of(
-            found,
+            model,
             segments={
                 d: RSSegment.of(
                     s.geometry,
@@ -74,8 +74,8 @@ def rs(request: RSRequest, context: Context) -> RSResult:
 
 def _lines(result: RSResult) -> list[str]:
     lines = [f"{'':24}{'Y N/mm':>9} {'published':>10}   segment"]
-    for fabric, found in result.fabrics.items():
-        for direction, s in found.segments.items():
+    for fabric, model in result.fabrics.items():
+        for direction, s in model.segments.items():
             published = "" if s.published_n_per_mm is None else f"{s.published_n_per_mm:.3f}"
             angle = "" if s.angle_rad is None else f", phi {s.angle_rad:.3f}"
             lines.append(

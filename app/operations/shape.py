@@ -39,7 +39,7 @@ class ShapeRequest(LawsRequest):
 
     material: MaterialName
     direction: Direction = Field(Direction.WALE, description="Direction of the pull.")
-    strain: float = Field(gt=0, le=5, description="From clamp to clamp: 0.3 is 30 %.")
+    strain: float = Field(gt=0, le=5, description="Strain from clamp to clamp: 0.3 is 30 %.")
     width: list[Width] = Field(
         min_length=3,
         max_length=1000,
@@ -49,14 +49,21 @@ class ShapeRequest(LawsRequest):
     across: int = Field(ge=3, le=1000, description="Stitches in a line.")
     repeats: Extent = "small"
     smallest_band: int = Field(4, ge=1, le=100, description="Fewest lines in a band.")
-    seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
+    seed: int = Field(
+        0,
+        ge=0,
+        le=2**32 - 1,
+        description="Seed of random choices: the same one gives the same chart.",
+    )
 
 
 class BandResult(ResultModel):
     """A band of lines of one repeat."""
 
     repeat: RepeatText
-    first: int = Field(ge=1, description="Its first line: from 1, at the bottom or the left.")
+    first: int = Field(
+        ge=1, description="First line of the band, counted from 1 at the bottom or the left."
+    )
     lines: int
 
 
@@ -83,7 +90,7 @@ def shape(request: ShapeRequest, context: Context) -> ShapeResult:
 
 
 def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResult:
-    found = request.pass_to(
+    shaped = request.pass_to(
         fill_shape,
         np.array([np.nan if w is None else w for w in request.width], dtype=float),
         material=context.material(request.material),
@@ -92,11 +99,11 @@ def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResul
         cancelled=context.cancelled,
     )
     return ShapeResult.of(
-        found,
-        rows=found.chart.rows,
-        columns=found.chart.columns,
-        chart=found.chart.text,
-        wanted=found.target,
+        shaped,
+        rows=shaped.chart.rows,
+        columns=shaped.chart.columns,
+        chart=shaped.chart.text,
+        wanted=shaped.target,
     )
 
 

@@ -42,7 +42,7 @@ Array = NDArray[np.float32]
 MAX_STITCHES = 40_000
 """Largest chart of a test over REST, in stitches; the command line accepts larger ones."""
 MAX_VALUES = 60 * MAX_STITCHES
-"""Most stitches times steps over REST: the answer has seven numbers for each."""
+"""Largest number of stitches times steps over REST: the answer has seven numbers for each."""
 NEAR_LOCK_UP = 0.95
 
 
@@ -50,7 +50,7 @@ class StretchRequest(GaugedRequest):
     """A chart between two clamps, which hold the outermost stitches, and how it is pulled."""
 
     outline: OutlineInput = None
-    direction: Direction = Field(description="Along rows, or along columns.")
+    direction: Direction = Field(description="Direction of the pull: along rows, or along columns.")
     strain: float | None = Field(
         None,
         gt=0,
@@ -62,11 +62,14 @@ class StretchRequest(GaugedRequest):
     )
     steps: int = Field(12, ge=1, le=1000)
     clamps: Clamps = Field(
-        Clamps.CLAMPED, description="Ends gripped, or free to slide along the clamps."
+        Clamps.CLAMPED, description="Grip of the ends: held, or free to slide along the clamps."
     )
     model: EnergyModel = EnergyModel.FULL
     shear_modulus_n_per_mm: float | None = Field(
-        None, ge=1e-4, le=10, description="C_xyxy in N/mm; that of the laws by default."
+        None,
+        ge=1e-4,
+        le=10,
+        description="Shear modulus C_xyxy in N/mm; that of the laws by default.",
     )
     width_mm: float | None = Field(
         None, ge=1, le=10_000, description="Size course-wise; from the gauge by default."
@@ -87,9 +90,11 @@ class StitchFields(ResultModel):
 
     strain_course: StitchValues
     strain_wale: StitchValues
-    utilisation: StitchValues = Field(description="alpha * strain; 1 is the lock-up.")
+    utilisation: StitchValues = Field(
+        description="Nearness to the lock-up: alpha * strain; 1 is the lock-up."
+    )
     strain_course_interval: StitchEnds | None = Field(
-        None, description="Of the strain along the pull only."
+        None, description="Interval of the strain along the pull only."
     )
     strain_wale_interval: StitchEnds | None = None
     utilisation_interval: StitchEnds
@@ -123,7 +128,7 @@ class StretchCurve(IntervalResult):
     width_mm: float
     length_mm: float
     shear_modulus_assumed: bool = Field(
-        description="Whether C_xyxy is the paper's assumption rather than measured."
+        description="True if C_xyxy is the paper's assumption, not measured."
     )
     nearest_lock_up: NearestLockUp | None
     messages: list[str]
@@ -204,8 +209,10 @@ def _last_strain(sheet: Sheet, request: StretchRequest, context: Context) -> flo
                 clamps=request.clamps,
                 cancelled=context.cancelled,
             )
+        case None, None:
+            raise InputError("strain", "is missing.", "Give a strain or a force.")
         case _:
-            raise InputError("strain", "give either a strain or a force.", "Use one of the two.")
+            raise InputError("force_n", "strain is given as well.", "Give one of the two.")
 
 
 def _curve(request: StretchRequest, test: StripTest, margins: StretchMargins) -> StretchCurve:

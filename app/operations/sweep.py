@@ -42,14 +42,14 @@ _HOW = {
     True: "Pulled once from the state that shaking leaves, and released until free of force. The "
     "law is that of pulling.",
 }
-"""What was done with friction, by whether the way back was asked for."""
+"""Notes on friction, without and with the way back."""
 
 
 class SweepRequest(RubbedRequest):
     """A repeat, its yarn and the stretch."""
 
     branch: Branch = Branch.MIRRORED
-    direction: Direction = Field(description="Along rows, or along columns.")
+    direction: Direction = Field(description="Direction of the pull: along rows, or along columns.")
     max_strain: float = Field(gt=0, le=20, description="Largest strain: 0.5 is 50 %.")
     points: int = Field(25, ge=2, le=400)
     slide_quenching: bool = Field(
@@ -65,7 +65,7 @@ class SweepRequest(RubbedRequest):
 
     @property
     def has_friction(self) -> bool:
-        """Whether a coefficient is given, or the way back is asked for."""
+        """True if a coefficient is given, or the way back is asked for."""
         return self.friction is not None or self.there_and_back
 
     def _against_friction(self) -> Iterator[InputError]:
@@ -111,7 +111,9 @@ class SweepResult(IntervalResult):
     )
     transverse_strain: Floats
     stress_n_per_mm: Floats
-    energy_n_mm: Floats = Field(description="Of bending and contact, without losses to friction.")
+    energy_n_mm: Floats = Field(
+        description="Energy of bending and contact, without losses to friction."
+    )
     bending_share: Floats
     contact_share: Floats
     jumps: list[int] = Field(description="Points at which the shape changes abruptly.")
@@ -129,13 +131,13 @@ class SweepResult(IntervalResult):
         None, description="Energy lost there and back per area of fabric, N·mm/mm²."
     )
     lost_share: float | None = Field(
-        None, description="The same as a share of the work of the pull."
+        None, description="Energy lost, as a share of the work of the pull."
     )
     left_strain: float | None = Field(None, description="Strain that remains after the release.")
     law: SweptLaw | None
     converged: bool
     seconds: float = Field(description="CPU time of the solves, when they were first run.")
-    known: bool = Field(False, description="Whether the result was already stored.")
+    known: bool = Field(False, description="True if the result was already stored.")
     yarn: YarnResult
     notes: list[str]
 
@@ -177,7 +179,7 @@ def _result(
             )
             seconds += both[d].seconds
         law = fit_sweeps(both[Direction.COURSE], both[Direction.WALE])
-        notes += [note for found in both.values() for note in _jumps_fitted(found, law)]
+        notes += [note for sweep in both.values() for note in _jumps_fitted(sweep, law)]
     except KnitcoreError as error:
         if context.cancelled():
             raise
@@ -219,7 +221,7 @@ def _swept_law(fitted: SimulatedLaw) -> SweptLaw:
 
 
 def _pulling(zero: RelaxedCell, request: SweepRequest, context: Context) -> Callable[..., Sweep]:
-    """How the relaxed repeat is pulled: with friction if the request has any."""
+    """The function that pulls the relaxed repeat, with friction if the request has any."""
     if request.friction is not None:
         return partial(
             pull, on_splines(zero), coefficient=request.friction, cancelled=context.cancelled

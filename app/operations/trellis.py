@@ -20,7 +20,7 @@ class TrellisRequest(PieceTestRequest):
     """A square and how far it is sheared."""
 
     angle_deg: float = Field(
-        gt=0, le=68, description="How far the frame's right angle closes at the last step."
+        gt=0, le=68, description="Angle by which the frame's right angle closes at the last step."
     )
     side_mm: Size = Field(100.0, description="Side of the square.")
     grain_deg: float = Field(

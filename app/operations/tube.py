@@ -30,7 +30,7 @@ class TubeRequest(StitchRequest):
         le=MAX_WALES,
         description="Stitches around, a multiple of the repeat's columns.",
     )
-    face_outside: bool = Field(True, description="Whether the face is outside.")
+    face_outside: bool = Field(True, description="Knit the tube with its face outside.")
 
 
 class TubeResult(IntervalResult):
@@ -39,13 +39,15 @@ class TubeResult(IntervalResult):
     kind: Literal["tube"] = "tube"
     wales: int
     face_outside: bool
-    diameter_mm: float = Field(description="Of the surface at the mean height of the yarn.")
+    diameter_mm: float = Field(
+        description="Diameter of the surface at the mean height of the yarn."
+    )
     diameter_interval_mm: Ends = Field(description="90 % interval for knitted cloth.")
     cell_course_mm: float = Field(description="Width of a stitch, around on that surface.")
     cell_course_interval_mm: Ends
     cell_wale_mm: float = Field(description="Height of a stitch.")
     cell_wale_interval_mm: Ends
-    energy_n_mm: float = Field(description="Of a stitch.")
+    energy_n_mm: float = Field(description="Energy of a stitch.")
     flat_course_mm: float = Field(description="Width of a stitch of the flat fabric.")
     flat_wale_mm: float
     flat_energy_n_mm: float
@@ -71,7 +73,7 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
     flat = relax(
         repeat, used.yarn, used.loop_length_mm, branch="mirrored", cancelled=context.cancelled
     )
-    found = in_the_round(
+    round_cell = in_the_round(
         flat, request.wales, face_outside=request.face_outside, cancelled=context.cancelled
     )
     leads_to = lowest(flat, cancelled=context.cancelled)
@@ -84,10 +86,10 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
         )
     around, up, across = (
         log_interval(size, YARN_LEVEL_SIZE_LOG_SD)
-        for size in (found.cell_course_mm, found.cell_wale_mm, found.diameter_mm)
+        for size in (round_cell.cell_course_mm, round_cell.cell_wale_mm, round_cell.diameter_mm)
     )
     return TubeResult.of(
-        found,
+        round_cell,
         cell_course_interval_mm=around,
         cell_wale_interval_mm=up,
         diameter_interval_mm=across,

@@ -32,7 +32,9 @@ class WholeRequest(StitchRequest):
         description="Stop when a round changes the energy by less than this part of it, and the "
         "sizes by less than ten times this part.",
     )  # fmt: skip
-    rounds: int = Field(40, ge=2, le=MAX_ROUNDS, description="Most rounds on each of two grids.")
+    rounds: int = Field(
+        40, ge=2, le=MAX_ROUNDS, description="Largest number of rounds on each of two grids."
+    )
     centre_lines: bool = Field(False, description="Return the centre lines of the yarn too.")
 
 
@@ -50,8 +52,8 @@ class WholeResult(IntervalResult):
     bending_share: float
     contact_share: float
     min_distance_mm: float
-    converged: bool = Field(description="Whether the last round met the tolerance.")
-    rounds: int = Field(description="On both grids together.")
+    converged: bool = Field(description="True if the last round met the tolerance.")
+    rounds: int = Field(description="Rounds on both grids together.")
     energy_change: float = Field(description="Part of the energy that the last round took away.")
     size_change: float = Field(
         description="Larger relative change of width and height in the last round."
@@ -60,17 +62,18 @@ class WholeResult(IntervalResult):
         description="Part of the energy that further rounds may take away: the last change times "
         "all rounds."
     )
-    largest_force_n: float = Field(description="That is left on the yarn.")
+    largest_force_n: float = Field(description="Largest force that is left on the yarn.")
     seconds: float = Field(description="CPU time since the job was last started.")
     yarn: YarnResult
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = Field(
-        None, description="Bottom course first; each runs once across the chart."
+        None,
+        description="Lines of the yarn, the bottom course first; each runs once across the chart.",
     )
 
 
 class KeptSheet(BaseModel):
-    """How far a chart has come."""
+    """Progress of a chart that is being relaxed."""
 
     controls: list[list[tuple[float, float, float]]]
     sizes_mm: list[float]
@@ -83,7 +86,7 @@ class KeptSheet(BaseModel):
 
     @classmethod
     def of(cls, sheet: WholeShape) -> KeptSheet:
-        """For storage."""
+        """The shape in a form that can be stored."""
         return cls(
             controls=sheet.controls.tolist(), sizes_mm=sheet.sizes_mm.tolist(),
             tension_n=sheet.tension_n.tolist(), core_radius_mm=sheet.core_radius_mm,
@@ -92,7 +95,7 @@ class KeptSheet(BaseModel):
         )  # fmt: skip
 
     def sheet(self) -> WholeShape:
-        """As the library takes it."""
+        """The shape as an object of the library."""
         return WholeShape(
             np.array(self.controls), np.array(self.sizes_mm), np.array(self.tension_n),
             self.core_radius_mm, self.fine, tuple(self.rounds), self.earlier, self.evaluations,
@@ -112,7 +115,7 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
         "asked": request.model_dump(mode="json", include={"flat", "convention"}),
     }
     before = context.kept.found(KeptSheet, inputs)
-    found = relax_whole(
+    relaxed = relax_whole(
         chart, used.yarn, used.loop_length_mm, convention=request.convention, flat=request.flat,
         tolerance=request.tolerance, rounds=request.rounds,
         resume=None if before is None else before.sheet(),
@@ -121,17 +124,17 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
     )  # fmt: skip
     after = 0 if before is None else before.earlier + len(before.rounds)
     resumed = f"Continued after {after} round{'' if after == 1 else 's'} of an earlier run."
-    course, wale = size_intervals(found)
+    course, wale = size_intervals(relaxed)
     return WholeResult.of(
-        found,
-        notes=[*found.notes, resumed] if after else [*found.notes],
+        relaxed,
+        notes=[*relaxed.notes, resumed] if after else [*relaxed.notes],
         rows=chart.rows,
         columns=chart.columns,
         cell_course_interval_mm=course,
         cell_wale_interval_mm=wale,
         interval_source=YARN_LEVEL_ERRORS,
         yarn=YarnResult.of_chart(used),
-        centre_lines_mm=[line.tolist() for line in found.centre_lines]
+        centre_lines_mm=[line.tolist() for line in relaxed.centre_lines]
         if request.centre_lines
         else None,
     )

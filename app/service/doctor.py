@@ -1,4 +1,4 @@
-"""What an installation needs: for ``knitcore doctor``, at the start, and for ``/readyz``."""
+"""Checks of an installation, for ``knitcore doctor``, at the start, and for ``/readyz``."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ class Check(BaseModel):
 
     name: str
     ok: bool
-    problem: str | None = Field(None, description="What is wrong.")
-    remedy: str | None = Field(None, description="The remedy.")
-    note: str | None = Field(None, description="What is good to know.")
+    problem: str | None = Field(None, description="Problem, in words.")
+    remedy: str | None = Field(None, description="Remedy, in words.")
+    note: str | None = Field(None, description="Further facts, in words.")
 
 
 class Checks(BaseModel):
@@ -50,9 +50,9 @@ class Checks(BaseModel):
 
 def examine(settings: Settings) -> Checks:
     """Look at settings, folder, database and cluster; changes nothing."""
-    found = _examine(settings, partial(_check_database, settings), _cluster_check(settings))
-    found.checks.append(_checked("service", partial(_holder, settings)))
-    return found
+    checks = _examine(settings, partial(_check_database, settings), _cluster_check(settings))
+    checks.checks.append(_checked("service", partial(_holder, settings)))
+    return checks
 
 
 def examine_start(settings: Settings, database: Database) -> Checks:

@@ -28,7 +28,7 @@ class Health(BaseModel):
 class Readiness(Health):
     """The service can work."""
 
-    checks: dict[str, bool] = Field(description="Whether each check passed, by its name.")
+    checks: dict[str, bool] = Field(description="Checks by name; true if the check passed.")
 
 
 class NotReadyError(UnavailableError):
@@ -37,39 +37,39 @@ class NotReadyError(UnavailableError):
     title = "Not ready"
 
 
-@router.get("/healthz", summary="Whether the service is up")
+@router.get("/healthz", summary="Check that the service is up")
 async def healthz() -> Health:
-    """Depends on nothing else: if this fails, restart the process."""
+    """Answer without database, disk or cluster: if this fails, restart the process."""
     return Health()
 
 
 @router.get(
     "/readyz",
-    summary="Whether the service can work",
+    summary="Check that the service can work",
     responses={503: {"model": Problem, "description": "What is missing."}},
 )
 async def readyz(request: Request) -> Readiness:
-    """The checks of `knitcore doctor` by name: while this fails, send requests elsewhere.
+    """Run the checks of `knitcore doctor`: while this fails, send requests elsewhere.
 
     It fails without database, disk or cluster; `knitcore doctor` reports the rest.
     """
     state = request.app.state
     try:
         async with asyncio.timeout(PATIENCE_S):
-            found = await asyncio.to_thread(
+            report = await asyncio.to_thread(
                 examine_running, state.settings, state.database, state.cluster
             )
     except TimeoutError:
         raise NotReadyError("The database or the cluster does not answer.") from None
-    for check in found.failed:
+    for check in report.failed:
         if check.name in NEEDED:
             raise NotReadyError(check.problem or check.name, remedy=check.remedy)
-    return Readiness(checks={check.name: check.ok for check in found.checks})
+    return Readiness(checks={check.name: check.ok for check in report.checks})
 
 
 @router.get("/metrics", summary="Numbers for Prometheus", response_class=Response)
 def metrics(request: Request) -> Response:
-    """Requests, times, jobs, views and the process itself.
+    """Report requests, times, jobs, views and the process itself.
 
     Where users have logins of their own, they need the token of the settings.
     """

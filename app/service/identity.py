@@ -7,7 +7,7 @@ from contextvars import ContextVar
 LOCAL_USER = "local"
 """The user of this machine, while the service asks for no login."""
 NOBODY = "-"
-"""In the log, for requests whose token or session is not known."""
+"""Name in the log for requests whose token or session is not known."""
 
 current_user: ContextVar[str] = ContextVar("current_user", default=LOCAL_USER)
 current_session: ContextVar[str] = ContextVar("current_session", default="")

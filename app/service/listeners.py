@@ -44,7 +44,7 @@ class Listeners(Generic[News]):
             loop.call_soon_threadsafe(queue.put_nowait, news)
 
     def count(self, name: str) -> int:
-        """How many listen to a name."""
+        """Number of listeners to a name."""
         return len(self._listeners.get(name, ()))
 
     def __len__(self) -> int:

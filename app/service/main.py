@@ -193,7 +193,7 @@ def _cluster(settings: Settings) -> Cluster | None:
 
 
 def _workers(settings: Settings, cluster: Cluster | None) -> list[Worker]:
-    """Where heavy work is done."""
+    """Workers that do the heavy work."""
     if cluster is not None:
         from .compute.cluster import ClusterWorker
 

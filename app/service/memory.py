@@ -1,4 +1,4 @@
-"""How much memory there is, and returning what is not used to the system."""
+"""Memory of the machine, and the return of unused memory to the system."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import gc
 import os
 
 M_MMAP_THRESHOLD = -3
-"""Of glibc's malloc.h."""
+"""Parameter of ``mallopt``, from glibc's malloc.h."""
 LARGE_BYTES = 1_000_000
 
 
@@ -17,7 +17,7 @@ def machine_bytes() -> int:
 
 
 def keep_no_large_blocks() -> None:
-    """Before the start: have the memory of results and uploads returned when they are freed.
+    """Have the memory of results and uploads returned when they are freed; call before the start.
 
     glibc would otherwise keep such blocks for reuse once it has seen one freed.
     """
@@ -27,7 +27,7 @@ def keep_no_large_blocks() -> None:
 
 
 def freeze_loaded_objects() -> None:
-    """After the start: exclude existing objects from garbage collection, since they stay."""
+    """Exclude existing objects, which stay, from garbage collection; call after the start."""
     gc.collect()
     gc.freeze()
 

@@ -108,13 +108,13 @@ MAX_FAULTS = 100
 class Fault(BaseModel):
     """One thing that is wrong with a request."""
 
-    detail: str = Field(description="What is wrong, in words.")
-    field: str | None = Field(None, description="The input that is to blame.")
-    remedy: str | None = Field(None, description="What would be accepted.")
+    detail: str = Field(description="Problem, in words.")
+    field: str | None = Field(None, description="Input that is to blame.")
+    remedy: str | None = Field(None, description="Remedy: an input that would be accepted.")
 
 
 class Problem(BaseModel):
-    """What every error response looks like."""
+    """Body of every error response."""
 
     type: Annotated[str, BeforeValidator(type_uri)] = Field(
         description="The kind of problem: the address of a page about it.",
@@ -122,16 +122,16 @@ class Problem(BaseModel):
     )
     title: str
     status: int
-    detail: str = Field(description="What is wrong, in words.")
-    field: str | None = Field(None, description="The input that is to blame.")
-    remedy: str | None = Field(None, description="What would be accepted.")
+    detail: str = Field(description="Problem, in words.")
+    field: str | None = Field(None, description="Input that is to blame.")
+    remedy: str | None = Field(None, description="Remedy: an input that would be accepted.")
     most: float | None = Field(
         None, description="The largest number that the field would accept, where that is known."
     )
     errors: list[Fault] = Field(
         [],
-        description=f"Of inputs that cannot be used: all that is wrong, at most {MAX_FAULTS}; "
-        "`field`, `detail` and `remedy` are those of the first.",
+        description=f"Faults of inputs that cannot be used, at most {MAX_FAULTS}; `field`, "
+        "`detail` and `remedy` above are those of the first.",
     )
 
 
@@ -212,7 +212,7 @@ class NoRoomError(UnavailableError):
 
 
 class NotFoundError(ServiceError):
-    """It does not exist, or belongs to another user."""
+    """Error: the thing does not exist, or belongs to another user."""
 
     status, type, title = 404, "not-found", "Not found here"
 

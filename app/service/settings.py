@@ -35,7 +35,7 @@ NO_SETTINGS = frozenset(
 
 
 class Settings(BaseSettings):
-    """How the service runs."""
+    """Settings of the service."""
 
     model_config = SettingsConfigDict(env_prefix="KNITCORE_", frozen=True)
 
@@ -46,7 +46,7 @@ class Settings(BaseSettings):
     )
     require_login: bool = Field(
         False,
-        description="Whether every user must bring a token of their own (`knitcore token create`).",
+        description="Require of every user a token of their own (`knitcore token create`).",
     )
     requests_per_s: float = Field(
         50.0, gt=0, description="Requests per second of one user, where a login is required."
@@ -145,7 +145,7 @@ class Settings(BaseSettings):
 
     @cached_property
     def is_loopback(self) -> bool:
-        """Whether the service can only be reached from this machine."""
+        """True if the service can only be reached from this machine."""
         if self.host == "localhost":
             return True
         try:
@@ -155,7 +155,7 @@ class Settings(BaseSettings):
 
     @property
     def asks_for_login(self) -> bool:
-        """Whether requests need a token or a session."""
+        """True if requests need a token or a session."""
         return self.token is not None or self.require_login
 
     @property

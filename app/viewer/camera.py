@@ -10,17 +10,18 @@ import viser
 from knitcore.base.arrays import Array
 
 FIELD_OF_VIEW = 0.5
-"""Vertical, radians: a long lens, so that loops at the edge look like those in the middle."""
+"""Vertical angle of view, radians: a long lens, so that loops at the edge look like those in the
+middle."""
 ASPECT = 1.25
 """Width over height of the view that a fabric must fit in; panels are rarely narrower."""
 MARGIN = 1.3
 """Room around the fabric, over its size."""
 LIFT = 0.08
-"""So much of the view's half height lies the fabric below its middle: tools lie over its top."""
+"""Shift of the fabric downwards, over half the view's height: the toolbar covers the top."""
 FARTHEST = 900.0
 """Units that a camera can go back: browsers draw nothing that is 1000 units away."""
 MOVED = 1e-3
-"""Relative change of place by which a camera is not where it was put any more."""
+"""Relative change of place from which a camera counts as moved by its user."""
 
 
 class CameraSide(StrEnum):

@@ -1,4 +1,4 @@
-"""Which stitch of a 3D view was clicked."""
+"""Stitches that clicks in a 3D view mean."""
 
 from __future__ import annotations
 

@@ -42,8 +42,8 @@ class ShownStitches:
     """The stitches of a scene.
 
     A shape keeps its node: a stretch, a colour or a stroke moves stitches from node to node, and
-    browsers build what is new. They go on showing what is not wanted any more until they have
-    built the rest (frontend/viser/frame.js).
+    browsers build what is new. They show removed nodes until they have built the rest
+    (frontend/viser/frame.js).
     """
 
     def __init__(self, server: viser.ViserServer) -> None:
@@ -126,15 +126,15 @@ def _move(handle: Any, copies: dict[str, Any]) -> None:
 def _distinct(shapes: StitchShapes) -> StitchShapes:
     """Every shape once."""
     count, *size = shapes.lines.shape
-    found, number = np.unique(
+    distinct, number = np.unique(
         shapes.lines.astype(np.float32).reshape(count, -1), axis=0, return_inverse=True
     )
-    lines = found.astype(float).reshape(-1, *size)
+    lines = distinct.astype(float).reshape(-1, *size)
     return replace(shapes, lines=lines, index=number.ravel()[shapes.index])
 
 
 def _copies(scene: FabricScene, middle_mm: Array, drawn: Array) -> dict[str, Any]:
-    """What viser takes of every stitch, in the order of the chart's cells.
+    """Make viser's arguments for every stitch, in the order of the chart's cells.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import msgspec
 
 MAX_BYTES = 64_000
-"""Of a message; clicks and cameras have less than 1,000."""
+"""Largest size of a message; clicks and cameras have less than 1,000 bytes."""
 MAX_PICTURE_BYTES = 16_000_000
 PER_S, BURST = 300.0, 1_200
 """Messages of one browser; while the view is turned it sends one a frame."""
@@ -54,7 +54,7 @@ class WantedPicture:
 
 
 class _Camera(msgspec.Struct, tag_field="type", tag="ViewerCameraMessage"):
-    """Where the browser looks from."""
+    """The place from which the browser looks."""
 
 
 class _Pointer(msgspec.Struct, tag_field="type", tag="ScenePointerMessage"):
@@ -78,15 +78,15 @@ class _Picture(
 _decoder = msgspec.msgpack.Decoder(_Camera | _Pointer | _Click | _Picture)
 
 
-def passed_on(data: bytes | str, wanted: WantedPicture | None) -> bytes | None:
-    """What viser gets of a browser's message; None if nothing.
+def passed_on(data: bytes | str, picture: WantedPicture | None) -> bytes | None:
+    """Return the part of a browser's message that viser gets; None if nothing.
 
     Raises
     ------
     RefusedMessageError
         If it is larger than any that a page sends, or a picture other than that asked for.
     """
-    if len(data) > (MAX_BYTES if wanted is None else MAX_PICTURE_BYTES):
+    if len(data) > (MAX_BYTES if picture is None else MAX_PICTURE_BYTES):
         raise RefusedMessageError("the message is too large")
     if isinstance(data, str):
         return None
@@ -98,7 +98,7 @@ def passed_on(data: bytes | str, wanted: WantedPicture | None) -> bytes | None:
         if len(data) > MAX_BYTES:
             raise RefusedMessageError("the message is too large")
         return data
-    if wanted is None:
+    if picture is None:
         return None
-    wanted.accept(message.payload)
+    picture.accept(message.payload)
     return msgspec.msgpack.encode(_Picture(ONE_PIXEL, message.render_uuid))

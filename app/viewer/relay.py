@@ -25,7 +25,7 @@ log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
 OPENING_S = 8.0
-"""So long a browser waits for a view: its page is loaded while the first scene is being made."""
+"""Time for which a browser waits for a view: its page may load before its first scene is made."""
 LOOK_AGAIN_S = 0.05
 ENDS = (NoneType, asyncio.CancelledError, WebSocketDisconnect, websockets.ConnectionClosed)
 """Ends of the two directions of a connection, whichever side left."""
@@ -117,7 +117,7 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
             try:
                 if rate.take("")[1]:
                     raise RefusedMessageError("too many messages")
-                kept = passed_on(data, view.wanted)
+                kept = passed_on(data, view.picture)
             except RefusedMessageError as refused:
                 log.warning("a browser's connection to a view is closed: %s", refused)
                 code = 1008

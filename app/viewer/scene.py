@@ -256,9 +256,9 @@ def round_length_mm(width_mm: float) -> float:
     >>> round_length_mm(106.0), round_length_mm(520.0), round_length_mm(9.0)
     (20.0, 100.0, 1.0)
     """
-    wanted = width_mm / 5
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(power * max(step for step in (1, 2, 5) if power * step <= wanted * (1 + 1e-9)))
+    length = width_mm / 5
+    power = 10.0 ** np.floor(np.log10(length))
+    return float(power * max(step for step in (1, 2, 5) if power * step <= length * (1 + 1e-9)))
 
 
 def _room(ground: Ground) -> tuple[float, ...]:

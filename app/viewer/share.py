@@ -26,7 +26,7 @@ PAGE_POLICY = (
 
 
 class NoPictureError(ServiceError):
-    """No picture of the view can be taken now."""
+    """Error: no picture of the view can be taken now."""
 
     status, type, title = 409, "conflict", "No picture can be taken"
 
@@ -46,17 +46,17 @@ def picture_png(view: View, width: int, height: int) -> bytes:
         )
     if not view.picturing.acquire(blocking=False):
         raise NoPictureError("Another picture of this view is being taken.", remedy="Wait for it.")
-    view.wanted = wanted = WantedPicture(width, height)
+    view.picture = picture = WantedPicture(width, height)
     try:
         clients[-1][1].get_render(height, width, transport_format="png", timeout=PICTURE_TIMEOUT_S)
     except (TimeoutError, RuntimeError, ConnectionError) as error:
         raise _silent() from error
     finally:
-        view.wanted = None
+        view.picture = None
         view.picturing.release()
-    if wanted.content is None:
+    if picture.content is None:
         raise _silent()
-    return wanted.content
+    return picture.content
 
 
 def _silent() -> NoPictureError:

@@ -26,34 +26,34 @@ MAX_SHARED_STITCHES = 40_000
 class SharedViewRequest(ViewRequest):
     """A design, as it lies or with its stretch test as an animation."""
 
-    animated: bool = Field(False, description="All steps of the stretch test, not only the one.")
+    animated: bool = Field(False, description="Show all steps of the stretch test, not only one.")
     dark: bool = Field(False, description="Dark background of a page.")
 
 
-Found = StretchView | PosedView | None
-"""What the view shows of a stretch test or a shape that was computed before."""
+Computed = StretchView | PosedView | None
+"""Data for the view of a stretch test or a shape that was computed before."""
 
 
 # These run in workers.
 
 
 def shared_page(
-    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """A page that needs neither the service nor the network."""
-    scenes = _scenes(request, found, Context(data_dir, cancelled=cancelled))
+    scenes = _scenes(request, computed, Context(data_dir, cancelled=cancelled))
     return page_html(scenes, dark=request.dark).encode()
 
 
 def shared_recording(
-    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """A ``.viser`` recording."""
-    return recording(_scenes(request, found, Context(data_dir, cancelled=cancelled)))
+    return recording(_scenes(request, computed, Context(data_dir, cancelled=cancelled)))
 
 
 def shared_solid(
-    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """The yarn as binary glTF.
 
@@ -63,12 +63,12 @@ def shared_solid(
         If there are too many stitches for a solid of use.
     """
     _check_size(request, MAX_SOLID)
-    return solid_glb(build_scene(request, found, Context(data_dir, cancelled=cancelled)))
+    return solid_glb(build_scene(request, computed, Context(data_dir, cancelled=cancelled)))
 
 
 def shared_still(
     request: ViewRequest,
-    found: Found,
+    computed: Computed,
     data_dir: Path,
     width: int,
     height: int,
@@ -76,21 +76,23 @@ def shared_still(
     cancelled: Callable[[], bool],
 ) -> bytes:
     """A picture without background, with this many pixels: a PNG."""
-    scene = build_scene(request, found, Context(data_dir, cancelled=cancelled))
+    scene = build_scene(request, computed, Context(data_dir, cancelled=cancelled))
     return still_png(scene.drawing(), width, height)
 
 
-def _scenes(request: SharedViewRequest, found: Found, context: Context) -> Iterator[FabricScene]:
+def _scenes(
+    request: SharedViewRequest, computed: Computed, context: Context
+) -> Iterator[FabricScene]:
     _check_size(request, MAX_SHARED_STITCHES)
-    scene = build_scene(request, found, context)
-    if not request.animated or request.stretch is None or not isinstance(found, StretchView):
+    scene = build_scene(request, computed, context)
+    if not request.animated or request.stretch is None or not isinstance(computed, StretchView):
         yield scene
         return
-    for step in range(len(found.positions_mm)):
+    for step in range(len(computed.positions_mm)):
         if context.cancelled():
             return
         at = StretchStep(id=request.stretch.id, step=step)
-        yield build_scene(request.model_copy(update={"stretch": at}), found, context)
+        yield build_scene(request.model_copy(update={"stretch": at}), computed, context)
 
 
 def _check_size(request: SharedViewRequest, most: int) -> None:

@@ -20,17 +20,17 @@ from ..drawing.fabric import Drawing
 from .camera import FIELD_OF_VIEW, CameraSide, stand
 
 SPACING = 0.5
-"""Of the balls that a yarn is drawn as, over its radius."""
+"""Distance between the balls that draw a yarn, over its radius."""
 CLOSEST = 1.0
-"""Pixels between balls at least."""
+"""Least distance between balls, pixels."""
 FINE = 1_000_000
-"""A picture of so few dots is drawn twice as large, and made smaller: its edges are smooth."""
+"""A picture with fewer dots than this is drawn twice as large and reduced, for smooth edges."""
 LIGHT = np.array([-70.0, 100.0, 90.0]) / np.linalg.norm([-70.0, 100.0, 90.0])
-"""Towards the upper left, as in the view."""
+"""Direction of the light: from the upper left, as in the view."""
 FROM_AROUND, FROM_LIGHT = 0.42, 1.05
 """Light of the sky and of the lamp, over what the yarn throws back of it."""
 BURIED = 0.35
-"""So much darker is yarn at the back of the fabric."""
+"""Darkening of yarn at the back of the fabric, 0 to 1."""
 
 
 def still_png(drawing: Drawing, width: int, height: int) -> bytes:
@@ -59,7 +59,7 @@ def still_png(drawing: Drawing, width: int, height: int) -> bytes:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class _Eye:
-    """From where the picture is taken.
+    """The place from which the picture is taken.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ class _Eye:
 
     @property
     def pixels_per_mm(self) -> float:
-        """At the middle of the scene."""
+        """Scale at the middle of the scene."""
         return self.focal / float(np.linalg.norm(self.place_mm))
 
     def seen(self, points_mm: Array) -> Array:
@@ -150,8 +150,12 @@ def _balls(drawing: Drawing, eye: _Eye) -> _Balls:
 
 
 def _body(drawing: Drawing, eye: _Eye) -> tuple[Floats, Array]:
-    """What the fabric rests on: its height towards the eye at every pixel, (height, width), -inf
-    where it is not, and the light that these pixels send, (pixels, 3) of 0 to 1.
+    """Picture of the body on which the fabric rests.
+
+    Returns
+    -------
+    Height towards the eye at every pixel, (height, width), -inf outside the body, and the light
+    that the body's pixels send, (pixels, 3) of 0 to 1.
     """
     depth = np.full((eye.height, eye.width), -np.inf, np.float32)
     body = drawing.part.body

@@ -30,7 +30,7 @@ class View:
     Attributes
     ----------
     watchers, coarse : browsers that show it, and those of them that draw without a GPU.
-    wanted : the picture that a browser was asked for, if one was.
+    picture : the picture that a browser was asked for, if one was.
     picturing : held by who takes a picture.
     stitches : of the chart it shows; memory grows with them.
     """
@@ -39,7 +39,7 @@ class View:
     writer: SceneWriter
     watchers: int = 0
     coarse: int = 0
-    wanted: WantedPicture | None = None
+    picture: WantedPicture | None = None
     picturing: threading.Lock = field(default_factory=threading.Lock)
     last_used: float = field(default_factory=time.monotonic)
     stitches: int = 0

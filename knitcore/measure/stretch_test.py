@@ -277,6 +277,12 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
     InputError
         If a file says that it was pulled in the other direction, or both are the same test.
     """
+    if _same_points(course, wale):
+        raise InputError(
+            "test_wale",
+            f"{wale.source} holds the same points as {course.source}.",
+            "Give one test course-wise and one wale-wise.",
+        )
     stated = {d: stated_direction(t) for d, t in zip(Direction, (course, wale), strict=True)}
     for direction, test in zip(Direction, (course, wale), strict=True):
         said = stated[direction]
@@ -287,12 +293,6 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
                 "Give the test pulled along the rows (x) first and the one along the columns (y)"
                 " second.",
             )
-    if _same_points(course, wale):
-        raise InputError(
-            "test_wale",
-            f"{wale.source} holds the same points as {course.source}.",
-            "Give one test course-wise and one wale-wise.",
-        )
     samples = [_sample_name(test.description) for test in (course, wale)]
     if all(samples) and samples[0] != samples[1]:
         return (

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["figure", "view"]
 
-_HOMES = {"figure": "figures", "view": "space"}
+_HOMES = {"figure": "result_figures", "view": "figure_in_space"}
 
 
 def __getattr__(name: str) -> Any:

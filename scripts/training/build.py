@@ -91,7 +91,7 @@ def _all() -> dict[str, TrainingTask]:
 
 
 def _tried(entry: Document) -> bool:
-    """Whether it was to be stretched: with or without success."""
+    """Tell whether a relaxation was to be stretched, with or without success."""
     return "failure" in entry or "law" in entry
 
 
@@ -135,12 +135,12 @@ def pack(keep: Path, file: Path) -> int:
 
     The order does not depend on the order in which tasks end. Returns the number of entries.
     """
-    found = {_name(entry): entry for entry in read_library(file)["entries"]}
+    entries = {_name(entry): entry for entry in read_library(file)["entries"]}
     for path in keep.glob("*.json"):
         entry = _packed(json.loads(path.read_text(encoding="utf-8")))
-        found[_name(entry)] = entry
-    update_library(file, entries=[found[name] for name in sorted(found)])
-    return len(found)
+        entries[_name(entry)] = entry
+    update_library(file, entries=[entries[name] for name in sorted(entries)])
+    return len(entries)
 
 
 def _name(entry: Document) -> tuple[str, str]:

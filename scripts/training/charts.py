@@ -76,15 +76,15 @@ def training_charts() -> dict[StitchChart, str]:
         "rib": _ribs(),
     }
     rounds = zip_longest(*([(kind, c) for c in charts] for kind, charts in kinds.items()))
-    found: dict[StitchChart, str] = {}
+    kind_of: dict[StitchChart, str] = {}
     for entry in chain.from_iterable(rounds):
         if entry is None:
             continue
         kind, chart = entry
         repeat = chart.canonical()
         if repeat.stitches <= MAX_STITCHES:
-            found.setdefault(repeat, kind)
-    return found
+            kind_of.setdefault(repeat, kind)
+    return kind_of
 
 
 def drawn_charts() -> list[StitchChart]:

@@ -38,13 +38,13 @@ class RawCurve:
         """Strain where a stress is first reached; nan beyond the end."""
         reached = np.maximum.accumulate(self.stress_n_per_mm)
         first = np.searchsorted(reached, stress_n_per_mm)
-        found = np.full(np.shape(stress_n_per_mm), np.nan)
+        strain = np.full(np.shape(stress_n_per_mm), np.nan)
         inside = (first > 0) & (first < len(reached))
         i = first[inside]
         low, high = self.stress_n_per_mm[i - 1], self.stress_n_per_mm[i]
         part = (stress_n_per_mm[inside] - low) / (high - low)
-        found[inside] = self.strain[i - 1] + part * (self.strain[i] - self.strain[i - 1])
-        return found
+        strain[inside] = self.strain[i - 1] + part * (self.strain[i] - self.strain[i - 1])
+        return strain
 
     def poisson(self, most_stress_n_per_mm: float = 0.3) -> float:
         """Slope of the contraction over the strain, up to a stress."""

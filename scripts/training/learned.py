@@ -36,7 +36,7 @@ from knitcore.yarn.library.store import MATERIALS, stored_charts, stored_stitch
 from knitcore.yarn.model.yarn_model import YarnModel
 from scripts.training.entries import TrainingEntry, training_entries
 
-FILE = Path(__file__).parents[2] / "knitcore" / "answer" / "data" / "learned.npz"
+FILE = Path(__file__).parents[2] / "knitcore" / "prediction" / "data" / "learned.npz"
 
 NUMBER_CENTRE = np.array([np.log(0.056), np.log(0.0255), np.log(0.25), 2.65])
 NUMBER_SCALE = np.array([0.15, 0.12, 1.0, 0.25])
@@ -94,7 +94,7 @@ class Row:
 
     @property
     def pure(self) -> bool:
-        """Whether it is a pure fabric."""
+        """Tell whether the chart is a pure fabric."""
         return self.chart in _PURE
 
 
@@ -128,25 +128,25 @@ def rows() -> list[Row]:
     pure fabrics of the library's materials.
     """
     materials = simulated_materials()
-    found: dict[tuple[str, str], Row] = {}
+    by_chart: dict[tuple[str, str], Row] = {}
     for entry in training_entries():
         if entry.cell_mm is None or not entry.converged:
             continue
         key = entry.yarn_name, entry.chart.canonical().key
-        if key not in found or entry.curves:
+        if key not in by_chart or entry.curves:
             row = _row_of_entry(entry, materials)
             if row is not None:
-                found[key] = row
+                by_chart[key] = row
     for name in MATERIALS:
         for chart in stored_charts(name):
             key = name, chart.key
             stored = stored_stitch(chart, name)
-            if key in found or stored is None or not stored.converged or stored.law is None:
+            if key in by_chart or stored is None or not stored.converged or stored.law is None:
                 continue
             mixture, made_of = _mixture(chart, materials[name])
             size = stored.cell_course_mm, stored.cell_wale_mm
-            found[key] = _row(chart, name, mixture, made_of, size, *of_law(stored.law))
-    return [*found.values(), *_exact()]
+            by_chart[key] = _row(chart, name, mixture, made_of, size, *of_law(stored.law))
+    return [*by_chart.values(), *_exact()]
 
 
 def _exact() -> Iterator[Row]:
@@ -184,12 +184,12 @@ def _row_of_entry(entry: TrainingEntry, materials: dict[str, Material]) -> Row |
 def _mixture(
     chart: StitchChart, own: Material, yarn: YarnModel | None = None, loop_length_mm: float = 0.0
 ) -> tuple[Mixture, Densities]:
-    found = densities(chart)
-    mixture = Mixture.of(found.shares, own)
+    composition = densities(chart)
+    mixture = Mixture.of(composition.shares, own)
     if own.identifier not in MATERIALS and yarn is not None:  # one yarn for all fabrics
         numbers = yarn_numbers(yarn, loop_length_mm)
         mixture = Mixture(mixture.parts, numbers[:-1], float(np.exp(numbers[-1])))
-    return mixture, found
+    return mixture, composition
 
 
 def _row(
@@ -213,23 +213,23 @@ def _row(
     )
 
 
-def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
+def arrays_of(every: list[Row]) -> dict[str, NDArray[np.generic]]:
     """All arrays of the model."""
-    features = np.array([row.features for row in found])
+    features = np.array([row.features for row in every])
     scale = features.std(axis=0)
     scale /= np.repeat([_WEIGHTS[kind] for kind in FEATURES], list(FEATURES.values()))
-    charts = np.array([row.chart.key for row in found])
+    charts = np.array([row.chart.key for row in every])
     samples = Samples(
         features / scale,
-        (np.array([row.numbers for row in found]) - NUMBER_CENTRE) / NUMBER_SCALE,
-        np.array([row.pure for row in found]),
+        (np.array([row.numbers for row in every]) - NUMBER_CENTRE) / NUMBER_SCALE,
+        np.array([row.pure for row in every]),
     )
-    fold = np.array([row.fold for row in found])
-    unmirrored = np.array([row.unmirrored for row in found])
-    ratio = np.array([row.ratio for row in found])
-    follow = np.array([row.follows for row in found])
+    fold = np.array([row.fold for row in every])
+    unmirrored = np.array([row.unmirrored for row in every])
+    ratio = np.array([row.ratio for row in every])
+    follow = np.array([row.follows for row in every])
     swept = np.isfinite(ratio).all(axis=1)
-    uncertainty = np.array([row.uncertainty for row in found])
+    uncertainty = np.array([row.uncertainty for row in every])
     folds = _folds(charts)
 
     folding = _settings(samples, fold)
@@ -291,8 +291,8 @@ def _settings(samples: Samples, targets: Array) -> KernelSettings:
         fit = float(np.sum(scaled * cho_solve((factor, True), scaled)))
         return float(0.5 * fit + scaled.shape[1] * np.log(np.diag(factor)).sum())
 
-    found = minimize(cost, np.log(astuple(_START)), method="L-BFGS-B", bounds=_BOUNDS)
-    return KernelSettings(*map(float, np.exp(found.x)))
+    best = minimize(cost, np.log(astuple(_START)), method="L-BFGS-B", bounds=_BOUNDS)
+    return KernelSettings(*map(float, np.exp(best.x)))
 
 
 def _slopes(samples: Samples, fold: Array, ratio: Array, follow: Array) -> Array:
@@ -301,12 +301,12 @@ def _slopes(samples: Samples, fold: Array, ratio: Array, follow: Array) -> Array
     about = ratio[:, : along.shape[1]] - _FIRST_SLOPE * follow[:, : along.shape[1]] * along
     settings = _settings(samples, about[:, _TUNED])
     factor = cholesky(noisy_covariance(settings, samples), lower=True), True
-    found = []
+    slopes = []
     for values, by in zip(ratio.T, follow.T, strict=True):
         regressors = fold * by[:, None]
         weighted = cho_solve(factor, regressors)
-        found.append(np.linalg.solve(regressors.T @ weighted, weighted.T @ values))
-    return np.array(found)
+        slopes.append(np.linalg.solve(regressors.T @ weighted, weighted.T @ values))
+    return np.array(slopes)
 
 
 def _left_out(
@@ -333,8 +333,8 @@ def _scale(missed: Array, variance: Array, uncertainty: Array, coverage: Array) 
     part = of @ coverage / of.sum(axis=1)
     cost = np.concatenate([np.zeros(len(coverage)), part, 1 - part])
     met = np.hstack([of, np.eye(len(of)), -np.eye(len(of))])
-    found = [np.asarray(linprog(cost, A_eq=met, b_eq=one).x) for one in needed.T]
-    return np.transpose(found)[: len(coverage)]
+    scales = [np.asarray(linprog(cost, A_eq=met, b_eq=total).x) for total in needed.T]
+    return np.transpose(scales)[: len(coverage)]
 
 
 def _scattered(values: Array, rows_: NDArray[np.bool_]) -> Array:
@@ -369,8 +369,8 @@ def report(arrays: dict[str, NDArray[np.generic]]) -> Iterator[str]:
         ):
             for direction in Direction:
                 at = [len(STRESS_GRID) * direction.axis + i for i in _REPORTED_AT]
-                found = _factors(missed[of_kind][:, at], spread[of_kind][:, at])
-                yield f"  {direction} strain, {name}: {found}"
+                factors = _factors(missed[of_kind][:, at], spread[of_kind][:, at])
+                yield f"  {direction} strain, {name}: {factors}"
 
 
 _REPORTED_AT = (0, 2, 3, 5)
@@ -391,9 +391,9 @@ def kind_of(chart: StitchChart) -> str:
 def _factors(logs: Array, spread: Array) -> str:
     known = np.isfinite(logs).all(axis=1)
     off = np.abs(logs[known])
-    found = np.exp(np.quantile(off, (0.5, 0.9), axis=0))
+    factors = np.exp(np.quantile(off, (0.5, 0.9), axis=0))
     inside = (off <= Z_SCORE * spread[known]).mean(axis=0)
-    columns = zip(*found, inside, strict=True)
+    columns = zip(*factors, inside, strict=True)
     return " ".join(f"{median:.2f}/{most:.2f} ({cover:.0%})" for median, most, cover in columns)
 
 

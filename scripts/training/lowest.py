@@ -67,8 +67,8 @@ def lowest(task: LowestTask) -> Document:
     try:
         mirrored = relax(chart, task.yarn, task.loop_length_mm, branch="mirrored")
         if can_be_followed(mirrored):
-            found = without_mirrors(mirrored).state
-            states.append((found.energy_n_mm, found.cell_course_mm, found.cell_wale_mm))
+            relaxed = without_mirrors(mirrored).state
+            states.append((relaxed.energy_n_mm, relaxed.cell_course_mm, relaxed.cell_wale_mm))
     except KnitcoreError as error:
         failure = str(error)
     else:
@@ -92,18 +92,18 @@ def lowest(task: LowestTask) -> Document:
 def named_tasks() -> dict[str, LowestTask]:
     """All charts of the library that relaxed with mirrors, by key, in a mixed order."""
     entries = (entry for entry in training_entries() if entry.cell_mm is not None)
-    found = [LowestTask(e.yarn_name, e.chart.key, e.yarn, e.loop_length_mm) for e in entries]
-    return {task.key: task for task in sorted(found, key=lambda task: task.key[::-1])}
+    tasks = [LowestTask(e.yarn_name, e.chart.key, e.yarn, e.loop_length_mm) for e in entries]
+    return {task.key: task for task in sorted(tasks, key=lambda task: task.key[::-1])}
 
 
 def pack(keep: Path, file: Path) -> int:
     """Write what finished to a file, by yarn and chart; returns the number of charts."""
-    found = {}
+    documents = {}
     for path in keep.glob("*.json"):
         document = json.loads(path.read_text(encoding="utf-8"))
-        found[document.pop("name")] = document
-    update_library(file, lowest={name: found[name] for name in sorted(found)})
-    return len(found)
+        documents[document.pop("name")] = document
+    update_library(file, lowest={name: documents[name] for name in sorted(documents)})
+    return len(documents)
 
 
 def main() -> None:

@@ -115,7 +115,7 @@ def continuity() -> None:
 
 def _strains(charts: Iterable[StitchChart], direction: Direction) -> list[float]:
     acrylic = material("acrylic")
-    return [float(predict(one, acrylic).along(direction).strain(0.05)) for one in charts]
+    return [float(predict(chart, acrylic).along(direction).strain(0.05)) for chart in charts]
 
 
 if __name__ == "__main__":

@@ -6,7 +6,16 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 from knitcore import StitchChart
-from knitcore.cloth.cut import CutPiece, Held, PieceTest, Pulled, Sewn, cloth_under, solve
+from knitcore.cloth.cut import (
+    Condition,
+    CutPiece,
+    Held,
+    PieceTest,
+    Pulled,
+    Sewn,
+    cloth_under,
+    solve,
+)
 from knitcore.materials import material
 from studies.figures.plot import MUTED, chart, save
 
@@ -32,7 +41,7 @@ def collar() -> PieceTest:
         edges={"hem": (1,), "top": (3, 4), "hole": (6, 7, 8, 9)},
     )
     cloth = cloth_under(piece, StitchChart.parse("K"), material("acrylic"))
-    conditions = [Held("hem"), Pulled("top", y_n=1.5), Sewn("hole", 20.0)]
+    conditions: list[Condition] = [Held("hem"), Pulled("top", y_n=1.5), Sewn("hole", 20.0)]
     return solve(piece, cloth, conditions, mesh_mm=5.0)
 
 

@@ -28,8 +28,7 @@ WIDTH_IN, HEIGHT_IN = 5.8, 3.7
 def _tokens() -> dict[str, str]:
     """Colours of the page in its light theme, by name."""
     styles = (ROOT / "frontend" / "styles" / "tokens.css").read_text(encoding="utf-8")
-    light = styles.partition("data-theme")[0]
-    return dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", light))
+    return dict(re.findall(r"--([\w-]+): light-dark\((#[0-9a-f]{6}),", styles))
 
 
 TOKENS = _tokens()

@@ -41,8 +41,8 @@ def main() -> None:
     pictures["strips at 41.5 degrees: bending length"] = _profiles(lines)
     lines = {}
     for name, repeat in (("garter", "K/P"), ("1x1 rib", "KP")):
-        found = advice(_cloth("K"), _cloth(repeat), 0)
-        lines[f"{name} {1.2 * found.width_mm:.0f} mm wide"] = found.line_mm
+        border = advice(_cloth("K"), _cloth(repeat), 0)
+        lines[f"{name} {1.2 * border.width_mm:.0f} mm wide"] = border.line_mm
     pictures["stockinette between borders: on a table"] = _profiles(lines)
     save(pictures, IMAGES / "weight.png", across=3)
 

@@ -16,8 +16,8 @@ from knitcore.measure.uniaxial_files import read_stretch_test
 
 @pytest.mark.parametrize("fabric", Fabric)
 def test_the_library_reproduces_acrylics_raw_tests(study_data: Path, fabric: Fabric) -> None:
-    """Force within 10 % at .05, .1 and .2 N/mm; waist within .05, and within .02 beside what the
-    cloth widens as it becomes flat at the start of the pull.
+    """Force within 10 % at 0.05, 0.1 and 0.2 N/mm; waist within 0.05, and within 0.02 beside what
+    the cloth widens as it becomes flat at the start of the pull.
     """
     law = material("acrylic").law(fabric)
     for direction, axis in zip(Direction, "XY", strict=True):

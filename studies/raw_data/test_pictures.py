@@ -28,13 +28,13 @@ def pictures(study_data: Path) -> MeasuredField:
 def test_the_published_model_is_as_far_off_as_published(pictures: MeasuredField) -> None:
     """Rigid clamps: 0.58 % of the width at stretch 0.34 and 1.19 % at 0.61 were found before."""
     errors = compare(pictures, GARTER, Direction.WALE, model=SheetModel(EnergyModel.PUBLISHED))
-    found = [f.ux_rms_percent_width for f in errors.frames]
-    assert found == pytest.approx([0.29, 0.49, 0.76], abs=0.03)
+    per_cent = [f.ux_rms_percent_width for f in errors.frames]
+    assert per_cent == pytest.approx([0.29, 0.49, 0.76], abs=0.03)
 
 
 def test_a_calibration_extrapolates_to_a_picture_left_out(pictures: MeasuredField) -> None:
-    found = calibrate(pictures.only({9, 17}), GARTER, Direction.WALE)
-    errors = compare(pictures, found.law, Direction.WALE, edges=Edges.MEASURED)
+    calibrated = calibrate(pictures.only({9, 17}), GARTER, Direction.WALE)
+    errors = compare(pictures, calibrated.law, Direction.WALE, edges=Edges.MEASURED)
     assert [f.frame for f in errors.frames] == [9, 17, 25]
     assert max(f.ux_rms_percent_width for f in errors.frames) < 0.25
     assert max(f.uy_rms_percent_width for f in errors.frames) < 0.45

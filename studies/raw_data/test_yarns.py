@@ -15,11 +15,11 @@ def test_the_studys_photos(study_data: Path) -> None:
     """20 photos of acrylic yarn; published 45.15 ± 5.96, by another tracing 47.3 ± 10.4."""
     photos = sorted((study_data / "bending").glob("*_*.jpg"))
     lengths = [10.0 * float(p.name.split("_")[0]) for p in photos]
-    found = measure_bending(photos, linear_density_g_per_m=0.50, length_mm=lengths)
-    assert len(found.photos) == 20
-    assert 1000 * found.bending_modulus_n_mm2 == pytest.approx(47, abs=3)
-    assert found.standard_deviation is not None
-    assert 1000 * found.standard_deviation == pytest.approx(10, abs=2)
+    bent = measure_bending(photos, linear_density_g_per_m=0.50, length_mm=lengths)
+    assert len(bent.photos) == 20
+    assert 1000 * bent.bending_modulus_n_mm2 == pytest.approx(47, abs=3)
+    assert bent.standard_deviation is not None
+    assert 1000 * bent.standard_deviation == pytest.approx(10, abs=2)
 
 
 def test_the_studys_workbook(study_data: Path) -> None:

@@ -38,8 +38,8 @@ def framed(side: int) -> StitchChart:
 
 def squares(stitches: int) -> str:
     """A basket of squares of knits and purls."""
-    one, other = "K" * stitches + "P" * stitches, "P" * stitches + "K" * stitches
-    return "\n".join([one] * stitches + [other] * stitches)
+    first, second = "K" * stitches + "P" * stitches, "P" * stitches + "K" * stitches
+    return "\n".join([first] * stitches + [second] * stitches)
 
 
 PIECES: dict[str, Callable[[int], StitchChart]] = {
@@ -58,11 +58,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("sides", nargs="*", type=int, default=list(GOALS_S), metavar="SIDE")
     parser.add_argument("--only", choices=PIECES, action="append")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     yarn = material("acrylic")
     curl(tiled(squares(5), 20), yarn)
-    for side in asked.sides:
-        for name in asked.only or PIECES:
+    for side in options.sides:
+        for name in options.only or PIECES:
             chart = PIECES[name](side)
             wall = time.perf_counter()
             piece = curl(chart, yarn)

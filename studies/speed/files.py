@@ -44,7 +44,7 @@ def timed(work: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def there_and_back(chart: StitchChart, kind: ExportKind) -> bool:
-    """Whether a chart comes back from a file."""
+    """Tell whether a chart comes back from a file."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"chart{FORMATS[kind].suffix}"
         file.write_bytes(export_chart(chart, kind, WOOL).content)

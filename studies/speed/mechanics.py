@@ -30,12 +30,12 @@ def print_rows() -> None:
         for fabric, record in yarn.fabrics.items():
             if yarn.identifier == "glove-wool:glove":
                 continue  # repeats other rows
-            found = predict(StitchChart.of_fabric(fabric, 31, 31), yarn)
+            prediction = predict(StitchChart.of_fabric(fabric, 31, 31), yarn)
             pairs = [
-                (found.modulus_course_n_per_mm, record.printed["Y_x"].corrected),
-                (found.modulus_wale_n_per_mm, record.printed["Y_y"].corrected),
-                (found.poisson_yx, record.printed["nu_yx"].corrected),
-                (found.poisson_xy, record.printed["nu_xy"].corrected),
+                (prediction.modulus_course_n_per_mm, record.printed["Y_x"].corrected),
+                (prediction.modulus_wale_n_per_mm, record.printed["Y_y"].corrected),
+                (prediction.poisson_yx, record.printed["nu_yx"].corrected),
+                (prediction.poisson_xy, record.printed["nu_xy"].corrected),
             ]
             worst = max(worst, *(abs(a / b - 1) for a, b in pairs[:2]))
             rows += 1
@@ -47,9 +47,9 @@ def print_rows() -> None:
 def print_reduced_symmetry() -> None:
     print("Reduced symmetry: computed, published, ratio")
     for yarn in MATERIALS:
-        for fabric, found in rs_fabrics(yarn).items():
+        for fabric, reduced in rs_fabrics(yarn).items():
             for direction in Direction:
-                part = found.segment(direction)
+                part = reduced.segment(direction)
                 published = part.published_n_per_mm or float("nan")
                 print(
                     f"{yarn:8}{fabric:12}{direction:8}{part.geometry.parity:5}"

@@ -258,8 +258,10 @@ def shapes(browser: Browser, url: str) -> None:
         stroke(page, box, rng)
         if part := page.evaluate(FIRST_SHAPE):
             parts.append(part)
-    asked, answered, first = (statistics.median(part) for part in zip(*parts, strict=True))
-    print(f"a first shape is asked for after {asked:.0f} ms and answered after {answered:.0f} ms")
+    asked_ms, answered_ms, first = (statistics.median(part) for part in zip(*parts, strict=True))
+    print(
+        f"a first shape is requested after {asked_ms:.0f} ms, answered after {answered_ms:.0f} ms"
+    )
     report("end of a stroke to the first shape in the 3D view, median", first, "ms", 300)
     page.context.close()
 

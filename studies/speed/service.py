@@ -8,9 +8,10 @@ user may have are opened and dropped ten times. Every figure is printed with its
 code is 1 if one is missed. Each slice is printed with the time the disk alone takes to keep 4 kB:
 the pauses of a shared disk are in every stroke's time.
 
-    python benchmarks/service.py           (SECONDS=600 for ten minutes of painting,
-                                            FOLDER=/dev/shm to leave the disk out,
-                                            P95_MS=25 for the target on a quiet machine)
+    python -m studies.speed.service
+
+``SECONDS=600`` in the environment paints for ten minutes, ``FOLDER=/dev/shm`` leaves the disk out,
+and ``P95_MS=25`` sets the target of a quiet machine.
 """
 
 from __future__ import annotations
@@ -101,10 +102,10 @@ class Painter:
             due += 1 / STROKES_PER_S
 
     async def lost(self, client: httpx.AsyncClient) -> bool:
-        """Whether the service has another chart than was painted."""
-        found = (await client.get(f"/api/v1/designs/{self.design}")).json()
+        """Tell whether the service has another chart than was painted."""
+        stored = (await client.get(f"/api/v1/designs/{self.design}")).json()
         drawn = "\n".join(line.decode() for line in self.chart)
-        return bool(found["document"]["chart"] != drawn or found["revision"] != self.acknowledged)
+        return bool(stored["document"]["chart"] != drawn or stored["revision"] != self.acknowledged)
 
 
 def resident_mb(pid: int) -> float:
@@ -256,8 +257,8 @@ async def painting(client: httpx.AsyncClient, pid: int, figures: Figures) -> Non
     figures.report("strokes that were refused", sum(p.errors for p in painters), "", 0)
     figures.report("designs with a lost edit", lost, "", 0)
     failed = len([state for _, state in ended if state != "done"])
-    told = Counter(kind for kind, _ in ended)
-    print("      computed: " + ", ".join(f"{n} {kind}s" for kind, n in told.items()))
+    counts = Counter(kind for kind, _ in ended)
+    print("      computed: " + ", ".join(f"{n} {kind}s" for kind, n in counts.items()))
     figures.report(f"computations that failed, of {len(ended)}", failed, "", 0)
     grown = 100 * (resident_mb(pid) / warm - 1)
     figures.report(f"memory after {SECONDS:g} s of painting, from {warm:.0f} MB", grown, "%", 5)

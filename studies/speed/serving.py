@@ -1,4 +1,4 @@
-"""Run the real service in a process of its own, for benchmarks that ask it over HTTP."""
+"""Run the real service in a process of its own, for measurements over HTTP."""
 
 from __future__ import annotations
 

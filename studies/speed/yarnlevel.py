@@ -92,16 +92,16 @@ def cells(sides: list[int], charts: int) -> None:
             for name in ("acrylic", "cotton"):
                 entry = sample(name, "stockinette")
                 began = time.perf_counter()
-                one = [Start("usual")] if chart.stitches < ROUGH_FROM else None
-                found = relax(
-                    chart, entry.yarn, entry.loop_length_mm, starts=one, branch="mirrored"
+                usual = [Start("usual")] if chart.stitches < ROUGH_FROM else None
+                shape = relax(
+                    chart, entry.yarn, entry.loop_length_mm, starts=usual, branch="mirrored"
                 )
                 wall = time.perf_counter() - began
-                times.append(found.seconds)
-                state = "" if found.converged else "  not converged"
+                times.append(shape.seconds)
+                state = "" if shape.converged else "  not converged"
                 print(
-                    f"{f'{side} x {side}':9}{name:9}{seed:6}{found.seconds:9.3f}"
-                    f"{found.seconds / side**2:10.3f}{wall:9.3f}{found.energy_n_mm:10.6f}{state}",
+                    f"{f'{side} x {side}':9}{name:9}{seed:6}{shape.seconds:9.3f}"
+                    f"{shape.seconds / side**2:10.3f}{wall:9.3f}{shape.energy_n_mm:10.6f}{state}",
                     flush=True,
                 )
         limit = LIMITS_S.get(side, np.inf)
@@ -114,16 +114,19 @@ def authors_sample() -> None:
     yarn = replace(configured, core_radius_mm=0.30)
     stitch = StitchChart.parse("K")
     print(f"authors' stockinette sample, l_x {AUTHORS_COURSE_MM} mm, splines by control points")
-    found = []
+    energies_n_mm = []
     for grid in (SplineGrid(16, 3), SplineGrid(20, 4), SplineGrid(24, 5), SplineGrid(32, 5)):
         held = relax(
             stitch, yarn, loop_mm, convention=Convention.AUTHORS_CODE, grid=grid,
             cell_course_mm=AUTHORS_COURSE_MM, branch="mirrored",
         )  # fmt: skip
-        found.append(held.energy_n_mm)
+        energies_n_mm.append(held.energy_n_mm)
         print(f"  {grid.controls}: {held.energy_n_mm:.6f} N·mm")
-    print("  relaxed energy:", against(found[-1], AUTHORS_SPLINE_N_MM, "N·mm"))
-    print("  grid (20 to 32):", against(abs(found[1] / found[-1] - 1.0), 1e-4, "relative"))
+    print("  relaxed energy:", against(energies_n_mm[-1], AUTHORS_SPLINE_N_MM, "N·mm"))
+    print(
+        "  grid (20 to 32):",
+        against(abs(energies_n_mm[1] / energies_n_mm[-1] - 1.0), 1e-4, "relative"),
+    )
     energies = []
     for cell in (
         mirrored_cell(stitch, SplineGrid(16, 3)),
@@ -165,15 +168,15 @@ def main() -> None:
     parser.add_argument("--charts", type=int, default=3, help="random charts of each size")
     parser.add_argument("--cells-only", action="store_true")
     parser.add_argument("--skip-published", action="store_true")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     relax(StitchChart.parse("K"), YARN, LOOP_MM, branch="mirrored")  # compiles
     relax(StitchChart.parse("KP/KK"), YARN, LOOP_MM, branch="mirrored")
-    cells(asked.sides, asked.charts)
-    if asked.cells_only:
+    cells(options.sides, options.charts)
+    if options.cells_only:
         return
     stitches()
     authors_sample()
-    if not asked.skip_published:
+    if not options.skip_published:
         published()
 
 

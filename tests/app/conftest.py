@@ -27,8 +27,8 @@ def client() -> Iterator[TestClient]:
 @pytest.fixture(scope="session")
 def schema(client: TestClient) -> dict[str, Any]:
     """The OpenAPI schema of the service."""
-    found: dict[str, Any] = client.get("/openapi.json").json()
-    return found
+    document: dict[str, Any] = client.get("/openapi.json").json()
+    return document
 
 
 @pytest.fixture(scope="session")

@@ -16,8 +16,8 @@ def postgres_programs() -> Path | None:
     """Folder with initdb and pg_ctl, or None."""
     if PROGRAMS:
         return PROGRAMS[0]
-    found = shutil.which("pg_ctl")
-    return Path(found).parent if found else None
+    program = shutil.which("pg_ctl")
+    return Path(program).parent if program else None
 
 
 def _run(*command: str) -> None:

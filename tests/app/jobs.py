@@ -26,7 +26,7 @@ def add(a: int, b: int, *, cancelled: Callable[[], bool]) -> int:
 
 
 def pid(*, cancelled: object) -> int:
-    """Of the worker."""
+    """Process of the worker."""
     return os.getpid()
 
 
@@ -63,7 +63,7 @@ def climb(folder: str, steps: int, *, cancelled: object, progress: Callable[...,
 
 
 def shares_told_of(compute: Compute, folder: Path, steps: int) -> list[float]:
-    """What somebody who waits for :func:`climb` is told, who notes every step."""
+    """Shares of :func:`climb` that somebody hears who waits for it and notes every step."""
     shares: list[float] = []
 
     async def never() -> bool:
@@ -94,14 +94,14 @@ def process_id(*, cancelled: Callable[[], bool]) -> int:
 
 
 class Task(BaseModel):
-    """What the jobs of these tests are asked."""
+    """Request of the jobs of these tests."""
 
     what: str = "answer"
     mark: str = "/nonexistent"
 
 
 class Answer(BaseModel):
-    """What they answer."""
+    """Answer of the jobs of these tests."""
 
     value: int
 
@@ -148,7 +148,7 @@ def killed_in_the_middle(
     progress: Callable[[float, float], None],
     before: ViewData | None = None,
 ) -> Any:
-    """As ``perform``, but the process is killed while it works on an operation of a kind.
+    """Call ``perform``, but kill the process while it works on an operation of a kind.
 
     It dies when the operation first looks whether it was cancelled; one that is too short to look
     dies before it can answer.

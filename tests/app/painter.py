@@ -57,8 +57,8 @@ class Painter:
 
     def check_over_http(self, client: httpx.Client) -> None:
         """Everything that was acknowledged is served."""
-        found = client.get(f"/api/v1/designs/{self.design}").json()
-        self.check(found["revision"], found["document"]["chart"])
+        stored = client.get(f"/api/v1/designs/{self.design}").json()
+        self.check(stored["revision"], stored["document"]["chart"])
 
     def check(self, revision: int, chart: str) -> None:
         """Everything that was acknowledged is in this state of the design."""

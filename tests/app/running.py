@@ -63,7 +63,7 @@ class Service:
         return self._process.pid
 
     def kill(self) -> None:
-        """As if the power had failed."""
+        """Kill the service, as a power failure would."""
         self._end(signal.SIGKILL)
 
     def stop(self) -> int:

@@ -22,8 +22,8 @@ class Terminal:
 
     def run(self, *arguments: str) -> tuple[int, str, str]:
         """Exit code, output and errors of a command."""
-        found = self._ask(arguments)
-        return found["code"], found["out"], found["err"]
+        answer = self._ask(arguments)
+        return answer["code"], answer["out"], answer["err"]
 
     def _ask(self, arguments: tuple[str, ...]) -> Any:
         assert self._process.stdin is not None

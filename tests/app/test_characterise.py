@@ -19,7 +19,7 @@ from app.cli.main import main
 from app.context import Context
 from app.operations.characterise import CharacteriseRequest, characterise
 from knitcore.base.errors import CancelledError
-from tests.knitcore.test_batch import cluster  # noqa: F401 - a fixture
+from tests.knitcore.base.test_batch import cluster  # noqa: F401 - a fixture
 
 YARN = [
     "--yarn", "mine", "--bending-modulus-n-mm2", "0.07", "--contact-stiffness-n-per-mm3", "0.0115",

@@ -95,8 +95,8 @@ def test_the_report_refits_and_leaves_out(client: TestClient) -> None:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ([], "bending modulus"),
-        (["--bending-modulus-n-mm2", "0.02"], "loop length"),
+        ([], "bending-modulus-n-mm2: is missing"),
+        (["--bending-modulus-n-mm2", "0.02"], "loop_length_mm: is missing"),
         (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "long"], "FABRIC=MM"),
         (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "rib=9"], "missing"),
         (
@@ -156,7 +156,7 @@ def test_a_tube_is_sized_for_a_target() -> None:
         (["--rest-mm", "100", "--worn-mm", "180"], "lock-up"),
         (["--worn-mm", "150"], "rest_mm"),
         (["--worn-mm", "150", "--rest-mm", "100", "--target-mmhg", "20"], "rest_mm"),
-        (["--worn-mm", "150", "--rest-mm", "120", "--law", "x.json"], "exactly one"),
+        (["--worn-mm", "150", "--rest-mm", "120", "--law", "x.json"], "one of the two"),
     ],
 )
 def test_bad_pressures_end_with_code_2(arguments: list[str], says: str) -> None:
@@ -164,3 +164,29 @@ def test_bad_pressures_end_with_code_2(arguments: list[str], says: str) -> None:
     assert result.exit_code == 2
     assert result.stdout == ""
     assert says in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("fields", "detail"),
+    [
+        ({"material": None}, "material: is missing."),
+        ({"law": {"alpha": 1.0}}, "law: material is given as well."),
+        ({"fabric": None}, "fabric: is missing."),
+        ({"chart": "KP"}, "chart: fabric is given as well."),
+        ({"rest_mm": None}, "rest_mm: is missing."),
+        ({"target_mmhg": 20}, "target_mmhg: rest_mm is given as well."),
+    ],
+)
+def test_a_pressure_names_the_field_that_is_missing_or_too_much(
+    client: TestClient, fields: dict[str, object], detail: str
+) -> None:
+    body = {
+        "direction": "course",
+        "material": "acrylic",
+        "fabric": "stockinette",
+        "rest_mm": 120,
+        "worn_mm": 150,
+    }
+    response = client.post("/api/v1/pressure", json=body | fields)
+    assert response.status_code == 422
+    assert response.json()["detail"] == detail

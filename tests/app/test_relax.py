@@ -12,10 +12,9 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.models.yarn_level import size_intervals
 from knitcore import StitchChart, relax
 from knitcore.yarn.model.paper_samples import sample
-from knitcore.yarn.solve.splines import RelaxedRepeat
+from knitcore.yarn.solve.splines import RelaxedRepeat, size_intervals
 from tests.app.command_line import run
 
 FIELDS = {

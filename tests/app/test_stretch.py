@@ -139,13 +139,17 @@ def test_a_force_beyond_the_lock_up_names_the_largest(client: TestClient) -> Non
     assert most["force_n"][-1] == pytest.approx(problem["most"])
 
 
-@pytest.mark.parametrize("force", [None, 2.0])
-def test_a_pull_is_a_strain_or_a_force(client: TestClient, force: float | None) -> None:
-    strain = None if force is None else 0.2
+@pytest.mark.parametrize(
+    ("strain", "force", "detail"),
+    [(None, None, "strain: is missing."), (0.2, 2.0, "force_n: strain is given as well.")],
+)
+def test_a_pull_is_a_strain_or_a_force(
+    client: TestClient, strain: float | None, force: float | None, detail: str
+) -> None:
     body = ASKED | {"strain": strain, "force_n": force}
     response = client.post("/api/v1/stretch", json=body)
     assert response.status_code == 422
-    assert response.json()["detail"] == "strain: give either a strain or a force."
+    assert response.json()["detail"] == detail
 
 
 def test_the_published_model_warns_beyond_the_lock_up(client: TestClient) -> None:

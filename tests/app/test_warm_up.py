@@ -25,7 +25,7 @@ CALL = """
 import contextlib, gc, sys
 import kernel
 import knitcore.base.compiled
-from app.cli.common import telling_what_is_compiled
+from knitcore_app.cli.common import telling_what_is_compiled
 
 knitcore.base.compiled.TELL_AFTER_S = 0.0
 told = telling_what_is_compiled() if sys.argv[1] == "command" else contextlib.nullcontext()
@@ -114,13 +114,14 @@ print(*compiled)
         (
             "yarn",
             "knitcore.yarn.kernels.curve_samples",
-            {"yarnlevel.kernels.rod.rod_hessian", "yarnlevel.kernels.scatter.scatter_local",
-             "dense.eliminate", "dense.substitute", "dense.solved", "yarnlevel.clasps._crossings"},
+            {"yarn.kernels.rod.rod_hessian", "yarn.kernels.scatter.scatter_local",
+             "linear.dense.eliminate", "linear.dense.substitute", "linear.dense.solved",
+             "yarn.solve.clasps._crossings"},
         ),
         (
             "shape",
             "knitcore.cloth.space.sheet_kernels",
-            {f"gridsolver.elimination.{name}" for name in ("eliminate", "forward", "backward")},
+            {f"linear.elimination.{name}" for name in ("eliminate", "forward", "backward")},
         ),
     ],
 )  # fmt: skip

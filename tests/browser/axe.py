@@ -1,4 +1,4 @@
-"""What axe finds wrong with a page."""
+"""Faults that axe finds in a page."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def violations(page: Page, within: str = "body") -> list[str]:
     if not page.evaluate("() => 'axe' in window"):
         page.evaluate(SCRIPT.read_text())
     return [
-        f"{found['impact']} {found['id']} at {where}"
-        for found in page.evaluate(RUN, within)
-        if found["impact"] in ("serious", "critical")
-        for where in found["where"]
+        f"{violation['impact']} {violation['id']} at {where}"
+        for violation in page.evaluate(RUN, within)
+        if violation["impact"] in ("serious", "critical")
+        for where in violation["where"]
     ]

@@ -62,11 +62,11 @@ def service(bundle: None) -> Iterator[str]:
     )
     assert process.stdout is not None
     with process.stdout:
-        found = None
-        while found is None and (line := process.stdout.readline()):
-            found = re.search(r"http://\S+?:\d+/", line)
-        assert found, "the service printed no address"
-        yield found.group(0)
+        address = None
+        while address is None and (line := process.stdout.readline()):
+            address = re.search(r"http://\S+?:\d+/", line)
+        assert address, "the service printed no address"
+        yield address.group(0)
         process.terminate()
         process.wait(timeout=60)
 
@@ -77,9 +77,9 @@ def browser() -> Iterator[Browser]:
     if not CHROMIUM.exists():
         pytest.skip("needs Debian's chromium (apt-get install --no-install-recommends chromium)")
     with sync_playwright() as playwright:
-        found = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-        yield found
-        found.close()
+        chromium = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        yield chromium
+        chromium.close()
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What a person does and sees on the page."""
+"""Steps that a person takes on the page, and views of it."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ def wait_for_picture(
     """The picture of a part of the page once something measured in it is as large as wanted."""
     for _ in range(150):
         picture = pixels(page, selector)
-        if (found := measure(picture)) >= least:
+        if (measured := measure(picture)) >= least:
             return picture
         page.wait_for_timeout(700)
-    raise AssertionError(f"{selector}: {found} in its picture, not {least}")
+    raise AssertionError(f"{selector}: {measured} in its picture, not {least}")
 
 
 def wait_for_colour(page: Page, selector: str, least: int) -> np.ndarray:
@@ -116,7 +116,7 @@ class Chart:
 
     def look(self) -> None:
         """Find the stitches again, after the chart has moved."""
-        found = self.page.evaluate(
+        places = self.page.evaluate(
             """async () => {
                 // A panel that has opened beside the chart moves it with the next frame, and what
                 // the last move of the pointer shows comes a moment later.
@@ -152,8 +152,8 @@ class Chart:
                 return { rows: middles(rows), stitches: middles(stitches) };
             }"""
         )
-        self.rows = {int(row): float(y) for row, y in found["rows"].items()}
-        self.stitches = {int(stitch): float(x) for stitch, x in found["stitches"].items()}
+        self.rows = {int(row): float(y) for row, y in places["rows"].items()}
+        self.stitches = {int(stitch): float(x) for stitch, x in places["stitches"].items()}
 
     def at(self, row: int, stitch: int) -> tuple[float, float]:
         """Middle of a stitch: row from the bottom, stitch from the right of the face, from 1."""

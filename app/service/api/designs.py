@@ -79,12 +79,14 @@ def get_designs(
     owner: Owner,
     limit: Limit = 50,
     cursor: Cursor = None,
-    deleted: Annotated[bool, Query(description="List what can be recovered instead.")] = False,
+    deleted: Annotated[
+        bool, Query(description="List deleted designs that can be recovered instead.")
+    ] = False,
     q: Annotated[
-        str, Query(max_length=200, description="Only those whose name contains this.")
+        str, Query(max_length=200, description="List only designs whose name contains this.")
     ] = "",
 ) -> DesignPage:
-    """A page of summaries; ask with ``next_cursor`` for the next one."""
+    """Return a page of summaries; `next_cursor` gets the next one."""
     return store.page(owner, limit=limit, cursor=cursor, deleted=deleted, part=q)
 
 
@@ -96,7 +98,7 @@ def post_design(
     response: Response,
     retry: RetryOf,
 ) -> Design:
-    """The document of a design file; the chart is kept in its canonical text."""
+    """Save the document of a design file; its chart is kept in canonical text."""
     return _created(response, store.create(owner, body, retry(body)))
 
 
@@ -113,11 +115,11 @@ def get_design(
     response: Response,
     if_none_match: Annotated[str | None, Header(max_length=200)] = None,
 ) -> Design | Response:
-    """The document and its ETag; 304 if the caller has it already."""
-    found = store.get(owner, design)
-    if if_none_match is not None and knows(if_none_match, found.revision):
-        return Response(status_code=304, headers={"ETag": etag(found.revision)})
-    return _tagged(response, found)
+    """Return the document and its ETag, or 304 if the caller has it already."""
+    stored = store.get(owner, design)
+    if if_none_match is not None and knows(if_none_match, stored.revision):
+        return Response(status_code=304, headers={"ETag": etag(stored.revision)})
+    return _tagged(response, stored)
 
 
 @router.get(
@@ -149,7 +151,8 @@ def put_design(
     response: Response,
     if_match: IfMatch = None,
 ) -> Design:
-    """Refused with 412 if somebody else changed the design meanwhile; nothing is lost then."""
+    """Replace the document. Refused with 412 if somebody else changed the design meanwhile;
+    nothing is lost then."""
     return _tagged(response, store.replace(owner, design, body, if_match))
 
 
@@ -189,7 +192,7 @@ def post_duplicate(
     response: Response,
     retry: RetryOf,
 ) -> Design:
-    """A new design with the same content."""
+    """Make a new design with the same content."""
     return _created(response, store.duplicate(owner, design, retry()))
 
 
@@ -200,19 +203,19 @@ def post_duplicate(
     responses={412: CONDITIONAL[412]},
 )
 def delete_design(design: DesignId, store: Store, owner: Owner, if_match: IfMatch = None) -> None:
-    """It can be recovered for 30 days."""
+    """Delete a design. It can be recovered for 30 days."""
     store.delete(owner, design, if_match)
 
 
 @router.post("/designs/{design}/recover", summary="Recover a deleted design")
 def post_recover(design: DesignId, store: Store, owner: Owner, response: Response) -> Design:
-    """The design comes back as it was."""
+    """Restore a deleted design as it was."""
     return _tagged(response, store.recover(owner, design))
 
 
 @router.get("/designs/{design}/versions", summary="Saved versions of a design")
 def get_versions(design: DesignId, store: Store, owner: Owner) -> Versions:
-    """Oldest first."""
+    """List the versions, oldest first."""
     return store.versions(owner, design)
 
 
@@ -229,13 +232,13 @@ def post_version(
     owner: Owner,
     retry: RetryOf,
 ) -> VersionSummary:
-    """Versions are never changed or overwritten."""
+    """Save the present state as a version. Versions are never changed or overwritten."""
     return store.keep_version(owner, design, body.name, retry(body))
 
 
-@router.get("/designs/{design}/versions/{number}", summary="A kept state")
+@router.get("/designs/{design}/versions/{number}", summary="A saved version")
 def get_version(design: DesignId, number: Number, store: Store, owner: Owner) -> Version:
-    """The version with its document."""
+    """Return a version with its document."""
     return store.version(owner, design, number)
 
 
@@ -252,13 +255,13 @@ def post_restore(
     response: Response,
     if_match: IfMatch = None,
 ) -> Design:
-    """The present state is saved as a version first."""
+    """Restore a version. The present state is saved as a version first."""
     return _tagged(response, store.restore(owner, design, number, if_match))
 
 
 @router.get("/designs/{design}/shares", summary="Links to a design")
 def get_shares(design: DesignId, links: Links, owner: Owner) -> Shares:
-    """Without their secrets, which are not stored."""
+    """List the links without their secrets, which are not stored."""
     return links.given(owner, design)
 
 
@@ -266,27 +269,27 @@ def get_shares(design: DesignId, links: Links, owner: Owner) -> Shares:
 def post_share(
     design: DesignId, body: ShareRequest, links: Links, owner: Owner, response: Response
 ) -> NewShare:
-    """A link for reading, or for copying; its token is shown only once."""
+    """Make a link for reading, or for copying. Its token is shown only once."""
     response.headers["Cache-Control"] = "no-store"
     return links.give(owner, design, body.mode)
 
 
 @router.delete("/designs/{design}/shares/{share}", status_code=204, summary="Revoke a link")
 def delete_share(design: DesignId, share: ShareId, links: Links, owner: Owner) -> None:
-    """At once and for good."""
+    """Revoke the link immediately. This cannot be undone."""
     links.revoke(owner, design, share)
 
 
-@router.get("/shared/{token}", summary="What a link shows")
+@router.get("/shared/{token}", summary="The design behind a link")
 def get_shared(token: Token, links: Links) -> SharedDesign:
-    """The design's present state, for anyone who has the link."""
+    """Return the design's present state, for anyone who has the link."""
     return links.open(token)
 
 
 @router.post(
     "/shared/{token}/copy",
     status_code=201,
-    summary="Copy what a link shows",
+    summary="Copy the design behind a link",
     responses=CONFLICT,
 )
 def post_copy(
@@ -296,5 +299,5 @@ def post_copy(
     response: Response,
     retry: RetryOf,
 ) -> Design:
-    """A design of your own, if the link allows it."""
+    """Make a design of your own, if the link allows it."""
     return _created(response, links.copy(owner, token, retry()))

@@ -44,12 +44,13 @@ async def post_job(
     response: Response,
     retry: RetryOf,
 ) -> JobStatus:
-    """Waits for its turn among all users; if the result is known, the job is done at once."""
+    """Queue a job, which waits for its turn among all users. If the result is known, the job is
+    done immediately."""
     if isinstance(body, Undecoded):
-        kind, wanted = await runner.read(request.is_disconnected, body.content)
+        kind, text = await runner.read(request.is_disconnected, body.content)
     else:
-        kind, wanted = body.kind, body.request.model_dump_json()
-    status = await runner.submit(owner, kind, wanted, retry(kind, wanted))
+        kind, text = body.kind, body.request.model_dump_json()
+    status = await runner.submit(owner, kind, text, retry(kind, text))
     response.headers["Location"] = f"/api/v1/jobs/{status.id}"
     return status
 
@@ -61,13 +62,13 @@ async def get_jobs(
     limit: Limit = 50,
     cursor: Cursor = None,
 ) -> JobPage:
-    """Jobs are kept for 30 days."""
+    """List your jobs. They are kept for 30 days."""
     return await asyncio.to_thread(runner.store.page, owner, limit=limit, cursor=cursor)
 
 
 @router.get("/jobs/{job}", summary="The state of a job")
 async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
-    """State, progress, and the problem if there is one."""
+    """Return the state, the progress, and the problem if there is one."""
     return await runner.status(owner, job)
 
 
@@ -80,7 +81,7 @@ async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
 async def get_job_events(
     job: JobId, runner: Runner, owner: Owner, request: Request
 ) -> StreamingResponse:
-    """Server-sent events, one per change, each as `GET /jobs/{job}` answers; ends with the job."""
+    """Send an event for each change, as `GET /jobs/{job}` answers; the stream ends with the job."""
     first = await runner.status(owner, job)
     states = _states(first, job, request, runner, owner)
     return event_stream(request, states, EVENT_PERIOD_S)
@@ -89,12 +90,12 @@ async def get_job_events(
 async def _states(
     status: JobStatus, job: str, request: Request, runner: JobRunner, owner: str
 ) -> AsyncGenerator[str | None]:
-    told = ""
+    sent = ""
     with contextlib.suppress(NotFoundError):  # deleted while it was followed
         while not request.app.state.stopping:
             text = status.model_dump_json()
-            yield None if text == told else f"event: status\ndata: {text}\n\n"
-            told = text
+            yield None if text == sent else f"event: status\ndata: {text}\n\n"
+            sent = text
             if status.state.is_final:
                 return
             await asyncio.sleep(EVENT_PERIOD_S)
@@ -109,7 +110,7 @@ async def _states(
     openapi_extra=ASKED_WITH_TAG,
 )
 async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request) -> Response:
-    """The same JSON that the operation's own address returns; `kind` names the operation."""
+    """Return the same JSON as the operation's own address; `kind` names the operation."""
     status = await runner.status(owner, job)
     if status.state is not JobState.DONE:
         raise ConflictError(
@@ -134,13 +135,13 @@ async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request)
 
 @router.delete("/jobs/{job}", summary="Cancel a job")
 async def delete_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
-    """Stops a job that waits or runs; a job that has ended stays as it is."""
+    """Stop a job that waits or runs; a job that has ended stays as it is."""
     return await runner.cancel(owner, job)
 
 
 @router.post("/jobs/{job}/again", status_code=202, summary="Run a job again")
 async def post_again(job: JobId, runner: Runner, owner: Owner, response: Response) -> JobStatus:
-    """A new job with the same request, for instance after an interruption."""
+    """Start a new job with the same request, for instance after an interruption."""
     status = await runner.again(owner, job)
     response.headers["Location"] = f"/api/v1/jobs/{status.id}"
     return status

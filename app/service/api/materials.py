@@ -30,23 +30,24 @@ Identifier = Annotated[str, Path(max_length=200, examples=["acrylic"])]
 
 @router.post("/materials", status_code=201, summary="Add a material of your own")
 async def post_material(body: MaterialDocument, owner: Owner, context: Here) -> MaterialSummary:
-    """Everybody on this service can use it. One that you added under its identifier is replaced."""
+    """Add a material, or replace one of yours with the same identifier. Everybody on this service
+    can use it."""
     kept = await run_in_threadpool(keep_material, body, owner, context.data_dir)
     return summary(kept, added_by_you=True)
 
 
 @router.get("/materials/{identifier}/document", summary="A material as a file")
 async def get_material_document(identifier: Identifier, context: Here) -> MaterialDocument:
-    """What `knitcore` reads as a material file, and this service adds as one of your own."""
-    found = await run_in_threadpool(context.material, identifier)
-    plain = found.identifier.removeprefix("own:").rpartition(".")
-    document = MaterialDocument.from_material(found)
+    """Return a material as a file, which `knitcore` reads and which you can add as your own."""
+    material = await run_in_threadpool(context.material, identifier)
+    plain = material.identifier.removeprefix("own:").rpartition(".")
+    document = MaterialDocument.from_material(material)
     return document.model_copy(update={"identifier": plain[0] or document.identifier})
 
 
 @router.delete("/materials/{identifier}", status_code=204, summary="Remove a material of your own")
 async def delete_material(identifier: Identifier, owner: Owner, context: Here) -> None:
-    """Designs that use it keep its name and ask for another one."""
+    """Remove a material. Designs that use it keep its name and ask for another one."""
     if not await run_in_threadpool(remove_material, identifier, owner, context.data_dir):
         raise NotFoundError(
             f"You added no material {identifier}.",

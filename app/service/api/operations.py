@@ -24,10 +24,10 @@ from ..web.events import abandoned
 from ..web.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
 
 MAX_LIGHT = 2_500
-"""Most stitches of a request that the service answers itself. A larger one goes to a worker, with
-its limits on memory and time: a mixed chart of 10,000 stitches takes 0.3 s."""
+"""Largest number of stitches of a request that the service answers itself. A larger one goes to a
+worker, with its limits on memory and time: a mixed chart of 10,000 stitches takes 0.3 s."""
 MISSING: dict[int | str, dict[str, Any]] = {
-    404: {"model": Problem, "description": "Nothing has that name."}
+    404: {"model": Problem, "description": "Not found: nothing has that name."}
 }
 
 
@@ -35,8 +35,8 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     """The function for FastAPI, with the request as a body or as parameters of the address."""
 
     def made(body: BaseModel, request: Request) -> bytes:
-        found = carried_out(operation.run, body, request.app.state.answers.context())
-        result: BaseModel = found.result if isinstance(found, Viewed) else found
+        outcome = carried_out(operation.run, body, request.app.state.answers.context())
+        result: BaseModel = outcome.result if isinstance(outcome, Viewed) else outcome
         return result.model_dump_json().encode()
 
     def light(body: BaseModel, request: Request) -> Response:
@@ -44,14 +44,14 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
 
     async def post(body: BaseModel | Undecoded, request: Request) -> Any:
         answers: Answers = request.app.state.answers
-        wanted = body.content if isinstance(body, Undecoded) else body
+        posted = body.content if isinstance(body, Undecoded) else body
         heavy = operation.heavy or operation.job
-        if isinstance(wanted, BaseModel) and not heavy and size_of(wanted) <= MAX_LIGHT:
+        if isinstance(posted, BaseModel) and not heavy and size_of(posted) <= MAX_LIGHT:
             gate: Gate = request.app.state.light_work
             async with gate.turn(current_user.get()):
-                return await run_in_threadpool(light, wanted, request)
+                return await run_in_threadpool(light, posted, request)
 
-        answer = await answers.answer(partial(abandoned, request), operation, wanted)
+        answer = await answers.answer(partial(abandoned, request), operation, posted)
         return await json_response(answer.body, request.headers)
 
     def get(request: Request, **fields: Any) -> Response:

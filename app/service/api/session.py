@@ -18,12 +18,12 @@ from ..web.tokens import Login
 
 router = APIRouter(tags=["session"])
 
-SessionId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="Of a session.")]
+SessionId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="Id of a session.")]
 
 
-@router.get("/session", summary="Who you are, and where you are signed in")
+@router.get("/session", summary="Your name, sessions and limits")
 def get_session(owner: Owner, request: Request) -> SignedIn:
-    """The user's name, `local` without logins, the browsers that are signed in, and limits."""
+    """Return the user's name (`local` without logins), the signed-in browsers, and the limits."""
     sessions = Sessions(request.app.state.database).of(owner, current_session.get())
     return SignedIn(user=owner, sessions=sessions, use=_use(owner, request.app.state))
 
@@ -52,7 +52,7 @@ def _use(owner: str, state: Any) -> dict[str, Use]:
 
 @router.delete("/session", status_code=204, summary="Sign out")
 def delete_session(owner: Owner, request: Request, response: Response) -> None:
-    """Ends the session of this browser."""
+    """End the session of this browser."""
     _end(request, owner, current_session.get())
     response.delete_cookie(SESSION_COOKIE, httponly=True, samesite="strict")
 
@@ -61,10 +61,10 @@ def delete_session(owner: Owner, request: Request, response: Response) -> None:
     "/sessions/{session}",
     status_code=204,
     summary="End a session",
-    responses={404: {"model": Problem, "description": "It is not one of your sessions."}},
+    responses={404: {"model": Problem, "description": "The session is not one of yours."}},
 )
 def end_session(session: SessionId, owner: Owner, request: Request) -> None:
-    """The session of another of your browsers, for instance one on a lost machine."""
+    """End the session of another of your browsers, for instance one on a lost machine."""
     if not _end(request, owner, session):
         raise NotFoundError(f"There is no session {session} of yours.", field="session")
 

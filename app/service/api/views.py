@@ -31,7 +31,7 @@ from ...viewer.design_id import DesignId, private_name
 from ...viewer.scene import round_length_mm
 from ...viewer.share import picture_png
 from ...viewer.shared import (
-    Found,
+    Computed,
     SharedViewRequest,
     shared_page,
     shared_recording,
@@ -75,13 +75,13 @@ class BoxInput(RequestModel):
 
 
 class MarkRequest(RequestModel):
-    """What to outline."""
+    """Stitches to outline."""
 
     box: BoxInput | None = None
 
 
 class CameraRequest(RequestModel):
-    """From where to look."""
+    """Side to look from."""
 
     side: CameraSide
 
@@ -90,16 +90,16 @@ class CameraRequest(RequestModel):
 async def put_view(design: DesignId, body: ViewRequest, request: Request) -> ViewResult:
     """Draw the design's scene; everyone who watches `/view/{design}/` sees it change at once."""
     state = request.app.state
-    found, name = _found(body, request), private_name(design)
+    computed, name = _computed(body, request), private_name(design)
     context = state.answers.context()
     passes: Passes = state.passes
     code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
     large: Drawing | None = None
-    if found is None and is_large(body):
+    if computed is None and is_large(body):
         large = await _by_worker(request, build_drawing, body, context.data_dir)
 
     def draw() -> ViewResult:
-        drawing = large or build_scene(body, found, context).drawing()
+        drawing = large or build_scene(body, computed, context).drawing()
         return ViewResult(
             stitches=state.views.open(name, drawing.weight).show(drawing),
             source=drawing.part.shapes.source,
@@ -134,7 +134,7 @@ async def put_camera(design: DesignId, body: CameraRequest, request: Request) ->
     },
 )
 async def get_view_events(design: DesignId, request: Request) -> StreamingResponse:
-    """Server-sent events, one for each click on a stitch in the view: its row and column from 0.
+    """Send an event for each click on a stitch in the view, with its row and column from 0.
 
     Ends with the view.
     """
@@ -157,7 +157,8 @@ async def get_picture(
     width: Annotated[int, Query(ge=16, le=4096)] = 1600,
     height: Annotated[int, Query(ge=16, le=4096)] = 1200,
 ) -> Response:
-    """As a browser that watches `/view/{design}/` sees it; somebody must be watching."""
+    """Take a picture as a browser that watches `/view/{design}/` sees it. At least one must
+    watch."""
     view = _view(design, request)
     uses: InUse = request.app.state.in_use
     with uses.hold("pictures", current_user.get()):
@@ -176,7 +177,7 @@ def _file(media: str, text: str) -> dict[int | str, dict[str, Any]]:
     responses=_file("text/html", "One file that needs neither the service nor the network."),
 )
 async def post_page(body: SharedViewRequest, request: Request) -> Response:
-    """The fabric to turn with the mouse; animated, its stretch test plays."""
+    """Make a page in which the fabric turns with the mouse; animated, its stretch test plays."""
     return await _shared(shared_page, body, request, "text/html", "html")
 
 
@@ -187,7 +188,7 @@ async def post_page(body: SharedViewRequest, request: Request) -> Response:
     responses=_file("application/octet-stream", "A `.viser` file."),
 )
 async def post_recording(body: SharedViewRequest, request: Request) -> Response:
-    """For viser's own player."""
+    """Make a recording for viser's own player."""
     return await _shared(shared_recording, body, request, "application/octet-stream", "viser")
 
 
@@ -198,7 +199,7 @@ async def post_recording(body: SharedViewRequest, request: Request) -> Response:
     responses=_file("model/gltf-binary", "Binary glTF 2.0 in metres."),
 )
 async def post_solid(body: SharedViewRequest, request: Request) -> Response:
-    """The fabric as it lies, relaxed or stretched, with its colours."""
+    """Export the fabric as it lies, relaxed or stretched, with its colours."""
     return await _shared(shared_solid, body, request, "model/gltf-binary", "glb")
 
 
@@ -214,12 +215,12 @@ async def post_still(
     width: Annotated[int, Query(ge=16, le=1600)] = 800,
     height: Annotated[int, Query(ge=16, le=1200)] = 600,
 ) -> Response:
-    """The face of the fabric as its view frames it at first; no browser needs to watch.
+    """Draw the face of the fabric as its view frames it at first; no browser needs to watch.
 
     Of a chart of more than 40,000 stitches only what the view draws as yarn.
     """
     data_dir = request.app.state.answers.context().data_dir
-    draw = partial(shared_still, body, _found(body, request), data_dir, width, height)
+    draw = partial(shared_still, body, _computed(body, request), data_dir, width, height)
     gate: Gate = request.app.state.drawing
     if size_of_chart(body.chart) > MAX_STILL_HERE:
         content = await _by_worker(request, draw)
@@ -237,28 +238,28 @@ async def _shared(
     ending: str,
 ) -> Response:
     data_dir = request.app.state.answers.context().data_dir
-    content = await _by_worker(request, make, body, _found(body, request), data_dir)
+    content = await _by_worker(request, make, body, _computed(body, request), data_dir)
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
 
 
 async def _by_worker(request: Request, job: Callable[..., T], *args: Any) -> T:
-    """What a job returns; it is stopped when the browser goes away."""
+    """Run a job in a worker; stop it when the browser goes away."""
     compute: Compute = request.app.state.compute
     return await compute.run(partial(abandoned, request), job, *args)
 
 
 async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: Any) -> T:
-    """As ``asyncio.to_thread``, with other threads."""
+    """Run a function like ``asyncio.to_thread``, with other threads."""
     context = contextvars.copy_context()
     loop = asyncio.get_running_loop()
     return await loop.run_in_executor(threads, context.run, function, *args)
 
 
-def _found(body: ViewRequest, request: Request) -> Found:
-    """What a test or a shape that was computed before shows."""
-    wanted = body.stretch or body.curl
-    answer: Reply | None = request.app.state.recent.get(wanted.id) if wanted else None
+def _computed(body: ViewRequest, request: Request) -> Computed:
+    """Return the view of a test or a shape that was computed before; None if it is forgotten."""
+    reference = body.stretch or body.curl
+    answer: Reply | None = request.app.state.recent.get(reference.id) if reference else None
     view = answer.view if answer else None
     return view if isinstance(view, StretchView | PosedView) else None
 

@@ -1,1 +1,1 @@
-"""Where heavy work runs: queues, limits, worker processes and clusters."""
+"""Heavy work: queues, limits, worker processes and clusters."""

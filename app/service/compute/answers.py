@@ -36,7 +36,7 @@ class Answers:
         return Context(self._data_dir)
 
     def can_be_viewed(self, operation: Operation[Any, Any], request: str) -> bool:
-        """Whether what a 3D view shows of the result is in memory; True where there is nothing.
+        """Return whether the result's data for the 3D view are in memory; True if it has none.
 
         Parameters
         ----------

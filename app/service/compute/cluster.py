@@ -30,7 +30,7 @@ T = TypeVar("T")
 TOPIC = "knitcore"
 CONNECT_S = 5.0
 WORKERS_S = 10.0
-"""How long a job waits for the first worker of a cluster."""
+"""Time for which a job waits for the first worker of a cluster."""
 REPORT_EVERY_S = 0.2
 
 
@@ -193,7 +193,7 @@ class ClusterWorker:
 
 
 _running: dict[str, bool] = {}
-"""In a worker: its jobs, and whether they were cancelled."""
+"""Jobs of a worker process, each True once it was cancelled."""
 
 
 def _run(key: str, job: Callable[..., T]) -> T:

@@ -24,11 +24,11 @@ log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")
 
 POLL_S = 0.05
-"""How soon a computation that nobody waits for is noticed."""
+"""Period in which a computation that nobody waits for is noticed."""
 GRACE_S = 3.0
-"""How long a job may take to notice that it was cancelled before its process is stopped."""
+"""Time in which a job must notice that it was cancelled before its process is stopped."""
 START_S = 120.0
-"""How long a job may take to start: a new process loads, a cluster looks for a worker."""
+"""Time in which a job must start: a new process loads, a cluster looks for a worker."""
 
 
 class Compute:
@@ -92,12 +92,12 @@ class Compute:
         owner = owner or current_user.get()
         self.spent.check(owner)
         ticket = self.turns.enter(owner, background=background)
-        asked = asyncio.get_running_loop().time()
+        entered = asyncio.get_running_loop().time()
         try:
             while not (await asyncio.wait([ticket.place], timeout=POLL_S))[0]:
                 if await abandoned():
                     raise AbandonedError("The computation was abandoned.")
-                if not background and asyncio.get_running_loop().time() > asked + self._timeout_s:
+                if not background and asyncio.get_running_loop().time() > entered + self._timeout_s:
                     raise NotBegunError(f"No worker was free for {self._timeout_s:g} s.")
             worker = ticket.place.result()
             self.spent.check(owner)  # jobs of the same user may have run meanwhile

@@ -42,7 +42,7 @@ SCRATCH = "knitcore-worker-"
 
 
 def _nothing() -> None:
-    """Nothing to begin with."""
+    """Do nothing: the default initializer of workers."""
 
 
 class Slot(IntEnum):
@@ -91,7 +91,7 @@ class ProcessWorker:
 
     @property
     def share(self) -> float | None:
-        """How much of the job is done."""
+        """Share of the job that is done, 0 to 1; None until it starts."""
         if not self._slots[Slot.STARTED]:
             return None
         return float(self._slots[Slot.DONE] / max(self._slots[Slot.OF], 1.0))
@@ -192,7 +192,7 @@ _memory_bytes = 0
 def _adopt(
     slots: Any, memory_bytes: int, idle: bool, scratch: str, begin: Callable[[], object]
 ) -> None:
-    """In a worker: keep the shared memory and set the limits."""
+    """Keep the shared memory and set the limits; runs in a worker."""
     global _slots, _memory_bytes
     _slots, _memory_bytes = slots, memory_bytes
     tempfile.tempdir = scratch

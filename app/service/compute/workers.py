@@ -25,7 +25,7 @@ class Worker(Protocol):
 
     @property
     def share(self) -> float | None:
-        """How much of the job is done, 0 to 1; None until it starts."""
+        """Share of the job that is done, 0 to 1; None until it starts."""
         ...
 
     @property
@@ -59,7 +59,7 @@ class TimeLimitError(UnavailableError):
 
 
 class NotBegunError(UnavailableError):
-    """No worker began the computation; it can be requested again."""
+    """Error: no worker began the computation; it can be requested again."""
 
 
 class WorkerDiedError(UnavailableError):

@@ -29,8 +29,9 @@ def etag(revision: int) -> str:
 
 
 def knows(tags: str, revision: int) -> bool:
-    """Whether the ETags of an If-Match or If-None-Match name this revision, or any; a proxy that
-    packs answers makes them weak.
+    """Return whether the ETags of an If-Match or If-None-Match name this revision, or any.
+
+    A proxy that packs answers makes them weak.
     """
     offered = {tag.strip().removeprefix("W/") for tag in tags.split(",")}
     return "*" in offered or etag(revision) in offered

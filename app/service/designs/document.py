@@ -46,7 +46,9 @@ class DesignSummary(BaseModel):
     material: str
     rows: int
     columns: int
-    revision: int = Field(description="Grows with every change; the ETag is made of it.")
+    revision: int = Field(
+        description="Number that grows with every change; the ETag is made of it."
+    )
     created_at: AwareDatetime
     changed_at: AwareDatetime
     deleted_at: AwareDatetime | None = None
@@ -76,9 +78,11 @@ class DesignPatch(RequestModel):
 class Run(RequestModel):
     """Adjacent stitches of one kind in a row."""
 
-    row: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="From 0, the bottom row.")
+    row: int = Field(
+        ge=0, lt=MAX_STITCHES_PER_SIDE, description="Row, counted from 0 at the bottom."
+    )
     column: int = Field(
-        ge=0, lt=MAX_STITCHES_PER_SIDE, description="First stitch; from 0, at the left."
+        ge=0, lt=MAX_STITCHES_PER_SIDE, description="First stitch, counted from 0 at the left."
     )
     stitches: str = Field(pattern=r"^[KP]+$", max_length=MAX_STITCHES_PER_SIDE, examples=["KKP"])
 
@@ -94,8 +98,10 @@ class Strokes(RequestModel):
 class StitchKinds(BaseModel):
     """Kinds of the stitches in a box; a material's `stitches` table says what each kind does."""
 
-    row: int = Field(description="Bottom row of the box; from 0, the bottom row of the chart.")
-    column: int = Field(description="Left column of the box; from 0, at the left.")
+    row: int = Field(
+        description="Bottom row of the box, counted from 0 at the bottom of the chart."
+    )
+    column: int = Field(description="Left column of the box, counted from 0 at the left.")
     kinds: list[str] = Field(
         description="A hexadecimal digit for each stitch, bottom row first: its kind, 0 to 15."
     )
@@ -106,7 +112,9 @@ class Painted(BaseModel):
 
     revision: int
     changed_at: AwareDatetime
-    map: StitchKinds = Field(description="What looks different now: the strokes and one around.")
+    map: StitchKinds = Field(
+        description="Stitches that look different now: the strokes and one around."
+    )
 
 
 class VersionRequest(RequestModel):
@@ -118,9 +126,11 @@ class VersionRequest(RequestModel):
 class VersionSummary(BaseModel):
     """A kept state of a design."""
 
-    number: int = Field(description="From 1, oldest first.")
+    number: int = Field(description="Number of the version, counted from 1, oldest first.")
     name: str
-    automatic: bool = Field(description="Kept by the service before a restore replaced it.")
+    automatic: bool = Field(
+        description="True if the service saved it before a restore replaced it."
+    )
     revision: int
     created_at: AwareDatetime
 
@@ -161,7 +171,9 @@ class Share(BaseModel):
 class NewShare(Share):
     """A new link with its secret."""
 
-    token: str = Field(description="The design is at /api/v1/shared/{token} for who has this.")
+    token: str = Field(
+        description="Secret of the link: whoever has it finds the design at /api/v1/shared/{token}."
+    )
 
 
 class Shares(BaseModel):

@@ -45,7 +45,7 @@ from .idempotency import Retry, once
 from .painting import kinds_around, paint
 
 DELETED_KEPT_S = 30 * 86_400.0
-"""How long a deleted design can be recovered."""
+"""Time for which a deleted design can be recovered."""
 
 _SUMMARY = [designs.c[name] for name in DesignSummary.model_fields]
 _VERSION_SUMMARY = [design_versions.c[name] for name in VersionSummary.model_fields]
@@ -98,8 +98,8 @@ class DesignStore:
         rows, following = one_page(
             self._database, chosen, designs.c.changed_at, designs.c.id, limit=limit, cursor=cursor
         )
-        found = [DesignSummary.model_validate(row, from_attributes=True) for row in rows]
-        return DesignPage(designs=found, next_cursor=following)
+        summaries = [DesignSummary.model_validate(row, from_attributes=True) for row in rows]
+        return DesignPage(designs=summaries, next_cursor=following)
 
     def replace(
         self, owner: str, design: str, document: DesignDocument, if_match: str | None
@@ -199,8 +199,8 @@ class DesignStore:
                 .where(design_versions.c.design_id == design)
                 .order_by(design_versions.c.number)
             )
-            found = [VersionSummary.model_validate(row, from_attributes=True) for row in rows]
-        return Versions(versions=found)
+            summaries = [VersionSummary.model_validate(row, from_attributes=True) for row in rows]
+        return Versions(versions=summaries)
 
     def version(self, owner: str, design: str, number: int) -> Version:
         """A kept state."""
@@ -271,8 +271,8 @@ def find_design(
         If there is none, it is deleted (or, with ``deleted``, is not), or belongs to someone
         else. The error does not say which.
     """
-    wanted = {"design": design, "owner": owner}
-    row = connection.execute(_finding(change, deleted), wanted).one_or_none()
+    keys = {"design": design, "owner": owner}
+    row = connection.execute(_finding(change, deleted), keys).one_or_none()
     if row is None:
         raise NotFoundError(
             f"There is no {'deleted ' if deleted else ''}design {design} of yours.",

@@ -1,4 +1,4 @@
-"""Who has a design open now, and word of its changes to them, as event streams."""
+"""Followers of open designs, who hear of changes by event streams."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ PERIOD_S = 0.5
 QUIET_S = 5.0
 """A follower that vanished is noticed within this time."""
 COMING_OR_GOING = 0
-"""In place of a revision: somebody began or ended to follow."""
+"""Value in place of a revision: somebody began or stopped following."""
 
 
 class Watched:

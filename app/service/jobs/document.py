@@ -10,7 +10,7 @@ from ..problems import Problem
 
 
 class JobState(StrEnum):
-    """Where a job stands."""
+    """State of a job."""
 
     WAITING = "waiting"
     RUNNING = "running"
@@ -21,7 +21,7 @@ class JobState(StrEnum):
 
     @property
     def is_final(self) -> bool:
-        """Whether the job has ended."""
+        """True if the job has ended."""
         return self not in (JobState.WAITING, JobState.RUNNING)
 
 
@@ -31,8 +31,10 @@ class JobStatus(BaseModel):
     id: str
     kind: str
     state: JobState
-    progress: float = Field(ge=0, le=1, description="Share done, where the computation reports it.")
-    problem: Problem | None = Field(None, description="Why it failed or was interrupted.")
+    progress: float = Field(
+        ge=0, le=1, description="Share that is done, where the computation reports it."
+    )
+    problem: Problem | None = Field(None, description="Reason why it failed or was interrupted.")
     created_at: AwareDatetime
     started_at: AwareDatetime | None = None
     finished_at: AwareDatetime | None = None

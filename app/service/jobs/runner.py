@@ -29,7 +29,7 @@ BEATS_TO_LOOK_ROUND = 10
 AGAIN_S = 10.0
 """Wait before a job that no worker began is tried again."""
 STORE_RETRY_S = (0.5, 2.0, 5.0, 10.0, 20.0)
-"""How long a result waits for a database that is away."""
+"""Times for which a result waits for a database that is away."""
 
 
 @dataclass(eq=False)
@@ -61,7 +61,7 @@ class JobRunner:
         self._heart: asyncio.Task[None] | None = None
 
     async def resume(self) -> None:
-        """After a start: resume waiting jobs, and mark running ones as interrupted."""
+        """Resume waiting jobs after a start, and mark running ones as interrupted."""
         await self._go_on(await asyncio.to_thread(self.store.adopt))
         self._heart = asyncio.create_task(self._beat(), name="jobs of all processes")
 
@@ -198,11 +198,11 @@ class JobRunner:
         log.info("job waits", extra=extra)
         try:
             large = len(request) > SMALL_BYTES
-            wanted = request.encode() if large else described.request.model_validate_json(request)
+            body = request.encode() if large else described.request.model_validate_json(request)
             answer = await self._begun(
                 abandoned,
                 described,
-                wanted,
+                body,
                 owner=owner,
                 background=True,
                 timeout_s=self.timeout_s,

@@ -141,7 +141,7 @@ class JobStore:
         return self._database.write(lambda connection: connection.execute(change).rowcount == 1)
 
     def adopt(self) -> list[tuple[str, str]]:
-        """After a start: mark running jobs as interrupted; (id, owner) of those waiting."""
+        """Mark running jobs as interrupted after a start; return (id, owner) of waiting ones."""
         return self._take(jobs.c.process == self.process)
 
     def adopt_orphans(self) -> list[tuple[str, str]]:
@@ -208,12 +208,12 @@ class JobStore:
         return body
 
     def knows(self, key: str) -> bool:
-        """Whether the result of this content is stored; if so, renew its time of use."""
+        """Return whether the result of this content is stored; if so, renew its time of use."""
         with self._database.read() as connection:
-            found = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
-        if found is not None:
+            stored = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
+        if stored is not None:
             self._used(key)
-        return found is not None
+        return stored is not None
 
     def _used(self, key: str) -> None:
         used = update(results).where(results.c.key == key).values(used_at=now())

@@ -1,1 +1,1 @@
-"""What each user may use of the service, and who comes next."""
+"""Limits on each user's share of the service, and the order of users."""

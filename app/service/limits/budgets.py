@@ -47,7 +47,7 @@ class RateLimit:
         self._set(who, self.left(who, at) - amount, at)
 
     def left(self, who: str, at: float | None = None) -> float:
-        """How many are left, without taking one."""
+        """Number that is left; takes none."""
         at = time.monotonic() if at is None else at
         level, since = self._buckets.get(who, (float(self.burst), at))
         return min(self.burst, level + (at - since) * self.per_s)
@@ -111,7 +111,7 @@ BUDGETS = Budgets()
 
 
 class Use(BaseModel):
-    """How much of a limit is used."""
+    """Use of a limit."""
 
     used: float
     most: float
@@ -183,7 +183,7 @@ class InUse:
         self._held: Counter[tuple[str, str]] = Counter()
 
     def held(self, what: str, owner: str) -> int:
-        """How many a user holds."""
+        """Number that a user holds."""
         return self._held[what, owner]
 
     def check(self, what: str, owner: str) -> None:

@@ -144,10 +144,10 @@ class Turns(Generic[Place]):
 
 
 class Gate:
-    """Lets one through at a time, users taking turns.
+    """Gate that lets one caller through at a time; users take turns.
 
-    For threads of the service that compute: Python runs one at a time, so that two would be no
-    faster, and the event loop would wait for both.
+    It guards the threads of the service that compute: Python runs one at a time, so that two would
+    be no faster, and the event loop would wait for both.
     """
 
     def __init__(self) -> None:

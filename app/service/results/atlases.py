@@ -19,7 +19,7 @@ from knitcore.yarn.library.fingerprint import code_version
 log = logging.getLogger("knitcore.atlas")
 
 FOLDER = "atlases"
-"""Of the data folder; it may be emptied at any time."""
+"""Folder of atlases in the data folder; it may be emptied at any time."""
 DECIDING = ("knitcore.design.atlas_build", "knitcore.chart.repeats")
 """Modules whose code and data decide an atlas."""
 
@@ -49,11 +49,11 @@ def atlas_of(
     if key not in built:
         cached = data_dir / FOLDER / f"{key}-{code_version(*DECIDING)[:8]}.npz"
         repeats = repeats_of(extent)
-        found = _load(cached, len(repeats))
-        if found is None:
-            found = build_atlas(material, repeats, cancelled=cancelled, progress=progress)
-            _save(found, cached)
-        built[key] = found
+        atlas = _load(cached, len(repeats))
+        if atlas is None:
+            atlas = build_atlas(material, repeats, cancelled=cancelled, progress=progress)
+            _save(atlas, cached)
+        built[key] = atlas
     return built[key]
 
 

@@ -60,8 +60,8 @@ class KeptResults:
         -------
         The result, and whether it had been kept.
         """
-        if not fresh and (found := self.found(kind, inputs)) is not None:
-            return found, True
+        if not fresh and (kept := self.found(kind, inputs)) is not None:
+            return kept, True
         result = make()
         self.keep(inputs, result)
         return result, False
@@ -80,7 +80,7 @@ class KeptResults:
 
     def _read(self, kind: type[Result], file: Path) -> Result | None:
         try:
-            found = kind.model_validate_json(file.read_bytes())
+            result = kind.model_validate_json(file.read_bytes())
             os.utime(file)  # the least recently used are removed first
         except FileNotFoundError:
             return None
@@ -90,7 +90,7 @@ class KeptResults:
         except OSError as error:
             log.warning("%s cannot be read (%s): it is computed again", file, error)
             return None
-        return found
+        return result
 
     def _write(self, file: Path, content: bytes) -> None:
         """Keep a result if there is room for it."""
@@ -110,14 +110,14 @@ class KeptResults:
             log.warning("a result cannot be kept in %s: %s", self.folder, error)
 
     def _make_room(self) -> None:
-        found = []
+        files = []
         for entry in os.scandir(self.folder):
             try:
-                found.append((entry.stat().st_mtime_ns, entry.stat().st_size, Path(entry.path)))
+                files.append((entry.stat().st_mtime_ns, entry.stat().st_size, Path(entry.path)))
             except FileNotFoundError:  # another process made room
                 continue
-        excess = sum(size for _, size, _ in found) - self.max_bytes
-        for _, size, file in sorted(found):
+        excess = sum(size for _, size, _ in files) - self.max_bytes
+        for _, size, file in sorted(files):
             if excess <= 0:
                 return
             file.unlink(missing_ok=True)

@@ -44,9 +44,9 @@ def find_own_material(identifier: str, data_dir: Path) -> Material:
         If there is none of that identifier.
     """
     own = own_materials(data_dir)
-    for found in own, _materials_in(data_dir / FOLDER / REPLACED):
-        if identifier in found:
-            return found[identifier]
+    for materials in own, _materials_in(data_dir / FOLDER / REPLACED):
+        if identifier in materials:
+            return materials[identifier]
     stem = identifier.rpartition(".")[0]
     changed = any(other.rpartition(".")[0] == stem for other in own)
     raise InputError(
@@ -69,15 +69,15 @@ def _materials_in(folder: Path) -> dict[str, Material]:
 
 
 def _readable(files: Sequence[Path]) -> dict[str, Material]:
-    found = {}
+    materials = {}
     for file in files:
         try:
             own = _read(file)
         except (InputError, OSError) as error:
             _log.warning("%s is not a material: %s", file, error)
             continue
-        found[own.identifier] = own
-    return found
+        materials[own.identifier] = own
+    return materials
 
 
 def keep_material(document: MaterialDocument, owner: str, data_dir: Path) -> Material:
@@ -124,7 +124,7 @@ def remove_material(identifier: str, owner: str, data_dir: Path) -> bool:
 
 
 def _replaced(file: Path) -> Path:
-    """Where the material is kept that ``file`` replaced."""
+    """Path of the material that ``file`` replaced."""
     return file.parent / REPLACED / file.name
 
 

@@ -43,7 +43,7 @@ class BackupReport(BaseModel):
 
     @property
     def text(self) -> str:
-        """For people."""
+        """The report in words."""
         return f"{self.file}: {', '.join(f'{n} {name}' for name, n in self.tables.items())}"
 
 
@@ -193,10 +193,10 @@ def _lines(file: Path) -> Iterator[dict[str, Any]]:
     try:
         with gzip.open(file, "rt", encoding="utf-8") as text:
             for line in text:
-                found = json.loads(line)
-                if not isinstance(found, dict):
+                row = json.loads(line)
+                if not isinstance(row, dict):
                     raise ValueError("not an object")
-                yield found
+                yield row
     except (OSError, EOFError, ValueError, zlib.error) as error:
         raise InputError(
             "file", f"{file} cannot be read ({error}).", "Use another backup."

@@ -39,7 +39,7 @@ class Holder(NamedTuple):
 
     @property
     def text(self) -> str:
-        """In a line of its lock's file for itself, and one for each of its files."""
+        """Text of the lock's file: a line for the holder, and one for each of its files."""
         files = "".join(f"\n{inode} {name}" for name, inode in self.files.items())
         return f"{self.process} {self.address}".strip() + files
 
@@ -114,9 +114,9 @@ class DatabaseFile:
             If this holds for a file beside it.
         """
         for place, identity in list(self._ours.items()):
-            found = _identity(place)
-            if found != identity:
-                what = "is gone" if found is None else "was replaced by another"
+            present = _identity(place)
+            if present != identity:
+                what = "is gone" if present is None else "was replaced by another"
                 if place == self.path:
                     raise VanishedError(f"The file of the designs {what}; nothing was changed.")
                 raise DispossessedError(
@@ -156,7 +156,7 @@ class DatabaseFile:
                 ) from None
             facts = os.fstat(handle)
             self._ours[self.lock] = facts.st_dev, facts.st_ino
-            files = {place.name: found[1] for place, found in self._ours.items() if found}
+            files = {place.name: identity[1] for place, identity in self._ours.items() if identity}
             os.truncate(handle, 0)
             os.pwrite(handle, Holder(str(os.getpid()), at, files).text.encode(), 0)
             yield
@@ -219,8 +219,8 @@ def check_whole(path: Path) -> None:
     if service is None:
         return
     for name, inode in service.files.items():
-        found = _identity(path.with_name(name))
-        if found is None or found[1] != inode:
+        identity = _identity(path.with_name(name))
+        if identity is None or identity[1] != inode:
             raise InputError(
                 "data_dir",
                 f"{name} was removed or replaced under the service that runs (process "

@@ -16,7 +16,7 @@ from ..problems import DispossessedError
 log = logging.getLogger("knitcore.store")
 
 PING_S = 1.0
-"""How often the connection that holds the lock is tried."""
+"""Period in which the connection that holds the lock is tried."""
 TRY_LOCK = text("SELECT pg_try_advisory_lock(hashtextextended(:name, 0))")
 IS_TAKEN = text(
     "SELECT count(*) > 0 FROM pg_locks JOIN pg_database ON pg_database.oid = pg_locks.database"
@@ -52,7 +52,7 @@ class NameLock:
         self._is_lost = False
 
     def is_taken(self) -> bool:
-        """Whether a process has the lock now; leaves it to whoever wants it."""
+        """Return whether a process has the lock now, without taking it."""
         with self._engine.connect() as connection:
             return bool(connection.execute(IS_TAKEN, self._name).scalar())
 

@@ -36,10 +36,10 @@ def migrate(database: Database, target: str = "head") -> None:
     StoreError
         If the database cannot be reached.
     """
-    found = check_schema(database, target)
+    version = check_schema(database, target)
     config = _config()
     head = ScriptDirectory.from_config(config).get_current_head()
-    if database.file is not None and found not in (None, head) and target == "head":
+    if database.file is not None and version not in (None, head) and target == "head":
         file = database.file.path
         copy = file.with_name(f"{file.name}.before-{head}")
         if not copy.exists():
@@ -64,28 +64,28 @@ def check_schema(database: Database, target: str = "head") -> str | None:
     StoreError
         If the database cannot be reached.
     """
-    found = revision(database)
+    version = revision(database)
     scripts = ScriptDirectory.from_config(_config())
-    if too_old := {found, target} & EARLIER:
+    if too_old := {version, target} & EARLIER:
         raise InputError(
             "database_url",
             f"the designs have schema {too_old.pop()}, from before the first release.",
             f"Start Knitcore at commit {LAST_WITH_EARLIER} on them once, which brings them up to "
             "date.",
         )
-    strange = {found, target} - {s.revision for s in scripts.walk_revisions()} - {None, "head"}
+    strange = {version, target} - {s.revision for s in scripts.walk_revisions()} - {None, "head"}
     if strange:
         raise InputError(
             "database_url",
             f"the designs have schema {strange.pop()}, which this program does not know.",
             "Use the newer program that wrote it, or restore a backup.",
         )
-    if found == scripts.get_current_head():
+    if version == scripts.get_current_head():
         with database.read() as connection:
             missing = set(metadata.tables) - set(inspect(connection).get_table_names())
         if missing:
             raise DamagedError(f"The database lacks {', '.join(sorted(missing))}.")
-    return found
+    return version
 
 
 def _config() -> Config:

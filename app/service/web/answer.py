@@ -1,4 +1,4 @@
-"""What has been handed to the server of an answer, which begins once and ends once."""
+"""Progress of an answer that is handed to the server; it begins once and ends once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bodies of requests: how much of them is read, and where they are decoded.
+"""Bodies of requests: their largest sizes, and the places where they are decoded.
 
 One rule for all addresses: the event loop decodes small bodies at once. A large one goes as it came
 to a worker, with its limits on time and memory, where the operation takes it; elsewhere, such as
@@ -44,7 +44,7 @@ def _pass_on(value: Any, decode: ValidatorFunctionWrapHandler) -> Any:
 
 
 OrUndecoded = WrapValidator(_pass_on)
-"""Of the model of a body that a worker decodes if it is large."""
+"""Mark of a body's model: a worker may decode the body if it is large."""
 
 
 class BoundedRoute(APIRoute):
@@ -53,7 +53,7 @@ class BoundedRoute(APIRoute):
     to_worker = False
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """What handles a request."""
+        """Return the function that handles a request."""
         handle = super().get_route_handler()
 
         async def bounded(request: Request) -> Response:

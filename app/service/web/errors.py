@@ -41,7 +41,7 @@ wrong is reported once the rest is valid."""
 
 
 def also_wrong(error: RequestValidationError, request: Request) -> Iterator[InputError]:
-    """What the library finds wrong in the fields whose types are right."""
+    """Yield the library's errors in the fields whose types are right."""
     if int(request.headers.get("Content-Length", MAX_BYTES + 1)) > MAX_BYTES:
         return
     body, model = error.body, _model(request)
@@ -155,15 +155,15 @@ def _unusable(faults: list[Fault], most: float | None = None) -> Problem:
     )
 
 
-def _invalid(found: Sequence[Any]) -> Problem:
+def _invalid(errors: Sequence[Any]) -> Problem:
     """Everything that is wrong with a request; an impossible address counts as not found."""
-    place = found[0]["loc"]
+    place = errors[0]["loc"]
     if place[:1] == ("path",):
         return NotFoundError(
             f"There is no such {place[-1]}.", field=str(place[-1]), remedy="Look it up in the list."
         ).problem
     faults: dict[str | None, Fault] = {}
-    for fault in map(_fault, found):  # of alternatives that all fail, the first is reported
+    for fault in map(_fault, errors):  # of alternatives that all fail, the first is reported
         faults.setdefault(fault.field, fault)
     return _unusable(list(islice(faults.values(), MAX_FAULTS)))
 
@@ -200,10 +200,10 @@ def install_problem_handlers(app: FastAPI) -> None:
     @app.exception_handler(RequestValidationError)
     async def _(request: Request, error: RequestValidationError) -> JSONResponse:
         problem = problem_of(error)
-        told = {fault.field for fault in problem.errors}
+        reported = {fault.field for fault in problem.errors}
         for other in also_wrong(error, request):
             fault = _of_library(other)
-            if fault.field not in told and len(problem.errors) < MAX_FAULTS:
+            if fault.field not in reported and len(problem.errors) < MAX_FAULTS:
                 problem.errors.append(fault)
         return _response(problem)
 

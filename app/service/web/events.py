@@ -59,7 +59,7 @@ async def _lines(
 
 
 async def abandoned(request: Request) -> bool:
-    """Whether the client of a request has gone.
+    """Return whether the client of a request has gone.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What operators see: a log line and numbers for every request, with an id to find them by."""
+"""Log lines and numbers for operators: one for every request, with an id to find it by."""
 
 from __future__ import annotations
 
@@ -57,10 +57,10 @@ class TextLines(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         """The line of a record, with its request or job if it has one."""
-        found = {name: getattr(record, name) for name in EXTRAS if hasattr(record, name)}
+        extras = {name: getattr(record, name) for name in EXTRAS if hasattr(record, name)}
         if (request := request_id.get()) is not None:
-            found["request"] = request
-        context = " ".join(f"{name}={value}" for name, value in found.items())
+            extras["request"] = request
+        context = " ".join(f"{name}={value}" for name, value in extras.items())
         return f"{super().format(record)} {context}".rstrip()
 
 
@@ -120,8 +120,8 @@ class Observer:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        asked = scope["method"]
-        if asked == "HEAD":  # as GET; the server leaves the content out
+        method = scope["method"]
+        if method == "HEAD":  # as GET; the server leaves the content out
             scope = {**scope, "method": "GET"}
         offered = Headers(scope=scope).get("x-request-id", "")
         mark = offered if SAFE_ID.fullmatch(offered) else secrets.token_hex(8)
@@ -138,7 +138,7 @@ class Observer:
         try:
             await self.app(scope, receive, watched)
         finally:
-            self._note(scope, asked, status, time.perf_counter() - start)
+            self._note(scope, method, status, time.perf_counter() - start)
 
     async def _watch_socket(self, scope: Scope, receive: Receive, send: Send) -> None:
         start, code = time.perf_counter(), 1006  # closed without a word
@@ -161,10 +161,10 @@ class Observer:
         finally:
             log.info("websocket", extra=_extra(scope, "GET", code, time.perf_counter() - start))
 
-    def _note(self, scope: Scope, asked: str, status: int, seconds: float) -> None:
+    def _note(self, scope: Scope, verb: str, status: int, seconds: float) -> None:
         # the route's template (below its prefix), not the address: that would make endless numbers
         route = getattr(scope.get("route"), "path", None) or "other"
-        method = asked if asked in METHODS else "other"
+        method = verb if verb in METHODS else "other"
         self.metrics.requests.labels(method, route, str(status)).inc()
         self.metrics.seconds.labels(method, route).observe(seconds)
         if scope["path"] in QUIET_PATHS:

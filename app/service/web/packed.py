@@ -18,7 +18,7 @@ TAGGED: dict[int | str, dict[str, Any]] = {
     200: {"headers": {"ETag": {"$ref": "#/components/headers/ETag"}}},
     304: {"description": "Not modified since the state in If-None-Match."},
 }
-"""For the schema, of answers with an ETag."""
+"""Responses of the schema for answers with an ETag."""
 ASKED_WITH_TAG = {
     "parameters": [
         {
@@ -30,11 +30,11 @@ ASKED_WITH_TAG = {
         }
     ]
 }
-"""For the schema, of requests for them."""
+"""Parameters of the schema for requests of such answers."""
 
 
 def takes_gzip(headers: Headers) -> bool:
-    """Whether a client accepts gzip."""
+    """Return whether a client accepts gzip."""
     return "gzip" in headers.get("accept-encoding", "")
 
 
@@ -58,12 +58,12 @@ def plain(content: bytes, headers: Headers, media_type: str = "application/json"
 
 
 def etag_of(content: bytes) -> str:
-    """Weak, because packed and unpacked answers share it."""
+    """ETag of a content; it is weak, because packed and unpacked answers share it."""
     return f'W/"{hashlib.sha256(content).hexdigest()[:32]}"'
 
 
 def is_known(tag: str, headers: Headers) -> bool:
-    """Whether a client says that it has the answer with this tag."""
+    """Return whether a client says that it has the answer with this tag."""
     return tag.removeprefix("W/") in headers.get("if-none-match", "")
 
 

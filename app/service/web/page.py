@@ -79,13 +79,13 @@ def page_folder(sources: Path) -> Path:
 
 
 def _sources(folder: Path) -> list[Path]:
-    found = [folder / "index.html"]
+    files = [folder / "index.html"]
     for part in folder.iterdir():
         if part.is_dir() and part.name not in NOT_OURS:
-            found += (file for file in part.rglob("*") if file.suffix in SUFFIXES)
+            files += (file for file in part.rglob("*") if file.suffix in SUFFIXES)
         elif part.suffix in SUFFIXES:
-            found.append(part)
-    return found
+            files.append(part)
+    return files
 
 
 class PageFiles(StaticFiles):

@@ -20,12 +20,12 @@ from starlette.types import Scope
 from ..identity import current_session, current_user
 
 MAX_PASSES = 10_000
-"""Most passes that are remembered; the oldest makes room for a new one."""
+"""Largest number of passes that are remembered; the oldest makes room for a new one."""
 
 
 @dataclass(frozen=True)
 class Opener:
-    """Who was given a pass: user, session, and token and session as the guard notes them."""
+    """Holder of a pass: user, session, and token and session as the guard notes them."""
 
     user: str
     session: str
@@ -54,7 +54,7 @@ class Passes:
         return code
 
     def holder(self, scope: Scope) -> Opener | None:
-        """Whose pass a websocket comes with; None if it has none, or one to another path."""
+        """Holder of a websocket's pass; None if it has none, or one to another path."""
         query: bytes = scope.get("query_string", b"")
         if scope["type"] != "websocket" or not query.startswith(b"pass="):
             return None

@@ -129,7 +129,9 @@ def reference(schema: Schema) -> str:
             rooms.setdefault(room, []).append(_operation(method.upper(), path, operation))
     shapes = [_shape(name, shape) for name, shape in schema["components"]["schemas"].items()]
     links = "".join(f'<a href="#{room}">{room}</a>' for room in (*rooms, "shapes"))
-    parts = [f'<h2 id="{room}">{room}</h2>' + "".join(found) for room, found in rooms.items()]
+    parts = [
+        f'<h2 id="{room}">{room}</h2>' + "".join(operations) for room, operations in rooms.items()
+    ]
     content = f"""<p>Every operation, its request and its answer. Requests are JSON
 (<code>Content-Type: application/json</code>). Every refusal is a
 <a href="{FOLDER}">problem</a> that names the field and the remedy
@@ -197,7 +199,7 @@ def _kind(of: Schema) -> str:
         return f'<a href="#{name}">{name}</a>'
     for choice in ("anyOf", "oneOf"):
         if choice in of:
-            return " or ".join(_kind(one) for one in of[choice])
+            return " or ".join(_kind(option) for option in of[choice])
     if "enum" in of or "const" in of:
         return " or ".join(_code(value) for value in of.get("enum", [of.get("const")]))
     kind = str(of.get("type", "anything"))

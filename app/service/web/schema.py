@@ -94,10 +94,12 @@ OPEN = frozenset({"GET /healthz", "GET /readyz"})
 
 def install_schema(app: FastAPI) -> None:
     """Complete the schema, and serve it."""
-    made, one = app.openapi, threading.Lock()
+    made, lock = app.openapi, threading.Lock()
 
     def openapi() -> dict[str, Any]:
-        with one:  # it takes a second; whoever asks in the meantime waits instead of making another
+        with (
+            lock
+        ):  # it takes a second; whoever asks in the meantime waits instead of making another
             return app.openapi_schema or complete()
 
     def complete() -> dict[str, Any]:
@@ -163,14 +165,14 @@ def _add_headers(status: int, response: dict[str, Any]) -> None:
     """Say which headers come with an answer."""
     content = response.get("content", {}).get("application/json", {})
     model = content.get("schema", {}).get("$ref", "").rpartition("/")[2]
-    found = ["RateLimit-Limit", "RateLimit-Remaining"] if status < FIRST_PROBLEM else []
-    found += ["ETag"] if model in HAVE_STATES and status < FIRST_PROBLEM else []
-    found += ["Location"] if model in ARE_MADE and status in (201, 202) else []
-    found += ["Retry-After"] if status in (429, 503) else []
-    found += ["WWW-Authenticate"] if status == 401 else []
-    if found:
+    names = ["RateLimit-Limit", "RateLimit-Remaining"] if status < FIRST_PROBLEM else []
+    names += ["ETag"] if model in HAVE_STATES and status < FIRST_PROBLEM else []
+    names += ["Location"] if model in ARE_MADE and status in (201, 202) else []
+    names += ["Retry-After"] if status in (429, 503) else []
+    names += ["WWW-Authenticate"] if status == 401 else []
+    if names:
         headers = response.setdefault("headers", {})
-        headers.update({name: {"$ref": f"#/components/headers/{name}"} for name in found})
+        headers.update({name: {"$ref": f"#/components/headers/{name}"} for name in names})
 
 
 def _mark_problems(responses: dict[str, Any]) -> None:

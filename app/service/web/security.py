@@ -76,19 +76,19 @@ VIEW_POLICY = "; ".join(
 
 
 class StrangeHostError(RefusedError):
-    """The service does not go by the name that was used."""
+    """Error: the Host header names none of the service's names."""
 
     status = 400
 
 
 class TooLargeError(RefusedError):
-    """The request is too large."""
+    """Error: the request is too large."""
 
     status = 413
 
 
 class UnknownUserError(ServiceError):
-    """A token is needed."""
+    """Error: a token is needed."""
 
     status, type, title = 401, "sign-in", "Sign in"
     headers: Mapping[str, str] = {"WWW-Authenticate": 'Bearer realm="Knitcore"'}
@@ -354,8 +354,8 @@ class Guard:
 
 
 async def _is_open(scope: Scope) -> bool:
-    """Whether the token or session of a request is valid; a request that ends its own session is
-    answered nevertheless."""
+    """Return whether the token or session of a request is valid. A request that ends its own
+    session is answered nevertheless."""
     if OPENED_BY not in scope:
         return True
     login: Login = scope["app"].state.login
@@ -390,8 +390,8 @@ def _who(login: Login, token: str, link: str, cookie: str) -> tuple[str, str, st
     """(token's id, user, session) of a request."""
     if token:  # a header with a token overrides link and cookie
         return *login.by_token(token), ""
-    if link and (found := login.by_token(link))[1]:
-        return *found, ""
+    if link and (who := login.by_token(link))[1]:
+        return *who, ""
     session, user = login.by_session(cookie) if cookie else ("", "")
     return "", user, session
 
@@ -430,7 +430,7 @@ def _cookie(headers: Headers) -> str:
 
 
 def with_own_cookie_only(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
-    """Without cookies of other programs: Python takes seconds to read 30 kB of backslashes."""
+    """Remove cookies of other programs: Python takes seconds to read 30 kB of backslashes."""
     kept = [(name, value) for name, value in headers if name != b"cookie"]
     if len(kept) < len(headers):
         own = _cookie(Headers(raw=headers))

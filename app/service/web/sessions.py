@@ -19,17 +19,19 @@ class SessionSummary(BaseModel):
 
     id: str
     created_at: AwareDatetime
-    is_this: bool = Field(description="Whether it is the session of this request.")
+    is_this: bool = Field(description="True if it is the session of this request.")
 
 
 class SignedIn(BaseModel):
     """The user of this request, with all sessions, and what is used of the limits of one user."""
 
     user: str = Field(examples=["ada"])
-    sessions: list[SessionSummary] = Field(description="Latest first; scripts have none.")
+    sessions: list[SessionSummary] = Field(
+        description="Sessions, the latest first; scripts have none."
+    )
     use: dict[str, Use] = Field(
-        description="By the name that a refusal has in `field`. Where there are several processes, "
-        "figures are of this one, except those of stored things."
+        description="Use of each limit, by the name that a refusal has in `field`. Where there are "
+        "several processes, figures are of this one, except those of stored things."
     )
 
 
@@ -48,22 +50,22 @@ class Sessions:
 
     def find(self, session: str) -> tuple[str, str]:
         """(token, user) of a session; empty strings if there is none or it has expired."""
-        found = select(sessions.c.token, sessions.c.user).where(
+        query = select(sessions.c.token, sessions.c.user).where(
             sessions.c.id == session, sessions.c.created_at > now() - SESSION_S
         )
         with self._database.read() as connection:
-            row = connection.execute(found).one_or_none()
+            row = connection.execute(query).one_or_none()
         return ("", "") if row is None else (row.token, row.user)
 
     def of(self, user: str, this: str) -> list[SessionSummary]:
         """All sessions of a user, latest first; ``this`` is the one that asks."""
-        found = (
+        query = (
             select(sessions)
             .where(sessions.c.user == user, sessions.c.created_at > now() - SESSION_S)
             .order_by(sessions.c.created_at.desc(), sessions.c.id)
         )
         with self._database.read() as connection:
-            rows = connection.execute(found).all()
+            rows = connection.execute(query).all()
         return [
             SessionSummary.model_validate({**row._mapping, "is_this": row.id == this})
             for row in rows

@@ -38,16 +38,16 @@ too.</p>"""
 def sign_in_page(user: str, before: str, token: str, to: str) -> HTMLResponse:
     """Ask for a click before a session begins, or replaces that of the user ``before``."""
     instead = f", instead of <strong>{escape(before)}</strong>" if before else ""
-    asked = ASK.format(
+    content = ASK.format(
         user=escape(user), instead=instead, path=PATH, token=escape(token), to=escape(to)
     )
-    return HTMLResponse(page(f"Sign in as {user}?", asked), headers=HEADERS)
+    return HTMLResponse(page(f"Sign in as {user}?", content), headers=HEADERS)
 
 
 def token_page(status: int, problem: str = "") -> HTMLResponse:
     """Ask for a token, and say what was wrong with the last one."""
-    asked = FORM.format(path=PATH, problem=escape(problem))
-    return HTMLResponse(page("Sign in to Knitcore", asked), status, HEADERS)
+    content = FORM.format(path=PATH, problem=escape(problem))
+    return HTMLResponse(page("Sign in to Knitcore", content), status, HEADERS)
 
 
 async def sign_in_form(scope: Scope, receive: Receive) -> tuple[str, str]:

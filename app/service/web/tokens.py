@@ -20,7 +20,7 @@ from .sessions import SESSION_S, Sessions
 
 USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
 REMEMBERED_S = 5.0
-"""How long an answer of the database is cached: a revoked token works no longer than this."""
+"""Time for which an answer of the database is cached: a revoked token works no longer."""
 MAX_REMEMBERED = 10_000
 ENVIRONMENT = "environment"
 """Identifier of the token in the settings."""
@@ -85,8 +85,8 @@ class Tokens:
         """Every token, including those that no longer work."""
         with self._database.read() as connection:
             rows = connection.execute(select(access_tokens).order_by(access_tokens.c.created_at))
-            found = [TokenSummary.model_validate(row, from_attributes=True) for row in rows]
-        return TokenList(tokens=found)
+            summaries = [TokenSummary.model_validate(row, from_attributes=True) for row in rows]
+        return TokenList(tokens=summaries)
 
     def revoke(self, token: str) -> None:
         """Close a token, by its id.
@@ -122,7 +122,7 @@ class Tokens:
         return row.id, row.user
 
     def without_any(self, users: set[str]) -> set[str]:
-        """Which of these users no longer have an open token."""
+        """Return those of these users who no longer have an open token."""
         open_ = select(access_tokens.c.user).where(
             access_tokens.c.user.in_(users),
             access_tokens.c.revoked_at.is_(None),
@@ -135,11 +135,11 @@ class Tokens:
         """The key that signs sessions, made when it is first needed."""
 
         def action(connection: Connection) -> str:
-            wanted = select(service_keys.c.value).where(service_keys.c.name == "session")
-            if connection.execute(wanted).scalar_one_or_none() is None:
+            query = select(service_keys.c.value).where(service_keys.c.name == "session")
+            if connection.execute(query).scalar_one_or_none() is None:
                 new = self._database.insert_new(service_keys)
                 connection.execute(new.values(name="session", value=secrets.token_urlsafe(32)))
-            return str(connection.execute(wanted).scalar_one())
+            return str(connection.execute(query).scalar_one())
 
         return self._database.write(action)
 
@@ -191,14 +191,17 @@ class Login:
         return is_ended
 
     def is_open(self, identifier: str, session: str) -> bool:
-        """Whether the token or the session that began something still opens the service."""
+        """Return whether the token or the session that began something still opens the service."""
         if session:
             return bool(self._ask("session", session)[1])
         return identifier == ENVIRONMENT or bool(self._ask("identifier", identifier)[1])
 
     def _opened_with(self, identifier: str) -> str:
-        """What a session stores of its token; for the token in the settings, a part of its hash, so
-        that the session ends when that token is changed."""
+        """Return the part of its token that a session stores.
+
+        For the token in the settings it is a part of its hash, so that the session ends when that
+        token is changed.
+        """
         if identifier != ENVIRONMENT:
             return identifier
         return f"{ENVIRONMENT} {(self._environment or '')[:16]}"
@@ -219,8 +222,8 @@ class Login:
         known = self._remembered.get((by, value))
         if known is not None and at - known[0] < REMEMBERED_S:
             return known[1]
-        found = self._find(by, value)
+        login = self._find(by, value)
         if len(self._remembered) >= MAX_REMEMBERED:
             self._remembered.clear()
-        self._remembered[by, value] = (at, found)
-        return found
+        self._remembered[by, value] = (at, login)
+        return login

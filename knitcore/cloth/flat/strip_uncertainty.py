@@ -55,7 +55,7 @@ from knitcore.prediction.quarter_laws import SPREAD_AT
 LOG_SHEAR_PRIOR = (float(np.log(0.02)), 1.0)
 """Mean and standard deviation of ln(C_xyxy / (N/mm)). In acrylic garter, for which it was chosen,
 0.02 N/mm is 0.2 sqrt(Y_x Y_y), the mean of a strip fit's prior; other fabrics may be far from it.
-Its deviation is also that of a shear modulus that was not fitted (``swatch/uncertainty.py``)."""
+Its deviation is also that of a shear modulus that was not fitted."""
 MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
 """The composite's own error, for stitches of mixed quarters and of one fabric."""
 MODEL_ERRORS = "the mixture's own error, as for the chart's moduli"

@@ -79,7 +79,7 @@ class Sample:
 
 
 def _rows(name: str) -> list[dict[str, str]]:
-    path = files("knitcore.yarn.study") / "data" / name
+    path = files("knitcore.yarn.model") / "data" / name
     with path.open(encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
 

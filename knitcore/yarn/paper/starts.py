@@ -25,7 +25,7 @@ _SPREAD = 0.03
 @cache
 def _packaged() -> dict[Fabric, tuple[Array, ...]]:
     shapes: dict[tuple[Fabric, str], dict[str, float]] = {}
-    path = files("knitcore.yarn.study") / "data" / "published_starts.csv"
+    path = files("knitcore.yarn.model") / "data" / "published_starts.csv"
     with path.open(encoding="utf-8") as stream:
         for row in csv.DictReader(stream):
             key = Fabric(row["fabric"]), row["yarn"]

@@ -118,7 +118,7 @@ def test_answers_do_not_depend_on_how_the_chart_is_given(tmp_path: Path) -> None
 
 def test_standard_input_may_be_a_file_of_any_kind(tmp_path: Path) -> None:
     design = tmp_path / "rib.json"
-    run("export", "KKP/KPP", "--to", "json", "-o", design)
+    run("export", "KKP/KPP", "--to", "design", "-o", design)
     picture = io.BytesIO()
     Image.new("L", (4, 3), 255).save(picture, "PNG")
     for content, shape in ((design.read_bytes(), (2, 3)), (picture.getvalue(), (3, 4))):

@@ -12,7 +12,7 @@ from app.service.compute.cluster import ClusterWorker
 from app.service.main import create_app
 from app.service.settings import Settings
 
-SERVING = Path(__file__).resolve().parents[2] / "docs" / "serving.md"
+SERVING = Path(__file__).resolve().parents[3] / "docs" / "serving.md"
 
 
 @pytest.mark.parametrize("name", list(Settings.model_fields))

@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 import knitcore
 from app.cli.main import main
 
-PROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
+PROJECT = Path(__file__).resolve().parents[3] / "pyproject.toml"
 
 
 def test_library_commands_and_service_have_the_version_of_pyproject(client: TestClient) -> None:

@@ -102,21 +102,21 @@ def test_a_huge_message_is_refused_and_never_built() -> None:
 
 
 def test_a_picture_is_kept_and_one_pixel_passed_on() -> None:
-    wanted = WantedPicture(30, 20)
-    sent = msgspec.msgpack.decode(passed_on(_render(_png(30, 20)), wanted) or b"")
+    picture = WantedPicture(30, 20)
+    sent = msgspec.msgpack.decode(passed_on(_render(_png(30, 20)), picture) or b"")
     assert (sent["render_uuid"], sent["payload"]) == ("u", ONE_PIXEL)
     assert Image.open(io.BytesIO(ONE_PIXEL)).convert("RGBA").size == (1, 1)
-    assert wanted.content == _png(30, 20)
+    assert picture.content == _png(30, 20)
 
 
 @pytest.mark.parametrize(
     "content", [_png(13_000, 10), _png(20, 30), b"", b"GIF89a", _png(3, 2)[:20]]
 )
 def test_a_picture_of_another_size_is_refused_by_its_header(content: bytes) -> None:
-    wanted = WantedPicture(30, 20)
+    picture = WantedPicture(30, 20)
     with pytest.raises(RefusedMessageError, match="picture"):
-        passed_on(_render(content), wanted)
-    assert wanted.content is None
+        passed_on(_render(content), picture)
+    assert picture.content is None
 
 
 def _shown(client: TestClient, design: str) -> Any:

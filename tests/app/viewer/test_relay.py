@@ -45,7 +45,7 @@ class _Browser:
 
 async def _carrying(browser: _Browser) -> asyncio.Task[None]:
     await browser.socket.accept()
-    view: Any = SimpleNamespace(wanted=set())
+    view: Any = SimpleNamespace(picture=set())
     inner: Any = _Inner()
     return asyncio.create_task(_carry(browser.socket, inner, view))
 

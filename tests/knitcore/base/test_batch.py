@@ -116,7 +116,7 @@ def dask(name: str, *arguments: str) -> "subprocess.Popen[str]":
         [sys.executable, "-m", f"distributed.cli.dask_{name}", *arguments],
         stderr=subprocess.PIPE,
         text=True,
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])},
     )
 
 

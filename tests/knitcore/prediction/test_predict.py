@@ -164,12 +164,10 @@ def test_turning_over_changes_nothing(grid):
 )
 def test_intervals_and_bounds_hold_the_value(grid, identifier):
     found = predict(StitchChart(grid), material(identifier))
-    for name in ("modulus_course", "modulus_wale"):
-        value = getattr(found, f"{name}_n_per_mm")
-        interval = getattr(found, f"{name}_interval_n_per_mm")
-        bounds = getattr(found, f"{name}_bounds_n_per_mm")
-        assert 0 < interval.low < value < interval.high
-        assert bounds.low <= value <= bounds.high
+    for along in (found.course, found.wale):
+        interval, bounds = along.modulus_interval_n_per_mm, along.bounds_n_per_mm
+        assert 0 < interval.low < along.modulus_n_per_mm < interval.high
+        assert bounds.low <= along.modulus_n_per_mm <= bounds.high
     assert found.poisson_yx * found.poisson_xy < 1
     loads = np.array([0.0, 0.01, 0.05, 0.2])
     for direction in Direction:

@@ -32,7 +32,7 @@ from knitcore import InputError
 from knitcore.chart.fabric import Direction
 from tests.app import jobs
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "compose.yaml").read_text())
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from knitcore.formats.designs import design_file as design
 from knitcore.formats.designs import layout
 
-SCRIPT = Path(__file__).resolve().parents[3] / "frontend" / "design" / "design.js"
+SCRIPT = Path(__file__).resolve().parents[4] / "frontend" / "design" / "design.js"
 
 
 def test_the_page_has_the_librarys_limits() -> None:

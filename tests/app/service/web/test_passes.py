@@ -12,7 +12,7 @@ from starlette.websockets import WebSocketDisconnect
 from app.service.identity import current_user
 from app.service.web import tokens
 from app.service.web.passes import Passes
-from tests.app.running.web.test_security import bearing, guarded_service, tokens_of
+from tests.app.service.web.test_security import bearing, guarded_service, tokens_of
 
 BODY = {"chart": "KP", "material": "acrylic"}
 FRAME = {"Origin": "null"}

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -394,8 +395,10 @@ def test_an_unexpected_error_carries_the_headers_and_no_secret_to_the_log(
     assert (answer.status_code, answer.json()["type"]) == (500, "/problems/internal")
     assert answer.headers["X-Request-ID"] == "r-7"
     assert answer.headers["Content-Security-Policy"] == PAGE_POLICY
-    assert "ZeroDivisionError" in caplog.text
-    assert "a-secret-link" not in caplog.text
+    ours = [record for record in caplog.records if record.name.startswith("knitcore")]
+    logged = "\n".join(map(logging.Formatter().format, ours))  # without the test client's
+    assert "ZeroDivisionError" in logged
+    assert "a-secret-link" not in logged
 
 
 def test_only_the_own_cookie_is_read() -> None:

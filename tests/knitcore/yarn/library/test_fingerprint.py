@@ -59,6 +59,6 @@ def test_other_modules_and_files_do_not_count(package) -> None:
 
 def test_the_solvers_reach_kernels_law_fit_and_starts() -> None:
     found = fingerprint.reached(SOLVERS)
-    for name in ("yarnlevel.kernels.rod", "measure.law_fit", "yarnlevel.published.minimise"):
+    for name in ("yarn.kernels.rod", "law.least_squares", "yarn.paper.minimise"):
         assert f"knitcore.{name}" in found
     assert "knitcore.prediction" not in found

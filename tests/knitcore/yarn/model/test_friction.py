@@ -14,8 +14,7 @@ from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.solve.newton import COURSE
 from knitcore.yarn.study.hysteresis import at_rest
 from knitcore.yarn.study.relax import relax
-
-from .test_cell_energy import CASES, energy_of
+from tests.knitcore.yarn.study.test_cell_energy import CASES, energy_of
 
 GRID = SplineGrid(12, 3)
 
