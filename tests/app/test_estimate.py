@@ -95,7 +95,7 @@ def test_the_report_refits_and_leaves_out(client: TestClient) -> None:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ([], "bending_modulus_n_mm2: is missing"),
+        ([], "bending-modulus-n-mm2: is missing"),
         (["--bending-modulus-n-mm2", "0.02"], "loop_length_mm: is missing"),
         (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "long"], "FABRIC=MM"),
         (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "rib=9"], "missing"),
