@@ -60,10 +60,10 @@ def fabric_lines(material: Material) -> FabricLines:
 def _fabric_lines(stored: str, own: bool, sizes_mm: tuple[tuple[float, float], ...]) -> FabricLines:
     lines, strands = [], []
     for fabric, (course_mm, wale_mm) in zip(PHASES, sizes_mm, strict=True):
-        chart, found = StitchChart.of_fabric(fabric), stored_fabric(fabric, stored)
-        scale = np.sqrt(course_mm * wale_mm / (found.cell_course_mm * found.cell_wale_mm))
-        row, column = np.argwhere(~found.chart.purl)[0]
-        line = cell_lines(found)[row, column] * (1.0, 1.0, scale)
+        chart, relaxed = StitchChart.of_fabric(fabric), stored_fabric(fabric, stored)
+        scale = np.sqrt(course_mm * wale_mm / (relaxed.cell_course_mm * relaxed.cell_wale_mm))
+        row, column = np.argwhere(~relaxed.chart.purl)[0]
+        line = cell_lines(relaxed)[row, column] * (1.0, 1.0, scale)
         line = 0.5 * (line + line[::-1] * (-1.0, 1.0, 1.0))  # left and right are alike
         lines.append(line)
         strands.append(strand_distance_mm(line, chart, course_mm, wale_mm))

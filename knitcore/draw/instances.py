@@ -77,9 +77,9 @@ def stitch_meshes(
     ----------
     some : numbers of the shapes wanted; all if None.
     """
-    wanted = np.arange(len(shapes.lines)) if some is None else np.asarray(some, dtype=int)
-    sizes = tube_sizes(shapes, placement)[wanted, :3]
-    lines = resampled(shapes.lines[wanted], points) * sizes[:, None]
+    numbers = np.arange(len(shapes.lines)) if some is None else np.asarray(some, dtype=int)
+    sizes = tube_sizes(shapes, placement)[numbers, :3]
+    lines = resampled(shapes.lines[numbers], points) * sizes[:, None]
     lines[:, 0] -= OVERLAP * points * (lines[:, 1] - lines[:, 0])
     lines[:, -1] += OVERLAP * points * (lines[:, -1] - lines[:, -2])
     tubes = tube_vertices(lines, shapes.yarn_radius_mm, sides)

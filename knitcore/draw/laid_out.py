@@ -134,5 +134,5 @@ def _stitch_mm(answer: Prediction) -> Array:
 def _reached(shaped: ShapedChart) -> NDArray[np.bool_]:
     """Which corners belong to a stitch, bool (rows + 1, columns + 1)."""
     cells = np.pad(shaped.stitch, 1)
-    found: NDArray[np.bool_] = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
-    return found
+    reached: NDArray[np.bool_] = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
+    return reached

@@ -33,13 +33,13 @@ def occlusion(
     some : numbers of the shapes wanted; all if None.
     """
     radius, (rows, columns) = shapes.yarn_radius_mm, shapes.index.shape
-    wanted = range(len(shapes.lines)) if some is None else some
+    numbers = range(len(shapes.lines)) if some is None else some
     examples = _examples(shapes)
-    found = [(number, *examples[s]) for number, s in enumerate(wanted) if s in examples]
+    places = [(number, *examples[s]) for number, s in enumerate(numbers) if s in examples]
     lines = resampled(shapes.lines, POINTS)
     sizes = np.concatenate([shapes.lattice.sizes_mm, np.ones((rows, columns, 1))], axis=-1)
-    light = np.ones((len(wanted), POINTS, sides))
-    for number, row, column in found:
+    light = np.ones((len(numbers), POINTS, sides))
+    for number, row, column in places:
         around = np.s_[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
         pieces = lines[shapes.index[around]] * sizes[around][:, :, None]
         lengths = np.linalg.norm(np.gradient(pieces, axis=2), axis=-1).ravel()
@@ -60,6 +60,6 @@ def _examples(shapes: StitchShapes) -> dict[int, tuple[int, int]]:
     rows, columns = shapes.index.shape
     row, column = np.indices((rows, columns)).reshape(2, -1)
     order = np.argsort(np.hypot(row - rows // 2, column - columns // 2), kind="stable")
-    found, first = np.unique(shapes.index.ravel()[order], return_index=True)
+    occurring, first = np.unique(shapes.index.ravel()[order], return_index=True)
     cells = order[first]
-    return {int(s): (int(row[at]), int(column[at])) for s, at in zip(found, cells, strict=True)}
+    return {int(s): (int(row[at]), int(column[at])) for s, at in zip(occurring, cells, strict=True)}

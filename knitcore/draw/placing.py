@@ -135,8 +135,8 @@ def _depth(shapes: StitchShapes, sizes_mm: Array) -> float:
         steps = steps * np.column_stack([sizes, np.full(len(sizes), depth)])[:, None]
         return float(number @ np.linalg.norm(steps, axis=2).sum(axis=1))
 
-    wanted, (low, high) = length(rest, 1.0), DEPTH
+    yarn, (low, high) = length(rest, 1.0), DEPTH
     for _ in range(12):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if length(now, middle) < wanted else (low, middle)
+        low, high = (middle, high) if length(now, middle) < yarn else (low, middle)
     return 0.5 * (low + high)

@@ -147,12 +147,12 @@ def _of_stored(
 def _of_quarters(chart: StitchChart, fabrics: FabricLines) -> tuple[Array, NDArray[np.intp]]:
     bits = _parities(chart)
     code = bits @ (1 << np.arange(bits.shape[-1]))
-    found, index = np.unique(code, return_inverse=True)
-    if len(found) > MAX_SHAPES:  # leave out the crossings' bits
+    codes, index = np.unique(code, return_inverse=True)
+    if len(codes) > MAX_SHAPES:  # leave out the crossings' bits
         bits[..., [7, 9]], bits[..., [8, 10]] = bits[..., 1:2], bits[..., 2:3]
         code = bits @ (1 << np.arange(bits.shape[-1]))
-        found, index = np.unique(code, return_inverse=True)
-    kinds = (found[:, None] >> np.arange(bits.shape[-1])) & 1
+        codes, index = np.unique(code, return_inverse=True)
+    kinds = (codes[:, None] >> np.arange(bits.shape[-1])) & 1
     weights = _weights(kinds)
     lines = np.einsum("sup,pux->sux", weights, fabrics.lines)
     lines[..., 2] *= np.where(kinds[:, 0], -1.0, 1.0)[:, None]

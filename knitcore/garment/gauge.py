@@ -135,12 +135,12 @@ class GaugeSet:
         InputError
             If there is a swatch of a fabric that the material lacks.
         """
-        found = {f: Gauge.of_material(material, f) for f in Fabric if f in material.fabrics}
+        gauges = {f: Gauge.of_material(material, f) for f in Fabric if f in material.fabrics}
         if swatch is None:
-            return cls(found, material.identifier)
-        if fabric not in found:
+            return cls(gauges, material.identifier)
+        if fabric not in gauges:
             Gauge.of_material(material, fabric)  # raises if the material lacks the fabric
-        own = found[fabric]
+        own = gauges[fabric]
         across = swatch.stitch_course_mm / own.stitch_course_mm
         along = swatch.stitch_wale_mm / own.stitch_wale_mm
         scaled = {
@@ -150,7 +150,7 @@ class GaugeSet:
                 f"{swatch.source} {fabric}, other fabrics scaled alike",
                 swatch.log_sd if f is fabric else math.hypot(swatch.log_sd, GAUGE_LOG_SD),
             )
-            for f, g in found.items()
+            for f, g in gauges.items()
         }
         return cls(scaled, material.identifier, math.sqrt(across * along))
 

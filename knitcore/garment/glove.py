@@ -274,10 +274,10 @@ def _notes(
         else "The study's glove has its wrist support on 2.0 mm needles and the rest on 2.75 mm. "
         f"The material {STUDY_GLOVE} was measured on both, {material.identifier} on one."
     ]
-    wanted = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
-    if abs(rows / wanted - 1) > PALM_TOLERANCE:
+    around = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
+    if abs(rows / around - 1) > PALM_TOLERANCE:
         notes.append(
-            f"The fingers need {rows} rows around the hand, the palm's circumference {wanted} rows "
+            f"The fingers need {rows} rows around the hand, the palm's circumference {around} rows "
             "of garter: change the ease of the palm, or the circumferences of the fingers."
         )
     return tuple(notes)
@@ -297,10 +297,10 @@ def _wrist_notes(
     if mmhg is None:
         return ()
     rest = Fit(mmhg=mmhg).rest_mm(pressed.worn_mm, material, Fabric.STOCKINETTE, Direction.WALE)
-    wanted = gauge.rows_for(rest, multiple=2)
-    if wanted >= rows:
-        return (f"For {mmhg:g} mmHg the wrist support takes {wanted} rows; it has {rows}.",)
+    needed = gauge.rows_for(rest, multiple=2)
+    if needed >= rows:
+        return (f"For {mmhg:g} mmHg the wrist support takes {needed} rows; it has {rows}.",)
     return (
-        f"For {mmhg:g} mmHg the wrist support takes {wanted} of the {rows} rows ({rest:.0f} mm): "
-        f"turn {rows - wanted} rows, in pairs, at its edge to the hand (short rows).",
+        f"For {mmhg:g} mmHg the wrist support takes {needed} of the {rows} rows ({rest:.0f} mm): "
+        f"turn {rows - needed} rows, in pairs, at its edge to the hand (short rows).",
     )

@@ -113,14 +113,14 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
     """
     check_positive("target_mmhg", mmhg, "mmHg", "a target pressure", 300)
     check_positive("worn_mm", worn_mm, "mm", "a circumference", MAX_CIRCUMFERENCE_MM)
-    wanted = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
-    found = []
+    tension = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
+    sizes = []
     for end in (0, 1):
 
         def missing(strain: float, end: int = end) -> float:
             free = float(along.stress(strain))
             both = _tensions(along, strain, free, float(along.across_strain(free)))
-            return (both.low, both.high)[end] - wanted
+            return (both.low, both.high)[end] - tension
 
         upper = 0.1
         while missing(upper) < 0 and upper < 10:
@@ -129,8 +129,8 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
             raise InputError(
                 "target_mmhg", f"no size gives {mmhg:g} mmHg.", "Ask for less pressure."
             )
-        found.append(worn_mm / (1 + float(brentq(missing, 0.0, upper, xtol=1e-9))))
-    return Interval(min(found), max(found))
+        sizes.append(worn_mm / (1 + float(brentq(missing, 0.0, upper, xtol=1e-9))))
+    return Interval(min(sizes), max(sizes))
 
 
 def _tensions(along: Along, strain: float, free: float, axial: float) -> Interval:
@@ -249,8 +249,8 @@ def place_on(along: Along, at_mm: float, girth_mm: float, rest_mm: float) -> Lim
     """
     share = max(girth_mm / rest_mm - 1.0, 0.0) / along.response.lock_up_strain
     try:
-        found = tube_pressure(along, rest_mm, girth_mm)
+        pressure = tube_pressure(along, rest_mm, girth_mm)
     except InputError as error:
         problem = f"{error.problem} {error.remedy}"
         return LimbPlace(at_mm, rest_mm, girth_mm, share, None, problem)
-    return LimbPlace(at_mm, rest_mm, girth_mm, share, found)
+    return LimbPlace(at_mm, rest_mm, girth_mm, share, pressure)

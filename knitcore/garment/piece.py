@@ -98,8 +98,8 @@ class Piece:
     def runs(self, row: int) -> tuple[YarnRun, ...]:
         """The yarns of a row from left to right."""
         first, last = self.shaped.spans[row]
-        found = runs(self.yarn_of[row, first:last])
-        return tuple(YarnRun(first + start, first + stop, yarn) for start, stop, yarn in found)
+        row_runs = runs(self.yarn_of[row, first:last])
+        return tuple(YarnRun(first + start, first + stop, yarn) for start, stop, yarn in row_runs)
 
     def cells(self, yarn: int) -> NDArray[np.bool_]:
         """The stitches of one yarn."""

@@ -100,7 +100,7 @@ def glove_on_hand(
     for loop in loops:
         loop.lay(heights, corners)
         for column, name, place_at in loop.places():
-            for fabric in {found for found in fabrics[loop.rows, column] if found is not None}:
+            for fabric in {cell for cell in fabrics[loop.rows, column] if cell is not None}:
                 place = fitted(fabric, *place_at, float(heights[loop.rows, column].sum()))
                 mmhg[loop.rows[fabrics[loop.rows, column] == fabric], column] = _middle(place)
                 if name not in parts or place.lock_up_share > parts[name].lock_up_share:

@@ -138,13 +138,13 @@ def _missing(rings: list[Array], triangles: Indices) -> list[NDArray[np.bool_]]:
     """The segments of the rings that are not edges of triangles."""
     edges = np.sort(np.concatenate([triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
     known = set(map(tuple, edges.tolist()))
-    found, first = [], 0
+    missing, first = [], 0
     for ring in rings:
         number = first + np.arange(len(ring))
         pairs = np.sort(np.column_stack([number, np.roll(number, -1)]), axis=1).tolist()
-        found.append(np.array([tuple(pair) not in known for pair in pairs]))
+        missing.append(np.array([tuple(pair) not in known for pair in pairs]))
         first += len(ring)
-    return found
+    return missing
 
 
 def _halved(ring: Array, lost: NDArray[np.bool_]) -> Array:

@@ -282,7 +282,7 @@ def trellis_test(
         rate = frame_rate(angles[step]) @ test.nodes_mm
         return float(np.sum(internal[held] * rate[held]))
 
-    moment = np.array([work(e.internal, step) for step, e in enumerate(test.found)])
+    moment = np.array([work(e.internal, step) for step, e in enumerate(test.equilibria)])
     # the corners' distance is 2 side cos((90° - angle) / 2)
     return TrellisTest(
         test=test,
@@ -302,13 +302,13 @@ def _lock_up(cloth: Cloth, direction: Direction) -> float:
 
 def _largest_strain(cloth: Cloth, width: float, length: float, angle_deg: float) -> float:
     """Clamp-to-clamp strain at which fibres that run straight from clamp to clamp lock up."""
-    found = math.inf
+    largest = math.inf
     for direction, angle in ((Direction.COURSE, 90.0 - angle_deg), (Direction.WALE, angle_deg)):
         c, s = (abs(f(math.radians(angle))) for f in (math.cos, math.sin))
         if width * c >= length * s:
             reach = (1 + _lock_up(cloth, direction)) ** 2 - s**2
-            found = min(found, math.sqrt(reach) / c - 1)
-    return found
+            largest = min(largest, math.sqrt(reach) / c - 1)
+    return largest
 
 
 def _waist_strain(test: PieceTest, width: float) -> Array:

@@ -129,7 +129,7 @@ class PathSolver:
                 goal = min(1.0, done + share)
                 prescribed = target if goal == 1.0 else origin + goal * (target - origin)
                 try:
-                    found = self._step(state, prescribed, number + goal)
+                    balanced = self._step(state, prescribed, number + goal)
                 except StepError as reason:
                     halvings += 1
                     if halvings > MAX_HALVINGS:
@@ -139,11 +139,11 @@ class PathSolver:
                         ) from reason
                     share /= 2
                     continue
-                state, done = found.state, goal
-                iterations += found.iterations
+                state, done = balanced.state, goal
+                iterations += balanced.iterations
                 share = min(2 * share, 1.0 - done) if done < 1.0 else share
             origin = target
-            yield Equilibrium(found.state, found.energy, found.reaction, iterations)
+            yield Equilibrium(balanced.state, balanced.energy, balanced.reaction, iterations)
 
     # -- one step ---------------------------------------------------------------------------
 
@@ -254,9 +254,9 @@ class PathSolver:
         self._spare = lin
         while share > 1e-6:
             trial = state.moved(step, share)
-            found = self._linearise(trial)
-            if found.energy <= energy + 1e-4 * share * slope + noise:
-                return trial, found
+            there = self._linearise(trial)
+            if there.energy <= energy + 1e-4 * share * slope + noise:
+                return trial, there
             share /= 2
         raise StepError("The line search found no state of lower energy.")
 

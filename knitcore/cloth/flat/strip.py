@@ -173,10 +173,10 @@ def _local_laws(
     check_cloth(inside, chart.rows, chart.columns)
     rows, columns = (np.flatnonzero(inside.any(axis=axis)) for axis in (1, 0))
     here = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    found = quarter_laws(_continued(chart.purl[here], inside[here]), material, size)
+    laws = quarter_laws(_continued(chart.purl[here], inside[here]), material, size)
     patch, scale = np.zeros(inside.shape, dtype=np.intp), np.ones((*inside.shape, 2))
-    patch[here], scale[here] = found.patch, found.scale
-    return replace(found, patch=patch, scale=scale)
+    patch[here], scale[here] = laws.patch, laws.scale
+    return replace(laws, patch=patch, scale=scale)
 
 
 def _continued(purl: NDArray[np.bool_], stitch: NDArray[np.bool_]) -> StitchChart:
@@ -266,7 +266,7 @@ def strip_result(sheet: Sheet, direction: Direction, levels: Array, path: Path) 
         sheet,
         path,
         direction=direction,
-        strain=levels[: len(path.found)],
+        strain=levels[: len(path.equilibria)],
         force_n=force,
         stress_n_per_mm=force / width,
         waist_strain=np.array([waist_strain(grid, s.corners, direction) for s in path.states]),

@@ -216,9 +216,9 @@ class StripTest(SwatchTest):
         strain, stress = (np.append(0.0, a) for a in (self.strain, self.stress_n_per_mm))
         drawn = [(f"pulled {self.direction}-wise", strain, stress, None)]
         curve = showing.curves(drawn, "strain", "stress, N/mm") if self.steps else ""
-        told = f"{self.width_mm:.0f} mm wide, {self.length_mm:.0f} mm between the clamps"
+        caption = f"{self.width_mm:.0f} mm wide, {self.length_mm:.0f} mm between the clamps"
         if self.steps:
             end = f"at a strain of {self.strain[-1]:.2f}: {self.force_n[-1]:.3g} N"
-            told = f"{told}; {end}, waist {self.waist_strain[-1]:+.3f}"
+            caption = f"{caption}; {end}, waist {self.waist_strain[-1]:+.3f}"
         net = self._net_html()
-        return showing.captioned(showing.beside(curve, net), told, self.problem or "")
+        return showing.captioned(showing.beside(curve, net), caption, self.problem or "")

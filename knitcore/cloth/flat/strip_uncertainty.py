@@ -225,11 +225,11 @@ def model_log_sd(sheet: Sheet) -> float:
 
 def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
     """Standard deviation of ln(lock-up strain), course-wise and wale-wise, (laws, 2)."""
-    found = np.zeros((len(sheet.laws), 2))
+    log_sd = np.zeros((len(sheet.laws), 2))
     for code in _codes(sheet):
         spread = _record(material, code).uncertainty
-        found[code] = [spread.curve(direction).log_lock_up for direction in Direction]
-    return found
+        log_sd[code] = [spread.curve(direction).log_lock_up for direction in Direction]
+    return log_sd
 
 
 def law_parameters(
@@ -239,24 +239,26 @@ def law_parameters(
 
     ``stress_n_per_mm`` is the approximate stress of the cloth.
     """
-    found = []
+    parameters = []
     for code in _codes(sheet):
         record = _record(material, code)
         law, spread = record.law, record.uncertainty
         for direction in Direction:
             step = _varied(sheet, [code], partial(_stress_scaled, direction))
             sd = float(spread.log_stress(direction, stress_n_per_mm))
-            found.append(LawParameter(*step, sd, model_sd))
+            parameters.append(LawParameter(*step, sd, model_sd))
         sd = _coupling_sd(law, sheet.model.rule, spread)
-        found.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
+        parameters.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
         if sheet.model.shear_modulus is None and spread.log_shear is not None:
-            found.append(LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0))
+            parameters.append(
+                LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0)
+            )
             growth = _varied(sheet, [code], _stiffer_in_shear)
-            found.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
+            parameters.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
     assumed = _of_assumed_shear(sheet, material)
     if assumed:
-        found.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
-    return found
+        parameters.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
+    return parameters
 
 
 def interval_source(sheet: Sheet, material: Material) -> str:

@@ -222,8 +222,8 @@ def curl(
         sheet = sheet.cut(stitches)
     left = time_limit_s - (time.process_time() - clock)
     near = begin is not None
-    found = settle(sheet, x, held=held, near=near, time_limit_s=left, cancelled=cancelled)
-    placed = found.x if pull else aligned(found.x, sheet)
+    rest = settle(sheet, x, held=held, near=near, time_limit_s=left, cancelled=cancelled)
+    placed = rest.x if pull else aligned(rest.x, sheet)
     corners = placed.reshape(shape)
     strip = STRIP * sheet.thickness_mm
     width, height, depth = np.ptp(placed[sheet.used], axis=0)
@@ -239,9 +239,9 @@ def curl(
         curl_course_mm=standing_out_mm(corners, strip) if whole else np.nan,
         # columns for rows turns the face to the other side
         curl_wale_mm=-standing_out_mm(corners.transpose(1, 0, 2), strip) if whole else np.nan,
-        energy_n_mm=found.energy_n_mm,
-        converged=found.converged,
-        residual=found.residual,
+        energy_n_mm=rest.energy_n_mm,
+        converged=rest.converged,
+        residual=rest.residual,
         seconds=time.process_time() - clock,
         stitches=stitches,
         notes=(
@@ -311,11 +311,11 @@ def standing_out_mm(corners: Array, strip_mm: float) -> float:
     stitch = float(np.linalg.norm(np.diff(corners, axis=1), axis=2).mean())
     wide = int(np.clip(round(strip_mm / stitch), 1, (columns - 1) // 2))
     inner = slice(rows // 4, rows - rows // 4)
-    found = []
+    heights = []
     for side, sign in ((corners, 1.0), (corners[:, ::-1], -1.0)):
         at = side[:, wide]
         normal = sign * np.cross(side[:, wide + 1] - at, np.gradient(at, axis=0))
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         height = np.einsum("ijm,im->ij", side[:, :wide] - at[:, None], normal)[inner]
-        found.append(height[np.arange(len(height)), np.abs(height).argmax(axis=1)].mean())
-    return float(np.mean(found))
+        heights.append(height[np.arange(len(height)), np.abs(height).argmax(axis=1)].mean())
+    return float(np.mean(heights))

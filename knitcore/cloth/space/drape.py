@@ -88,23 +88,23 @@ def drape(
     sheet, held = _round(cloth, piece_mm, disc_mm, across)
     load = np.zeros_like(sheet.flat_mm)
     load[:, 2] = -sheet.shared(np.full(len(sheet.quads), cloth.weight_n_per_mm2 * _area(sheet)))
-    found = [
+    shapes = [
         settle(
             sheet.clamped(held), _waved(sheet, held, waves), held=held, load_n=load,
             time_limit_s=time_limit_s / len(starts), cancelled=cancelled,
         )
         for waves in starts
     ]  # fmt: skip
-    covered = [_coefficient(sheet, shape.x, disc_mm) for shape in found]
-    best = int(np.argmin([shape.energy_n_mm for shape in found]))
-    corners = np.where(sheet.used[:, None], found[best].x, np.nan)
+    covered = [_coefficient(sheet, shape.x, disc_mm) for shape in shapes]
+    best = int(np.argmin([shape.energy_n_mm for shape in shapes]))
+    corners = np.where(sheet.used[:, None], shapes[best].x, np.nan)
     return Drape(
         coefficient=covered[best],
         coefficients=tuple(covered),
-        folds=_folds(sheet, found[best], 0.5 * (piece_mm - disc_mm)),
-        fall_mm=float(-found[best].x[:, 2].min()),
+        folds=_folds(sheet, shapes[best], 0.5 * (piece_mm - disc_mm)),
+        fall_mm=float(-shapes[best].x[:, 2].min()),
         corners_mm=corners.reshape(across + 1, across + 1, 3),
-        converged=all(shape.converged for shape in found),
+        converged=all(shape.converged for shape in shapes),
     )
 
 

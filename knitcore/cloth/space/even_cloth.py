@@ -147,8 +147,8 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
         If it does not relax at the yarn level, or folds by itself.
     """
     repeat = chart.repeat()
-    found = predict(repeat, material)
-    course, wale = found.along(Direction.COURSE), found.along(Direction.WALE)
+    answer = predict(repeat, material)
+    course, wale = answer.along(Direction.COURSE), answer.along(Direction.WALE)
     poisson = np.sqrt(max(course.poisson * wale.poisson, 0.0)).clip(max=_MAX_POISSON)
     stiff = [along.modulus_n_per_mm / (1.0 - poisson**2) for along in (course, wale)]
     coupling = float(poisson) * math.sqrt(stiff[0] * stiff[1])
@@ -157,7 +157,7 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     weight = float(stitch_weights_n(repeat, material, linear_density_g_per_m, periodic=True).mean())
     return EvenCloth(
         stitch_mm=stitch,
-        membrane_n_per_mm=(*stiff, coupling, found.shear_modulus_n_per_mm),
+        membrane_n_per_mm=(*stiff, coupling, answer.shear_modulus_n_per_mm),
         rigidity_n_mm=rigidity,
         twist_n_mm=TWIST * math.sqrt(rigidity[0] * rigidity[1]),
         curvature_per_mm=curvature,
@@ -189,16 +189,16 @@ def stitch_corners(
         count = max(1, int(wide / stitch))
         at.append((0.5 * (wide - count * stitch) + stitch * np.arange(count + 1)) / rectangle)
     grid = np.meshgrid(at[1], at[0], indexing="ij")
-    found = np.stack(
+    corners = np.stack(
         [
             map_coordinates(part, grid, order=1, cval=np.nan)
             for part in np.moveaxis(corners_mm, 2, 0)
         ],
         axis=-1,
     )
-    known = np.isfinite(found[..., 0])
+    known = np.isfinite(corners[..., 0])
     stitches = known[1:, 1:] & known[1:, :-1] & known[:-1, 1:] & known[:-1, :-1]
-    return found, stitches
+    return corners, stitches
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,11 +274,11 @@ def _bent(
         )
     if repeat.stitches > MAX_STITCHES:
         return _mean_bend(repeat, material)
-    found = mirrored_bending(repeat, yarn_for(material, repeat))
+    bending = mirrored_bending(repeat, yarn_for(material, repeat))
     return (
-        (found.course.rigidity_n_mm, found.wale.rigidity_n_mm),
-        (found.course.curvature_per_mm, found.wale.curvature_per_mm),
-        found.thickness_mm,
+        (bending.course.rigidity_n_mm, bending.wale.rigidity_n_mm),
+        (bending.course.curvature_per_mm, bending.wale.curvature_per_mm),
+        bending.thickness_mm,
     )
 
 

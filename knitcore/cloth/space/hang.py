@@ -103,16 +103,16 @@ def hang(
     held[top, edge[[0, -1]] if by is HungBy.CORNERS else edge] = True
     begin = sheet.flat_mm + shake_mm(load.shape)
     begin[held.ravel()] = sheet.flat_mm[held.ravel()]
-    found = settle(
+    shape = settle(
         sheet, begin, held=held.ravel(), load_n=load, time_limit_s=time_limit_s, cancelled=cancelled
     )
-    corners = found.x.reshape(*held.shape, 3)
+    corners = shape.x.reshape(*held.shape, 3)
     width, drop, depth = np.ptp(corners[used], axis=0)
     columns = np.flatnonzero(there.any(axis=0))
     middle = columns[len(columns) // 2]
     long = [
         np.linalg.norm(np.diff(x.reshape(*held.shape, 3)[:, middle], axis=0), axis=1)
-        for x in (found.x, sheet.flat_mm)
+        for x in (shape.x, sheet.flat_mm)
     ]
     lengths = [each[there[:, middle]].sum() for each in long]
     return HungPiece(
@@ -122,6 +122,6 @@ def hang(
         width_mm=float(width),
         depth_mm=float(depth),
         lengthening=float(lengths[0] / lengths[1]) - 1.0,
-        converged=found.converged,
+        converged=shape.converged,
         used=used,
     )

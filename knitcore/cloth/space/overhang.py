@@ -93,8 +93,8 @@ def overhang(
     weight = np.full(len(sheet.quads), cloth.weight_n_per_mm2 * size[0] * size[1])
     load = np.zeros_like(sheet.flat_mm)
     load[:, 2] = -sheet.shared(weight)
-    found = settle(sheet.clamped(held), sheet.flat_mm, held=held, load_n=load, cancelled=cancelled)
-    corners = found.x.reshape(_ACROSS + 1, columns + 1, 3)
+    shape = settle(sheet.clamped(held), sheet.flat_mm, held=held, load_n=load, cancelled=cancelled)
+    corners = shape.x.reshape(_ACROSS + 1, columns + 1, 3)
     corners = corners - corners[_ACROSS // 2, _CLAMPED]
     reach, _, height = corners[:, -1].mean(axis=0)
     angle = math.atan2(-height, reach)
@@ -108,5 +108,5 @@ def overhang(
         rigidity_n_mm=cloth.weight_n_per_mm2 * peirce**3,
         corners_mm=corners.transpose(1, 0, 2),
         rectangle_mm=size,
-        converged=found.converged,
+        converged=shape.converged,
     )

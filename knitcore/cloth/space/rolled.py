@@ -57,11 +57,11 @@ def _bent(sheet: StitchSheet, axis: int, time_limit_s: float, cancelled: Cancell
     strip = strip_of(sheet, axis)
     plane = np.zeros(strip.flat_mm.shape, dtype=bool)
     plane[:, axis] = True  # a strip would roll up into a helix
-    found = settle(
+    shape = settle(
         strip, _shaken(strip), held=plane, max_steps=_STEPS, time_limit_s=time_limit_s,
         cancelled=cancelled,
     )  # fmt: skip
-    return extruded(sheet, axis, found.x)
+    return extruded(sheet, axis, shape.x)
 
 
 def strip_of(sheet: StitchSheet, axis: int) -> StitchSheet:

@@ -300,11 +300,11 @@ def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
     box = (x * count[1] + y) * count[2] + z
     order = np.argsort(box, kind="stable")
     pairs = np.empty((16 * len(at), 2), np.int64)
-    while (found := _listed(at, home, reach, apart, count, box, order, box[order], pairs)) > len(
+    while (listed := _listed(at, home, reach, apart, count, box, order, box[order], pairs)) > len(
         pairs
     ):
-        pairs = np.empty((found, 2), np.int64)
-    return pairs[:found]
+        pairs = np.empty((listed, 2), np.int64)
+    return pairs[:listed]
 
 
 @compiled
@@ -339,7 +339,7 @@ def _listed(
     count : (3,) boxes along each axis.
     box, order, ordered : each point's box, the points by rising box, and their boxes.
     """
-    found = 0
+    listed = 0
     for place in range(at.shape[0]):
         i = order[place]
         b = box[i]
@@ -361,8 +361,8 @@ def _listed(
                     along, up = home[j, 0] - home[i, 0], home[j, 1] - home[i, 1]
                     if along * along + up * up < apart * apart:
                         continue
-                    if found < pairs.shape[0]:
-                        pairs[found, 0] = i
-                        pairs[found, 1] = j
-                    found += 1
-    return found
+                    if listed < pairs.shape[0]:
+                        pairs[listed, 0] = i
+                        pairs[listed, 1] = j
+                    listed += 1
+    return listed

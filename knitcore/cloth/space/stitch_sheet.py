@@ -86,9 +86,9 @@ class StitchSheet:
     @cached_property
     def used(self) -> NDArray[np.bool_]:
         """(corners,) whether a stitch has this corner."""
-        found = np.zeros(len(self.flat_mm), dtype=bool)
-        found[self.quads] = True
-        return found
+        used = np.zeros(len(self.flat_mm), dtype=bool)
+        used[self.quads] = True
+        return used
 
     @cached_property
     def points(self) -> Ints:
@@ -370,8 +370,8 @@ def _turning(
     width = beside(of.size_mm[phases][..., 1])
     rigidity = beside(of.rigidity_n_mm[phases][..., 0])
     closed = 2.0 * np.arctan(length / of.thickness_mm)
-    wanted = length * beside(sign * of.curvature_per_mm[phases][..., 0])
-    free = np.clip(wanted, -closed, closed)
+    unhindered = length * beside(sign * of.curvature_per_mm[phases][..., 0])
+    free = np.clip(unhindered, -closed, closed)
     stiffness = rigidity * width / length
     turn = 0.5 * (share[:, 1:] + share[:, :-1]) * free
     rest = np.clip(rest_turns(side, turn, free, stiffness), -closed, closed)

@@ -26,12 +26,12 @@ def filled(corners_mm: Array, used: NDArray[np.bool_]) -> Array:
     second = [line[2:] - 2.0 * line[1:-1] + line[:-2] for line in map(_unit, used.shape)]
     rows, columns = map(_unit, used.shape)
     both = vstack([kron(second[0], columns), kron(rows, second[1])], format="csc")
-    found, there = corners_mm.reshape(-1, 3).copy(), used.ravel()
+    corners, there = corners_mm.reshape(-1, 3).copy(), used.ravel()
     missing = both[:, ~there]
-    found[~there] = -splu((missing.T @ missing).tocsc()).solve(
-        missing.T @ (both[:, there] @ found[there])
+    corners[~there] = -splu((missing.T @ missing).tocsc()).solve(
+        missing.T @ (both[:, there] @ corners[there])
     )
-    return found.reshape(corners_mm.shape)
+    return corners.reshape(corners_mm.shape)
 
 
 def _unit(count: int) -> csr_array:
@@ -74,8 +74,8 @@ class Surface:
         beyond = across - inside[0], up - inside[1]
         normal = np.cross(along, rising)
         normal /= np.maximum(np.linalg.norm(normal, axis=-1), 1e-12)[..., None]
-        found = self._of(*inside, 0, 0) + along * beyond[0][..., None]
-        return np.asarray(found + rising * beyond[1][..., None] + normal * height_mm[..., None])
+        foot = self._of(*inside, 0, 0) + along * beyond[0][..., None]
+        return np.asarray(foot + rising * beyond[1][..., None] + normal * height_mm[..., None])
 
     def _of(self, across: Array, up: Array, by_up: int, by_across: int) -> Array:
         return np.stack(
