@@ -19,7 +19,7 @@ from knitcore.yarn.library.store import MATERIALS, StoredStitch, stored_fabric
 from knitcore.yarn.model.spline import SUPPORT, quintic_basis
 
 POINTS = 49
-"""Points of a centre line over one stitch, both ends included."""
+"""Number of points of a centre line over one stitch, both ends included."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class FabricLines:
 
 
 def stored_material(material: Material) -> str:
-    """The material of the store whose stitches are used for a material."""
+    """Name the stored material whose stitches stand in for a material."""
     return material.sample if material.sample in MATERIALS else MATERIALS[0]
 
 

@@ -36,7 +36,7 @@ class Lattice:
         return np.stack([self._edges_along(0), self._edges_along(1).T], axis=-1)
 
     def _edges_along(self, axis: int) -> Array:
-        """One coordinate of the corners; the lines that run along it come first."""
+        """One coordinate of the corners; the first axis is of the lines that run along it."""
         centres, sizes = (v[..., axis] for v in (self.centres_mm, self.sizes_mm))
         if axis == 1:
             centres, sizes = centres.T, sizes.T
@@ -55,7 +55,7 @@ def stitch_sizes_mm(material: Material) -> Array:
 def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
     """The chart as a flat sheet, with the mean width of each wale and mean height of each course.
 
-    A lattice for pictures, not an equilibrium, which the swatch solves for.
+    The lattice is for pictures; it is no equilibrium, for which the swatch solves.
 
     Raises
     ------
@@ -105,9 +105,10 @@ def resting_lattice(chart: StitchChart, material: Material) -> Lattice:
 
 def _edges(steps: Array, weight: float) -> Array:
     """Places (lines, steps + 1) of the edges between stitches whose steps along each line are
-    nearest to the wanted ones (lines, steps); those from line to line, times the weight, to 0.
+    nearest to ``steps`` (lines, steps), and whose steps from line to line, times the weight, are
+    nearest to 0.
     """
-    from scipy.fft import dctn, idctn  # loads for .3 s, which a prediction does not wait for
+    from scipy.fft import dctn, idctn  # loads for 0.3 s, which a prediction does not wait for
 
     pull = -np.diff(steps, axis=1, prepend=0.0, append=0.0)
     wave = dctn(pull, norm="ortho")

@@ -11,9 +11,9 @@ from knitcore.draw.stitches import StitchShapes
 from knitcore.draw.tubes import resampled, tube_vertices
 
 POINTS = 13
-"""Along a stitch, for which light is computed, and pieces as which its neighbours are seen."""
+"""Number of points along a stitch that get light, and of pieces of each neighbour that hide it."""
 NEAREST = 0.7
-"""Radii from which a piece is seen at least: strands of soft yarn overlap a little."""
+"""Smallest distance of a piece, in radii: strands of soft yarn overlap a little."""
 
 
 def occlusion(
@@ -22,15 +22,15 @@ def occlusion(
     """Light at the corners of tubes around shapes, (shapes, points, sides), 0 to 1.
 
     A piece of yarn of length ds at a distance d, in the direction e, hides 2 r ds / (π d²) n · e of
-    what a surface with the normal n sees, if it is before it; the light is exp(-sum). Counted are
-    the yarn of the stitch itself and of the eight around it, as they rest, where the shape occurs
-    nearest to the middle of the chart.
+    what a surface with the normal n sees in front of it; the light is exp(-sum). The sum is over
+    the yarn of the stitch itself and of the eight around it at rest, at the place nearest to the
+    middle of the chart where the shape occurs.
 
     Parameters
     ----------
-    shapes : of a chart.
+    shapes : the stitches of a chart.
     points, sides : of the tubes, as in :func:`knitcore.draw.tubes.tube_vertices`.
-    some : numbers of the shapes wanted; all if None.
+    some : numbers of the shapes; all if None.
     """
     radius, (rows, columns) = shapes.yarn_radius_mm, shapes.index.shape
     numbers = range(len(shapes.lines)) if some is None else some
@@ -56,7 +56,7 @@ def occlusion(
 
 
 def _examples(shapes: StitchShapes) -> dict[int, tuple[int, int]]:
-    """Row and column of each shape that occurs, where it is nearest to the chart's middle."""
+    """Row and column nearest to the chart's middle of each shape that occurs."""
     rows, columns = shapes.index.shape
     row, column = np.indices((rows, columns)).reshape(2, -1)
     order = np.argsort(np.hypot(row - rows // 2, column - columns // 2), kind="stable")

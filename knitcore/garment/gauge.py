@@ -99,7 +99,7 @@ class Gauge:
         return _rounded(width_mm / self.stitch_course_mm, multiple, extra)
 
     def rows_for(self, height_mm: float, *, multiple: int = 1, extra: int = 0) -> int:
-        """Rows of a height, rounded likewise."""
+        """Rows of a height, rounded to ``multiple * n + extra`` with at least one repeat."""
         return _rounded(height_mm / self.stitch_wale_mm, multiple, extra)
 
 
@@ -128,7 +128,7 @@ class GaugeSet:
     ) -> GaugeSet:
         """The gauges of a material, or of a knitter who knits ``fabric`` at a swatch's gauge.
 
-        The other fabrics are scaled alike, as a loose knitter is loose in all of them.
+        The other fabrics are scaled alike: a loose knitter is loose in all of them.
 
         Raises
         ------

@@ -114,7 +114,8 @@ class GloveLayout:
     thumb_tip : column at which the thumb ends.
     thumb_rows : of either half of the thumb.
     gusset_ends : columns at which the gusset's rows on either side of the thumb end.
-    finger_rows, finger_tips : of the back of each finger, as many as of its front; columns.
+    finger_rows : rows of the back of each finger; its front has as many.
+    finger_tips : columns at which the fingers end.
     """
 
     cuff: int
@@ -157,7 +158,7 @@ class GloveLayout:
 
     @property
     def ends(self) -> list[tuple[str, int]]:
-        """Part beyond the crotch, and last column, of every row."""
+        """Name of the part beyond the crotch and last column, for every row."""
         half = [("thumb", self.thumb_tip)] * self.thumb_rows
         half += [("gusset", end) for end in self.gusset_ends]
         half += [("hand", self.thumb_crotch)] * CROTCH_ROWS
@@ -187,7 +188,7 @@ def glove(
     hand : its measurements.
     material : gives gauges and laws; ``glove-wool:glove`` is the paper's.
     ease : of fingers and thumb.
-    mmhg : target pressure of the wrist support; a note says how many rows that takes.
+    mmhg : target pressure of the wrist support; a note gives the rows for it.
     gauges : the knitter's; by default the material's own.
     linear_density_tex : for the mass of yarn.
 
@@ -255,7 +256,7 @@ def glove(
 
 
 def _gusset(hand: Hand, seed: Gauge, thumb_crotch: int) -> list[int]:
-    """Where rows end, ever nearer to the crotch, two of each length, on one side of the thumb."""
+    """Columns at which the gusset's rows end on one side of the thumb, two of each length."""
     height = round(hand.gusset_mm / seed.stitch_course_mm)
     steps = round(hand.gusset_girth_mm / 2 / seed.stitch_wale_mm / 2)
     if height < 1 or steps < 1:

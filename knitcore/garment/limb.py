@@ -1,8 +1,8 @@
 """Pressure of a knitted tube of any chart on a limb: a sleeve, a sock, a wrist.
 
-Laplace's law with the chart's own prediction, as :mod:`knitcore.mechanics.pressure` where a pure
-fabric has a law: free along the limb the tube shortens as in a strip test, held there its width
-stays. The limb's girth may change along its length.
+Laplace's law is used with the prediction for the chart; :mod:`knitcore.mechanics.pressure` uses it
+with the law of a pure fabric. Along the limb the tube is either free and shortens as in a strip
+test, or held at its length. The limb's girth may change along its length.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from knitcore.mechanics.pressure import (
 from knitcore.prediction.prediction import Along
 
 PLACES = 21
-"""Places along the limb, evenly spaced."""
+"""Number of places along the limb, evenly spaced."""
 MAX_GIRTHS = 100
 LEAST_GIRTH_MM = 10.0
-"""Half of what the thinnest finger measures around."""
+"""Smallest girth that is accepted: half that of the thinnest finger."""
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ class MeasuredLimb:
             )
 
     def girth_mm(self, at_mm: Array) -> Array:
-        """Circumference at places along the limb; beyond its ends that of the end."""
+        """Circumference at places along the limb; beyond an end it stays as at the end."""
         return np.interp(at_mm, self.at_mm, self.girths_mm)
 
 
@@ -188,7 +188,7 @@ class LimbPlace:
     at_mm : along the limb.
     rest_mm, girth_mm : circumferences of the unworn tube, and of the limb.
     lock_up_share : strain around the limb over that at which the chart is locked.
-    pressure : None where there is none.
+    pressure : on the limb; None where there is none.
     problem : why there is none, such as a loose fit; else empty.
     """
 
@@ -206,7 +206,7 @@ class LimbPlace:
 
     @property
     def axial_strain(self) -> float:
-        """Along the limb, where nothing holds the tube."""
+        """Strain along the limb, where nothing holds the tube."""
         return 0.0 if self.pressure is None else self.pressure.axial_strain_free
 
 

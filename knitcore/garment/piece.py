@@ -24,7 +24,7 @@ class PieceYarn:
 
 
 MAIN_YARN: Final = PieceYarn("main yarn", "#efe9dd")
-"""The yarn of stitches for which none is named."""
+"""Yarn of stitches for which none is named."""
 
 
 @dataclass(frozen=True)
@@ -87,12 +87,12 @@ class Piece:
 
     @property
     def is_rectangle(self) -> bool:
-        """Whether every cell is a stitch."""
+        """True if every cell is a stitch."""
         return self.shaped.is_rectangle
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is a rectangle of the main yarn, with nothing beyond its chart."""
+        """True for a rectangle of the main yarn, with nothing beyond its chart."""
         return self.is_rectangle and self.yarns == (MAIN_YARN,)
 
     def runs(self, row: int) -> tuple[YarnRun, ...]:

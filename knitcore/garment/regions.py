@@ -31,8 +31,8 @@ class Region:
     ----------
     name : for people.
     cells : bool (rows, columns), row 0 at the bottom.
-    fill : repeat, continued over the whole chart from its bottom left, so that regions of one
-        fabric fit together.
+    fill : the repeat, continued over the whole chart from its bottom left, so that regions of
+        one fabric fit together.
     colour : ``#rrggbb`` for intarsia and for the chart, or empty.
     """
 
@@ -63,7 +63,7 @@ class RegionMisfit:
 
 @dataclass(frozen=True)
 class RegionNumbers:
-    """What the fabric of a region does, with the moduli of its answer."""
+    """Extensibility and moduli of the fabric of a region."""
 
     name: str
     stitches: int

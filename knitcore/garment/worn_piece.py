@@ -21,7 +21,7 @@ class Worn:
     at_mm : along the limb, from where the garment begins.
     part : of the garment there.
     rest_mm, worn_mm : circumferences of the garment unworn, and of the limb.
-    pressure : None where there is none.
+    pressure : on the limb; None where there is none.
     problem : why there is none, such as a loose fit or a strain beyond the lock-up; else empty.
     """
 

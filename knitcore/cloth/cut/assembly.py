@@ -31,7 +31,7 @@ class Assembled:
 
     Attributes
     ----------
-    energy : N·mm; infinite where a fibre has collapsed to a point, and then nothing else counts.
+    energy : N·mm; infinite if a fibre has collapsed to a point: the rest is then meaningless.
     force : N, (2, nodes), gradient of the energy.
     tangent : N/mm, sparse (2 * nodes, 2 * nodes): all x displacements, then all y.
     """
@@ -72,7 +72,7 @@ class PieceEnergy:
         course, wale = np.tensordot(turn.T, (x, y), axes=1)
         self.law_of_point = cloth.law_at(course, wale)
         self._turned = np.kron(turn, turn)
-        """From (a0, a1, b0, b1) in the fibres' frame to columns of the gradient in the piece's."""
+        """Matrix from (a0, a1, b0, b1) in the frame of the fibres to gradients in the piece's."""
 
     def fibres(self, displacement: Array) -> Array:
         """Images (elements, points, 4) of the unit vectors along course and wale, a then b, in the
@@ -110,7 +110,7 @@ class PieceEnergy:
         return Assembled(energy, force, sp.csr_array(sp.block_array([[xx, xy], [xy.T, yy]])))
 
     def law_force(self, laws: NDArray[np.void], displacement: Array) -> Array:
-        """Force (2, nodes), N, that other laws would make; records as the sheet's parameters."""
+        """Force (2, nodes), N, under other laws, given as records like the sheet's parameters."""
         return self._force(self._respond(displacement, laws)[1])
 
     def _respond(self, displacement: Array, laws: NDArray[np.void]) -> tuple[Array, Array, Array]:

@@ -18,7 +18,7 @@ from knitcore.cloth.cut.outline import CutPiece
 Indices = NDArray[np.int64]
 
 MAX_SHEAR_ANGLE = 1.2
-"""rad; beyond it courses and wales touch in any knit."""
+"""Largest shear of a frame, rad; beyond it courses and wales touch in any knit."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ Condition = Held | Pulled | Traction | Sewn | Framed
 
 
 def frame(angle: float) -> Array:
-    """Rows: images of the unit vectors along the bars of a frame sheared by an angle (rad)."""
+    """Images, as rows, of the unit vectors along the bars of a frame sheared by an angle (rad)."""
     c, s = math.cos(angle / 2), math.sin(angle / 2)
     return np.array([[c, s], [s, c]])
 
@@ -112,8 +112,9 @@ def frame_rate(angle: float) -> Array:
 class Constraints:
     """Conditions on the nodes of a mesh.
 
-    The displacements (2, nodes), flattened, are ``displacements(share) + spread @ q``: what is
-    prescribed, and unknowns q, of which a clamp that moves freely has one in each direction.
+    The displacements (2, nodes), flattened, are ``displacements(share) + spread @ q``: the
+    prescribed ones, and the unknowns q. A clamp that moves freely has one unknown in each
+    direction.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ class Constraints:
 
     Attributes
     ----------
-    held : bool (2, nodes), where displacements are prescribed.
+    held : bool (2, nodes), True where displacements are prescribed.
     spread : sparse (2 * nodes, unknowns).
     nodes : of each condition.
     """
@@ -179,7 +180,7 @@ class Constraints:
         return loads
 
     def forces(self, internal: Array, share: float) -> Array:
-        """Force (conditions, 2), N, on each edge, from the internal forces (2, nodes).
+        """Force on each edge, (conditions, 2) in N, from the internal forces (2, nodes).
 
         A corner that two held edges share counts for the first.
         """
@@ -202,7 +203,7 @@ class Constraints:
 
     @staticmethod
     def _holds(condition: Held | Framed) -> NDArray[np.bool_]:
-        """Which directions a condition holds, (2, 1)."""
+        """Mask (2, 1) of the directions that a condition holds."""
         if isinstance(condition, Framed):
             return np.ones((2, 1), dtype=bool)
         return np.array([[condition.x_mm is not None], [condition.y_mm is not None]])
@@ -231,7 +232,7 @@ class Constraints:
         return prescribed
 
     def _spread(self) -> sp.csr_array:
-        """From the unknowns to the displacements, (2 * nodes, unknowns)."""
+        """Matrix (2 * nodes, unknowns) that turns the unknowns into displacements."""
         count = self.held.size
         leader = np.arange(count).reshape(self.held.shape)
         clamped = np.zeros(self.held.shape[1], dtype=bool)

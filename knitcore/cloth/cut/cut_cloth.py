@@ -93,6 +93,6 @@ def cloth_under(
 
 
 def _repeated(stitches: int, repeat: int, ratio: float) -> int:
-    """Whole repeats that reach ``ratio`` times as far, or as far as before."""
+    """Stitches in whole repeats that cover ``ratio`` times as many stitches, never fewer."""
     reach = stitches * max(ratio, 1.0)
     return repeat * math.ceil(reach / repeat - 1e-10)

@@ -78,7 +78,7 @@ class PieceTest(Result):
 
     @property
     def converged(self) -> bool:
-        """Whether all requested steps converged."""
+        """True if all requested steps converged."""
         return self.problem is None
 
     @property
@@ -116,7 +116,7 @@ class PieceTest(Result):
     def force_n(self) -> Array:
         """Force on the edge of each condition, (steps, conditions, 2): x and y.
 
-        0 for a tape. A corner that two held edges share counts for the first.
+        A tape has a force of 0. A corner that two held edges share counts for the first.
         """
         forces = [self.constraints.forces(e.internal, e.share) for e in self.equilibria]
         return np.array(forces).reshape(-1, len(self.conditions), 2)
@@ -166,7 +166,7 @@ class PieceTest(Result):
         return float(self._strains(step)[1].max())
 
     def is_past_the_law(self, step: int = -1) -> bool:
-        """Whether some cloth is past 98 % of its lock-up, where its law is extrapolated."""
+        """True if some cloth is past 98 % of its lock-up, where its law is extrapolated."""
         return self.utilisation(step) > EXTENSION_START + 1e-6
 
     def _strains(self, step: int) -> tuple[tuple[Array, Array, Array], Array]:

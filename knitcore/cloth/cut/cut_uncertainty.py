@@ -82,7 +82,7 @@ def force_log_sd(
 
     Parameters
     ----------
-    test, material : as for :func:`piece_spread`, which has the errors.
+    test, material : as for :func:`piece_spread`, which raises the same errors.
     force : of the internal forces (2, nodes) at a step (from 0), and linear in them. It is
         computed at a few steps, and interpolated between them.
     """

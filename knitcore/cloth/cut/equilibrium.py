@@ -22,10 +22,10 @@ from knitcore.cloth.flat.equilibrium_path import MAX_HALVINGS, MAX_NEWTON_STEPS,
 from knitcore.linear.direct_factor import IndefiniteTangentError, positive_definite_factor
 
 Solve = Callable[[Array], Array]
-"""Solves with a tangent, for the unknowns."""
+"""A function that solves a linear system with a tangent for the unknowns."""
 
 BALANCED = 1e-9
-"""Residual over the forces at the edges."""
+"""Residual of a balanced state, over the forces at the edges."""
 FLOOR_N = 1e-12
 MAX_SHIFT = 1e4
 
@@ -127,8 +127,8 @@ class Balance:
         return np.asarray(state + move + self._spread_out(solve(self._gathered(force))))
 
     def _balanced(self, state: Array, share: float) -> tuple[Array, Assembled, Solve, int]:
-        """The balanced state near another, its properties, a solver with its tangent, and the
-        number of linear systems solved.
+        """Balance the state near another; return it, its assembly, a solver with its tangent, and
+        the number of linear systems solved.
         """
         loads = self.constraints.loads(share)
         assembled = self.at(state)
@@ -170,7 +170,7 @@ class Balance:
             ) from None
 
     def _factor(self, assembled: Assembled) -> Solve:
-        """Solves with the tangent, shifted as far as it needs to be positive definite."""
+        """Factorise the tangent, shifted as far as it needs to be positive definite."""
         tangent = self._reduced(assembled)
         shift = 0.0
         while shift <= MAX_SHIFT:

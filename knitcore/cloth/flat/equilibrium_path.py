@@ -31,7 +31,8 @@ PATIENCE = 3
 CLOSE = 0.05
 """Unbalanced force over the force at the clamps up to which an extrapolation is trusted."""
 FAR = 0.01
-"""The same share beyond which a predicted state's tangent is factorised before the first step."""
+"""Unbalanced force over the force at the clamps beyond which a predicted state's tangent is
+factorised before the first step."""
 HISTORY = 4
 """Equilibria used by the extrapolation."""
 
@@ -180,7 +181,7 @@ class PathSolver:
             state, lin = self._line_search(state, lin, step)
         raise StepError(
             f"Newton's method did not balance the forces in {MAX_NEWTON_STEPS} steps "
-            f"(residual {residual:.2g} N, wanted {limit:.2g} N)."
+            f"(residual {residual:.2g} N, allowed {limit:.2g} N)."
         )
 
     def _accept(
@@ -199,7 +200,7 @@ class PathSolver:
         )
 
     def _is_close(self, lin: Linearisation) -> bool:
-        """Whether an extrapolated state is near enough to balance to start from."""
+        """Tell if an extrapolated state is near enough to balance to start from."""
         free, limit = self._residual(lin)
         return free * self.tolerance.relative <= CLOSE * limit
 
@@ -237,7 +238,7 @@ class PathSolver:
         return State(corners, centres)
 
     def _residual(self, lin: Linearisation) -> tuple[float, float]:
-        """Norm of the unbalanced force (N) and the norm that is tolerated."""
+        """Norm of the unbalanced force, and the largest norm that is tolerated, N."""
         corners, centres = lin.force
         free = float(np.sqrt(np.sum((corners * self.free) ** 2) + np.sum(centres**2)))
         held = float(np.linalg.norm(corners[self.fixed]))

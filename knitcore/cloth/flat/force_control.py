@@ -29,7 +29,7 @@ FORCE_TOLERANCE = 1e-6
 MAX_CORRECTIONS = 25
 FIRST_STRAIN = 1e-3
 NEAR_LIMIT = 1e-2
-"""Share of the largest strain within which that strain itself is tried."""
+"""Distance from the largest strain, as a share of it, at which that strain itself is tried."""
 
 
 def strain_at_force(
@@ -117,7 +117,7 @@ class _Bench:
         self._last: list[_Pull] = []
 
     def pull(self, goal_n: float) -> _Pull:
-        """The equilibrium under a force.
+        """Find the equilibrium under a force.
 
         Raises
         ------
@@ -145,7 +145,7 @@ class _Bench:
         raise ConvergenceError(f"{MAX_CORRECTIONS} pulls did not come to {goal_n:.3g} N.")
 
     def _next(self, goal_n: float) -> float:
-        """A strain at which the clamps may hold a force, from those that are known."""
+        """Estimate the strain at which the clamps hold a force, from the known ones."""
         if not self._last:
             return min(FIRST_STRAIN, self._limit)
         now = self._last[-1]

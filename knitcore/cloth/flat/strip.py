@@ -28,9 +28,9 @@ from knitcore.prediction.size import RelaxedSize
 DEFAULT_STEPS = 10
 MAX_STEPS = 1000
 MAX_STRAIN = 5.0
-"""Bound for laws that never lock."""
+"""Largest strain of a test of laws that never lock."""
 LOCK_UP_SHARE = 0.98
-"""Share of the lock-up strain that a test may ask for."""
+"""Largest strain of a test, as a share of the lock-up strain."""
 
 
 class Clamps(Choice):
@@ -339,7 +339,7 @@ def clamp_edges(direction: Direction) -> tuple[str, str]:
 
 
 def clamp_mask(grid: QuarterGrid, direction: Direction, clamps: Clamps) -> NDArray[np.bool_]:
-    """Which unknowns the clamps hold, (corners, 2)."""
+    """Mask (corners, 2) of the unknowns that the clamps hold."""
     fixed = np.zeros((len(grid.corners), 2), dtype=bool)
     edges = [grid.edge(name) for name in clamp_edges(direction)]
     for nodes in edges:

@@ -136,7 +136,7 @@ class SwatchTest(Result):
         return np.array([self._utilisation(state).max() for state in self.states])
 
     def is_past_the_law(self, step: int = -1) -> bool:
-        """Whether some triangle of a quarter cell is past 98 % of its lock-up, where ``full`` only
+        """True if some triangle of a quarter cell is past 98 % of its lock-up, where ``full`` only
         extrapolates its law: force and strains are then not physical.
         """
         used = triangle_utilisation(self.sheet, cell_strains(self.sheet, self.states[step]))

@@ -64,7 +64,7 @@ SHEAR_ASSUMED = (
 )
 LOG_SHEAR_STIFFENING = 1.0
 """Standard deviation of the logarithm of the growth of the shear stiffness, found on one jersey. To
-first order 90 % are -2.6 to 10.6 rad⁻²; the yarn level, without friction, has -2.5."""
+first order its 90 % interval is -2.6 to 10.6 rad⁻²; the yarn level, without friction, has -2.5."""
 STEP = 1e-3
 """Step of a parameter, for differences of forces."""
 
@@ -262,7 +262,7 @@ def law_parameters(
 
 
 def interval_source(sheet: Sheet, material: Material) -> str:
-    """What the intervals of a test of a sheet rest on, in words."""
+    """Name the sources of the intervals of a test of a sheet, in words."""
     said = [_record(material, code).uncertainty.source for code in _codes(sheet)]
     said += [SHEAR_ASSUMED] if _of_assumed_shear(sheet, material) else []
     said += [MODEL_ERRORS] if model_log_sd(sheet) else []
@@ -317,7 +317,7 @@ def _stress_scaled(direction: Direction, law: ConstitutiveLaw, step: float) -> C
 
 
 def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """By r = C_xxyy / sqrt(C_xxxx C_yyyy), Young's moduli fixed."""
+    """The law for a step of r = C_xxyy / sqrt(C_xxxx C_yyyy), with Young's moduli fixed."""
     r = law.stiffness_xxyy / math.sqrt(law.stiffness_xxxx * law.stiffness_yyyy)
     grown = (1 - r**2) / (1 - (r + step) ** 2)
     xxxx, yyyy = law.stiffness_xxxx * grown, law.stiffness_yyyy * grown
@@ -332,12 +332,12 @@ def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
 
 
 def _sheared(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """By the logarithm of the shear modulus."""
+    """The law for a step of the logarithm of the shear modulus."""
     return replace(law, shear_modulus=law.shear_modulus * math.exp(step))
 
 
 def _stiffer_in_shear(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """By the logarithm of the growth of the shear stiffness."""
+    """The law for a step of the logarithm of the growth of the shear stiffness."""
     return replace(law, shear_stiffening=law.shear_stiffening * math.exp(step))
 
 

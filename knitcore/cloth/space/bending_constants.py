@@ -58,7 +58,7 @@ def bends_of(material: Material) -> Mapping[Fabric, Bend]:
 
 
 def computed(fabric: Fabric, material: Material) -> Bend:
-    """Bending of a fabric at the yarn level, from the store of repeats if it is there."""
+    """Bending of a fabric at the yarn level, from the store of repeats if it has the fabric."""
     repeat = StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
     return _bend(fabric, yarn_for(material, repeat))
 

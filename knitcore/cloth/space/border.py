@@ -24,9 +24,9 @@ from knitcore.cloth.space.stitch_sheet import StitchSheet
 RULE_STITCHES, RULE_ROWS = (3, 5), 4
 """Knitters' rule for the width of a border at the sides, and at top and bottom."""
 SAFETY = 1.2
-"""Width of the border that is tried on the table, over that which just does not tip."""
+"""Width of the border tested on the table, over the width that just does not tip."""
 INNER_MM = 100.0
-"""Width of the piece between the borders that are tried."""
+"""Width of the piece between the tested borders."""
 MAX_WIDTH_MM = 500.0
 _RECTANGLE_MM = 2.5
 
@@ -74,7 +74,7 @@ def advice(
     Raises
     ------
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     moment, weight = inner.moment_n[axis], border.weight_n_per_mm2
     size = border.stitch_mm[axis]

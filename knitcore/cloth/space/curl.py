@@ -26,10 +26,10 @@ from knitcore.cloth.space.surface import corners_of
 from knitcore.materials import Material, as_material
 
 MAX_STITCHES = 10_000
-"""Largest piece that is calculated."""
+"""Largest number of stitches of a piece."""
 TIME_LIMIT_S = 120.0
 _BETWEEN = 3
-"""Stitches that a pull needs: two in the clamps, one between."""
+"""Number of stitches that a pull needs: two in the clamps, one between."""
 _STRIPS = 0.3
 """Share of the time limit for each of the two starting strips."""
 STRIP = 4.0
@@ -90,7 +90,7 @@ class CurledPiece(Result):
 
     @property
     def used(self) -> NDArray[np.bool_]:
-        """(rows + 1, columns + 1) whether a stitch has this corner."""
+        """Mask (rows + 1, columns + 1) of the corners that a stitch has."""
         if self.stitches is None:
             return np.ones(self.corners_mm.shape[:2], dtype=bool)
         return corners_of(self.stitches)
@@ -194,7 +194,7 @@ def curl(
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     chart, material = as_chart(chart), as_material(material)
     check_piece(chart, stitches)
@@ -253,7 +253,7 @@ def curl(
 
 
 def _pulled(sheet: StitchSheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
-    """The flat sheet stretched evenly between clamps, and which corners these hold, (corners,)."""
+    """The flat sheet stretched evenly between clamps, and a mask (corners,) of what they hold."""
     axis = pull.direction.axis
     grid = np.arange(len(sheet.flat_mm)).reshape(sheet.rows + 1, sheet.columns + 1)
     lines = grid if axis == 1 else grid.T
@@ -269,7 +269,12 @@ def _pulled(sheet: StitchSheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> None:
-    """InputError if a piece is larger than what is calculated, or is no piece."""
+    """Refuse a piece that is too large, has no stitch or is in several parts.
+
+    Raises
+    ------
+    InputError
+    """
     check_stitches(chart.stitches, MAX_STITCHES)
     if stitches is None:
         return
@@ -290,7 +295,7 @@ def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -
 
 
 def aligned(x: Array, sheet: StitchSheet) -> Array:
-    """A shape turned and moved so that it is nearest to the flat sheet (Kabsch 1976)."""
+    """Turn and move a shape to where it is nearest to the flat sheet (Kabsch 1976)."""
     middle = x - x[sheet.used].mean(axis=0)
     left, _, right = np.linalg.svd(middle[sheet.used].T @ sheet.flat_mm[sheet.used])
     proper = np.diag([1.0, 1.0, np.linalg.det(left @ right)])

@@ -23,7 +23,7 @@ from knitcore.materials import Material, as_material
 
 
 class HungBy(Choice):
-    """What holds a hanging piece."""
+    """The part of a hanging piece that is held: its top edge, or its two top corners."""
 
     EDGE = "edge"
     CORNERS = "corners"
@@ -76,7 +76,8 @@ def hang(
     chart : the whole piece, from the face side.
     linear_density_g_per_m : of the yarn.
     stitches : (rows, columns) False where the piece has none, around it or in a hole.
-    by : the top edge of its highest stitches does not move, or the two ends of that edge.
+    by : the part that does not move: the top edge of its highest stitches, or the two ends of
+        that edge.
     time_limit_s : CPU time after which the current shape is returned, not converged.
 
     Raises
@@ -86,7 +87,7 @@ def hang(
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     chart, material = as_chart(chart), as_material(material)
     check_piece(chart, stitches)

@@ -277,7 +277,7 @@ def touches(
 
 @compiled
 def points_on(x: Array, points: Ints) -> Array:
-    """(k, 3): where the points of the sheet are."""
+    """Positions (k, 3) of the points of the sheet."""
     at = np.empty((points.shape[0], 3))
     for i in range(points.shape[0]):
         a, b, c, d = points[i]
@@ -289,7 +289,7 @@ def points_on(x: Array, points: Ints) -> Array:
 def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
     """Pairs of points nearer than ``reach`` that are more than ``apart`` away within the sheet.
 
-    A list of boxes of side ``reach`` over the points, sorted by box. ``home`` (k, 2): their places
+    The points are sorted into boxes of side ``reach``. ``home`` (k, 2): their places
     in the flat sheet, mm.
     """
     if not len(at):
@@ -332,7 +332,7 @@ def _listed(
     ordered: Ints,
     pairs: Ints,
 ) -> int:
-    """Fill ``pairs`` and tell their number; those for which there is no room are only counted.
+    """Fill ``pairs`` and return their number; pairs for which there is no room are only counted.
 
     Parameters
     ----------

@@ -12,14 +12,15 @@ from knitcore.base.arrays import Array
 
 
 def corners_of(stitches: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(rows + 1, columns + 1) whether a stitch (rows, columns) has this corner."""
+    """Mask (rows + 1, columns + 1) of the corners that stitches (rows, columns) have."""
     around = np.pad(stitches, 1)
     return np.asarray(around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1])
 
 
 def filled(corners_mm: Array, used: NDArray[np.bool_]) -> Array:
-    """Corners (rows + 1, columns + 1, 3), those that no stitch has in line with those beside them,
-    as nearly as can be: with the least squares of second differences along rows and columns.
+    """Fill in the corners (rows + 1, columns + 1, 3) that no stitch has, as smoothly as possible.
+
+    They minimise the squares of second differences along rows and columns.
     """
     if used.all():
         return corners_mm
@@ -39,7 +40,7 @@ def _unit(count: int) -> csr_array:
 
 
 def _halved(lines: Array) -> Array:
-    """A single strip as two, since a spline of degree 1 has no slope."""
+    """Split a single strip in two, since a spline of degree 1 has no slope."""
     if len(lines) > 2:
         return lines
     return np.stack([lines[0], 0.5 * (lines[0] + lines[1]), lines[1]])
