@@ -179,7 +179,7 @@ class PieceTestResult(IntervalResult):
 
 def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
     """Fields of every result, from the library's test."""
-    past = bool(test.found) and test.is_past_the_law()
+    past = bool(test.equilibria) and test.is_past_the_law()
     extrapolated = (
         "Some cloth is past 98 % of its lock-up. There the law is extrapolated: do not rely on "
         "the forces."
@@ -191,7 +191,7 @@ def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
         "seconds": test.seconds,
         "nodes": test.nodes_mm.shape[1],
         "elements": test.mesh.nelements,
-        "utilisation": test.utilisation() if test.found else 0.0,
+        "utilisation": test.utilisation() if test.equilibria else 0.0,
         "messages": [*([test.problem] if test.problem else []), *([extrapolated] if past else [])],
     }
 

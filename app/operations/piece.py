@@ -109,7 +109,7 @@ def _result(request: PieceRequest, test: PieceTest, material: Material) -> Piece
         share=test.share,
         area_mm2=test.piece.area_mm2,
         edges=edges,
-        shape=_shape(test) if request.fields and test.found else None,
+        shape=_shape(test) if request.fields and test.equilibria else None,
         **of_test(test, material),
     )
 

@@ -12,7 +12,7 @@ from knitcore.base.arrays import Array
 
 Floats = NDArray[np.float32]
 SEEN_FROM = 1.2
-"""Angle by which what lies on a table is turned to the eye, rad; upright would be a right one."""
+"""Angle by which a table leans towards the eye, rad; a right angle would be upright."""
 
 
 def upright(points: Floats) -> Floats:
@@ -24,7 +24,7 @@ def upright(points: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """What cloth rests on: a limb, a table, a disc.
+    """A body on which cloth rests: a limb, a table, a disc.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Body:
 
     @classmethod
     def joined(cls, bodies: Sequence[Body]) -> Body:
-        """Several as one."""
+        """Join several bodies to one."""
         before = np.cumsum([0, *(len(body.vertices_mm) for body in bodies[:-1])])
         return cls(
             np.concatenate([body.vertices_mm for body in bodies]),
@@ -65,7 +65,7 @@ class Body:
 
     @classmethod
     def slab(cls, outline_mm: Array, depth_mm: float) -> Body:
-        """A table or a disc below the plane z = 0, whose normals point up: outline (n, 2)."""
+        """A table or disc with the outline (n, 2) below the plane z = 0; its normals point up."""
         top = np.column_stack([outline_mm, np.zeros(len(outline_mm))])
         middle = np.broadcast_to(top.mean(axis=0), top.shape)
         down = np.array([0.0, 0.0, depth_mm])
@@ -82,7 +82,7 @@ class Body:
         return cls.slab(rim, depth_mm)
 
     def sunk_mm(self, depth_mm: float) -> Floats:
-        """Its vertices, farther from the cloth: half the cloth lies below its middle plane."""
+        """Vertices set back from the cloth, because half the cloth lies below its middle plane."""
         return np.asarray(self.vertices_mm - np.float32(depth_mm) * self.normals)
 
     def upright(self) -> Body:
@@ -92,5 +92,5 @@ class Body:
 
     @property
     def size_bytes(self) -> int:
-        """Memory that it takes, bytes."""
+        """Memory of the arrays, bytes."""
         return self.vertices_mm.nbytes + self.normals.nbytes + self.faces.nbytes

@@ -19,7 +19,7 @@ from knitcore.yarn.library.store import MATERIALS, StoredStitch, stored_fabric
 from knitcore.yarn.model.spline import SUPPORT, quintic_basis
 
 POINTS = 49
-"""Points of a centre line over one stitch, both ends included."""
+"""Number of points of a centre line over one stitch, both ends included."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class FabricLines:
 
 
 def stored_material(material: Material) -> str:
-    """The material of the store whose stitches are used for a material."""
+    """Name the stored material whose stitches stand in for a material."""
     return material.sample if material.sample in MATERIALS else MATERIALS[0]
 
 
@@ -60,10 +60,10 @@ def fabric_lines(material: Material) -> FabricLines:
 def _fabric_lines(stored: str, own: bool, sizes_mm: tuple[tuple[float, float], ...]) -> FabricLines:
     lines, strands = [], []
     for fabric, (course_mm, wale_mm) in zip(PHASES, sizes_mm, strict=True):
-        chart, found = StitchChart.of_fabric(fabric), stored_fabric(fabric, stored)
-        scale = np.sqrt(course_mm * wale_mm / (found.cell_course_mm * found.cell_wale_mm))
-        row, column = np.argwhere(~found.chart.purl)[0]
-        line = cell_lines(found)[row, column] * (1.0, 1.0, scale)
+        chart, relaxed = StitchChart.of_fabric(fabric), stored_fabric(fabric, stored)
+        scale = np.sqrt(course_mm * wale_mm / (relaxed.cell_course_mm * relaxed.cell_wale_mm))
+        row, column = np.argwhere(~relaxed.chart.purl)[0]
+        line = cell_lines(relaxed)[row, column] * (1.0, 1.0, scale)
         line = 0.5 * (line + line[::-1] * (-1.0, 1.0, 1.0))  # left and right are alike
         lines.append(line)
         strands.append(strand_distance_mm(line, chart, course_mm, wale_mm))

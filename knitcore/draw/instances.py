@@ -20,13 +20,13 @@ Floats = NDArray[np.float32]
 LEVELS = ((1_500, 48, 8), (10_000, 14, 6), (40_000, 10, 4))
 """(largest number of stitches, points, sides): how finely each stitch is drawn."""
 COARSE_LEVELS = ((250, 48, 8), (900, 18, 6), (1_500, 15, 4), (40_000, 7, 4))
-"""The same without a GPU, where a frame takes as long as it has triangles."""
+"""The levels without a GPU, where the time for a frame grows with its triangles."""
 OVERLAP = 0.012
-"""Tubes overlap the next by this share of a stitch, so that joins show no gap."""
+"""Overlap of successive tubes, in stitches, so that joins show no gap."""
 ENDS = ((0, 1), (-1, -2))
-"""Points at both ends of a line, and those before them."""
+"""Indices of the points at both ends of a line, each with its neighbour."""
 ROUND = 0.7
-"""So many radii the round ends reach beyond a tube; within a row the next tube hides them."""
+"""Reach of the round ends beyond a tube, in radii; within a row the next tube hides them."""
 MAX_STITCHES = LEVELS[-1][0]
 
 
@@ -54,7 +54,7 @@ def level_of(stitches: int, *, coarse: bool = False) -> tuple[int, int]:
 
 
 def tube_sizes(shapes: StitchShapes, placement: PlacedStitches) -> Array:
-    """For what the tube of each shape is drawn, (shapes, 4).
+    """Sizes for which the tube of each shape is drawn, (shapes, 4).
 
     Mean width and height of its stitches in mm, thickness of the fabric over that at rest, radius
     of the yarn in mm. Tubes may be scaled to sizes that are little different.
@@ -75,11 +75,11 @@ def stitch_meshes(
 
     Parameters
     ----------
-    some : numbers of the shapes wanted; all if None.
+    some : numbers of the shapes; all if None.
     """
-    wanted = np.arange(len(shapes.lines)) if some is None else np.asarray(some, dtype=int)
-    sizes = tube_sizes(shapes, placement)[wanted, :3]
-    lines = resampled(shapes.lines[wanted], points) * sizes[:, None]
+    numbers = np.arange(len(shapes.lines)) if some is None else np.asarray(some, dtype=int)
+    sizes = tube_sizes(shapes, placement)[numbers, :3]
+    lines = resampled(shapes.lines[numbers], points) * sizes[:, None]
     lines[:, 0] -= OVERLAP * points * (lines[:, 1] - lines[:, 0])
     lines[:, -1] += OVERLAP * points * (lines[:, -1] - lines[:, -2])
     tubes = tube_vertices(lines, shapes.yarn_radius_mm, sides)

@@ -29,7 +29,7 @@ class SizeAtRest:
 
 
 def size_at_rest(shaped: ShapedChart, material: Material, answer: Prediction) -> SizeAtRest:
-    """How large a piece lies at rest.
+    """Width and height of a piece at rest.
 
     A rectangle is as many mean stitches wide and high as it has columns and rows. A piece with an
     outline is as large as its laid stitches together; its size is as uncertain as the answer's.
@@ -75,8 +75,10 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Prediction) ->
 def mean_stitch_mm(
     shaped: ShapedChart, material: Material, gauge: RelaxedSize | None = None
 ) -> Array:
-    """Width and height at rest, (2,): the gauge's if it is known, of a rectangle the answer's, of a
-    piece with an outline its lattice's.
+    """Width and height of the mean stitch at rest, (2,).
+
+    The gauge gives them if it is known; else the answer for a rectangle, and the resting lattice
+    for a piece with an outline.
 
     Raises
     ------
@@ -96,8 +98,8 @@ def laid_corners_mm(
 ) -> Array:
     """Corners of all cells in the plane, (rows + 1, columns + 1, 2), the lowest x and y at 0.
 
-    They are those of the resting lattice, to the scale of the gauge if it is known, of a rectangle
-    to that of the answer's stitch.
+    They are the corners of the resting lattice. Its scale is that of the gauge if it is known, and
+    else, for a rectangle, that of the answer's stitch.
 
     Raises
     ------
@@ -115,7 +117,7 @@ def laid_corners_mm(
 def laid_sizes_mm(
     shaped: ShapedChart, material: Material, gauge: RelaxedSize | None = None
 ) -> Array:
-    """Mean width and height of each cell between those corners, (rows, columns, 2).
+    """Mean width and height of each cell as laid flat, (rows, columns, 2).
 
     Raises
     ------
@@ -132,7 +134,7 @@ def _stitch_mm(answer: Prediction) -> Array:
 
 
 def _reached(shaped: ShapedChart) -> NDArray[np.bool_]:
-    """Which corners belong to a stitch, bool (rows + 1, columns + 1)."""
+    """Mask (rows + 1, columns + 1) of the corners that belong to a stitch."""
     cells = np.pad(shaped.stitch, 1)
-    found: NDArray[np.bool_] = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
-    return found
+    reached: NDArray[np.bool_] = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
+    return reached

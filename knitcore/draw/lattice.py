@@ -36,7 +36,7 @@ class Lattice:
         return np.stack([self._edges_along(0), self._edges_along(1).T], axis=-1)
 
     def _edges_along(self, axis: int) -> Array:
-        """One coordinate of the corners; the lines that run along it come first."""
+        """One coordinate of the corners; the first axis is of the lines that run along it."""
         centres, sizes = (v[..., axis] for v in (self.centres_mm, self.sizes_mm))
         if axis == 1:
             centres, sizes = centres.T, sizes.T
@@ -55,15 +55,15 @@ def stitch_sizes_mm(material: Material) -> Array:
 def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
     """The chart as a flat sheet, with the mean width of each wale and mean height of each course.
 
-    A lattice for pictures, not an equilibrium, which the swatch solves for.
+    The lattice is for pictures; it is no equilibrium, for which the swatch solves.
 
     Raises
     ------
     InputError
         If the material lacks one of the four fabrics.
     """
-    wanted = stitch_sizes_mm(material)[surroundings(chart)]
-    widths, heights = wanted[:, :, 0].mean(axis=0), wanted[:, :, 1].mean(axis=1)
+    sizes = stitch_sizes_mm(material)[surroundings(chart)]
+    widths, heights = sizes[:, :, 0].mean(axis=0), sizes[:, :, 1].mean(axis=1)
     x, y = np.cumsum(widths) - widths / 2, np.cumsum(heights) - heights / 2
     return Lattice(
         centres_mm=np.stack(np.meshgrid(x, y), axis=-1),
@@ -103,19 +103,20 @@ def resting_lattice(chart: StitchChart, material: Material) -> Lattice:
     )
 
 
-def _edges(wanted: Array, weight: float) -> Array:
+def _edges(steps: Array, weight: float) -> Array:
     """Places (lines, steps + 1) of the edges between stitches whose steps along each line are
-    nearest to the wanted ones (lines, steps); those from line to line, times the weight, to 0.
+    nearest to ``steps`` (lines, steps), and whose steps from line to line, times the weight, are
+    nearest to 0.
     """
-    from scipy.fft import dctn, idctn  # loads for .3 s, which a prediction does not wait for
+    from scipy.fft import dctn, idctn  # loads for 0.3 s, which a prediction does not wait for
 
-    pull = -np.diff(wanted, axis=1, prepend=0.0, append=0.0)
+    pull = -np.diff(steps, axis=1, prepend=0.0, append=0.0)
     wave = dctn(pull, norm="ortho")
     across, along = (2 - 2 * np.cos(np.pi * np.arange(n) / n) for n in pull.shape)
     stiffness = along[None, :] + weight * across[:, None]
     stiffness[0, 0] = 1.0  # the mean place is free, and 0
-    found: Array = idctn(wave / stiffness, norm="ortho")
-    return found - float(found.min())
+    places: Array = idctn(wave / stiffness, norm="ortho")
+    return places - float(places.min())
 
 
 def course_angles(centres_mm: Array) -> Array:

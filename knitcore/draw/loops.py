@@ -18,10 +18,10 @@ from knitcore.base.arrays import Array
 from knitcore.chart.stitch_chart import StitchChart
 
 SELF, LEFT, RIGHT, ABOVE = 1, 2, 4, 8
-"""Bits of a kind of loop: that stitch is a purl."""
+"""Bits of a kind of loop; a bit is set if that stitch is a purl."""
 
 _NECK = 0.17
-"""How far legs lean out at the head and in at the neck, in stitch widths (0: a cosine)."""
+"""Lean of the legs, out at the head and in at the neck, in stitch widths (0: a cosine)."""
 _REACH = 0.78
 """Half the height of a loop in row heights: loops reach through those of the row below."""
 _KNOTS = np.array([0.0, 0.08, 0.21, 0.29, 0.42, 0.5])
@@ -29,7 +29,7 @@ _KNOTS = np.array([0.0, 0.08, 0.21, 0.29, 0.42, 0.5])
 
 
 def loop_kinds(chart: StitchChart) -> NDArray[np.uint8]:
-    """Which of the 16 kinds of loop each stitch is, shape (rows, columns).
+    """Kind of loop of each stitch, 0 to 15, shape (rows, columns).
 
     The stitch itself, its left and right neighbours and the one above decide how the yarn runs; at
     an edge the stitch itself stands in for the missing neighbour.

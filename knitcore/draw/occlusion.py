@@ -11,9 +11,9 @@ from knitcore.draw.stitches import StitchShapes
 from knitcore.draw.tubes import resampled, tube_vertices
 
 POINTS = 13
-"""Along a stitch, for which light is computed, and pieces as which its neighbours are seen."""
+"""Number of points along a stitch that get light, and of pieces of each neighbour that hide it."""
 NEAREST = 0.7
-"""Radii from which a piece is seen at least: strands of soft yarn overlap a little."""
+"""Smallest distance of a piece, in radii: strands of soft yarn overlap a little."""
 
 
 def occlusion(
@@ -22,24 +22,24 @@ def occlusion(
     """Light at the corners of tubes around shapes, (shapes, points, sides), 0 to 1.
 
     A piece of yarn of length ds at a distance d, in the direction e, hides 2 r ds / (π d²) n · e of
-    what a surface with the normal n sees, if it is before it; the light is exp(-sum). Counted are
-    the yarn of the stitch itself and of the eight around it, as they rest, where the shape occurs
-    nearest to the middle of the chart.
+    what a surface with the normal n sees in front of it; the light is exp(-sum). The sum is over
+    the yarn of the stitch itself and of the eight around it at rest, at the place nearest to the
+    middle of the chart where the shape occurs.
 
     Parameters
     ----------
-    shapes : of a chart.
+    shapes : the stitches of a chart.
     points, sides : of the tubes, as in :func:`knitcore.draw.tubes.tube_vertices`.
-    some : numbers of the shapes wanted; all if None.
+    some : numbers of the shapes; all if None.
     """
     radius, (rows, columns) = shapes.yarn_radius_mm, shapes.index.shape
-    wanted = range(len(shapes.lines)) if some is None else some
+    numbers = range(len(shapes.lines)) if some is None else some
     examples = _examples(shapes)
-    found = [(number, *examples[s]) for number, s in enumerate(wanted) if s in examples]
+    places = [(number, *examples[s]) for number, s in enumerate(numbers) if s in examples]
     lines = resampled(shapes.lines, POINTS)
     sizes = np.concatenate([shapes.lattice.sizes_mm, np.ones((rows, columns, 1))], axis=-1)
-    light = np.ones((len(wanted), POINTS, sides))
-    for number, row, column in found:
+    light = np.ones((len(numbers), POINTS, sides))
+    for number, row, column in places:
         around = np.s_[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
         pieces = lines[shapes.index[around]] * sizes[around][:, :, None]
         lengths = np.linalg.norm(np.gradient(pieces, axis=2), axis=-1).ravel()
@@ -56,10 +56,10 @@ def occlusion(
 
 
 def _examples(shapes: StitchShapes) -> dict[int, tuple[int, int]]:
-    """Row and column of each shape that occurs, where it is nearest to the chart's middle."""
+    """Row and column nearest to the chart's middle of each shape that occurs."""
     rows, columns = shapes.index.shape
     row, column = np.indices((rows, columns)).reshape(2, -1)
     order = np.argsort(np.hypot(row - rows // 2, column - columns // 2), kind="stable")
-    found, first = np.unique(shapes.index.ravel()[order], return_index=True)
+    occurring, first = np.unique(shapes.index.ravel()[order], return_index=True)
     cells = order[first]
-    return {int(s): (int(row[at]), int(column[at])) for s, at in zip(found, cells, strict=True)}
+    return {int(s): (int(row[at]), int(column[at])) for s, at in zip(occurring, cells, strict=True)}

@@ -11,7 +11,7 @@ from knitcore.draw.lattice import Lattice, course_angles, stretched_sizes_mm
 from knitcore.draw.stitches import StitchShapes
 
 DEPTH = (0.55, 1.4)
-"""Bounds of the change of thickness: strands cannot pass through each other."""
+"""Least and greatest change of thickness: strands cannot pass through each other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class PlacedStitches:
     frames: Array | None = None
 
     def part(self, of: tuple[slice, slice]) -> PlacedStitches:
-        """Some rows and columns."""
+        """Cut out some rows and columns."""
         return PlacedStitches(
             self.centres_mm[of],
             self.sizes_mm[of],
@@ -49,13 +49,13 @@ class PlacedStitches:
 
 
 def unstretched(shapes: StitchShapes) -> PlacedStitches:
-    """The fabric as it lies."""
+    """Place the stitches where they lie at rest."""
     lattice = shapes.lattice
     return PlacedStitches(*_turned(lattice.centres_mm, lattice.sizes_mm), 1.0)
 
 
 def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> PlacedStitches:
-    """The fabric moved with a stretched sheet.
+    """Move the fabric with a stretched sheet.
 
     Loops turn with their course and grow or shrink with the distances to their neighbours. The
     yarn is as long as before, so a fabric that grows in the plane becomes thinner.
@@ -71,14 +71,14 @@ def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> PlacedSt
 
 
 def _turned(centres_mm: Array, sizes_mm: Array) -> tuple[Array, Array, Array]:
-    """Centres, sizes along and across the courses from those along x and y, and their angles."""
+    """Centres, sizes and angles along and across the courses, from sizes along x and y."""
     angles = course_angles(centres_mm)
     cosine = np.cos(angles)[..., None]
     return centres_mm, sizes_mm * np.concatenate([1 / cosine, cosine], axis=-1), angles
 
 
 def lying(corners_mm: Array) -> PlacedStitches:
-    """The fabric on a curled sheet, every stitch as a whole.
+    """Place the fabric on a curled sheet, every stitch as a whole.
 
     Parameters
     ----------
@@ -135,8 +135,8 @@ def _depth(shapes: StitchShapes, sizes_mm: Array) -> float:
         steps = steps * np.column_stack([sizes, np.full(len(sizes), depth)])[:, None]
         return float(number @ np.linalg.norm(steps, axis=2).sum(axis=1))
 
-    wanted, (low, high) = length(rest, 1.0), DEPTH
+    yarn, (low, high) = length(rest, 1.0), DEPTH
     for _ in range(12):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if length(now, middle) < wanted else (low, middle)
+        low, high = (middle, high) if length(now, middle) < yarn else (low, middle)
     return 0.5 * (low + high)

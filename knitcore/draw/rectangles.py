@@ -21,9 +21,9 @@ from knitcore.mechanics.local_moduli import stitch_table
 Labels = NDArray[np.intp]
 
 FILL = 0.94
-"""Largest side, over the size of its group."""
+"""Largest side of a rectangle, over the size of its group."""
 LARGEST = 12.0
-"""A region's rectangle is never larger than this many stitches."""
+"""Largest size of a region's rectangle, in stitches."""
 
 
 def stitch_labels(rows: int, columns: int, block: int = 1) -> Labels:

@@ -1,4 +1,4 @@
-"""Centre lines of every stitch of a chart, as few different shapes as there are.
+"""Centre lines of every stitch of a chart, each different shape only once.
 
 Where the chart repeats a cell that was relaxed at the yarn level, its stitches are that cell's. All
 other charts are assembled like their mechanics, from quarters: each quarter of a stitch touches
@@ -47,17 +47,17 @@ from knitcore.materials import Material
 from knitcore.yarn.library.store import StoredStitch, stored_fabric, stored_stitch
 
 MAX_STORED = 36
-"""Stitches of the largest repeats that are looked up in the store."""
+"""Number of stitches of the largest repeats that are looked up in the store."""
 MAX_SHAPES = 192
-"""With more shapes than this, crossings with the rows above and below are drawn less exactly."""
+"""Number of shapes above which crossings with the rows above and below are drawn less exactly."""
 FULLNESS = 1.1
-"""Yarn is soft, so it is drawn a little thicker than the distance of touching strands allows."""
+"""Factor by which yarn is drawn thicker than touching strands allow, because it is soft."""
 FOOT = (0.12, 0.20)
-"""Part of a stitch, from its end, that hangs in the head below; before it the course's join."""
+"""Part of a stitch, from its end, that hangs in the head below; before it is the course's join."""
 HEAD = 0.28
-"""From here on the next row hangs in the stitch."""
+"""Place along a stitch from which the next row hangs in it."""
 TOP = 0.42
-"""From here to its mirror image the left half passes into the right one."""
+"""Place along a stitch from which, up to its mirror image, the left half becomes the right."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +120,7 @@ def _stored_repeat(chart: StitchChart, material: Material) -> StoredStitch | Non
 def _of_stored(
     chart: StitchChart, material: Material, stored: StoredStitch, radius_mm: float
 ) -> StitchShapes:
-    """The repeat's own cell, scaled like the fabric it resembles."""
+    """Shapes of a stored repeat, scaled like the fabric that it resembles."""
     reference = reference_fabric(stored.chart)
     like, record = stored_fabric(reference, stored.material), material.record(reference)
     course = stored.cell_course_mm * record.stitch_course_mm / like.cell_course_mm
@@ -147,12 +147,12 @@ def _of_stored(
 def _of_quarters(chart: StitchChart, fabrics: FabricLines) -> tuple[Array, NDArray[np.intp]]:
     bits = _parities(chart)
     code = bits @ (1 << np.arange(bits.shape[-1]))
-    found, index = np.unique(code, return_inverse=True)
-    if len(found) > MAX_SHAPES:  # leave out the crossings' bits
+    codes, index = np.unique(code, return_inverse=True)
+    if len(codes) > MAX_SHAPES:  # leave out the crossings' bits
         bits[..., [7, 9]], bits[..., [8, 10]] = bits[..., 1:2], bits[..., 2:3]
         code = bits @ (1 << np.arange(bits.shape[-1]))
-        found, index = np.unique(code, return_inverse=True)
-    kinds = (found[:, None] >> np.arange(bits.shape[-1])) & 1
+        codes, index = np.unique(code, return_inverse=True)
+    kinds = (codes[:, None] >> np.arange(bits.shape[-1])) & 1
     weights = _weights(kinds)
     lines = np.einsum("sup,pux->sux", weights, fabrics.lines)
     lines[..., 2] *= np.where(kinds[:, 0], -1.0, 1.0)[:, None]
@@ -160,7 +160,7 @@ def _of_quarters(chart: StitchChart, fabrics: FabricLines) -> tuple[Array, NDArr
 
 
 def _parities(chart: StitchChart) -> NDArray[np.int64]:
-    """(rows, columns, 11) what decides a stitch's shape, all 0 or 1.
+    """Bits (rows, columns, 11) that decide the shape of each stitch, 0 or 1.
 
     Purl; odd segments left, right, below, above; below the left and the right neighbour; left and
     right of the stitch below; left and right of the one above.
@@ -181,7 +181,7 @@ def _parities(chart: StitchChart) -> NDArray[np.int64]:
 
 
 def _beside(values: NDArray[np.int64], up: int, right: int) -> NDArray[np.int64]:
-    """Values of the stitches so many rows up and columns to the right; edge values are repeated."""
+    """Shift values by rows up and columns to the right; edge values are repeated."""
     rows, columns = values.shape
     row = np.clip(np.arange(rows) + up, 0, rows - 1)
     column = np.clip(np.arange(columns) + right, 0, columns - 1)
@@ -189,7 +189,7 @@ def _beside(values: NDArray[np.int64], up: int, right: int) -> NDArray[np.int64]
 
 
 def _weights(kinds: NDArray[np.int64]) -> Array:
-    """(shapes, POINTS, 4) share of each fabric in the lines of some shapes."""
+    """Share (shapes, POINTS, 4) of each fabric in the lines of some shapes."""
     u = np.linspace(0.0, 1.0, POINTS)
     _, left, right, below, above, left_below, right_below = kinds.T[:7]
     foot_left, foot_right, head_left, head_right = kinds.T[7:]
@@ -226,6 +226,6 @@ def _half(
 
 
 def _step(start: float, end: float, u: Array) -> Array:
-    """0 before, 1 after, smooth between and flat at both ends."""
+    """Rise smoothly from 0 before to 1 after, flat at both ends."""
     t = np.clip((u - start) / (end - start), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)

@@ -97,7 +97,7 @@ def tube_faces(points: int, sides: int) -> NDArray[np.uint32]:
 
 
 def resampled(lines: Array, points: int) -> Array:
-    """Lines (n, P, …) with another number of points, and the same ends."""
+    """Give lines (n, P, …) another number of points, and keep their ends."""
     place = np.linspace(0.0, lines.shape[1] - 1, points)
     before = np.minimum(place.astype(int), lines.shape[1] - 2)
     share = (place - before)[:, None]

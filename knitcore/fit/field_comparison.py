@@ -117,9 +117,9 @@ def field_differences(
     shape = (grid.rows + 1, grid.columns + 1, 2)
     differences = []
     for frame, step in zip(field.frames, last_steps, strict=True):
-        if step >= len(path.found):
+        if step >= len(path.equilibria):
             break
-        moved = (path.found[step].state.corners - grid.corners).reshape(shape)
+        moved = (path.equilibria[step].state.corners - grid.corners).reshape(shape)
         at = _in_grid(grid, frame.points if axis == 1 else frame.points[:, ::-1])
         value = RegularGridInterpolator((grid.row_lines, grid.column_lines), moved)(at[:, ::-1])
         simulated = value if axis == 1 else value[:, ::-1]

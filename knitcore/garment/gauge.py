@@ -99,7 +99,7 @@ class Gauge:
         return _rounded(width_mm / self.stitch_course_mm, multiple, extra)
 
     def rows_for(self, height_mm: float, *, multiple: int = 1, extra: int = 0) -> int:
-        """Rows of a height, rounded likewise."""
+        """Rows of a height, rounded to ``multiple * n + extra`` with at least one repeat."""
         return _rounded(height_mm / self.stitch_wale_mm, multiple, extra)
 
 
@@ -128,19 +128,19 @@ class GaugeSet:
     ) -> GaugeSet:
         """The gauges of a material, or of a knitter who knits ``fabric`` at a swatch's gauge.
 
-        The other fabrics are scaled alike, as a loose knitter is loose in all of them.
+        The other fabrics are scaled alike: a loose knitter is loose in all of them.
 
         Raises
         ------
         InputError
             If there is a swatch of a fabric that the material lacks.
         """
-        found = {f: Gauge.of_material(material, f) for f in Fabric if f in material.fabrics}
+        gauges = {f: Gauge.of_material(material, f) for f in Fabric if f in material.fabrics}
         if swatch is None:
-            return cls(found, material.identifier)
-        if fabric not in found:
+            return cls(gauges, material.identifier)
+        if fabric not in gauges:
             Gauge.of_material(material, fabric)  # raises if the material lacks the fabric
-        own = found[fabric]
+        own = gauges[fabric]
         across = swatch.stitch_course_mm / own.stitch_course_mm
         along = swatch.stitch_wale_mm / own.stitch_wale_mm
         scaled = {
@@ -150,7 +150,7 @@ class GaugeSet:
                 f"{swatch.source} {fabric}, other fabrics scaled alike",
                 swatch.log_sd if f is fabric else math.hypot(swatch.log_sd, SIZE_LOG_SD),
             )
-            for f, g in found.items()
+            for f, g in gauges.items()
         }
         return cls(scaled, material.identifier, math.sqrt(across * along))
 

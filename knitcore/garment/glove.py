@@ -114,7 +114,8 @@ class GloveLayout:
     thumb_tip : column at which the thumb ends.
     thumb_rows : of either half of the thumb.
     gusset_ends : columns at which the gusset's rows on either side of the thumb end.
-    finger_rows, finger_tips : of the back of each finger, as many as of its front; columns.
+    finger_rows : rows of the back of each finger; its front has as many.
+    finger_tips : columns at which the fingers end.
     """
 
     cuff: int
@@ -157,7 +158,7 @@ class GloveLayout:
 
     @property
     def ends(self) -> list[tuple[str, int]]:
-        """Part beyond the crotch, and last column, of every row."""
+        """Name of the part beyond the crotch and last column, for every row."""
         half = [("thumb", self.thumb_tip)] * self.thumb_rows
         half += [("gusset", end) for end in self.gusset_ends]
         half += [("hand", self.thumb_crotch)] * CROTCH_ROWS
@@ -187,7 +188,7 @@ def glove(
     hand : its measurements.
     material : gives gauges and laws; ``glove-wool:glove`` is the paper's.
     ease : of fingers and thumb.
-    mmhg : target pressure of the wrist support; a note says how many rows that takes.
+    mmhg : target pressure of the wrist support; a note gives the rows for it.
     gauges : the knitter's; by default the material's own.
     linear_density_tex : for the mass of yarn.
 
@@ -255,7 +256,7 @@ def glove(
 
 
 def _gusset(hand: Hand, seed: Gauge, thumb_crotch: int) -> list[int]:
-    """Where rows end, ever nearer to the crotch, two of each length, on one side of the thumb."""
+    """Columns at which the gusset's rows end on one side of the thumb, two of each length."""
     height = round(hand.gusset_mm / seed.stitch_course_mm)
     steps = round(hand.gusset_girth_mm / 2 / seed.stitch_wale_mm / 2)
     if height < 1 or steps < 1:
@@ -274,10 +275,10 @@ def _notes(
         else "The study's glove has its wrist support on 2.0 mm needles and the rest on 2.75 mm. "
         f"The material {STUDY_GLOVE} was measured on both, {material.identifier} on one."
     ]
-    wanted = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
-    if abs(rows / wanted - 1) > PALM_TOLERANCE:
+    around = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
+    if abs(rows / around - 1) > PALM_TOLERANCE:
         notes.append(
-            f"The fingers need {rows} rows around the hand, the palm's circumference {wanted} rows "
+            f"The fingers need {rows} rows around the hand, the palm's circumference {around} rows "
             "of garter: change the ease of the palm, or the circumferences of the fingers."
         )
     return tuple(notes)
@@ -297,10 +298,10 @@ def _wrist_notes(
     if mmhg is None:
         return ()
     rest = Fit(mmhg=mmhg).rest_mm(pressed.worn_mm, material, Fabric.STOCKINETTE, Direction.WALE)
-    wanted = gauge.rows_for(rest, multiple=2)
-    if wanted >= rows:
-        return (f"For {mmhg:g} mmHg the wrist support takes {wanted} rows; it has {rows}.",)
+    needed = gauge.rows_for(rest, multiple=2)
+    if needed >= rows:
+        return (f"For {mmhg:g} mmHg the wrist support takes {needed} rows; it has {rows}.",)
     return (
-        f"For {mmhg:g} mmHg the wrist support takes {wanted} of the {rows} rows ({rest:.0f} mm): "
-        f"turn {rows - wanted} rows, in pairs, at its edge to the hand (short rows).",
+        f"For {mmhg:g} mmHg the wrist support takes {needed} of the {rows} rows ({rest:.0f} mm): "
+        f"turn {rows - needed} rows, in pairs, at its edge to the hand (short rows).",
     )

@@ -11,7 +11,7 @@ def largest_rectangle(stitch: NDArray[np.bool_]) -> tuple[slice, slice]:
 
     Row by row, each column has a height: the stitches without a gap down from this row. The
     largest rectangle with its top in the row is the largest one under these heights, found with a
-    stack of columns whose heights rise. Of several the first is taken, from the bottom.
+    stack of columns whose heights rise. If several are equal, the lowest is taken.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """Pressure of a knitted tube of any chart on a limb: a sleeve, a sock, a wrist.
 
-Laplace's law with the chart's own prediction, as :mod:`knitcore.mechanics.pressure` where a pure
-fabric has a law: free along the limb the tube shortens as in a strip test, held there its width
-stays. The limb's girth may change along its length.
+Laplace's law is used with the prediction for the chart; :mod:`knitcore.mechanics.pressure` uses it
+with the law of a pure fabric. Along the limb the tube is either free and shortens as in a strip
+test, or held at its length. The limb's girth may change along its length.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from knitcore.mechanics.pressure import (
 from knitcore.prediction.prediction import Along
 
 PLACES = 21
-"""Places along the limb, evenly spaced."""
+"""Number of places along the limb, evenly spaced."""
 MAX_GIRTHS = 100
 LEAST_GIRTH_MM = 10.0
-"""Half of what the thinnest finger measures around."""
+"""Smallest girth that is accepted: half that of the thinnest finger."""
 
 
 @dataclass(frozen=True)
@@ -113,14 +113,14 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
     """
     check_positive("target_mmhg", mmhg, "mmHg", "a target pressure", 300)
     check_positive("worn_mm", worn_mm, "mm", "a circumference", MAX_CIRCUMFERENCE_MM)
-    wanted = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
-    found = []
+    tension = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
+    sizes = []
     for end in (0, 1):
 
         def missing(strain: float, end: int = end) -> float:
             free = float(along.stress(strain))
             both = _tensions(along, strain, free, float(along.across_strain(free)))
-            return (both.low, both.high)[end] - wanted
+            return (both.low, both.high)[end] - tension
 
         upper = 0.1
         while missing(upper) < 0 and upper < 10:
@@ -129,8 +129,8 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
             raise InputError(
                 "target_mmhg", f"no size gives {mmhg:g} mmHg.", "Ask for less pressure."
             )
-        found.append(worn_mm / (1 + float(brentq(missing, 0.0, upper, xtol=1e-9))))
-    return Interval(min(found), max(found))
+        sizes.append(worn_mm / (1 + float(brentq(missing, 0.0, upper, xtol=1e-9))))
+    return Interval(min(sizes), max(sizes))
 
 
 def _tensions(along: Along, strain: float, free: float, axial: float) -> Interval:
@@ -175,7 +175,7 @@ class MeasuredLimb:
             )
 
     def girth_mm(self, at_mm: Array) -> Array:
-        """Circumference at places along the limb; beyond its ends that of the end."""
+        """Circumference at places along the limb; beyond an end it stays as at the end."""
         return np.interp(at_mm, self.at_mm, self.girths_mm)
 
 
@@ -188,7 +188,7 @@ class LimbPlace:
     at_mm : along the limb.
     rest_mm, girth_mm : circumferences of the unworn tube, and of the limb.
     lock_up_share : strain around the limb over that at which the chart is locked.
-    pressure : None where there is none.
+    pressure : on the limb; None where there is none.
     problem : why there is none, such as a loose fit; else empty.
     """
 
@@ -206,7 +206,7 @@ class LimbPlace:
 
     @property
     def axial_strain(self) -> float:
-        """Along the limb, where nothing holds the tube."""
+        """Strain along the limb, where nothing holds the tube."""
         return 0.0 if self.pressure is None else self.pressure.axial_strain_free
 
 
@@ -249,8 +249,8 @@ def place_on(along: Along, at_mm: float, girth_mm: float, rest_mm: float) -> Lim
     """
     share = max(girth_mm / rest_mm - 1.0, 0.0) / along.response.lock_up_strain
     try:
-        found = tube_pressure(along, rest_mm, girth_mm)
+        pressure = tube_pressure(along, rest_mm, girth_mm)
     except InputError as error:
         problem = f"{error.problem} {error.remedy}"
         return LimbPlace(at_mm, rest_mm, girth_mm, share, None, problem)
-    return LimbPlace(at_mm, rest_mm, girth_mm, share, found)
+    return LimbPlace(at_mm, rest_mm, girth_mm, share, pressure)

@@ -24,7 +24,7 @@ class PieceYarn:
 
 
 MAIN_YARN: Final = PieceYarn("main yarn", "#efe9dd")
-"""The yarn of stitches for which none is named."""
+"""Yarn of stitches for which none is named."""
 
 
 @dataclass(frozen=True)
@@ -87,19 +87,19 @@ class Piece:
 
     @property
     def is_rectangle(self) -> bool:
-        """Whether every cell is a stitch."""
+        """True if every cell is a stitch."""
         return self.shaped.is_rectangle
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is a rectangle of the main yarn, with nothing beyond its chart."""
+        """True for a rectangle of the main yarn, with nothing beyond its chart."""
         return self.is_rectangle and self.yarns == (MAIN_YARN,)
 
     def runs(self, row: int) -> tuple[YarnRun, ...]:
         """The yarns of a row from left to right."""
         first, last = self.shaped.spans[row]
-        found = runs(self.yarn_of[row, first:last])
-        return tuple(YarnRun(first + start, first + stop, yarn) for start, stop, yarn in found)
+        row_runs = runs(self.yarn_of[row, first:last])
+        return tuple(YarnRun(first + start, first + stop, yarn) for start, stop, yarn in row_runs)
 
     def cells(self, yarn: int) -> NDArray[np.bool_]:
         """The stitches of one yarn."""

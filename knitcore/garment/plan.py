@@ -1,4 +1,4 @@
-"""A garment plan: outline, regions, and what follows from them."""
+"""A garment plan: outline, regions, and the numbers that follow from them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class GarmentPlan:
     regions : its parts.
     fabrics : of the regions.
     gauges : of its fabrics.
-    around : which material direction runs around the limb.
+    around : the direction of the material that runs around the limb.
     worn : its pressure, place by place; empty where the limb is not known.
     closing : how the piece is closed, in words.
     notes : of shaping and assumptions.

@@ -31,8 +31,8 @@ class Region:
     ----------
     name : for people.
     cells : bool (rows, columns), row 0 at the bottom.
-    fill : repeat, continued over the whole chart from its bottom left, so that regions of one
-        fabric fit together.
+    fill : the repeat, continued over the whole chart from its bottom left, so that regions of
+        one fabric fit together.
     colour : ``#rrggbb`` for intarsia and for the chart, or empty.
     """
 
@@ -63,7 +63,7 @@ class RegionMisfit:
 
 @dataclass(frozen=True)
 class RegionNumbers:
-    """What the fabric of a region does, with the moduli of its answer."""
+    """Extensibility and moduli of the fabric of a region."""
 
     name: str
     stitches: int
@@ -115,7 +115,7 @@ def misfits(
     owner = np.full(stitch.shape, -1)
     for index, region in enumerate(regions):
         owner[region.cells & stitch] = index
-    found = []
+    borders = []
     for pairs, name, words in (
         ((owner[:, :-1], owner[:, 1:]), "stitch_wale_mm", ("beside", "rows", "higher")),
         ((owner[:-1], owner[1:]), "stitch_course_mm", ("below or above", "stitches", "wider")),
@@ -135,8 +135,8 @@ def misfits(
                 "in unless one of them is knitted on other needles or with short rows."
             )
             count = int(np.count_nonzero((edges == [[a], [b]]).all(axis=0)))
-            found.append(RegionMisfit(regions[a].name, regions[b].name, count, difference, text))
-    return tuple(found)
+            borders.append(RegionMisfit(regions[a].name, regions[b].name, count, difference, text))
+    return tuple(borders)
 
 
 def region_numbers(
@@ -154,8 +154,8 @@ def region_numbers(
         cells = region.cells & shaped.stitch
         if not cells.any():
             continue
-        found = predict(region.fill, material)
-        course, wale = found.modulus_course_n_per_mm, found.modulus_wale_n_per_mm
+        answer = predict(region.fill, material)
+        course, wale = answer.modulus_course_n_per_mm, answer.modulus_wale_n_per_mm
         numbers.append(
             RegionNumbers(region.name, int(cells.sum()), 1 / course, 1 / wale, course, wale)
         )

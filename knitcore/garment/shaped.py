@@ -56,7 +56,7 @@ class ShapedChart:
 
     @classmethod
     def parse(cls, chart: str, outline: str) -> ShapedChart:
-        """From K/P lines and lines of ``x`` (stitch) and ``.`` (no stitch), the top row first."""
+        """Read K/P lines and lines of ``x`` (stitch) and ``.`` (no stitch), the top row first."""
         return cls(StitchChart.parse(chart), outline_marks(outline))
 
     @property
@@ -67,7 +67,7 @@ class ShapedChart:
 
     @property
     def is_rectangle(self) -> bool:
-        """Whether every cell is a stitch."""
+        """True if every cell is a stitch."""
         return bool(self.stitch.all())
 
     @property
@@ -106,7 +106,7 @@ class ShapedChart:
 
 
 def outline_marks(outline: str) -> NDArray[np.bool_]:
-    """Which cells are stitches, bool (rows, columns), row 0 at the bottom.
+    """Read an outline as a mask (rows, columns) of stitches, row 0 at the bottom.
 
     Raises
     ------

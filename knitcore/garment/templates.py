@@ -17,10 +17,10 @@ from knitcore.garment.worn_piece import Fit, Worn, worn
 from knitcore.materials import Material
 
 MAX_CHANGE = 2
-"""Stitches that a row may gain or lose: one at each edge."""
+"""Largest number of stitches that a row gains or loses: one at each edge."""
 SNUG = Fit()
 PLACES = 5
-"""Positions along a limb at which the pressure is given, besides those measured."""
+"""Number of positions along a limb at which the pressure is given, besides those measured."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def limb_tube(
 
 
 def _too_fast(counts: list[int], shaped: list[int]) -> list[str]:
-    """A note where rows have other stitches than the limb asks for."""
+    """A note if the limb changes faster than rows can gain or lose stitches."""
     if shaped == counts:
         return []
     row = max(range(len(counts)), key=lambda row: abs(shaped[row] - counts[row]))

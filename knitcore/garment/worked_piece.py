@@ -1,7 +1,7 @@
 """Rows of a piece as they are worked, with increases and decreases at their edges.
 
-They are a type of their own, never mixed with the face grid; :mod:`knitcore.chart.row_sides` has
-the rule.
+They have a type of their own and are never mixed with the face grid;
+:mod:`knitcore.chart.row_sides` has the rule.
 """
 
 from __future__ import annotations
@@ -44,11 +44,11 @@ def piece_rows(
     *,
     first_side: Side = Side.RS,
 ) -> tuple[PieceRow, ...]:
-    """How a knitter works a piece.
+    """Work a piece out row by row, as a knitter works it.
 
     Parameters
     ----------
-    piece : charts, too, of one yarn.
+    piece : the piece, or a chart in one yarn.
     construction : flat or in the round.
     first_side : the side of row 1 in flat knitting; in the round it is always RS.
 

@@ -30,19 +30,19 @@ from knitcore.prediction.prediction import Prediction
 
 FINGERS = ("index finger", "middle finger", "ring finger", "little finger")
 SIDES = 48
-"""Of the surface of a part."""
+"""Number of sides with which the surface of a part is drawn."""
 WRIST_DEPTH, HAND_DEPTH = 0.22, 0.13
 """Depth of wrist and palm over their girth; that of a cylinder is 1/π."""
 THUMB_ANGLE, SPREAD = 0.45, 0.3
-"""Of the thumb from the arm, and of the first finger from the last, rad."""
+"""Angle between thumb and arm, and between the first and the last finger, rad."""
 BLEND_MM = 14.0
-"""Beyond a crotch, on which a part takes its own shape."""
+"""Distance beyond a crotch over which a part takes its own shape."""
 TIP = 0.1
-"""So many radii a finger is longer than the glove's."""
+"""Length of a finger beyond the glove's, in radii of the finger."""
 BARE_MM = 25.0
-"""Of the forearm that is seen beyond the cuff."""
+"""Length of forearm that is drawn beyond the cuff."""
 GATHERED = 0.05
-"""Share of their height that the thumb's rows have where they begin, at the wrist."""
+"""Height of the thumb's rows where they begin, at the wrist, over their full height."""
 
 Curve = Callable[[Array, Array], Array]
 """Points (…, 3), mm, of a part of the hand: at shares of the way around it, from the thumb's side
@@ -57,8 +57,8 @@ class GloveOnHand:
     Attributes
     ----------
     plan : of the glove.
-    corners_mm : (rows + 1, columns + 1, 3) corners of the stitches; those that no stitch of the
-        outline has mean nothing. The face is outside.
+    corners_mm : (rows + 1, columns + 1, 3) corners of the stitches; corners without a stitch have
+        no meaning. The face is outside.
     mmhg : (rows, columns) pressure, the middle between free and fixed along the hand; NaN where
         there is none.
     parts : the place of each part where it is nearest to its lock-up.
@@ -100,7 +100,7 @@ def glove_on_hand(
     for loop in loops:
         loop.lay(heights, corners)
         for column, name, place_at in loop.places():
-            for fabric in {found for found in fabrics[loop.rows, column] if found is not None}:
+            for fabric in {cell for cell in fabrics[loop.rows, column] if cell is not None}:
                 place = fitted(fabric, *place_at, float(heights[loop.rows, column].sum()))
                 mmhg[loop.rows[fabrics[loop.rows, column] == fabric], column] = _middle(place)
                 if name not in parts or place.lock_up_share > parts[name].lock_up_share:
@@ -109,12 +109,12 @@ def glove_on_hand(
 
 
 def answer_of(fabric: Fabric, material: Material) -> Prediction:
-    """What a part of one fabric does."""
+    """Predict a part of one fabric."""
     return predict(StitchChart.of_fabric(fabric, 2, 2), material)
 
 
 def _hidden(rows: int, columns: int, hand: Hand) -> Array:
-    """Corners within the palm, for cells without a stitch."""
+    """Corners inside the palm, where cells without a stitch are hidden."""
     column, row = np.meshgrid(np.arange(columns + 1.0), np.arange(rows + 1.0))
     inside = np.array([0.0, hand.cuff_mm + hand.wrist_mm + 0.5 * hand.palm_mm, 0.0])
     return np.asarray(inside + 0.01 * np.stack([-row, column, 0.0 * row], axis=-1))
@@ -135,7 +135,7 @@ def _fits(material: Material) -> Callable[[Fabric, float, float, float], LimbPla
 
 
 def _middle(place: LimbPlace) -> float:
-    """Pressure, mmHg."""
+    """Pressure, the middle between free and fixed along the hand, mmHg."""
     if place.pressure is None:
         return np.nan
     return 0.5 * MMHG_PER_KPA * (place.pressure.kpa.low + place.pressure.kpa.high)
@@ -167,14 +167,14 @@ class _Loop:
     grown: Array | None = None
 
     def places(self) -> Iterator[tuple[int, str, tuple[float, float]]]:
-        """Columns with the part's name, and the distance from the glove's edge and the girth."""
+        """Columns, each with its part's name, its distance from the glove's edge and its girth."""
         name = ""
         for column, at in enumerate(0.5 * (self.at_mm[1:] + self.at_mm[:-1]), self.first):
             name = self.names.get(column, name)
             yield column, name, (float(self.begins_mm + at), float(self.girth_mm(at)))
 
     def lay(self, heights_mm: Array, corners_mm: Array) -> None:
-        """Set the corners of its stitches; the first of a part that leaves another are set."""
+        """Set the corners of its stitches, but not the first of a part that leaves another."""
         count = len(self.at_mm) - 1
         for k in range(0 if self.grown is not None else 1, count + 1):
             # rows that end are still there at the edge where they do, those that grow already
@@ -208,7 +208,7 @@ _INSIDE = 1e-9
 
 
 def _loops(hand: Hand, layout: GloveLayout, heights_mm: Array) -> Iterator[_Loop]:
-    """The parts, each after that which it leaves."""
+    """The parts, each after the part that it leaves."""
     rows = len(heights_mm)
     support_mm = hand.cuff_mm + hand.wrist_mm
     thumb_mm, crotch_mm = support_mm + hand.thumb_crotch_mm, support_mm + hand.palm_mm
@@ -391,7 +391,7 @@ def _ahead(angle: float) -> Array:
 def _leaving(
     trunk: Curve, leaves_mm: float, shares: Callable[[Array], Array], own: Curve, angle: float
 ) -> Curve:
-    """A part that leaves another: it begins with its share of that one's outline."""
+    """Curve of a part that leaves another: it begins with its share of the other's outline."""
     ahead = _ahead(angle)
 
     def curve(share: Array, at_mm: Array) -> Array:

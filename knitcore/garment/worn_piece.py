@@ -21,7 +21,7 @@ class Worn:
     at_mm : along the limb, from where the garment begins.
     part : of the garment there.
     rest_mm, worn_mm : circumferences of the garment unworn, and of the limb.
-    pressure : None where there is none.
+    pressure : on the limb; None where there is none.
     problem : why there is none, such as a loose fit or a strain beyond the lock-up; else empty.
     """
 
@@ -50,10 +50,10 @@ def worn(
 ) -> Worn:
     """A place of a garment of one fabric, whose direction ``around`` runs around the limb."""
     try:
-        found = limb_pressure(material.law(fabric), around, rest_mm, worn_mm)
+        pressure = limb_pressure(material.law(fabric), around, rest_mm, worn_mm)
     except InputError as error:
         return Worn(at_mm, part, rest_mm, worn_mm, None, f"{error.problem} {error.remedy}")
-    return Worn(at_mm, part, rest_mm, worn_mm, found)
+    return Worn(at_mm, part, rest_mm, worn_mm, pressure)
 
 
 @dataclass(frozen=True)
@@ -91,5 +91,5 @@ class Fit:
         """
         if self.mmhg is None:
             return worn_mm * (1 + self.ease)
-        wanted = rest_circumference(material.law(fabric), around, worn_mm, self.mmhg)
-        return (wanted.low + wanted.high) / 2
+        sizes = rest_circumference(material.law(fabric), around, worn_mm, self.mmhg)
+        return (sizes.low + sizes.high) / 2

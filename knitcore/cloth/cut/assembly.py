@@ -31,7 +31,7 @@ class Assembled:
 
     Attributes
     ----------
-    energy : N·mm; infinite where a fibre has collapsed to a point, and then nothing else counts.
+    energy : N·mm; infinite if a fibre has collapsed to a point: the rest is then meaningless.
     force : N, (2, nodes), gradient of the energy.
     tangent : N/mm, sparse (2 * nodes, 2 * nodes): all x displacements, then all y.
     """
@@ -72,7 +72,7 @@ class PieceEnergy:
         course, wale = np.tensordot(turn.T, (x, y), axes=1)
         self.law_of_point = cloth.law_at(course, wale)
         self._turned = np.kron(turn, turn)
-        """From (a0, a1, b0, b1) in the fibres' frame to columns of the gradient in the piece's."""
+        """Matrix from (a0, a1, b0, b1) in the frame of the fibres to gradients in the piece's."""
 
     def fibres(self, displacement: Array) -> Array:
         """Images (elements, points, 4) of the unit vectors along course and wale, a then b, in the
@@ -81,8 +81,8 @@ class PieceEnergy:
         gradient = np.array([self.basis.interpolate(u).grad for u in displacement])  # i, j
         gradient += np.eye(2)[:, :, None, None]
         columns = gradient.transpose(2, 3, 1, 0).reshape(*self.shape, 4)
-        found: Array = columns @ self._turned
-        return found
+        images: Array = columns @ self._turned
+        return images
 
     def at(self, displacement: Array, tapes: list[tuple[Any, float]]) -> Assembled:
         """Energy, forces and tangent.
@@ -110,7 +110,7 @@ class PieceEnergy:
         return Assembled(energy, force, sp.csr_array(sp.block_array([[xx, xy], [xy.T, yy]])))
 
     def law_force(self, laws: NDArray[np.void], displacement: Array) -> Array:
-        """Force (2, nodes), N, that other laws would make; records as the sheet's parameters."""
+        """Force (2, nodes), N, under other laws, given as records like the sheet's parameters."""
         return self._force(self._respond(displacement, laws)[1])
 
     def _respond(self, displacement: Array, laws: NDArray[np.void]) -> tuple[Array, Array, Array]:
@@ -139,8 +139,8 @@ def _force(basis: Any, p: Array) -> Array:
     """Integral of p (elements, points, 2) times the gradient of each shape function."""
     px, py = p[..., 0], p[..., 1]
     form = LinearForm(lambda v, _: px * v.grad[0] + py * v.grad[1])
-    found: Array = form.assemble(basis)
-    return found
+    forces: Array = form.assemble(basis)
+    return forces
 
 
 def _tangent(basis: Any, h: Array) -> Any:
@@ -149,8 +149,8 @@ def _tangent(basis: Any, h: Array) -> Any:
 
     def form(u: Any, v: Any, _: Any) -> Array:
         (ux, uy), (vx, vy) = u.grad, v.grad
-        found: Array = vx * (hxx * ux + hxy * uy) + vy * (hyx * ux + hyy * uy)
-        return found
+        density: Array = vx * (hxx * ux + hxy * uy) + vy * (hyx * ux + hyy * uy)
+        return density
 
     return BilinearForm(form).assemble(basis)
 
@@ -172,8 +172,8 @@ def _tape(edge: Any, displacement: Array, stiffness: float) -> tuple[float, Arra
     taut = np.where(length > 1, stiffness, 0.0)
 
     def slope(v: Any) -> Array:
-        found: Array = v.grad[0] * tangent[0] + v.grad[1] * tangent[1]
-        return found
+        along_edge: Array = v.grad[0] * tangent[0] + v.grad[1] * tangent[1]
+        return along_edge
 
     force = np.array(
         [LinearForm(lambda v, _, f=pull * u: f * slope(v)).assemble(edge) for u in unit]

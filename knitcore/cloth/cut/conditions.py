@@ -18,7 +18,7 @@ from knitcore.cloth.cut.outline import CutPiece
 Indices = NDArray[np.int64]
 
 MAX_SHEAR_ANGLE = 1.2
-"""rad; beyond it courses and wales touch in any knit."""
+"""Largest shear of a frame, rad; beyond it courses and wales touch in any knit."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ Condition = Held | Pulled | Traction | Sewn | Framed
 
 
 def frame(angle: float) -> Array:
-    """Rows: images of the unit vectors along the bars of a frame sheared by an angle (rad)."""
+    """Images, as rows, of the unit vectors along the bars of a frame sheared by an angle (rad)."""
     c, s = math.cos(angle / 2), math.sin(angle / 2)
     return np.array([[c, s], [s, c]])
 
@@ -112,8 +112,9 @@ def frame_rate(angle: float) -> Array:
 class Constraints:
     """Conditions on the nodes of a mesh.
 
-    The displacements (2, nodes), flattened, are ``displacements(share) + spread @ q``: what is
-    prescribed, and unknowns q, of which a clamp that moves freely has one in each direction.
+    The displacements (2, nodes), flattened, are ``displacements(share) + spread @ q``: the
+    prescribed ones, and the unknowns q. A clamp that moves freely has one unknown in each
+    direction.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ class Constraints:
 
     Attributes
     ----------
-    held : bool (2, nodes), where displacements are prescribed.
+    held : bool (2, nodes), True where displacements are prescribed.
     spread : sparse (2 * nodes, unknowns).
     nodes : of each condition.
     """
@@ -167,49 +168,49 @@ class Constraints:
         """Forces (2, nodes), N, at a share of the load."""
         from skfem import LinearForm
 
-        found = np.zeros(self.held.shape)
+        loads = np.zeros(self.held.shape)
         for condition, nodes, edge in zip(self.conditions, self.nodes, self._edges, strict=True):
             match condition:
                 case Pulled():  # the clamp's unknown sums them, so one node may carry all
-                    found[:, nodes[0]] += share * condition.x_n, share * condition.y_n
+                    loads[:, nodes[0]] += share * condition.x_n, share * condition.y_n
                 case Traction():
                     along = LinearForm(lambda v, _: v).assemble(edge)
                     load = np.array([condition.x_n_per_mm, condition.y_n_per_mm])
-                    found += share * np.outer(load, along)
-        return found
+                    loads += share * np.outer(load, along)
+        return loads
 
     def forces(self, internal: Array, share: float) -> Array:
-        """Force (conditions, 2), N, on each edge, from the internal forces (2, nodes).
+        """Force on each edge, (conditions, 2) in N, from the internal forces (2, nodes).
 
         A corner that two held edges share counts for the first.
         """
         outer = internal - self.loads(share)
         counted = np.zeros(self.held.shape, dtype=bool)
-        found = np.zeros((len(self.nodes), 2))
+        on_edges = np.zeros((len(self.nodes), 2))
         for i, (condition, nodes) in enumerate(zip(self.conditions, self.nodes, strict=True)):
             match condition:
                 case Held() | Framed():
                     new = self.held[:, nodes] & ~counted[:, nodes] & self._holds(condition)
-                    found[i] = np.sum(np.where(new, outer[:, nodes], 0.0), axis=1)
+                    on_edges[i] = np.sum(np.where(new, outer[:, nodes], 0.0), axis=1)
                     counted[:, nodes] |= new
                 case Pulled():
-                    found[i] = share * condition.x_n, share * condition.y_n
+                    on_edges[i] = share * condition.x_n, share * condition.y_n
                 case Traction():
                     length = float(np.sum(self._edges[i].dx))
-                    found[i] = condition.x_n_per_mm, condition.y_n_per_mm
-                    found[i] *= share * length
-        return found
+                    on_edges[i] = condition.x_n_per_mm, condition.y_n_per_mm
+                    on_edges[i] *= share * length
+        return on_edges
 
     @staticmethod
     def _holds(condition: Held | Framed) -> NDArray[np.bool_]:
-        """Which directions a condition holds, (2, 1)."""
+        """Mask (2, 1) of the directions that a condition holds."""
         if isinstance(condition, Framed):
             return np.ones((2, 1), dtype=bool)
         return np.array([[condition.x_mm is not None], [condition.y_mm is not None]])
 
     def _prescribed(self, share: float) -> Array:
         """Displacements (2, nodes); NaN where they are free."""
-        found = np.full(self._places.shape, np.nan)
+        prescribed = np.full(self._places.shape, np.nan)
         for condition, nodes in zip(self.conditions, self.nodes, strict=True):
             match condition:
                 case Held():
@@ -220,18 +221,18 @@ class Constraints:
                     moved = frame(share * condition.shear_angle) @ at - at
                 case _:
                     continue
-            before = found[:, nodes]
+            before = prescribed[:, nodes]
             if np.any(np.abs(before - moved) > 1e-9 * (1 + np.abs(moved))):
                 raise InputError(
                     "conditions",
                     f"edge {condition.edge!r} meets another edge that moves differently.",
                     "Leave a free side between them, or let one of them slide.",
                 )
-            found[:, nodes] = np.where(np.isnan(before), moved, before)
-        return found
+            prescribed[:, nodes] = np.where(np.isnan(before), moved, before)
+        return prescribed
 
     def _spread(self) -> sp.csr_array:
-        """From the unknowns to the displacements, (2 * nodes, unknowns)."""
+        """Matrix (2 * nodes, unknowns) that turns the unknowns into displacements."""
         count = self.held.size
         leader = np.arange(count).reshape(self.held.shape)
         clamped = np.zeros(self.held.shape[1], dtype=bool)

@@ -42,8 +42,8 @@ class Cloth:
                 (grid.row_lines, y_mm, self.corner_mm[1], grid.rows),
             )
         )
-        found: NDArray[np.uint8] = grid.law_of_cell[row, column]
-        return found
+        codes: NDArray[np.uint8] = grid.law_of_cell[row, column]
+        return codes
 
 
 def cloth_under(
@@ -93,6 +93,6 @@ def cloth_under(
 
 
 def _repeated(stitches: int, repeat: int, ratio: float) -> int:
-    """Whole repeats that reach ``ratio`` times as far, or as far as before."""
-    wanted = stitches * max(ratio, 1.0)
-    return repeat * math.ceil(wanted / repeat - 1e-10)
+    """Stitches in whole repeats that cover ``ratio`` times as many stitches, never fewer."""
+    reach = stitches * max(ratio, 1.0)
+    return repeat * math.ceil(reach / repeat - 1e-10)

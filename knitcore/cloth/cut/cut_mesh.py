@@ -24,11 +24,11 @@ Indices = NDArray[np.int64]
 
 MAX_ELEMENTS = 20_000
 DEFAULT_ELEMENTS = 600
-"""Number of elements from which the mesh size is chosen if none is given."""
+"""Number of elements at which the default mesh size aims."""
 MAX_EMPTY = 20
 """Largest ratio of the bounding box to the area of a piece for which elements keep their size."""
 CLEARANCE = 0.55
-"""Least distance of inner points from the boundary, over the mesh size."""
+"""Smallest distance of inner points from the boundary, over the mesh size."""
 MAX_SPLITS = 12
 SMOOTHINGS = 3
 
@@ -73,7 +73,7 @@ def mesh_of(piece: CutPiece, size_mm: float | None = None) -> Any:
 
 
 def size_for(piece: CutPiece, elements: int) -> float:
-    """Size (mm) of elements at which a piece has about so many, and no more along its boundary."""
+    """Size (mm) of elements that gives a piece about that many, and no more along its boundary."""
     left, bottom, right, top = piece.polygon.bounds
     covered = max(piece.area_mm2, (right - left) * (top - bottom) / MAX_EMPTY)
     return max(math.sqrt(covered / elements), float(piece.polygon.length) / elements)
@@ -138,23 +138,23 @@ def _missing(rings: list[Array], triangles: Indices) -> list[NDArray[np.bool_]]:
     """The segments of the rings that are not edges of triangles."""
     edges = np.sort(np.concatenate([triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
     known = set(map(tuple, edges.tolist()))
-    found, first = [], 0
+    missing, first = [], 0
     for ring in rings:
         number = first + np.arange(len(ring))
         pairs = np.sort(np.column_stack([number, np.roll(number, -1)]), axis=1).tolist()
-        found.append(np.array([tuple(pair) not in known for pair in pairs]))
+        missing.append(np.array([tuple(pair) not in known for pair in pairs]))
         first += len(ring)
-    return found
+    return missing
 
 
 def _halved(ring: Array, lost: NDArray[np.bool_]) -> Array:
-    """The ring with new points in the middle of some segments."""
+    """Insert points in the middle of some segments of a ring."""
     middles = (ring + np.roll(ring, -1, axis=0)) / 2
     return np.insert(ring, np.flatnonzero(lost) + 1, middles[lost], axis=0)
 
 
 def _smoothed(points: Array, triangles: Indices, boundary: int) -> Array:
-    """Inner points moved to the mean of their neighbours, unless a triangle turns over."""
+    """Move inner points to the mean of their neighbours, unless a triangle turns over."""
     pairs = np.concatenate([triangles[:, [i, j]] for i in range(3) for j in range(3) if i != j])
     inner = np.arange(len(points)) >= boundary
     sense = np.sign(_doubled_areas(points[triangles]))

@@ -72,15 +72,17 @@ def solve(
     begin = time.perf_counter()
     energy = PieceEnergy(mesh_of(piece, mesh_mm), cloth, piece.turn)
     constraints = Constraints(energy.basis, piece, conditions)
-    found: list[PieceEquilibrium] = []
+    equilibria: list[PieceEquilibrium] = []
     problem = None
     try:
         with one_blas_thread():
             shares = np.arange(1, steps + 1) / steps
             for equilibrium in Balance(energy, constraints, cancelled).follow(shares):
-                found.append(equilibrium)
+                equilibria.append(equilibrium)
                 if progress is not None:
-                    progress(len(found), steps)
+                    progress(len(equilibria), steps)
     except StepError as error:
-        problem = f"Step {len(found) + 1} of {steps} did not converge. {error}"
-    return PieceTest(piece, energy, constraints, tuple(found), problem, time.perf_counter() - begin)
+        problem = f"Step {len(equilibria) + 1} of {steps} did not converge. {error}"
+    return PieceTest(
+        piece, energy, constraints, tuple(equilibria), problem, time.perf_counter() - begin
+    )

@@ -56,7 +56,7 @@ class PieceTest(Result):
     piece : its outline.
     energy : mesh, laws and assembly.
     constraints : the conditions on the mesh.
-    found : the equilibria.
+    equilibria : the balanced states, step by step.
     problem : why the test ended early, else None.
     seconds : wall-clock time of the solution.
     """
@@ -64,7 +64,7 @@ class PieceTest(Result):
     piece: CutPiece
     energy: PieceEnergy
     constraints: Constraints
-    found: tuple[PieceEquilibrium, ...]
+    equilibria: tuple[PieceEquilibrium, ...]
     problem: str | None
     seconds: float
 
@@ -78,7 +78,7 @@ class PieceTest(Result):
 
     @property
     def converged(self) -> bool:
-        """Whether all requested steps converged."""
+        """True if all requested steps converged."""
         return self.problem is None
 
     @property
@@ -100,32 +100,33 @@ class PieceTest(Result):
     @property
     def share(self) -> Array:
         """Share of the load per step."""
-        return np.array([e.share for e in self.found])
+        return np.array([e.share for e in self.equilibria])
 
     @property
     def displacement_mm(self) -> Array:
         """Displacements of the nodes per step, (steps, 2, nodes)."""
-        return np.array([e.displacement for e in self.found]).reshape(-1, *self.nodes_mm.shape)
+        return np.array([e.displacement for e in self.equilibria]).reshape(-1, *self.nodes_mm.shape)
 
     @property
     def energy_n_mm(self) -> Array:
         """Stored energy per step."""
-        return np.array([e.energy for e in self.found])
+        return np.array([e.energy for e in self.equilibria])
 
     @property
     def force_n(self) -> Array:
         """Force on the edge of each condition, (steps, conditions, 2): x and y.
 
-        0 for a tape. A corner that two held edges share counts for the first.
+        A tape has a force of 0. A corner that two held edges share counts for the first.
         """
-        forces = [self.constraints.forces(e.internal, e.share) for e in self.found]
+        forces = [self.constraints.forces(e.internal, e.share) for e in self.equilibria]
         return np.array(forces).reshape(-1, len(self.conditions), 2)
 
     @property
     def moved_mm(self) -> Array:
         """Mean displacement of the edge of each condition, (steps, conditions, 2)."""
         means = [
-            [e.displacement[:, n].mean(axis=1) for n in self.constraints.nodes] for e in self.found
+            [e.displacement[:, n].mean(axis=1) for n in self.constraints.nodes]
+            for e in self.equilibria
         ]
         return np.array(means).reshape(-1, len(self.conditions), 2)
 
@@ -165,12 +166,12 @@ class PieceTest(Result):
         return float(self._strains(step)[1].max())
 
     def is_past_the_law(self, step: int = -1) -> bool:
-        """Whether some cloth is past 98 % of its lock-up, where its law is extrapolated."""
+        """True if some cloth is past 98 % of its lock-up, where its law is extrapolated."""
         return self.utilisation(step) > EXTENSION_START + 1e-6
 
     def _strains(self, step: int) -> tuple[tuple[Array, Array, Array], Array]:
         """Strains xx, yy and xy, and alpha * strain (2, elements, points)."""
-        fibres = self.energy.fibres(self.found[step].displacement)
+        fibres = self.energy.fibres(self.equilibria[step].displacement)
         sheet, codes = self.energy.cloth.sheet, self.energy.law_of_point
         model = sheet.model.energy
         xx, yy, xy = fibre_strains(model, fibres[..., :2], fibres[..., 2:])
@@ -191,7 +192,7 @@ def write_piece_test(test: PieceTest, path: Path | str) -> None:
     suffix = target.suffix.lower()
     if suffix not in SUFFIXES:
         raise InputError("out", f"{target.name} has an unknown suffix.", "Use .npz, .csv or .vtu.")
-    if not test.found:
+    if not test.equilibria:
         raise InputError(
             "out", "no step converged, so there is nothing to write.", "Use a smaller load."
         )
@@ -218,7 +219,7 @@ def _write_npz(test: PieceTest, path: Path) -> None:
     """``nodes_mm``, ``displacement_mm``, ``elements`` (corners of each, from 0), per condition
     ``force_n`` and ``moved_mm``, and the element fields (steps, elements).
     """
-    steps = [test.fields(step) for step in range(len(test.found))]
+    steps = [test.fields(step) for step in range(len(test.equilibria))]
     arrays = {name: np.array([vars(s)[name] for s in steps]) for name in vars(steps[0])}
     arrays |= {
         name: getattr(test, name)

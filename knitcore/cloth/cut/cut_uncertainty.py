@@ -51,7 +51,7 @@ def piece_spread(test: PieceTest, material: Material, step: int = -1) -> PieceSp
         force += constraints.forces(change, 0.0) ** 2
         moved += np.array([motion[:, nodes].mean(axis=1) for nodes in constraints.nodes]) ** 2
     own = _model_log_sd(test, step)
-    force += (own * constraints.forces(test.found[step].internal, 0.0)) ** 2
+    force += (own * constraints.forces(test.equilibria[step].internal, 0.0)) ** 2
     return PieceSpread(np.sqrt(force), np.sqrt(moved))
 
 
@@ -66,13 +66,13 @@ def piece_spreads(test: PieceTest, material: Material) -> Array:
     InputError
         As :func:`piece_spread`.
     """
-    steps = sampled_steps(len(test.found))
+    steps = sampled_steps(len(test.equilibria))
     if not steps:
         return np.empty((2, 0, len(test.conditions), 2))
-    found = [piece_spread(test, material, step) for step in steps]
-    known = np.array([[at.force_n for at in found], [at.moved_mm for at in found]])
+    spreads = [piece_spread(test, material, step) for step in steps]
+    known = np.array([[at.force_n for at in spreads], [at.moved_mm for at in spreads]])
     between = make_interp_spline(steps, known, k=min(1, len(steps) - 1), axis=1)
-    return np.asarray(between(np.arange(len(test.found))))
+    return np.asarray(between(np.arange(len(test.equilibria))))
 
 
 def force_log_sd(
@@ -82,17 +82,17 @@ def force_log_sd(
 
     Parameters
     ----------
-    test, material : as for :func:`piece_spread`, which has the errors.
+    test, material : as for :func:`piece_spread`, which raises the same errors.
     force : of the internal forces (2, nodes) at a step (from 0), and linear in them. It is
         computed at a few steps, and interpolated between them.
     """
-    steps = sampled_steps(len(test.found))
-    found = []
+    steps = sampled_steps(len(test.equilibria))
+    deviations = []
     for step in steps:
-        value = force(test.found[step].internal, step)
+        value = force(test.equilibria[step].internal, step)
         parts = [force(change, step) / value for change, _ in _changes(test, material, step)]
-        found.append(np.linalg.norm([*parts, _model_log_sd(test, step)]))
-    return np.interp(np.arange(len(test.found)), steps, found) if steps else np.empty(0)
+        deviations.append(np.linalg.norm([*parts, _model_log_sd(test, step)]))
+    return np.interp(np.arange(len(test.equilibria)), steps, deviations) if steps else np.empty(0)
 
 
 def _changes(test: PieceTest, material: Material, step: int) -> Iterator[tuple[Array, Array]]:
@@ -104,7 +104,7 @@ def _changes(test: PieceTest, material: Material, step: int) -> Iterator[tuple[A
         raise InputError(
             "tension_field", "there are no intervals for cloth that wrinkles.", "Turn it off."
         )
-    u, spread = test.found[step].displacement, test.constraints.spread
+    u, spread = test.equilibria[step].displacement, test.constraints.spread
     tangent = test.energy.at(u, test.constraints.tapes).tangent
     solve = positive_definite_factor(spread.T @ tangent @ spread)
     for parameter in law_parameters(sheet, material, 0.0, _mean_stress(test, step)):

@@ -22,10 +22,10 @@ from knitcore.cloth.flat.equilibrium_path import MAX_HALVINGS, MAX_NEWTON_STEPS,
 from knitcore.linear.direct_factor import IndefiniteTangentError, positive_definite_factor
 
 Solve = Callable[[Array], Array]
-"""Solves with a tangent, for the unknowns."""
+"""A function that solves a linear system with a tangent for the unknowns."""
 
 BALANCED = 1e-9
-"""Residual over the forces at the edges."""
+"""Residual of a balanced state, over the forces at the edges."""
 FLOOR_N = 1e-12
 MAX_SHIFT = 1e4
 
@@ -92,16 +92,16 @@ class Balance:
         CancelledError
         """
         state = np.zeros(self.constraints.held.shape)
-        found = self.at(state)
-        solve = self._factor(found)
+        assembled = self.at(state)
+        solve = self._factor(assembled)
         reached = 0.0
         for target in shares:
             step, iterations, halvings = target - reached, 0, 0
             while reached < target:
                 goal = min(reached + step, float(target))
                 try:
-                    guess = self._along_tangent(state, found, solve, (reached, goal))
-                    state, found, solve, count = self._balanced(guess, goal)
+                    guess = self._along_tangent(state, assembled, solve, (reached, goal))
+                    state, assembled, solve, count = self._balanced(guess, goal)
                 except StepError as reason:
                     halvings += 1
                     if halvings > MAX_HALVINGS:
@@ -112,64 +112,66 @@ class Balance:
                     continue
                 iterations += count
                 reached, step = goal, 2 * step
-            yield PieceEquilibrium(float(target), state, found.energy, found.force, iterations)
+            yield PieceEquilibrium(
+                float(target), state, assembled.energy, assembled.force, iterations
+            )
 
     def _along_tangent(
-        self, state: Array, found: Assembled, solve: Solve, shares: tuple[float, float]
+        self, state: Array, assembled: Assembled, solve: Solve, shares: tuple[float, float]
     ) -> Array:
         """The state at another share of the load, predicted along the tangent of a balanced one."""
         before, after = (self.constraints.displacements(share) for share in shares)
         move = after - before
-        pushed = (found.tangent @ move.ravel()).reshape(move.shape)
-        force = self.constraints.loads(shares[1]) - found.force - pushed
+        pushed = (assembled.tangent @ move.ravel()).reshape(move.shape)
+        force = self.constraints.loads(shares[1]) - assembled.force - pushed
         return np.asarray(state + move + self._spread_out(solve(self._gathered(force))))
 
     def _balanced(self, state: Array, share: float) -> tuple[Array, Assembled, Solve, int]:
-        """The balanced state near another, its properties, a solver with its tangent, and the
-        number of linear systems solved.
+        """Balance the state near another; return it, its assembly, a solver with its tangent, and
+        the number of linear systems solved.
         """
         loads = self.constraints.loads(share)
-        found = self.at(state)
+        assembled = self.at(state)
         for iteration in range(1, MAX_NEWTON_STEPS + 1):
-            if not np.isfinite(found.energy):
+            if not np.isfinite(assembled.energy):
                 raise StepError("A fibre collapsed to a point.")
-            residual = self._gathered(loads - found.force)
-            if np.linalg.norm(residual) <= self._tolerated(found, loads):
-                return state, found, self._stable(found), iteration
-            step = self._spread_out(self._factor(found)(residual))
-            state, found = self._line_search(state, found, step, loads)
+            residual = self._gathered(loads - assembled.force)
+            if np.linalg.norm(residual) <= self._tolerated(assembled, loads):
+                return state, assembled, self._stable(assembled), iteration
+            step = self._spread_out(self._factor(assembled)(residual))
+            state, assembled = self._line_search(state, assembled, step, loads)
         raise StepError(f"Newton's method did not balance the forces in {MAX_NEWTON_STEPS} steps.")
 
-    def _tolerated(self, found: Assembled, loads: Array) -> float:
-        outer = np.where(self.constraints.held, found.force, loads)
+    def _tolerated(self, assembled: Assembled, loads: Array) -> float:
+        outer = np.where(self.constraints.held, assembled.force, loads)
         return max(BALANCED * float(np.linalg.norm(outer)), FLOOR_N)
 
     def _line_search(
-        self, state: Array, found: Assembled, step: Array, loads: Array
+        self, state: Array, assembled: Assembled, step: Array, loads: Array
     ) -> tuple[Array, Assembled]:
-        slope = float(np.sum((found.force - loads) * step))
-        noise = 1e-13 * (abs(found.energy) + abs(float(np.sum(loads * state)))) + 1e-300
+        slope = float(np.sum((assembled.force - loads) * step))
+        noise = 1e-13 * (abs(assembled.energy) + abs(float(np.sum(loads * state)))) + 1e-300
         share = 1.0
         while share > 1e-6:
             trial = state + share * step
             there = self.at(trial)
-            gained = there.energy - found.energy - share * float(np.sum(loads * step))
+            gained = there.energy - assembled.energy - share * float(np.sum(loads * step))
             if gained <= 1e-4 * share * slope + noise:
                 return trial, there
             share /= 2
         raise StepError("The line search found no state of lower energy.")
 
-    def _stable(self, found: Assembled) -> Solve:
+    def _stable(self, assembled: Assembled) -> Solve:
         try:
-            return positive_definite_factor(self._reduced(found))
+            return positive_definite_factor(self._reduced(assembled))
         except IndefiniteTangentError:
             raise StepError(
                 "The balanced state is unstable (its tangent is not positive definite)."
             ) from None
 
-    def _factor(self, found: Assembled) -> Solve:
-        """Solves with the tangent, shifted as far as it needs to be positive definite."""
-        tangent = self._reduced(found)
+    def _factor(self, assembled: Assembled) -> Solve:
+        """Factorise the tangent, shifted as far as it needs to be positive definite."""
+        tangent = self._reduced(assembled)
         shift = 0.0
         while shift <= MAX_SHIFT:
             try:
@@ -178,8 +180,8 @@ class Balance:
                 shift = max(4 * shift, 1e-2)
         raise StepError("The tangent could not be factorised.")
 
-    def _reduced(self, found: Assembled) -> Any:
-        return sp.csc_array(self._spread.T @ found.tangent @ self._spread)
+    def _reduced(self, assembled: Assembled) -> Any:
+        return sp.csc_array(self._spread.T @ assembled.tangent @ self._spread)
 
     def _gathered(self, force: Array) -> Array:
         return np.asarray(self._spread.T @ force.ravel())

@@ -17,7 +17,7 @@ from knitcore.base.errors import InputError
 Point = tuple[float, float]
 
 MAX_CORNERS = 500
-"""Most corners of an outline and its holes together."""
+"""Largest number of corners of an outline and its holes together."""
 MAX_SIZE_MM = 10_000.0
 
 
@@ -123,7 +123,7 @@ class CutPiece:
 
     @property
     def is_upright_rectangle(self) -> bool:
-        """Whether it is a rectangle with sides along x and y."""
+        """True for a rectangle with sides along x and y."""
         box = shapely.box(*self.polygon.bounds)
         return len(self.outline) == 4 and not self.holes and bool(self.polygon.equals(box))
 

@@ -24,7 +24,7 @@ from knitcore.materials import Material, as_material
 
 STRETCH = "a stretch that can be computed"
 MIN_STRAIN = 1e-9
-"""Of a test: forces of smaller ones cannot be told from rounding."""
+"""Smallest strain of a test; the forces of smaller ones are lost in rounding."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -33,7 +33,7 @@ class BiasTest(Result):
 
     Attributes
     ----------
-    test : all of it.
+    test : the load steps, with all fields.
     strain : clamp to clamp, per step.
     force_n : on the upper clamp along the pull.
     sideways_n : on the upper clamp across the pull: cloth at an angle shears.
@@ -57,7 +57,7 @@ class BiaxialTest(Result):
 
     Attributes
     ----------
-    test : all of it.
+    test : the load steps, with all fields.
     strain_x, strain_y : per step; x is along the rows if the grain is 0.
     force_x_n, force_y_n : on the right and the upper edge.
     stress_x_n_per_mm, stress_y_n_per_mm : forces per length of the edge at rest.
@@ -81,7 +81,7 @@ class TrellisTest(Result):
 
     Attributes
     ----------
-    test : all of it.
+    test : the load steps, with all fields.
     shear_angle : rad, by which the frame's right angle has closed, per step.
     moment_n_mm : work of the frame per shear angle, dE/d gamma.
     force_n : that pulls two opposite corners of the frame apart.
@@ -187,7 +187,7 @@ def biaxial_test(
 
     Parameters
     ----------
-    strain_x, strain_y : last strains, at least 0; the others as for :func:`bias_test`.
+    strain_x, strain_y : last strains, at least 0; other parameters as for :func:`bias_test`.
     width_mm, length_mm : of the piece.
     grain_deg : from the x axis to the rows.
 
@@ -258,7 +258,7 @@ def trellis_test(
     ----------
     shear_angle : rad, by which the frame's right angle closes in the end.
     side_mm : of the square.
-    grain_deg : from a bar of the frame to the rows; the others as for :func:`bias_test`.
+    grain_deg : from a bar of the frame to the rows; other parameters as for :func:`bias_test`.
 
     Raises
     ------
@@ -282,7 +282,7 @@ def trellis_test(
         rate = frame_rate(angles[step]) @ test.nodes_mm
         return float(np.sum(internal[held] * rate[held]))
 
-    moment = np.array([work(e.internal, step) for step, e in enumerate(test.found)])
+    moment = np.array([work(e.internal, step) for step, e in enumerate(test.equilibria)])
     # the corners' distance is 2 side cos((90° - angle) / 2)
     return TrellisTest(
         test=test,
@@ -302,13 +302,13 @@ def _lock_up(cloth: Cloth, direction: Direction) -> float:
 
 def _largest_strain(cloth: Cloth, width: float, length: float, angle_deg: float) -> float:
     """Clamp-to-clamp strain at which fibres that run straight from clamp to clamp lock up."""
-    found = math.inf
+    largest = math.inf
     for direction, angle in ((Direction.COURSE, 90.0 - angle_deg), (Direction.WALE, angle_deg)):
         c, s = (abs(f(math.radians(angle))) for f in (math.cos, math.sin))
         if width * c >= length * s:
             reach = (1 + _lock_up(cloth, direction)) ** 2 - s**2
-            found = min(found, math.sqrt(reach) / c - 1)
-    return found
+            largest = min(largest, math.sqrt(reach) / c - 1)
+    return largest
 
 
 def _waist_strain(test: PieceTest, width: float) -> Array:
@@ -324,7 +324,7 @@ def _waist_strain(test: PieceTest, width: float) -> Array:
 
 
 def _force_log_sd(test: PieceTest, material: Material, condition: int, axis: int) -> Array:
-    """Of the force of a condition along an axis."""
+    """Standard deviation of the logarithm of the force of a condition along an axis, per step."""
 
     def force(internal: Array, _: int) -> float:
         return float(test.constraints.forces(internal, 0.0)[condition, axis])

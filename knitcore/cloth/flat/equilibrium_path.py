@@ -31,7 +31,8 @@ PATIENCE = 3
 CLOSE = 0.05
 """Unbalanced force over the force at the clamps up to which an extrapolation is trusted."""
 FAR = 0.01
-"""The same share beyond which a predicted state's tangent is factorised before the first step."""
+"""Unbalanced force over the force at the clamps beyond which a predicted state's tangent is
+factorised before the first step."""
 HISTORY = 4
 """Equilibria used by the extrapolation."""
 
@@ -129,7 +130,7 @@ class PathSolver:
                 goal = min(1.0, done + share)
                 prescribed = target if goal == 1.0 else origin + goal * (target - origin)
                 try:
-                    found = self._step(state, prescribed, number + goal)
+                    balanced = self._step(state, prescribed, number + goal)
                 except StepError as reason:
                     halvings += 1
                     if halvings > MAX_HALVINGS:
@@ -139,11 +140,11 @@ class PathSolver:
                         ) from reason
                     share /= 2
                     continue
-                state, done = found.state, goal
-                iterations += found.iterations
+                state, done = balanced.state, goal
+                iterations += balanced.iterations
                 share = min(2 * share, 1.0 - done) if done < 1.0 else share
             origin = target
-            yield Equilibrium(found.state, found.energy, found.reaction, iterations)
+            yield Equilibrium(balanced.state, balanced.energy, balanced.reaction, iterations)
 
     # -- one step ---------------------------------------------------------------------------
 
@@ -180,7 +181,7 @@ class PathSolver:
             state, lin = self._line_search(state, lin, step)
         raise StepError(
             f"Newton's method did not balance the forces in {MAX_NEWTON_STEPS} steps "
-            f"(residual {residual:.2g} N, wanted {limit:.2g} N)."
+            f"(residual {residual:.2g} N, allowed {limit:.2g} N)."
         )
 
     def _accept(
@@ -199,7 +200,7 @@ class PathSolver:
         )
 
     def _is_close(self, lin: Linearisation) -> bool:
-        """Whether an extrapolated state is near enough to balance to start from."""
+        """Tell if an extrapolated state is near enough to balance to start from."""
         free, limit = self._residual(lin)
         return free * self.tolerance.relative <= CLOSE * limit
 
@@ -237,7 +238,7 @@ class PathSolver:
         return State(corners, centres)
 
     def _residual(self, lin: Linearisation) -> tuple[float, float]:
-        """Norm of the unbalanced force (N) and the norm that is tolerated."""
+        """Norm of the unbalanced force, and the largest norm that is tolerated, N."""
         corners, centres = lin.force
         free = float(np.sqrt(np.sum((corners * self.free) ** 2) + np.sum(centres**2)))
         held = float(np.linalg.norm(corners[self.fixed]))
@@ -254,9 +255,9 @@ class PathSolver:
         self._spare = lin
         while share > 1e-6:
             trial = state.moved(step, share)
-            found = self._linearise(trial)
-            if found.energy <= energy + 1e-4 * share * slope + noise:
-                return trial, found
+            there = self._linearise(trial)
+            if there.energy <= energy + 1e-4 * share * slope + noise:
+                return trial, there
             share /= 2
         raise StepError("The line search found no state of lower energy.")
 

@@ -32,7 +32,7 @@ def write_fields(test: SwatchTest, path: Path | str) -> None:
 
 
 def _write_npz(test: SwatchTest, path: Path) -> None:
-    """All steps at the nodes.
+    """Write all steps at the nodes.
 
     ``x_mm``, ``y_mm`` (rows + 1, columns + 1) are rest positions; ``ux_mm``, ``uy_mm``,
     ``strain_xx``, ``strain_yy``, ``strain_xy``, ``energy_density``, ``utilisation`` (steps,
@@ -55,7 +55,7 @@ def _write_npz(test: SwatchTest, path: Path) -> None:
 
 
 def _write_vtu(test: SwatchTest, path: Path) -> None:
-    """The last step on the rest shape, quarter cells as quadrilaterals to warp by
+    """Write the last step on the rest shape: quarter cells as quadrilaterals, to be warped by
     ``displacement_mm``.
 
     Cells without fabric are left out.

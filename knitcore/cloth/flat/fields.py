@@ -99,7 +99,7 @@ def utilisation(sheet: Sheet, strains: CellStrains) -> Array:
 
 
 def triangle_utilisation(sheet: Sheet, strains: CellStrains) -> Array:
-    """The same of every triangle, (2, rows, columns, 4)."""
+    """alpha * strain of every triangle and direction, (2, rows, columns, 4)."""
     form = StiffeningForm(sheet.model.energy.value)
     codes = sheet.grid.law_of_cell[..., None]
     used = np.stack(stiffening_of(sheet, codes).arguments(strains.xx, strains.yy, form))

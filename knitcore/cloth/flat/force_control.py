@@ -29,7 +29,7 @@ FORCE_TOLERANCE = 1e-6
 MAX_CORRECTIONS = 25
 FIRST_STRAIN = 1e-3
 NEAR_LIMIT = 1e-2
-"""Share of the largest strain within which that strain itself is tried."""
+"""Distance from the largest strain, as a share of it, at which that strain itself is tried."""
 
 
 def strain_at_force(
@@ -87,7 +87,7 @@ def pull_with_force(
                 progress(len(pulls), len(levels))
     except (ConvergenceError, InputError) as error:
         problem = f"Force {len(pulls) + 1} of {len(levels)} was not reached. {error}"
-    path = Path(tuple(pull.found for pull in pulls), problem, time.perf_counter() - begin)
+    path = Path(tuple(pull.equilibrium for pull in pulls), problem, time.perf_counter() - begin)
     return strip_result(sheet, direction, np.array([pull.strain for pull in pulls]), path)
 
 
@@ -97,7 +97,7 @@ class _Pull:
 
     strain: float
     force_n: float
-    found: Equilibrium
+    equilibrium: Equilibrium
 
 
 class _Bench:
@@ -117,7 +117,7 @@ class _Bench:
         self._last: list[_Pull] = []
 
     def pull(self, goal_n: float) -> _Pull:
-        """The equilibrium under a force.
+        """Find the equilibrium under a force.
 
         Raises
         ------
@@ -129,9 +129,9 @@ class _Bench:
         for _ in range(MAX_CORRECTIONS):
             now = self._at(self._next(goal_n))
             self._last = [*self._last[-1:], now]
-            iterations += now.found.iterations
+            iterations += now.equilibrium.iterations
             if abs(now.force_n - goal_n) <= FORCE_TOLERANCE * goal_n:
-                return replace(now, found=replace(now.found, iterations=iterations))
+                return replace(now, equilibrium=replace(now.equilibrium, iterations=iterations))
             if now.strain == self._limit and now.force_n < goal_n:
                 most = float(np.floor(100 * now.force_n) / 100)
                 raise InputError(
@@ -145,7 +145,7 @@ class _Bench:
         raise ConvergenceError(f"{MAX_CORRECTIONS} pulls did not come to {goal_n:.3g} N.")
 
     def _next(self, goal_n: float) -> float:
-        """A strain at which the clamps may hold a force, from those that are known."""
+        """Estimate the strain at which the clamps hold a force, from the known ones."""
         if not self._last:
             return min(FIRST_STRAIN, self._limit)
         now = self._last[-1]
@@ -166,9 +166,11 @@ class _Bench:
             self._sheet,
             self._fixed,
             [stretched(self._sheet.grid, self._direction, strain)],
-            start=self._last[-1].found.state if self._last else None,
+            start=self._last[-1].equilibrium.state if self._last else None,
             cancelled=self._cancelled,
         )
         if path.problem:
             raise ConvergenceError(path.problem)
-        return _Pull(strain, float(path.forces(self._end, self._direction.axis)[0]), path.found[0])
+        return _Pull(
+            strain, float(path.forces(self._end, self._direction.axis)[0]), path.equilibria[0]
+        )

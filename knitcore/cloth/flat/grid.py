@@ -21,7 +21,7 @@ from knitcore.linear.corner_numbering import cell_corners
 Indices = NDArray[np.int64]
 
 MAX_CELLS = 1_500_000
-"""Meshes are refused beyond this many cells: the factorised tangent would not fit in 8 GB."""
+"""Largest number of cells of a mesh; the factorised tangent of more would not fit in 8 GB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class QuarterGrid:
 
     @classmethod
     def uniform(cls, columns: int, rows: int, width_mm: float, length_mm: float) -> QuarterGrid:
-        """Cells of one law and one size, centred on the origin."""
+        """Make a grid of cells of one law and one size, centred on the origin."""
         check_cells(rows, columns)
         check_size_mm(width_mm, length_mm)
         return cls.between(
@@ -84,7 +84,7 @@ class QuarterGrid:
     def between(
         cls, column_lines: Array, row_lines: Array, law_of_cell: NDArray[np.uint8]
     ) -> QuarterGrid:
-        """Cells that are at rest as laid out between the lines."""
+        """Make a grid of cells that are at rest as laid out between the lines."""
         shape = law_of_cell.shape
         return cls(
             column_lines,
@@ -170,7 +170,7 @@ class QuarterGrid:
 
     @property
     def area_mm2(self) -> float:
-        """Of the cloth as laid out."""
+        """Area of the cloth as laid out."""
         areas = np.outer(np.diff(self.row_lines), np.diff(self.column_lines))
         return float(areas[self.cloth].sum())
 
@@ -181,13 +181,13 @@ class QuarterGrid:
 
     @property
     def at_rest_as_laid_out(self) -> QuarterGrid:
-        """The same grid without the misfit of the gauges."""
+        """The same grid with its laid-out sizes as natural sizes, so that no gauges misfit."""
         plain = QuarterGrid.between(self.column_lines, self.row_lines, self.law_of_cell)
         return replace(plain, cloth=self.cloth)
 
     @property
     def has_misfit(self) -> bool:
-        """Whether any cell's natural size differs from its laid-out size."""
+        """True if the natural size of any cell differs from its laid-out size."""
         laid = self.at_rest_as_laid_out
         return not (
             np.allclose(laid.natural_width, self.natural_width, rtol=1e-12)
@@ -216,7 +216,7 @@ class QuarterGrid:
 
     @cached_property
     def used_corners(self) -> NDArray[np.bool_]:
-        """Which corners belong to cloth, (corners,)."""
+        """Mask (corners,) of the corners that belong to cloth."""
         used = np.zeros(len(self.corners), dtype=bool)
         used[self.cell_corners[self.cloth.ravel()]] = True
         return used

@@ -428,7 +428,7 @@ def assemble(
     first: int,
     last: int,
 ) -> float:
-    """Energy, forces and, where wanted, condensed element tangents of some of the cells.
+    """Compute energy, forces and, where requested, condensed tangents of some of the cells.
 
     Adds to the corners' ``force``, the full gradient, and writes those of the centres and
     ``tangent``. All is 0 where there is no cloth, and where the law is all 0. Energy and forces

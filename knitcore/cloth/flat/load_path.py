@@ -19,28 +19,28 @@ from knitcore.cloth.flat.grid_sheet import Sheet, State
 class Path:
     """Equilibria found, the reason if the path stopped early, and the time taken."""
 
-    found: tuple[Equilibrium, ...]
+    equilibria: tuple[Equilibrium, ...]
     problem: str | None
     seconds: float
 
     @property
     def states(self) -> tuple[State, ...]:
         """Positions per step."""
-        return tuple(e.state for e in self.found)
+        return tuple(e.state for e in self.equilibria)
 
     @property
     def energies(self) -> Array:
         """N·mm per step."""
-        return np.array([e.energy for e in self.found])
+        return np.array([e.energy for e in self.equilibria])
 
     @property
     def iterations(self) -> tuple[int, ...]:
         """Linear systems solved per step."""
-        return tuple(e.iterations for e in self.found)
+        return tuple(e.iterations for e in self.equilibria)
 
     def forces(self, nodes: NDArray[np.int64], axis: int) -> Array:
         """Force (N) on prescribed nodes along an axis, per step."""
-        return np.array([e.reaction[nodes, axis].sum() for e in self.found])
+        return np.array([e.reaction[nodes, axis].sum() for e in self.equilibria])
 
 
 def run_path(
@@ -62,14 +62,14 @@ def run_path(
     """
     begin = time.perf_counter()
     solver = PathSolver(sheet, fixed, tolerance=tolerance, cancelled=cancelled)
-    found: list[Equilibrium] = []
+    equilibria: list[Equilibrium] = []
     problem = None
     try:
         with one_blas_thread():
             for equilibrium in solver.follow(start or sheet.reference, targets):
-                found.append(equilibrium)
+                equilibria.append(equilibrium)
                 if progress is not None:
-                    progress(len(found), len(targets))
+                    progress(len(equilibria), len(targets))
     except StepError as error:
-        problem = f"Step {len(found) + 1} of {len(targets)} did not converge. {error}"
-    return Path(tuple(found), problem, time.perf_counter() - begin)
+        problem = f"Step {len(equilibria) + 1} of {len(targets)} did not converge. {error}"
+    return Path(tuple(equilibria), problem, time.perf_counter() - begin)

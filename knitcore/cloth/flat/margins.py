@@ -16,8 +16,9 @@ from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Z_SCORE
 
 SAMPLES = 5
-"""Steps at which intervals are computed; between them they are interpolated over the strain (off by
-less than 5 % of the step's widest one of a strain, 12 % of a utilisation, in 20 steps to 0.28)."""
+"""Number of steps at which intervals are computed. Between them they are interpolated over the
+strain: in 20 steps to 0.28 this is off by less than 5 % of a step's widest interval of a strain,
+and by less than 12 % of its widest interval of a utilisation."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -96,7 +96,7 @@ def draw_in(sheet: Sheet, fixed: NDArray[np.bool_], *, cancelled: Cancelled | No
     grid = sheet.grid
     laid = grid.at_rest_as_laid_out
     state = sheet.reference
-    found: list[Equilibrium] = []
+    equilibria: list[Equilibrium] = []
     seconds = 0.0
     for stage in range(1, RELAXATION_STAGES + 1):
         share = stage / RELAXATION_STAGES
@@ -113,7 +113,7 @@ def draw_in(sheet: Sheet, fixed: NDArray[np.bool_], *, cancelled: Cancelled | No
         seconds += path.seconds
         if path.problem:
             problem = f"Draw-in, stage {stage} of {RELAXATION_STAGES}: {path.problem}"
-            return Path(tuple(found), problem, seconds)
-        found += path.found
+            return Path(tuple(equilibria), problem, seconds)
+        equilibria += path.equilibria
         state = path.states[-1]
-    return Path(tuple(found), None, seconds)
+    return Path(tuple(equilibria), None, seconds)

@@ -92,7 +92,7 @@ class SheetModel:
             check_positive("shear_modulus", self.shear_modulus, "N/mm", "a stiffness")
         if self.energy is EnergyModel.PUBLISHED and self.tension_field:
             raise InputError(
-                "model", "the published model has no such option.", "Use the full model."
+                "model", "the published model has no tension field.", "Use the full model."
             )
 
     @property

@@ -28,9 +28,9 @@ from knitcore.prediction.size import RelaxedSize
 DEFAULT_STEPS = 10
 MAX_STEPS = 1000
 MAX_STRAIN = 5.0
-"""Bound for laws that never lock."""
+"""Largest strain of a test of laws that never lock."""
 LOCK_UP_SHARE = 0.98
-"""Share of the lock-up strain that a test may ask for."""
+"""Largest strain of a test, as a share of the lock-up strain."""
 
 
 class Clamps(Choice):
@@ -173,10 +173,10 @@ def _local_laws(
     check_cloth(inside, chart.rows, chart.columns)
     rows, columns = (np.flatnonzero(inside.any(axis=axis)) for axis in (1, 0))
     here = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    found = quarter_laws(_continued(chart.purl[here], inside[here]), material, size)
+    laws = quarter_laws(_continued(chart.purl[here], inside[here]), material, size)
     patch, scale = np.zeros(inside.shape, dtype=np.intp), np.ones((*inside.shape, 2))
-    patch[here], scale[here] = found.patch, found.scale
-    return replace(found, patch=patch, scale=scale)
+    patch[here], scale[here] = laws.patch, laws.scale
+    return replace(laws, patch=patch, scale=scale)
 
 
 def _continued(purl: NDArray[np.bool_], stitch: NDArray[np.bool_]) -> StitchChart:
@@ -266,7 +266,7 @@ def strip_result(sheet: Sheet, direction: Direction, levels: Array, path: Path) 
         sheet,
         path,
         direction=direction,
-        strain=levels[: len(path.found)],
+        strain=levels[: len(path.equilibria)],
         force_n=force,
         stress_n_per_mm=force / width,
         waist_strain=np.array([waist_strain(grid, s.corners, direction) for s in path.states]),
@@ -339,7 +339,7 @@ def clamp_edges(direction: Direction) -> tuple[str, str]:
 
 
 def clamp_mask(grid: QuarterGrid, direction: Direction, clamps: Clamps) -> NDArray[np.bool_]:
-    """Which unknowns the clamps hold, (corners, 2)."""
+    """Mask (corners, 2) of the unknowns that the clamps hold."""
     fixed = np.zeros((len(grid.corners), 2), dtype=bool)
     edges = [grid.edge(name) for name in clamp_edges(direction)]
     for nodes in edges:

@@ -162,7 +162,7 @@ def _rim(values: Array) -> Array:
 
 
 def _kept(count: int, stride: int) -> NDArray[np.int64]:
-    """Every stride-th index, the last one included."""
+    """Indices in strides, the last one included."""
     return np.unique(np.append(np.arange(0, count, stride), count - 1))
 
 

@@ -136,7 +136,7 @@ class SwatchTest(Result):
         return np.array([self._utilisation(state).max() for state in self.states])
 
     def is_past_the_law(self, step: int = -1) -> bool:
-        """Whether some triangle of a quarter cell is past 98 % of its lock-up, where ``full`` only
+        """True if some triangle of a quarter cell is past 98 % of its lock-up, where ``full`` only
         extrapolates its law: force and strains are then not physical.
         """
         used = triangle_utilisation(self.sheet, cell_strains(self.sheet, self.states[step]))
@@ -216,9 +216,9 @@ class StripTest(SwatchTest):
         strain, stress = (np.append(0.0, a) for a in (self.strain, self.stress_n_per_mm))
         drawn = [(f"pulled {self.direction}-wise", strain, stress, None)]
         curve = showing.curves(drawn, "strain", "stress, N/mm") if self.steps else ""
-        told = f"{self.width_mm:.0f} mm wide, {self.length_mm:.0f} mm between the clamps"
+        caption = f"{self.width_mm:.0f} mm wide, {self.length_mm:.0f} mm between the clamps"
         if self.steps:
             end = f"at a strain of {self.strain[-1]:.2f}: {self.force_n[-1]:.3g} N"
-            told = f"{told}; {end}, waist {self.waist_strain[-1]:+.3f}"
+            caption = f"{caption}; {end}, waist {self.waist_strain[-1]:+.3f}"
         net = self._net_html()
-        return showing.captioned(showing.beside(curve, net), told, self.problem or "")
+        return showing.captioned(showing.beside(curve, net), caption, self.problem or "")

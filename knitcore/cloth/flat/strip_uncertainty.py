@@ -64,7 +64,7 @@ SHEAR_ASSUMED = (
 )
 LOG_SHEAR_STIFFENING = 1.0
 """Standard deviation of the logarithm of the growth of the shear stiffness, found on one jersey. To
-first order 90 % are -2.6 to 10.6 rad⁻²; the yarn level, without friction, has -2.5."""
+first order its 90 % interval is -2.6 to 10.6 rad⁻²; the yarn level, without friction, has -2.5."""
 STEP = 1e-3
 """Step of a parameter, for differences of forces."""
 
@@ -225,11 +225,11 @@ def model_log_sd(sheet: Sheet) -> float:
 
 def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
     """Standard deviation of ln(lock-up strain), course-wise and wale-wise, (laws, 2)."""
-    found = np.zeros((len(sheet.laws), 2))
+    log_sd = np.zeros((len(sheet.laws), 2))
     for code in _codes(sheet):
         spread = _record(material, code).uncertainty
-        found[code] = [spread.curve(direction).log_lock_up for direction in Direction]
-    return found
+        log_sd[code] = [spread.curve(direction).log_lock_up for direction in Direction]
+    return log_sd
 
 
 def law_parameters(
@@ -239,28 +239,30 @@ def law_parameters(
 
     ``stress_n_per_mm`` is the approximate stress of the cloth.
     """
-    found = []
+    parameters = []
     for code in _codes(sheet):
         record = _record(material, code)
         law, spread = record.law, record.uncertainty
         for direction in Direction:
             step = _varied(sheet, [code], partial(_stress_scaled, direction))
             sd = float(spread.log_stress(direction, stress_n_per_mm))
-            found.append(LawParameter(*step, sd, model_sd))
+            parameters.append(LawParameter(*step, sd, model_sd))
         sd = _coupling_sd(law, sheet.model.rule, spread)
-        found.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
+        parameters.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
         if sheet.model.shear_modulus is None and spread.log_shear is not None:
-            found.append(LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0))
+            parameters.append(
+                LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0)
+            )
             growth = _varied(sheet, [code], _stiffer_in_shear)
-            found.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
+            parameters.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
     assumed = _of_assumed_shear(sheet, material)
     if assumed:
-        found.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
-    return found
+        parameters.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
+    return parameters
 
 
 def interval_source(sheet: Sheet, material: Material) -> str:
-    """What the intervals of a test of a sheet rest on, in words."""
+    """Name the sources of the intervals of a test of a sheet, in words."""
     said = [_record(material, code).uncertainty.source for code in _codes(sheet)]
     said += [SHEAR_ASSUMED] if _of_assumed_shear(sheet, material) else []
     said += [MODEL_ERRORS] if model_log_sd(sheet) else []
@@ -315,7 +317,7 @@ def _stress_scaled(direction: Direction, law: ConstitutiveLaw, step: float) -> C
 
 
 def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """By r = C_xxyy / sqrt(C_xxxx C_yyyy), Young's moduli fixed."""
+    """The law for a step of r = C_xxyy / sqrt(C_xxxx C_yyyy), with Young's moduli fixed."""
     r = law.stiffness_xxyy / math.sqrt(law.stiffness_xxxx * law.stiffness_yyyy)
     grown = (1 - r**2) / (1 - (r + step) ** 2)
     xxxx, yyyy = law.stiffness_xxxx * grown, law.stiffness_yyyy * grown
@@ -330,12 +332,12 @@ def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
 
 
 def _sheared(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """By the logarithm of the shear modulus."""
+    """The law for a step of the logarithm of the shear modulus."""
     return replace(law, shear_modulus=law.shear_modulus * math.exp(step))
 
 
 def _stiffer_in_shear(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """By the logarithm of the growth of the shear stiffness."""
+    """The law for a step of the logarithm of the growth of the shear stiffness."""
     return replace(law, shear_stiffening=law.shear_stiffening * math.exp(step))
 
 

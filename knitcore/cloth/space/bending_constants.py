@@ -58,7 +58,7 @@ def bends_of(material: Material) -> Mapping[Fabric, Bend]:
 
 
 def computed(fabric: Fabric, material: Material) -> Bend:
-    """Bending of a fabric at the yarn level, from the store of repeats if it is there."""
+    """Bending of a fabric at the yarn level, from the store of repeats if it has the fabric."""
     repeat = StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
     return _bend(fabric, yarn_for(material, repeat))
 
@@ -81,24 +81,24 @@ def mirrored_bending(repeat: StitchChart, used: ChartYarn) -> FabricBending:
 
 @cache
 def _stored() -> Mapping[str, Mapping[Fabric, Bend]]:
-    found: dict[str, dict[Fabric, Bend]] = {}
+    by_material: dict[str, dict[Fabric, Bend]] = {}
     path = files("knitcore.cloth.space") / "data" / "bends.csv"
     with path.open(encoding="utf-8") as stream:
         for row in csv.DictReader(stream):
             values = {field.name: float(row[field.name]) for field in fields(Bend)}
-            found.setdefault(row["material"], {})[Fabric(row["fabric"])] = Bend(**values)
-    return MappingProxyType({name: MappingProxyType(bends) for name, bends in found.items()})
+            by_material.setdefault(row["material"], {})[Fabric(row["fabric"])] = Bend(**values)
+    return MappingProxyType({name: MappingProxyType(bends) for name, bends in by_material.items()})
 
 
 @lru_cache(maxsize=256)
 def _bend(fabric: Fabric, used: ChartYarn) -> Bend:
     repeat = StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
-    found = mirrored_bending(repeat, used)
+    bending = mirrored_bending(repeat, used)
     curls = fabric is Fabric.STOCKINETTE  # the others look the same from the back
     return Bend(
-        curvature_course_per_mm=found.course.curvature_per_mm if curls else 0.0,
-        curvature_wale_per_mm=found.wale.curvature_per_mm if curls else 0.0,
-        rigidity_course_n_mm=found.course.rigidity_n_mm,
-        rigidity_wale_n_mm=found.wale.rigidity_n_mm,
-        thickness_mm=found.thickness_mm,
+        curvature_course_per_mm=bending.course.curvature_per_mm if curls else 0.0,
+        curvature_wale_per_mm=bending.wale.curvature_per_mm if curls else 0.0,
+        rigidity_course_n_mm=bending.course.rigidity_n_mm,
+        rigidity_wale_n_mm=bending.wale.rigidity_n_mm,
+        thickness_mm=bending.thickness_mm,
     )

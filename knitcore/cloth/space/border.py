@@ -24,9 +24,9 @@ from knitcore.cloth.space.stitch_sheet import StitchSheet
 RULE_STITCHES, RULE_ROWS = (3, 5), 4
 """Knitters' rule for the width of a border at the sides, and at top and bottom."""
 SAFETY = 1.2
-"""Width of the border that is tried on the table, over that which just does not tip."""
+"""Width of the border tested on the table, over the width that just does not tip."""
 INNER_MM = 100.0
-"""Width of the piece between the borders that are tried."""
+"""Width of the piece between the tested borders."""
 MAX_WIDTH_MM = 500.0
 _RECTANGLE_MM = 2.5
 
@@ -74,7 +74,7 @@ def advice(
     Raises
     ------
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     moment, weight = inner.moment_n[axis], border.weight_n_per_mm2
     size = border.stitch_mm[axis]
@@ -82,17 +82,17 @@ def advice(
     ruled = size * (RULE_ROWS if axis else max(RULE_STITCHES))
     if moment == 0.0:
         return BorderAdvice(0.0, 0.0, 0, 1.0, True, 0.0, np.zeros((0, 2)))
-    sheet, found = on_table(
+    sheet, shape = on_table(
         inner, border, axis, min(SAFETY * width, MAX_WIDTH_MM), time_limit_s=time_limit_s,
         cancelled=cancelled,
     )  # fmt: skip
-    line = found.x.reshape(2, sheet.columns + 1, 3).mean(axis=0)[:, ::2]
+    line = shape.x.reshape(2, sheet.columns + 1, 3).mean(axis=0)[:, ::2]
     return BorderAdvice(
         moment_n=moment,
         width_mm=width,
         stitches=math.ceil(width / size),
         rule_share=min(0.5 * weight * ruled**2 / moment, 1.0),
-        holds=bool(found.converged and (np.diff(line[:, 0]) > 0.0).all()),
+        holds=bool(shape.converged and (np.diff(line[:, 0]) > 0.0).all()),
         ridge_mm=float(np.ptp(line[:, 1])),
         line_mm=line,
     )

@@ -26,10 +26,10 @@ from knitcore.cloth.space.surface import corners_of
 from knitcore.materials import Material, as_material
 
 MAX_STITCHES = 10_000
-"""Largest piece that is calculated."""
+"""Largest number of stitches of a piece."""
 TIME_LIMIT_S = 120.0
 _BETWEEN = 3
-"""Stitches that a pull needs: two in the clamps, one between."""
+"""Number of stitches that a pull needs: two in the clamps, one between."""
 _STRIPS = 0.3
 """Share of the time limit for each of the two starting strips."""
 STRIP = 4.0
@@ -90,7 +90,7 @@ class CurledPiece(Result):
 
     @property
     def used(self) -> NDArray[np.bool_]:
-        """(rows + 1, columns + 1) whether a stitch has this corner."""
+        """Mask (rows + 1, columns + 1) of the corners that a stitch has."""
         if self.stitches is None:
             return np.ones(self.corners_mm.shape[:2], dtype=bool)
         return corners_of(self.stitches)
@@ -194,7 +194,7 @@ def curl(
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     chart, material = as_chart(chart), as_material(material)
     check_piece(chart, stitches)
@@ -222,8 +222,8 @@ def curl(
         sheet = sheet.cut(stitches)
     left = time_limit_s - (time.process_time() - clock)
     near = begin is not None
-    found = settle(sheet, x, held=held, near=near, time_limit_s=left, cancelled=cancelled)
-    placed = found.x if pull else aligned(found.x, sheet)
+    rest = settle(sheet, x, held=held, near=near, time_limit_s=left, cancelled=cancelled)
+    placed = rest.x if pull else aligned(rest.x, sheet)
     corners = placed.reshape(shape)
     strip = STRIP * sheet.thickness_mm
     width, height, depth = np.ptp(placed[sheet.used], axis=0)
@@ -239,9 +239,9 @@ def curl(
         curl_course_mm=standing_out_mm(corners, strip) if whole else np.nan,
         # columns for rows turns the face to the other side
         curl_wale_mm=-standing_out_mm(corners.transpose(1, 0, 2), strip) if whole else np.nan,
-        energy_n_mm=found.energy_n_mm,
-        converged=found.converged,
-        residual=found.residual,
+        energy_n_mm=rest.energy_n_mm,
+        converged=rest.converged,
+        residual=rest.residual,
         seconds=time.process_time() - clock,
         stitches=stitches,
         notes=(
@@ -253,7 +253,7 @@ def curl(
 
 
 def _pulled(sheet: StitchSheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
-    """The flat sheet stretched evenly between clamps, and which corners these hold, (corners,)."""
+    """The flat sheet stretched evenly between clamps, and a mask (corners,) of what they hold."""
     axis = pull.direction.axis
     grid = np.arange(len(sheet.flat_mm)).reshape(sheet.rows + 1, sheet.columns + 1)
     lines = grid if axis == 1 else grid.T
@@ -269,7 +269,12 @@ def _pulled(sheet: StitchSheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> None:
-    """InputError if a piece is larger than what is calculated, or is no piece."""
+    """Refuse a piece that is too large, has no stitch or is in several parts.
+
+    Raises
+    ------
+    InputError
+    """
     check_stitches(chart.stitches, MAX_STITCHES)
     if stitches is None:
         return
@@ -290,7 +295,7 @@ def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -
 
 
 def aligned(x: Array, sheet: StitchSheet) -> Array:
-    """A shape turned and moved so that it is nearest to the flat sheet (Kabsch 1976)."""
+    """Turn and move a shape to where it is nearest to the flat sheet (Kabsch 1976)."""
     middle = x - x[sheet.used].mean(axis=0)
     left, _, right = np.linalg.svd(middle[sheet.used].T @ sheet.flat_mm[sheet.used])
     proper = np.diag([1.0, 1.0, np.linalg.det(left @ right)])
@@ -311,11 +316,11 @@ def standing_out_mm(corners: Array, strip_mm: float) -> float:
     stitch = float(np.linalg.norm(np.diff(corners, axis=1), axis=2).mean())
     wide = int(np.clip(round(strip_mm / stitch), 1, (columns - 1) // 2))
     inner = slice(rows // 4, rows - rows // 4)
-    found = []
+    heights = []
     for side, sign in ((corners, 1.0), (corners[:, ::-1], -1.0)):
         at = side[:, wide]
         normal = sign * np.cross(side[:, wide + 1] - at, np.gradient(at, axis=0))
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         height = np.einsum("ijm,im->ij", side[:, :wide] - at[:, None], normal)[inner]
-        found.append(height[np.arange(len(height)), np.abs(height).argmax(axis=1)].mean())
-    return float(np.mean(found))
+        heights.append(height[np.arange(len(height)), np.abs(height).argmax(axis=1)].mean())
+    return float(np.mean(heights))

@@ -40,7 +40,7 @@ class Drape:
     Parameters
     ----------
     coefficient : shadow of the ring over its area.
-    coefficients : those of all states found, one for each start.
+    coefficients : of all states of rest, one for each start.
     folds : number of folds around the rim.
     fall_mm : from the disc to the lowest point.
     corners_mm : (lines up, lines across, 3) of the rectangles; NaN outside the piece.
@@ -69,10 +69,10 @@ def drape(
 
     Parameters
     ----------
-    cloth : which is taken as flat at rest.
+    cloth : taken as flat at rest.
     piece_mm, disc_mm : diameters.
     across : rectangles across the piece.
-    starts : waves of the rim to begin with.
+    starts : numbers of waves of the rim with which the descents begin.
     time_limit_s : CPU time of all descents.
 
     Raises
@@ -80,7 +80,7 @@ def drape(
     InputError
         If the piece is not larger than the disc, or the rectangles are too many or too few.
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     if not 0.0 < disc_mm < 0.95 * piece_mm:
         raise InputError("disc_mm", f"{disc_mm:g} mm is too large.", "Give less than the piece.")
@@ -88,30 +88,30 @@ def drape(
     sheet, held = _round(cloth, piece_mm, disc_mm, across)
     load = np.zeros_like(sheet.flat_mm)
     load[:, 2] = -sheet.shared(np.full(len(sheet.quads), cloth.weight_n_per_mm2 * _area(sheet)))
-    found = [
+    shapes = [
         settle(
             sheet.clamped(held), _waved(sheet, held, waves), held=held, load_n=load,
             time_limit_s=time_limit_s / len(starts), cancelled=cancelled,
         )
         for waves in starts
     ]  # fmt: skip
-    covered = [_coefficient(sheet, shape.x, disc_mm) for shape in found]
-    best = int(np.argmin([shape.energy_n_mm for shape in found]))
-    corners = np.where(sheet.used[:, None], found[best].x, np.nan)
+    covered = [_coefficient(sheet, shape.x, disc_mm) for shape in shapes]
+    best = int(np.argmin([shape.energy_n_mm for shape in shapes]))
+    corners = np.where(sheet.used[:, None], shapes[best].x, np.nan)
     return Drape(
         coefficient=covered[best],
         coefficients=tuple(covered),
-        folds=_folds(sheet, found[best], 0.5 * (piece_mm - disc_mm)),
-        fall_mm=float(-found[best].x[:, 2].min()),
+        folds=_folds(sheet, shapes[best], 0.5 * (piece_mm - disc_mm)),
+        fall_mm=float(-shapes[best].x[:, 2].min()),
         corners_mm=corners.reshape(across + 1, across + 1, 3),
-        converged=all(shape.converged for shape in found),
+        converged=all(shape.converged for shape in shapes),
     )
 
 
 def _round(
     cloth: EvenCloth, piece_mm: float, disc_mm: float, across: int
 ) -> tuple[StitchSheet, NDArray[np.bool_]]:
-    """The piece, and which of its corners are in the clamp."""
+    """The round piece, and a mask of its corners in the clamp."""
     size = piece_mm / across
     whole = cloth.flat().sheet(across, across, (size, size))
     middle = whole.flat_mm[whole.quads].mean(axis=1)
@@ -143,7 +143,7 @@ def _coefficient(sheet: StitchSheet, x: Array, disc_mm: float) -> float:
 
 
 def _shadow(at: Array, quads: NDArray[np.int64]) -> float:
-    """Area that rectangles cover, seen from above: that of two triangles each."""
+    """Area that rectangles cover, seen from above, each as two triangles."""
     triangles = np.concatenate([at[quads[:, [0, 1, 3, 0]]], at[quads[:, [0, 3, 2, 0]]]])
     shapes = shapely.polygons(triangles)
     solid = shapes[shapely.area(shapes) > 1e-9]

@@ -1,9 +1,8 @@
-"""Even cloth: what a repeat does as a whole, and sheets made of it.
+"""Even cloth: a repeat as a uniform material, and sheets made of it.
 
 A sheet of stitches (:mod:`knitcore.cloth.space.stitch_sheet`) is for pieces whose stitches differ.
-Tests of a fabric are made on hundreds of like repeats; here a rectangle of the sheet stands for
-several stitches. Its size and stiffness are those of the answer, its bending that of the yarn
-level.
+Tests of a fabric are made on hundreds of equal repeats; here a rectangle of the sheet stands for
+several stitches. Its size and stiffness come from the answer, its bending from the yarn level.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ _MAX_POISSON = 0.95
 
 @dataclass(frozen=True)
 class EvenCloth:
-    """Even cloth; pairs are along the rows and along the columns.
+    """A repeat as a uniform sheet; pairs of numbers are along the rows and along the columns.
 
     Parameters
     ----------
@@ -46,7 +45,7 @@ class EvenCloth:
     curvature_per_mm : at rest, positive with the face outside.
     thickness_mm : of the fabric.
     weight_n_per_mm2 : of the relaxed fabric.
-    from_quarters : whether bending is the mean of the four fabrics' in the repeat, which is too
+    from_quarters : whether bending is the mean over the quarters of the repeat, because it is too
         large for the yarn level. Folds, which stiffen wide ribs, are then left out.
     """
 
@@ -61,14 +60,14 @@ class EvenCloth:
 
     @property
     def moment_n(self) -> tuple[float, float]:
-        """Moment per width that holds it flat, (2,): magnitudes, along the rows and columns."""
+        """Size of the moment per width that holds it flat, (2,), along the rows and columns."""
         course, wale = (
             d * abs(c) for d, c in zip(self.rigidity_n_mm, self.curvature_per_mm, strict=True)
         )
         return course, wale
 
     def bending_length_mm(self, axis: int) -> float:
-        """Peirce's, of a strip along the rows (0) or the columns (1)."""
+        """Peirce's bending length of a strip along the rows (0) or the columns (1)."""
         return bending_length_mm(self.rigidity_n_mm[axis], self.weight_n_per_mm2)
 
     @property
@@ -78,15 +77,15 @@ class EvenCloth:
 
     @property
     def curls(self) -> bool:
-        """Whether free edges roll up (:data:`knitcore.yarn.study.bending.ROLLS_FROM`)."""
+        """True if free edges roll up (:data:`knitcore.yarn.study.bending.ROLLS_FROM`)."""
         return 0.5 * self.thickness_mm * max(map(abs, self.curvature_per_mm)) >= ROLLS_FROM
 
     def flat(self) -> EvenCloth:
-        """The same without its curvature at rest."""
+        """The same cloth without its curvature at rest."""
         return replace(self, curvature_per_mm=(0.0, 0.0))
 
     def turned(self) -> EvenCloth:
-        """Columns for rows."""
+        """The same cloth with rows and columns exchanged."""
         c11, c22, c12, shear = self.membrane_n_per_mm
         return replace(
             self,
@@ -147,8 +146,8 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
         If it does not relax at the yarn level, or folds by itself.
     """
     repeat = chart.repeat()
-    found = predict(repeat, material)
-    course, wale = found.along(Direction.COURSE), found.along(Direction.WALE)
+    answer = predict(repeat, material)
+    course, wale = answer.along(Direction.COURSE), answer.along(Direction.WALE)
     poisson = np.sqrt(max(course.poisson * wale.poisson, 0.0)).clip(max=_MAX_POISSON)
     stiff = [along.modulus_n_per_mm / (1.0 - poisson**2) for along in (course, wale)]
     coupling = float(poisson) * math.sqrt(stiff[0] * stiff[1])
@@ -157,7 +156,7 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     weight = float(stitch_weights_n(repeat, material, linear_density_g_per_m, periodic=True).mean())
     return EvenCloth(
         stitch_mm=stitch,
-        membrane_n_per_mm=(*stiff, coupling, found.shear_modulus_n_per_mm),
+        membrane_n_per_mm=(*stiff, coupling, answer.shear_modulus_n_per_mm),
         rigidity_n_mm=rigidity,
         twist_n_mm=TWIST * math.sqrt(rigidity[0] * rigidity[1]),
         curvature_per_mm=curvature,
@@ -179,7 +178,7 @@ def stitch_corners(
 
     Returns
     -------
-    corners, stitches : (rows + 1, columns + 1, 3) mm, (rows, columns) those within the piece.
+    corners, stitches : (rows + 1, columns + 1, 3) mm, and a mask (rows, columns) of the piece.
     """
     at = []
     for rectangle, stitch, lines in zip(
@@ -189,16 +188,16 @@ def stitch_corners(
         count = max(1, int(wide / stitch))
         at.append((0.5 * (wide - count * stitch) + stitch * np.arange(count + 1)) / rectangle)
     grid = np.meshgrid(at[1], at[0], indexing="ij")
-    found = np.stack(
+    corners = np.stack(
         [
             map_coordinates(part, grid, order=1, cval=np.nan)
             for part in np.moveaxis(corners_mm, 2, 0)
         ],
         axis=-1,
     )
-    known = np.isfinite(found[..., 0])
+    known = np.isfinite(corners[..., 0])
     stitches = known[1:, 1:] & known[1:, :-1] & known[:-1, 1:] & known[:-1, :-1]
-    return found, stitches
+    return corners, stitches
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,7 +223,7 @@ def stitched(
     stitch_mm: tuple[float, float],
     repeat: StitchChart,
 ) -> StitchedCloth:
-    """Lay the stitches of a repeat on a sheet of rectangles; arguments as of `stitch_corners`."""
+    """Lay the stitches of a repeat on a sheet of rectangles; parameters as of `stitch_corners`."""
     corners, stitches = stitch_corners(corners_mm, rectangle_mm, stitch_mm)
     rows, columns = stitches.shape
     small = repeat.repeat()
@@ -243,8 +242,8 @@ def stitch_weights_n(
     periodic: bool = False,
     stitches: NDArray[np.bool_] | None = None,
 ) -> Array:
-    """Weight of every stitch, (rows, columns), N; 0 where ``stitches`` (rows, columns) says that
-    there is none.
+    """Weight of every stitch, (rows, columns), N; 0 where the mask ``stitches`` (rows, columns) is
+    False.
 
     Raises
     ------
@@ -274,18 +273,18 @@ def _bent(
         )
     if repeat.stitches > MAX_STITCHES:
         return _mean_bend(repeat, material)
-    found = mirrored_bending(repeat, yarn_for(material, repeat))
+    bending = mirrored_bending(repeat, yarn_for(material, repeat))
     return (
-        (found.course.rigidity_n_mm, found.wale.rigidity_n_mm),
-        (found.course.curvature_per_mm, found.wale.curvature_per_mm),
-        found.thickness_mm,
+        (bending.course.rigidity_n_mm, bending.wale.rigidity_n_mm),
+        (bending.course.curvature_per_mm, bending.wale.curvature_per_mm),
+        bending.thickness_mm,
     )
 
 
 def _mean_bend(
     repeat: StitchChart, material: Material
 ) -> tuple[tuple[float, float], tuple[float, float], float]:
-    """The same of a large repeat: means over its quarters."""
+    """Rigidities, free curvatures and thickness of a large repeat: means over its quarters."""
     phases = quarter_phases(repeat, periodic=True)
     sign = np.where(repeat.purl, -1.0, 1.0).repeat(2, axis=0).repeat(2, axis=1)
     bends = bends_of(material)

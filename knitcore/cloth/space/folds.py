@@ -1,5 +1,4 @@
-"""How far the stitches of a sheet turn at rest, and how large they are, so that folded cloth is as
-wide as the answer for its chart.
+"""Turn and size of the stitches of a sheet at rest, so that folded cloth is as wide as the answer.
 
 Where nothing opposes it, stockinette turns by more than a radian from stitch to stitch. Between
 opposite folds it cannot: a row of n like stitches between others turns only until the cloth is as
@@ -28,7 +27,7 @@ MIN_FOLD = 0.2
 answer gives baskets about the size of flat cloth, but they pillow, about as much as baskets that
 are relaxed at the yarn level."""
 NO_STITCH = 2
-"""In place of the side to which a stitch turns."""
+"""Mark for a place without a stitch among the sides to which stitches turn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +58,7 @@ def folds_of(
     chart : continued where the piece has no stitch.
     free : (2,) turn of stockinette at rest where nothing opposes it, along the rows and along the
         columns, rad.
-    stitches : (rows, columns) see :func:`turning`.
+    stitches : (rows, columns) as for :func:`turning`.
 
     Raises
     ------
@@ -84,8 +83,10 @@ def folds_of(
 
 
 def turning(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> NDArray[np.int8]:
-    """Side to which stitches turn, (rows, columns): 1 for knits, -1 for purls, 0 for those without
-    a quarter of stockinette, `NO_STITCH` where there is none.
+    """Side to which stitches turn, (rows, columns).
+
+    It is 1 for knits, -1 for purls, 0 for stitches without a quarter of stockinette and `NO_STITCH`
+    for places without a stitch.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def turning(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> ND
 
 @dataclass(frozen=True, eq=False)
 class _Runs:
-    """Stitches of a row, side by side, that turn to one side; numbered along the rows.
+    """Runs of stitches of a row, side by side, that turn to one side; numbered along the rows.
 
     Parameters
     ----------
@@ -135,12 +136,12 @@ class _Runs:
 
     @property
     def single(self) -> NDArray[np.bool_]:
-        """(runs,) whether it is one stitch that does not turn, but opposes its neighbours."""
+        """Mask (runs,) of single stitches that do not turn, but oppose their neighbours."""
         return np.asarray(~self.turns & (self.count == 1) & ~self.first & ~self.last)
 
     @property
     def opposed(self) -> NDArray[np.bool_]:
-        """(runs,) whether it lies between others that hold it."""
+        """Mask (runs,) of runs that lie between others that hold them."""
         holds = self.turns | self.single
         before = np.where(self.first | ~np.roll(holds, 1), 0, np.roll(self.count, 1))
         after = np.where(self.last | ~np.roll(holds, -1), 0, np.roll(self.count, -1))
@@ -149,20 +150,20 @@ class _Runs:
 
     @property
     def amid(self) -> NDArray[np.bool_]:
-        """(runs,) whether it is opposed, and what is beside it is opposed, too, or single."""
+        """Mask (runs,) of opposed runs whose neighbours are opposed, too, or single."""
         before, after = self.neighbours
         folds = self.opposed | self.single
         return np.asarray(self.opposed & folds[before] & folds[after])
 
     @property
     def neighbours(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """(runs,) those before and after it; at an edge twice the only one, or itself."""
+        """Runs before and after each, (runs,); at an edge its only neighbour twice, or itself."""
         own = np.arange(len(self.count))
         before, after = np.where(self.first, own, own - 1), np.where(self.last, own, own + 1)
         return np.where(self.first, after, before), np.where(self.last, before, after)
 
     def around(self, of_runs: Array) -> Array:
-        """(runs,) sum over a run and half of either neighbour."""
+        """Sum over each run and half of either neighbour, (runs,)."""
         before, after = self.neighbours
         return np.asarray(of_runs + 0.5 * (of_runs[before] + of_runs[after]))
 
@@ -210,7 +211,7 @@ def rest_turns(side: NDArray[np.int8], turn: Array, free: Array, stiffness: Arra
 
 
 def balances(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> bool:
-    """Whether no part of a piece folds and rolls up at the same time; see :func:`turning`."""
+    """Tell if no part of a piece folds and rolls up at the same time; see :func:`turning`."""
     side = turning(chart, stitches)
     return _balances(side) and _balances(side.T)
 

@@ -23,7 +23,7 @@ from knitcore.materials import Material, as_material
 
 
 class HungBy(Choice):
-    """What holds a hanging piece."""
+    """The part of a hanging piece that is held: its top edge, or its two top corners."""
 
     EDGE = "edge"
     CORNERS = "corners"
@@ -76,7 +76,8 @@ def hang(
     chart : the whole piece, from the face side.
     linear_density_g_per_m : of the yarn.
     stitches : (rows, columns) False where the piece has none, around it or in a hole.
-    by : the top edge of its highest stitches does not move, or the two ends of that edge.
+    by : the part that does not move: the top edge of its highest stitches, or the two ends of
+        that edge.
     time_limit_s : CPU time after which the current shape is returned, not converged.
 
     Raises
@@ -86,7 +87,7 @@ def hang(
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     chart, material = as_chart(chart), as_material(material)
     check_piece(chart, stitches)
@@ -103,16 +104,16 @@ def hang(
     held[top, edge[[0, -1]] if by is HungBy.CORNERS else edge] = True
     begin = sheet.flat_mm + shake_mm(load.shape)
     begin[held.ravel()] = sheet.flat_mm[held.ravel()]
-    found = settle(
+    shape = settle(
         sheet, begin, held=held.ravel(), load_n=load, time_limit_s=time_limit_s, cancelled=cancelled
     )
-    corners = found.x.reshape(*held.shape, 3)
+    corners = shape.x.reshape(*held.shape, 3)
     width, drop, depth = np.ptp(corners[used], axis=0)
     columns = np.flatnonzero(there.any(axis=0))
     middle = columns[len(columns) // 2]
     long = [
         np.linalg.norm(np.diff(x.reshape(*held.shape, 3)[:, middle], axis=0), axis=1)
-        for x in (found.x, sheet.flat_mm)
+        for x in (shape.x, sheet.flat_mm)
     ]
     lengths = [each[there[:, middle]].sum() for each in long]
     return HungPiece(
@@ -122,6 +123,6 @@ def hang(
         width_mm=float(width),
         depth_mm=float(depth),
         lengthening=float(lengths[0] / lengths[1]) - 1.0,
-        converged=found.converged,
+        converged=shape.converged,
         used=used,
     )

@@ -24,11 +24,11 @@ from knitcore.prediction.neighbourhood import neighbourhood_sizes
 from knitcore.prediction.predict import patches_of
 
 LEAST_AROUND = 4
-"""Stitches that can close to a tube."""
+"""Smallest number of stitches that can close to a tube."""
 SIDES = 72
-"""Of the limb's surface."""
+"""Number of sides with which the limb's surface is drawn."""
 BARE = 0.12
-"""So many girths of the limb are seen beyond either end of the tube."""
+"""Length of limb that is drawn beyond either end of the tube, over the limb's girth."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,7 +59,7 @@ def worn_tube(
     Parameters
     ----------
     chart : the tube, cut open; its lowest row (left column) is where the limb begins.
-    limb : beyond its ends it goes on with its last girth.
+    limb : beyond its ends its girth stays that of the end.
     around : which direction runs around the limb: rows, or columns.
 
     Raises
@@ -104,18 +104,18 @@ def worn_tube(
 
 
 def _between(lines: Array) -> Array:
-    """Values at the borders of lines, from those of the lines."""
+    """Values at the borders between lines, from the values of the lines."""
     return np.concatenate([lines[:1], 0.5 * (lines[1:] + lines[:-1]), lines[-1:]])
 
 
 def _levels(along_mm: Array, radius_mm: Array) -> Array:
-    """Places on the limb's axis, from the middle, of places along its surface."""
+    """Project places along the limb's surface on its axis, measured from the middle."""
     flat = np.square(np.diff(along_mm)) - np.square(np.diff(radius_mm))
     level = np.concatenate([[0.0], np.cumsum(np.sqrt(np.maximum(flat, 0.0)))])
     return np.asarray(level - 0.5 * level[-1])
 
 
 def _turned(radius_mm: Array, angles: Array, level_mm: Array) -> NDArray[np.float64]:
-    """Points around the axis; angle 0 is in front."""
+    """Points at angles around the axis; angle 0 is in front."""
     x, z = radius_mm * np.sin(angles), radius_mm * np.cos(angles)
     return np.stack(np.broadcast_arrays(x, level_mm, z), axis=-1).astype(float)

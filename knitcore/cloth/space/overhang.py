@@ -19,9 +19,10 @@ from knitcore.cloth.space.sheet_shape import settle
 
 WIDTH_MM = 25.0
 MIN_BENDING_LENGTHS, MAX_BENDING_LENGTHS = 0.1, 5.0
-"""Shortest and longest overhang: on a shorter one nothing falls, on a longer one it hangs down."""
+"""Shortest and longest overhang, in bending lengths: a shorter strip hardly falls, a longer one
+hangs straight down."""
 _RECTANGLES = 40
-"""Along the overhang."""
+"""Number of rectangles along the overhang."""
 _CLAMPED = 2
 _ACROSS = 2
 
@@ -36,7 +37,7 @@ class Overhang:
     angle_rad : of the line from the edge to the tip, below the horizontal.
     reach_mm, fall_mm : how far out and how far down the tip is.
     bending_length_mm : by Peirce's formula from overhang and angle.
-    rigidity_n_mm : weight times its cube.
+    rigidity_n_mm : weight per area times the cube of the bending length.
     corners_mm : (lines along, lines across, 3) of the rectangles.
     rectangle_mm : their size, along and across.
     converged : whether the strip is in equilibrium.
@@ -64,16 +65,16 @@ def overhang(
 
     Parameters
     ----------
-    cloth : which is taken as flat at rest: the test is not meant for strips that roll up.
+    cloth : taken as flat at rest: the test is not meant for strips that roll up.
     axis : 0 for a strip along the rows, 1 for one along the columns.
-    overhang_mm : that at which the strip falls by 41.5° if left out.
+    overhang_mm : by default the length at which the strip falls by 41.5°.
 
     Raises
     ------
     InputError
         If the overhang is shorter than a tenth of the bending length or longer than five.
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     expected = cloth.bending_length_mm(axis)
     length = 2.0 * expected if overhang_mm is None else overhang_mm
@@ -93,8 +94,8 @@ def overhang(
     weight = np.full(len(sheet.quads), cloth.weight_n_per_mm2 * size[0] * size[1])
     load = np.zeros_like(sheet.flat_mm)
     load[:, 2] = -sheet.shared(weight)
-    found = settle(sheet.clamped(held), sheet.flat_mm, held=held, load_n=load, cancelled=cancelled)
-    corners = found.x.reshape(_ACROSS + 1, columns + 1, 3)
+    shape = settle(sheet.clamped(held), sheet.flat_mm, held=held, load_n=load, cancelled=cancelled)
+    corners = shape.x.reshape(_ACROSS + 1, columns + 1, 3)
     corners = corners - corners[_ACROSS // 2, _CLAMPED]
     reach, _, height = corners[:, -1].mean(axis=0)
     angle = math.atan2(-height, reach)
@@ -108,5 +109,5 @@ def overhang(
         rigidity_n_mm=cloth.weight_n_per_mm2 * peirce**3,
         corners_mm=corners.transpose(1, 0, 2),
         rectangle_mm=size,
-        converged=found.converged,
+        converged=shape.converged,
     )

@@ -1,8 +1,8 @@
-"""Shapes to begin with: a sheet bent about one direction.
+"""Starting shapes for a descent: a sheet bent about one direction.
 
-What a piece does as a whole, a strip with its mean properties does much faster: rolled from the
-sides, rolled from top and bottom, or in folds. Of the two bent sheets and the flat one, that of
-least energy is a good start.
+A strip with the mean properties of a piece shows much faster what the piece does as a whole: it
+rolls from the sides, rolls from top and bottom, or folds. The best start is the one of least energy
+among the two bent sheets and the flat one.
 """
 
 from __future__ import annotations
@@ -17,12 +17,14 @@ from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import Net, StitchSheet
 
 _ALIKE = 0.1
-"""Share by which energies may differ that count as alike: of two bent shapes alike that is taken
-which is bent the shorter way, so that the long edges roll, and of a bent and the flat one that."""
+"""Relative difference below which energies count as equal. Of two bent shapes of equal energy the
+one bent the shorter way is taken, so that the long edges roll; of a bent and the flat shape, the
+flat one."""
 
 _STEPS = 1700
-"""Most steps of a strip. One of 100 stitches comes to rest within as many; longer ones have rolled
-up far enough to be compared. Their ends are far away, and no step moves them by a millimetre."""
+"""Largest number of steps of a strip. A strip of 100 stitches comes to rest within them; longer
+ones have rolled up far enough to be compared. Their ends are far away, and no step moves them by a
+millimetre."""
 
 
 def start(
@@ -38,7 +40,7 @@ def start(
     Raises
     ------
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     bent = [_bent(sheet, axis, time_limit_s, cancelled) for axis in _shorter_first(sheet)]
     energy = [_energy(sheet, shape) for shape in bent]
@@ -57,11 +59,11 @@ def _bent(sheet: StitchSheet, axis: int, time_limit_s: float, cancelled: Cancell
     strip = strip_of(sheet, axis)
     plane = np.zeros(strip.flat_mm.shape, dtype=bool)
     plane[:, axis] = True  # a strip would roll up into a helix
-    found = settle(
+    shape = settle(
         strip, _shaken(strip), held=plane, max_steps=_STEPS, time_limit_s=time_limit_s,
         cancelled=cancelled,
     )  # fmt: skip
-    return extruded(sheet, axis, found.x)
+    return extruded(sheet, axis, shape.x)
 
 
 def strip_of(sheet: StitchSheet, axis: int) -> StitchSheet:
@@ -97,7 +99,7 @@ def strip_of(sheet: StitchSheet, axis: int) -> StitchSheet:
 
 
 def extruded(sheet: StitchSheet, axis: int, strip_mm: Array) -> Array:
-    """The sheet bent as a strip of it, (corners, 3), mm."""
+    """Bend a sheet like the strip of it, (corners, 3), mm."""
     shape = sheet.rows + 1, sheet.columns + 1
     bent = sheet.flat_mm.reshape(*shape, 3).copy()
     if axis == 0:
@@ -110,7 +112,7 @@ def extruded(sheet: StitchSheet, axis: int, strip_mm: Array) -> Array:
 
 
 def _shaken(strip: StitchSheet) -> Array:
-    """The flat strip, lifted a little, both sides alike, so that it does not twist."""
+    """Lift a flat strip a little, both sides alike, so that it does not twist."""
     sides = (strip.rows + 1, 1) if strip.columns == 1 else (1, strip.columns + 1)
     lift = shake_mm(sides)
     shaken = strip.flat_mm.copy()

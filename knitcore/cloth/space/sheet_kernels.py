@@ -277,7 +277,7 @@ def touches(
 
 @compiled
 def points_on(x: Array, points: Ints) -> Array:
-    """(k, 3): where the points of the sheet are."""
+    """Positions (k, 3) of the points of the sheet."""
     at = np.empty((points.shape[0], 3))
     for i in range(points.shape[0]):
         a, b, c, d = points[i]
@@ -289,7 +289,7 @@ def points_on(x: Array, points: Ints) -> Array:
 def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
     """Pairs of points nearer than ``reach`` that are more than ``apart`` away within the sheet.
 
-    A list of boxes of side ``reach`` over the points, sorted by box. ``home`` (k, 2): their places
+    The points are sorted into boxes of side ``reach``. ``home`` (k, 2): their places
     in the flat sheet, mm.
     """
     if not len(at):
@@ -300,11 +300,11 @@ def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
     box = (x * count[1] + y) * count[2] + z
     order = np.argsort(box, kind="stable")
     pairs = np.empty((16 * len(at), 2), np.int64)
-    while (found := _listed(at, home, reach, apart, count, box, order, box[order], pairs)) > len(
+    while (listed := _listed(at, home, reach, apart, count, box, order, box[order], pairs)) > len(
         pairs
     ):
-        pairs = np.empty((found, 2), np.int64)
-    return pairs[:found]
+        pairs = np.empty((listed, 2), np.int64)
+    return pairs[:listed]
 
 
 @compiled
@@ -332,14 +332,14 @@ def _listed(
     ordered: Ints,
     pairs: Ints,
 ) -> int:
-    """Fill ``pairs`` and tell their number; those for which there is no room are only counted.
+    """Fill ``pairs`` and return their number; pairs for which there is no room are only counted.
 
     Parameters
     ----------
     count : (3,) boxes along each axis.
     box, order, ordered : each point's box, the points by rising box, and their boxes.
     """
-    found = 0
+    listed = 0
     for place in range(at.shape[0]):
         i = order[place]
         b = box[i]
@@ -361,8 +361,8 @@ def _listed(
                     along, up = home[j, 0] - home[i, 0], home[j, 1] - home[i, 1]
                     if along * along + up * up < apart * apart:
                         continue
-                    if found < pairs.shape[0]:
-                        pairs[found, 0] = i
-                        pairs[found, 1] = j
-                    found += 1
-    return found
+                    if listed < pairs.shape[0]:
+                        pairs[listed, 0] = i
+                        pairs[listed, 1] = j
+                    listed += 1
+    return listed

@@ -31,20 +31,20 @@ TOLERANCE = 1e-3
 """Largest force on a corner of a converged sheet, in units of its bending (``force_scale_n``), or
 of the load on a corner where that is less."""
 _SHIFT = 3e-3
-"""Added to the convex part of the Hessian, in units of the bending stiffness of a corner."""
+"""Shift of the convex part of the Hessian, in units of the bending stiffness of a corner."""
 _RENEW = 32
-"""Steps with one factor."""
+"""Number of steps with one factor."""
 _GROW = 2.0
 """Growth of the longest displacement, over that of the step before."""
 _LEAST = 0.1
-"""Of the longest displacement that is tried, in units of its greatest value."""
+"""Smallest value of the longest displacement in a step, in units of its greatest value."""
 _MIN_STEP = 1e-8
 _LARGE = 0.03
-"""Forces count as large from this share of the largest one."""
+"""Share of the largest force from which a force counts as large."""
 _AROUND = 8
-"""Stitches around large forces that settle with them."""
+"""Width, in stitches, of the surroundings of large forces that settle with them."""
 _ROUNDING = 1e-10
-"""Energies this close, relatively, count as equal; then the slope decides."""
+"""Relative difference below which energies count as equal; then the slope decides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ class Shape:
     energy_n_mm : of the whole sheet.
     residual : largest force on a corner, over the force that turns two stitches by a radian or the
         largest load on a corner, whichever is less.
-    converged : whether it is below the tolerance.
+    converged : whether the residual is below the tolerance.
     steps : evaluations of the energy.
     seconds : CPU time.
     """
@@ -110,7 +110,7 @@ def settle(
     Raises
     ------
     CancelledError
-        If ``cancelled`` says so.
+        If ``cancelled`` returned True.
     """
     clock = time.process_time()
     load = None if load_n is None else rounded(load_n)
@@ -159,7 +159,7 @@ class _Descent:
 
     @property
     def residual(self) -> float:
-        """As in :class:`Shape`."""
+        """Largest force on a corner, in the units of :class:`Shape`."""
         return float(np.sqrt((self._gradient**2).sum(axis=1).max())) / self._unit
 
     def load(self, forces_n: Array) -> None:
@@ -168,7 +168,7 @@ class _Descent:
         self.energy, self._gradient = self._at(self.x)
 
     def run(self, time_limit_s: float, max_steps: float) -> None:
-        """Descend until it is at rest, or CPU time or steps are used up."""
+        """Descend until the sheet is at rest, or CPU time or steps are used up."""
         clock = time.process_time()
         while self.residual > TOLERANCE and time.process_time() - clock < time_limit_s:
             if self.steps >= max_steps or not self.step():
@@ -197,7 +197,7 @@ class _Descent:
             self._list_again()
 
     def step(self) -> bool:
-        """One step downhill; False where there is none."""
+        """Take one step downhill; return False if there is none."""
         if self._factor is None or self._age >= _RENEW:
             self._renew()
         way = self._direction()
@@ -230,7 +230,7 @@ class _Descent:
         return True
 
     def _renew(self) -> None:
-        """Make the factor anew, with a larger shift where single precision needs it."""
+        """Compute the factor again, with a larger shift where single precision needs it."""
         shift = self._shift
         while not self._factorised(shift):
             shift *= 10.0
@@ -280,7 +280,7 @@ class _Descent:
         return energy, gradient
 
     def _list_again(self) -> None:
-        """List near points anew if others may touch after the next step."""
+        """Update the list of near points if others may touch after the next step."""
         far = 0.5 * _SKIN * self._sheet.thickness_mm - self._reach
         if float(((self.x - self._listed) ** 2).sum(axis=1).max()) > far * far:
             self._list()
@@ -291,7 +291,7 @@ class _Descent:
 
 
 def _around(places: NDArray[np.int64], stitches: int) -> slice:
-    """The corners of a row or column around these; few different sides, so that orders of
+    """Range of corners around these; its length has few different values, so that orders of
     elimination are used again."""
     first, last = max(int(places.min()) - _AROUND, 0), min(int(places.max()) + _AROUND, stitches)
     side = min(-((first - last) // _AROUND) * _AROUND, stitches)

@@ -34,9 +34,9 @@ from knitcore.materials import Material
 Ints = NDArray[np.int64]
 
 TWIST = 0.4
-"""Rigidity of twist D₆₆ in units of the mean rigidity √(D_x D_y): that of a plate with ν = .2."""
+"""Rigidity of twist D₆₆ in units of the mean rigidity √(D_x D_y): that of a plate with ν = 0.2."""
 APART = 1.6
-"""Least distance within the sheet, in thicknesses, of points that may touch: a hairpin is π/2
+"""Smallest distance within the sheet, in thicknesses, of points that may touch: a hairpin is π/2
 long."""
 
 
@@ -46,7 +46,7 @@ class StitchSheet:
 
     Parameters
     ----------
-    rows, columns : of stitches; corners are numbered along the rows, the lowest first.
+    rows, columns : numbers of stitches; corners are numbered along the rows, the lowest first.
     flat_mm : (corners, 3) where they are in the flat sheet.
     quarters, membrane : see :func:`knitcore.cloth.space.sheet_kernels.quarters`.
     hinges, turning : see :func:`knitcore.cloth.space.sheet_kernels.hinges`.
@@ -85,14 +85,14 @@ class StitchSheet:
 
     @cached_property
     def used(self) -> NDArray[np.bool_]:
-        """(corners,) whether a stitch has this corner."""
-        found = np.zeros(len(self.flat_mm), dtype=bool)
-        found[self.quads] = True
-        return found
+        """Mask (corners,) of the corners that a stitch has."""
+        used = np.zeros(len(self.flat_mm), dtype=bool)
+        used[self.quads] = True
+        return used
 
     @cached_property
     def points(self) -> Ints:
-        """(k, 4) corners of the points that may touch: corners, and middles of stitches."""
+        """Corners (k, 4) of the points that may touch: corners, and middles of stitches."""
         corners = np.repeat(np.flatnonzero(self.used)[:, None], 4, axis=1)
         return np.concatenate([corners, self.quads])
 
@@ -155,7 +155,7 @@ class StitchSheet:
         return replace(self, turning=turning)
 
     def shared(self, of_stitches: Array) -> Array:
-        """What stitches have, such as their weight, in equal parts at their corners, (corners,).
+        """Share a quantity of stitches, such as weight, equally among their corners, (corners,).
 
         Parameters
         ----------
@@ -168,15 +168,15 @@ class StitchSheet:
 
     @cached_property
     def home_mm(self) -> Array:
-        """(k, 2): places of these points in the flat sheet."""
+        """Places (k, 2) of these points in the flat sheet."""
         return kernels.points_on(self.flat_mm, self.points)[:, :2].copy()
 
     def pairs(self, x: Array, skin_mm: float = 0.0) -> Ints:
-        """Points that touch or are nearly so near, and are not neighbours in the sheet.
+        """Pairs of points that touch or nearly touch, and are not neighbours in the sheet.
 
         Parameters
         ----------
-        skin_mm : by so much they may be farther apart.
+        skin_mm : how much farther apart than touching they may be.
         """
         at = kernels.points_on(x, self.points)
         reach = (1.0 + kernels.NAP) * self.thickness_mm + skin_mm
@@ -200,8 +200,11 @@ _QUARTERS = ((0, 1, 2), (1, 0, 3), (2, 3, 0), (3, 2, 1))
 
 @dataclass(frozen=True, eq=False)
 class Net:
-    """Which corners belong together; see :class:`StitchSheet`. Hinges between the neighbours of the
-    rows, row by row, come before those between the neighbours of the columns, column by column."""
+    """Groups of corners that belong together; see :class:`StitchSheet`.
+
+    Hinges between neighbours in a row, row by row, come before hinges between neighbours in a
+    column, column by column.
+    """
 
     quads: Ints
     quarters: Ints
@@ -209,7 +212,7 @@ class Net:
 
     @classmethod
     def of(cls, rows: int, columns: int) -> Net:
-        """The net of so many stitches."""
+        """The net of a sheet with this number of rows and columns of stitches."""
         corner = np.arange((rows + 1) * (columns + 1)).reshape(rows + 1, columns + 1)
         quads = np.stack(
             [corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]], axis=-1
@@ -235,7 +238,7 @@ def _between(corner: Ints) -> Ints:
 def sheet_of(
     chart: StitchChart, material: Material, stitches: NDArray[np.bool_] | None = None
 ) -> StitchSheet:
-    """The sheet of a chart; :meth:`StitchSheet.cut` leaves out what is no stitch.
+    """The sheet of a chart; :meth:`StitchSheet.cut` leaves out places without a stitch.
 
     Parameters
     ----------
@@ -336,14 +339,14 @@ class _Fabrics:
 
     @property
     def free_turns(self) -> Array:
-        """(2,) turn between stitches of stockinette at rest, rad."""
+        """Turn (2,) between stitches of stockinette at rest, rad."""
         phase = Fabric.STOCKINETTE.phase
         size = self.size_mm[phase]
         closed = 2.0 * np.arctan(size / self.thickness_mm)
         return np.asarray(np.minimum(np.abs(self.curvature_per_mm[phase]) * size, closed))
 
     def turned(self) -> _Fabrics:
-        """Columns for rows; phases keep their names."""
+        """Exchange rows and columns; phases keep their names."""
         return _Fabrics(
             self.size_mm[:, ::-1], self.membrane[:, [1, 0, 2, 3]], self.rigidity_n_mm[:, ::-1],
             self.curvature_per_mm[:, ::-1], self.thickness_mm,
@@ -357,7 +360,7 @@ def _turning(
     of: _Fabrics,
     share: Array,
 ) -> Array:
-    """Parameters of the lines between neighbours of a row, those of the rows one after another."""
+    """Parameters of the lines between neighbours in a row, row after row."""
     sign = np.where(purl, -1.0, 1.0).repeat(2, axis=0).repeat(2, axis=1)
     rows, columns = purl.shape
 
@@ -370,8 +373,8 @@ def _turning(
     width = beside(of.size_mm[phases][..., 1])
     rigidity = beside(of.rigidity_n_mm[phases][..., 0])
     closed = 2.0 * np.arctan(length / of.thickness_mm)
-    wanted = length * beside(sign * of.curvature_per_mm[phases][..., 0])
-    free = np.clip(wanted, -closed, closed)
+    unhindered = length * beside(sign * of.curvature_per_mm[phases][..., 0])
+    free = np.clip(unhindered, -closed, closed)
     stiffness = rigidity * width / length
     turn = 0.5 * (share[:, 1:] + share[:, :-1]) * free
     rest = np.clip(rest_turns(side, turn, free, stiffness), -closed, closed)

@@ -12,26 +12,27 @@ from knitcore.base.arrays import Array
 
 
 def corners_of(stitches: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(rows + 1, columns + 1) whether a stitch (rows, columns) has this corner."""
+    """Mask (rows + 1, columns + 1) of the corners that stitches (rows, columns) have."""
     around = np.pad(stitches, 1)
     return np.asarray(around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1])
 
 
 def filled(corners_mm: Array, used: NDArray[np.bool_]) -> Array:
-    """Corners (rows + 1, columns + 1, 3), those that no stitch has in line with those beside them,
-    as nearly as can be: with the least squares of second differences along rows and columns.
+    """Fill in the corners (rows + 1, columns + 1, 3) that no stitch has, as smoothly as possible.
+
+    They minimise the squares of second differences along rows and columns.
     """
     if used.all():
         return corners_mm
     second = [line[2:] - 2.0 * line[1:-1] + line[:-2] for line in map(_unit, used.shape)]
     rows, columns = map(_unit, used.shape)
     both = vstack([kron(second[0], columns), kron(rows, second[1])], format="csc")
-    found, there = corners_mm.reshape(-1, 3).copy(), used.ravel()
+    corners, there = corners_mm.reshape(-1, 3).copy(), used.ravel()
     missing = both[:, ~there]
-    found[~there] = -splu((missing.T @ missing).tocsc()).solve(
-        missing.T @ (both[:, there] @ found[there])
+    corners[~there] = -splu((missing.T @ missing).tocsc()).solve(
+        missing.T @ (both[:, there] @ corners[there])
     )
-    return found.reshape(corners_mm.shape)
+    return corners.reshape(corners_mm.shape)
 
 
 def _unit(count: int) -> csr_array:
@@ -39,7 +40,7 @@ def _unit(count: int) -> csr_array:
 
 
 def _halved(lines: Array) -> Array:
-    """A single strip as two, since a spline of degree 1 has no slope."""
+    """Split a single strip in two, since a spline of degree 1 has no slope."""
     if len(lines) > 2:
         return lines
     return np.stack([lines[0], 0.5 * (lines[0] + lines[1]), lines[1]])
@@ -74,8 +75,8 @@ class Surface:
         beyond = across - inside[0], up - inside[1]
         normal = np.cross(along, rising)
         normal /= np.maximum(np.linalg.norm(normal, axis=-1), 1e-12)[..., None]
-        found = self._of(*inside, 0, 0) + along * beyond[0][..., None]
-        return np.asarray(found + rising * beyond[1][..., None] + normal * height_mm[..., None])
+        foot = self._of(*inside, 0, 0) + along * beyond[0][..., None]
+        return np.asarray(foot + rising * beyond[1][..., None] + normal * height_mm[..., None])
 
     def _of(self, across: Array, up: Array, by_up: int, by_across: int) -> Array:
         return np.stack(

@@ -40,7 +40,7 @@ class Tangent:
         self._blocks, self._places = _pattern(self._count, *net)
 
     def is_apart(self, matrix: bsr_matrix) -> bool:
-        """Whether no corners but neighbours have an entry in the matrix."""
+        """Tell if only neighbouring corners have an entry in the matrix."""
         return len(matrix.indices) == len(self._blocks)
 
     def matrix(

@@ -152,7 +152,7 @@ def test_a_compressed_sheet_buckles_into_a_stable_state() -> None:
         fixed[grid.edge(name)] = True
     path = run_path(sheet, fixed, [grid.corners * np.array([1.0, 1 - s]) for s in (0.001, 0.3)])
     assert path.problem is None
-    assert path.found[-1].energy < 0.9 * (0.2 * 0.3**2 / 2 * 20 * 20)
+    assert path.equilibria[-1].energy < 0.9 * (0.2 * 0.3**2 / 2 * 20 * 20)
 
 
 def test_a_failed_step_is_reported_and_the_steps_before_it_returned(
