@@ -65,7 +65,7 @@ def latter_half(module: str) -> None:
     """Compile what a study needs last whose first functions, of ``module``, another process is
     compiling: numba compiles on one core."""
     for room, functions in (
-        ("knitcore.yarn.study", _last_of_yarn),
+        ("knitcore.yarn", _last_of_yarn),
         ("knitcore.cloth.space", _last_of_shape),
     ):
         if module.startswith(room):

@@ -62,7 +62,7 @@ def test_two_yarns_become_a_table_curves_and_materials(tmp_path: Path) -> None:
 KILLED = """
 import os, signal, sys
 from app.cli.main import main
-from knitcore import batch
+from knitcore.base import batch
 
 write, written = batch._Folder.write, []
 

@@ -1,6 +1,6 @@
 """The whole schema against the real service: no surprise, and no answer that is not documented.
 
-Valid and invalid requests are made from the schema; `make fuzz` sends thousands.
+Valid and invalid requests are made from the schema; `make test-hard` sends thousands.
 """
 
 from __future__ import annotations
