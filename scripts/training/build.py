@@ -6,12 +6,15 @@ the tasks finished so far to ``library.json.xz``; the next build leaves those ou
 
 from __future__ import annotations
 
+import argparse
 import json
+import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 
+from knitcore.base.batch import run_batch
 from knitcore.base.errors import KnitcoreError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import material
@@ -22,9 +25,9 @@ from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.model.cell import mirrored_cell
 from knitcore.yarn.solve.splines import COARSE
 from knitcore.yarn.study.relax import relax
+from scripts.stored_stitches import tell
 from scripts.training.charts import YARN_POINTS, anchor_charts, drawn_charts, training_charts
-from scripts.training.command import resumable
-from scripts.training.entries import FILE, read_library, update_library
+from scripts.training.entries import FILE, read_library, write_library
 
 MAX_RELAXED = 36
 """Cells with more stitches are left out."""
@@ -76,7 +79,7 @@ def characterise(task: TrainingTask) -> Document:
 
 def tasks(packed: Path | None = None) -> dict[str, TrainingTask]:
     """All tasks by key, the most informative first, without those in a packed file."""
-    entries = [] if packed is None else read_library(packed)["entries"]
+    entries = [] if packed is None else read_library(packed)
     done = {(*_name(e), stretched) for e in entries for stretched in {False, _tried(e)}}
     return {
         key: task
@@ -133,13 +136,17 @@ def _task(name: str, repeat: RepeatTask, stretched: bool) -> TrainingTask:
 def pack(keep: Path, file: Path) -> int:
     """Add the finished tasks to a file, in the place of earlier ones of the same chart and yarn.
 
-    The order does not depend on the order in which tasks end. Returns the number of entries.
+    A stretched chart counts before one that was only relaxed, and the order does not depend on the
+    order in which tasks end. Returns the number of entries.
     """
-    entries = {_name(entry): entry for entry in read_library(file)["entries"]}
-    for path in keep.glob("*.json"):
-        entry = _packed(json.loads(path.read_text(encoding="utf-8")))
+    entries = {_name(entry): entry for entry in read_library(file)}
+    finished = [
+        json.loads(path.read_text(encoding="utf-8")) for path in sorted(keep.glob("*.json"))
+    ]
+    for document in sorted(finished, key=lambda document: document["task"]["stretched"]):
+        entry = _packed(document)
         entries[_name(entry)] = entry
-    update_library(file, entries=[entries[name] for name in sorted(entries)])
+    write_library(file, [entries[name] for name in sorted(entries)])
     return len(entries)
 
 
@@ -179,9 +186,18 @@ def _short(value: float) -> float:
 
 def main() -> None:
     """Run ``python -m scripts.training.build``."""
-    resumable(
-        "python -m scripts.training.build", "build/training", characterise,
-        lambda: tasks(FILE), lambda keep: pack(keep, FILE),
+    parser = argparse.ArgumentParser(prog="python -m scripts.training.build")
+    parser.add_argument("--keep", type=Path, default=Path("build/training"))
+    parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
+    parser.add_argument("--workers", type=int, help="processes, all cores if left out")
+    parser.add_argument("--pack", action="store_true", help="only pack what is finished")
+    chosen = parser.parse_args()
+    if chosen.pack:
+        sys.stderr.write(f"{pack(chosen.keep, FILE)} packed\n")
+        return
+    run_batch(
+        characterise, tasks(FILE), scheduler=chosen.scheduler, workers=chosen.workers,
+        keep=chosen.keep, progress=tell,
     )  # fmt: skip
 
 

@@ -1,8 +1,6 @@
-"""The training library: relaxed sizes, raw curves and failures of repeats (``entries``), and what
-the same repeats relax to without mirrors (``lowest``).
+"""The training library: relaxed sizes, raw curves and failures of repeats.
 
-``scripts/training/build.py`` packs the first into ``library.json.xz``,
-``scripts/training/lowest.py`` the second.
+``scripts/training/build.py`` packs them into ``library.json.xz``.
 """
 
 from __future__ import annotations
@@ -60,8 +58,6 @@ class TrainingEntry:
     ----------
     chart, yarn_name, yarn, loop_length_mm, branch : of the relaxation.
     cell_mm : (course, wale) of the mean stitch; None where it failed for the reason in `failure`.
-    lowest_mm : the same of the lowest state that was found, with or without mirrors; None where it
-        was not relaxed without them.
     curves : by direction; empty where it was only relaxed, or the stretch failed.
     law : fitted to the curves, None where there is none.
     """
@@ -72,7 +68,6 @@ class TrainingEntry:
     loop_length_mm: float
     branch: str
     cell_mm: tuple[float, float] | None
-    lowest_mm: tuple[float, float] | None
     converged: bool
     curves: Mapping[Direction, RawCurve]
     law: ConstitutiveLaw | None
@@ -82,28 +77,23 @@ class TrainingEntry:
 @cache
 def training_entries() -> tuple[TrainingEntry, ...]:
     """All entries, in the order of the build."""
-    library = read_library()
-    return tuple(
-        _entry(document, library["lowest"].get(f"{document['yarn_name']}/{document['chart']}", {}))
-        for document in library["entries"]
-    )
+    return tuple(_entry(document) for document in read_library())
 
 
-def read_library(file: Path = FILE) -> dict[str, Any]:
-    """The documents in a file, ``entries`` and ``lowest``; both empty where there is no file."""
+def read_library(file: Path = FILE) -> list[dict[str, Any]]:
+    """The documents in a file; none where there is no file."""
     if not file.exists():
-        return {"entries": [], "lowest": {}}
-    library: dict[str, Any] = json.loads(lzma.decompress(file.read_bytes()))
-    return library
+        return []
+    documents: list[dict[str, Any]] = json.loads(lzma.decompress(file.read_bytes()))
+    return documents
 
 
-def update_library(file: Path, **parts: Any) -> None:
-    """Replace ``entries`` or ``lowest`` in a file."""
-    library = json.dumps(read_library(file) | parts, separators=(",", ":"))
-    file.write_bytes(lzma.compress(library.encode()))
+def write_library(file: Path, documents: list[dict[str, Any]]) -> None:
+    """Write documents to a file."""
+    file.write_bytes(lzma.compress(json.dumps(documents, separators=(",", ":")).encode()))
 
 
-def _entry(document: Mapping[str, Any], lowest: Mapping[str, Any]) -> TrainingEntry:
+def _entry(document: Mapping[str, Any]) -> TrainingEntry:
     curves = {
         Direction(name): RawCurve(*(np.array(column) for column in columns))
         for name, columns in document.get("curves", {}).items()
@@ -111,9 +101,6 @@ def _entry(document: Mapping[str, Any], lowest: Mapping[str, Any]) -> TrainingEn
     law = document.get("law")
     failed = "failure" in document
     size = None if failed else (document["cell_course_mm"], document["cell_wale_mm"])
-    states = [(energy, (course, wale)) for energy, course, wale in lowest.get("states", ())]
-    if states and size is not None:
-        states.append((document["energy_n_mm"], size))
     return TrainingEntry(
         chart=StitchChart.parse(document["chart"]),
         yarn_name=document["yarn_name"],
@@ -121,7 +108,6 @@ def _entry(document: Mapping[str, Any], lowest: Mapping[str, Any]) -> TrainingEn
         loop_length_mm=document["loop_length_mm"],
         branch=document["branch"],
         cell_mm=size,
-        lowest_mm=min(states)[1] if states else None,
         converged=document.get("converged", False),
         curves=curves,
         law=None if law is None else ConstitutiveLaw(**law),

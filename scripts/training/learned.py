@@ -74,8 +74,6 @@ class Row:
     yarn_name : its yarn.
     features, numbers : as the model takes them, in their own units.
     fold : (2,) ln of size over the mixture's.
-    unmirrored : (2,) ln of the size of the lowest state that was found over that size; nan where
-        it was not relaxed without mirrors.
     ratio : (14,) ln of strain over the mixture's, and Poisson's ratios less the mixture's; nan
         where it was not stretched.
     uncertainty : (4,) see :class:`knitcore.prediction.densities.Densities`.
@@ -87,7 +85,6 @@ class Row:
     features: Array
     numbers: Array
     fold: Array
-    unmirrored: Array
     ratio: Array
     uncertainty: Array
     follows: Array
@@ -156,7 +153,7 @@ def _exact() -> Iterator[Row]:
             if fabric in own.fabrics:
                 mixture, made_of = _mixture(chart, own)
                 if np.isfinite(mixture.numbers).all():
-                    nothing = np.zeros(2), np.zeros(2), np.zeros(2 * len(STRESS_GRID) + 2)
+                    nothing = np.zeros(2), np.zeros(2 * len(STRESS_GRID) + 2)
                     described = made_of.features, mixture.numbers, *nothing, made_of.uncertainty
                     yield Row(chart, own.identifier, *described, follows(mixture)[:, 0])
 
@@ -175,10 +172,7 @@ def _row_of_entry(entry: TrainingEntry, materials: dict[str, Material]) -> Row |
         strains.append(np.full(len(STRESS), np.nan) if curve is None else curve.strain_at(STRESS))
         poisson.append(np.nan if curve is None else curve.poisson())
     ratios = poisson[0], poisson[1]
-    return _row(
-        entry.chart, entry.yarn_name, mixture, made_of, entry.cell_mm, strains, ratios,
-        entry.lowest_mm,
-    )  # fmt: skip
+    return _row(entry.chart, entry.yarn_name, mixture, made_of, entry.cell_mm, strains, ratios)
 
 
 def _mixture(
@@ -195,7 +189,6 @@ def _mixture(
 def _row(
     chart: StitchChart, yarn_name: str, mixture: Mixture, made_of: Densities,
     size_mm: tuple[float, float], strains: list[Array], poisson: tuple[float, float],
-    lowest_mm: tuple[float, float] | None = None,
 ) -> Row:  # fmt: skip
     fold, outputs = over_mixture(mixture, size_mm, strains, poisson)
     if len(mixture.parts) == 1:  # a pure fabric is its own mixture; the rest is its law's misfit
@@ -206,7 +199,6 @@ def _row(
         made_of.features,
         mixture.numbers,
         fold,
-        np.full(2, np.nan) if lowest_mm is None else np.log(np.divide(lowest_mm, size_mm)),
         outputs,
         made_of.uncertainty,
         follows(mixture)[:, 0],
@@ -225,7 +217,6 @@ def arrays_of(every: list[Row]) -> dict[str, NDArray[np.generic]]:
         np.array([row.pure for row in every]),
     )
     fold = np.array([row.fold for row in every])
-    unmirrored = np.array([row.unmirrored for row in every])
     ratio = np.array([row.ratio for row in every])
     follow = np.array([row.follows for row in every])
     swept = np.isfinite(ratio).all(axis=1)
@@ -256,8 +247,8 @@ def arrays_of(every: list[Row]) -> dict[str, NDArray[np.generic]]:
             rest_missed, rest_variance, uncertainty[swept], np.full(4, COVERAGE)
         ),
         "folding_missed": fold_missed,
-        "lowest_missed": fold_missed + unmirrored,
         "unfolding_missed": _scattered(rest_missed, swept),
+        "ratio": ratio,
         "follows": follow,
         "uncertainty": uncertainty,
         "folding_variance": fold_variance,
@@ -343,9 +334,10 @@ def _scattered(values: Array, rows_: NDArray[np.bool_]) -> Array:
     return full
 
 
-def report(arrays: dict[str, NDArray[np.generic]]) -> Iterator[str]:
-    """Lines: median and 90 % quantile of the factor by which left-out charts are missed, and the
-    share of them inside the 90 % interval.
+def report(arrays: dict[str, NDArray[np.generic]], yarns: list[str]) -> Iterator[str]:
+    """Lines of two tables: median and 90 % quantile of the factor by which left-out charts are
+    missed, and the share of them inside the 90 % interval. The second compares 2-D charts with a
+    null model: the mixture, times the mean factor of the class.
     """
     kinds = np.array([kind_of(StitchChart.parse(str(text))) for text in arrays["charts"]])
     values = {name: np.asarray(arrays[name], dtype=float) for name in _REPORTED}
@@ -357,27 +349,41 @@ def report(arrays: dict[str, NDArray[np.generic]]) -> Iterator[str]:
     rest_sd = rest_sd * np.sqrt(values["unfolding_variance"])[:, None]
     strain = rest + np.einsum("njk,nk->nj", slopes, fold)
     strain_sd = np.sqrt(rest_sd**2 + np.einsum("njk,nk->nj", slopes**2, fold_sd**2))
-    for kind in _KINDS:
-        of_kind = kinds == kind
-        yield f"{kind}: {np.count_nonzero(of_kind)} relaxed"
-        yield f"  width, height {_factors(fold[of_kind], fold_sd[of_kind])}"
-        lowest = values["lowest_missed"][of_kind]
-        yield f"  of the lowest state {_factors(lowest, fold_sd[of_kind])}"
-        for name, missed, spread in (
-            ("without size", strain, strain_sd),
-            ("known size", rest, rest_sd),
-        ):
-            for direction in Direction:
-                at = [len(STRESS_GRID) * direction.axis + i for i in _REPORTED_AT]
-                factors = _factors(missed[of_kind][:, at], spread[of_kind][:, at])
-                yield f"  {direction} strain, {name}: {factors}"
+    at = {direction: len(STRESS_GRID) * direction.axis for direction in Direction}
+
+    yield (
+        "| at 0.05 N/mm | charts × yarns | width | height | course strain | wale strain "
+        "| course, known size | wale, known size |"
+    )
+    yarn_names = np.array(yarns)
+    groups = {kind: kinds == kind for kind in _KINDS}
+    groups |= {f"2-D, {yarn}": groups["2-D"] & (yarn_names == yarn) for yarn in _YARNS}
+    for name, of in groups.items():
+        pairs = [(fold[of, i], fold_sd[of, i]) for i in range(2)]
+        for missed, spread in ((strain, strain_sd), (rest, rest_sd)):
+            pairs += [(missed[of, first + 2], spread[of, first + 2]) for first in at.values()]
+        cells = " | ".join(_factors(*pair) for pair in pairs)
+        yield f"| {name} | {np.count_nonzero(of):,} | {cells} |"
+
+    yield (
+        "| 2-D charts at | course: mean of the class | learned | known size "
+        "| wale: mean of the class | learned | known size |"
+    )
+    two = groups["2-D"]
+    for i, stress in _REPORTED_AT.items():
+        logs = []
+        for first in at.values():
+            ratio = values["ratio"][two, first + i]
+            logs += [ratio - np.nanmean(ratio), strain[two, first + i], rest[two, first + i]]
+        yield f"| {stress:g} N/mm | {' | '.join(map(_factors, logs))} |"
 
 
-_REPORTED_AT = (0, 2, 3, 5)
-"""Stresses of the grid: about 0.01, 0.05, 0.1 and 0.3 N/mm."""
+_REPORTED_AT = {0: 0.01, 2: 0.05, 5: 0.3}
+"""Stresses of the grid, and about what they are in N/mm."""
 
 
 _KINDS = ("rib", "welt", "2-D")
+_YARNS = ("acrylic", "cotton", "middle")
 
 
 def kind_of(chart: StitchChart) -> str:
@@ -388,19 +394,21 @@ def kind_of(chart: StitchChart) -> str:
     return "rib" if repeat.rows == 1 else "welt" if repeat.columns == 1 else "2-D"
 
 
-def _factors(logs: Array, spread: Array) -> str:
-    known = np.isfinite(logs).all(axis=1)
+def _factors(logs: Array, spread: Array | None = None) -> str:
+    known = np.isfinite(logs)
     off = np.abs(logs[known])
-    factors = np.exp(np.quantile(off, (0.5, 0.9), axis=0))
-    inside = (off <= Z_SCORE * spread[known]).mean(axis=0)
-    columns = zip(*factors, inside, strict=True)
-    return " ".join(f"{median:.2f}/{most:.2f} ({cover:.0%})" for median, most, cover in columns)
+    median, most = np.exp(np.quantile(off, (0.5, 0.9)))
+    if spread is None:
+        return f"{median:.2f}/{most:.2f}"
+    inside = np.mean(off <= Z_SCORE * spread[known])
+    return f"{median:.2f}/{most:.2f} ({100 * inside:.0f} %)"
 
 
 def main() -> None:
     """Run ``python -m scripts.training.learned``."""
-    arrays = arrays_of(rows())
-    for line in report(arrays):
+    every = rows()
+    arrays = arrays_of(every)
+    for line in report(arrays, [row.yarn_name for row in every]):
         sys.stdout.write(line + "\n")
     kept = {name: values for name, values in arrays.items() if name not in _REPORTED_ONLY}
     np.savez_compressed(FILE, **kept)  # type: ignore[arg-type]
@@ -408,8 +416,8 @@ def main() -> None:
 
 _REPORTED_ONLY = (
     "folding_missed",
-    "lowest_missed",
     "unfolding_missed",
+    "ratio",
     "follows",
     "folding_variance",
     "unfolding_variance",

@@ -13,8 +13,6 @@ from knitcore.chart.fabric import Direction
 from scripts.training.build import characterise, pack, tasks
 from scripts.training.charts import YARN_POINTS, training_charts
 from scripts.training.entries import RawCurve, read_library, training_entries
-from scripts.training.lowest import LowestTask, lowest
-from scripts.training.lowest import pack as pack_lowest
 
 
 def test_charts_are_distinct_repeats_and_any_beginning_holds_all_kinds() -> None:
@@ -54,7 +52,7 @@ def test_packing_adds_entries_and_later_builds_skip_them(tmp_path: Path) -> None
     again["cell_course_mm"] = 9.0
     kept.write_text(json.dumps(again), encoding="utf-8")
     assert pack(keep, packed) == 1  # in the place of the earlier one
-    assert read_library(packed)["entries"][0]["cell_course_mm"] == 9.0
+    assert read_library(packed)[0]["cell_course_mm"] == 9.0
 
 
 def test_every_packaged_entry_has_a_size_or_a_reason() -> None:
@@ -66,30 +64,6 @@ def test_every_packaged_entry_has_a_size_or_a_reason() -> None:
     stockinette = next(e for e in swept if e.chart == StitchChart.parse("K"))
     strain = stockinette.curves[Direction.COURSE].strain_at(np.array([0.01, 0.05, 0.2]))
     assert np.all(np.diff(strain) > 0)
-
-
-def test_without_mirrors_several_starts_are_kept_the_lowest_first(tmp_path: Path) -> None:
-    entry = next(
-        e for e in training_entries() if e.yarn_name == "middle" and e.chart.canonical().key == "K"
-    )
-    task = LowestTask("middle", "K", entry.yarn, entry.loop_length_mm)
-    found = lowest(task)
-    energies = [energy for energy, _, _ in found["states"]]
-    assert len(energies) > 2
-    assert energies == sorted(energies)
-    assert entry.cell_mm is not None
-    assert found["states"][0][1:] == pytest.approx(entry.cell_mm, rel=0.01)
-    (tmp_path / f"{task.key}.json").write_text(json.dumps(found), encoding="utf-8")
-    assert pack_lowest(tmp_path, tmp_path / "packed") == 1
-    assert list(read_library(tmp_path / "packed")["lowest"]) == ["middle/K"]
-
-
-def test_every_relaxed_entry_was_also_relaxed_without_mirrors() -> None:
-    packed = read_library()["lowest"]
-    for entry in training_entries():
-        if entry.cell_mm is not None:
-            found = packed[f"{entry.yarn_name}/{entry.chart.key}"]
-            assert ("failure" in found) == (entry.lowest_mm is None)
 
 
 def test_a_strain_is_read_where_the_stress_is_first_reached() -> None:
