@@ -46,9 +46,7 @@ class InputError(KnitcoreError, ValueError):
         self.remedy = remedy
         self.most = most
 
-    def __reduce__(
-        self,
-    ) -> tuple[type[InputError], tuple[str, str, str], dict[str, object]]:
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str], dict[str, object]]:
         # so that it can be pickled between processes
         kept: dict[str, object] = {"most": self.most, "others": self.others}
         return type(self), (self.field, self.problem, self.remedy), kept

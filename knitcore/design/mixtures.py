@@ -121,11 +121,7 @@ class Mixer:
         return Stripes(chart, *moduli, float(np.nanmax(np.abs(np.log(moduli) - target))))
 
     def _turned(
-        self,
-        best: Stripes | None,
-        target: Array,
-        most: tuple[int, int],
-        look: Callable[[], None],
+        self, best: Stripes | None, target: Array, most: tuple[int, int], look: Callable[[], None]
     ) -> Stripes | None:
         """The best mixtures and repeats, improved by turning a stitch, row or column at a time."""
         rng = np.random.default_rng(0)

@@ -122,10 +122,7 @@ class LawFit:
 
     @classmethod
     def of(
-        cls,
-        tests: Sequence[StretchTest],
-        residuals: dict[Direction, Residuals],
-        **more: Any,
+        cls, tests: Sequence[StretchTest], residuals: dict[Direction, Residuals], **more: Any
     ) -> LawFit:
         """The fit of a course-wise and a wale-wise test; ``more`` are its other fields."""
         off = {d: r.stress - r.fitted for d, r in residuals.items()}

@@ -26,13 +26,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
 from knitcore.chart.fabric import Direction
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE
-from knitcore.fit.measured_strip import (
-    CELLS,
-    LEVELS,
-    WAIST_NOISE,
-    MeasuredStrip,
-    force_noise,
-)
+from knitcore.fit.measured_strip import CELLS, LEVELS, WAIST_NOISE, MeasuredStrip, force_noise
 from knitcore.fit.pull_fit import LawFit, Reduction, Residuals, fit_law, rms
 from knitcore.fit.strip_errors import LinearFit
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -182,11 +176,7 @@ def fit_simulated(
     )
 
 
-def fit_strips(
-    strips: Sequence[MeasuredStrip],
-    *,
-    cancelled: Cancelled | None = None,
-) -> StripFit:
+def fit_strips(strips: Sequence[MeasuredStrip], *, cancelled: Cancelled | None = None) -> StripFit:
     """Fit a law to a course-wise and a wale-wise strip.
 
     Parameters

@@ -121,10 +121,7 @@ class GaugeSet:
 
     @classmethod
     def of_material(
-        cls,
-        material: Material,
-        swatch: Gauge | None = None,
-        fabric: Fabric = Fabric.STOCKINETTE,
+        cls, material: Material, swatch: Gauge | None = None, fabric: Fabric = Fabric.STOCKINETTE
     ) -> GaugeSet:
         """The gauges of a material, or of a knitter who knits ``fabric`` at a swatch's gauge.
 

@@ -19,12 +19,7 @@ from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.law.response import MAX_STRESS_N_PER_MM
 from knitcore.materials.law_uncertainty import Interval
-from knitcore.mechanics.pressure import (
-    MAX_CIRCUMFERENCE_MM,
-    MIN_LENGTH,
-    MMHG_PER_KPA,
-    worn_strain,
-)
+from knitcore.mechanics.pressure import MAX_CIRCUMFERENCE_MM, MIN_LENGTH, MMHG_PER_KPA, worn_strain
 from knitcore.prediction.prediction import Along
 
 PLACES = 21

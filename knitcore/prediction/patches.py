@@ -267,10 +267,7 @@ def _cuts(stitches: int) -> NDArray[np.intp]:
 
 
 def _densities_of(
-    repeat: StitchChart,
-    whole: Densities,
-    rows: NDArray[np.intp],
-    columns: NDArray[np.intp],
+    repeat: StitchChart, whole: Densities, rows: NDArray[np.intp], columns: NDArray[np.intp]
 ) -> Densities:
     """Densities of the patches, row by row, as means over the window of each.
 

@@ -83,11 +83,7 @@ class QuarterLaws:
 
 
 def quarter_laws(
-    chart: StitchChart,
-    material: Material,
-    size: RelaxedSize | None = None,
-    *,
-    even: bool = False,
+    chart: StitchChart, material: Material, size: RelaxedSize | None = None, *, even: bool = False
 ) -> QuarterLaws:
     """Compute the laws and sizes of the quarter cells of a piece.
 

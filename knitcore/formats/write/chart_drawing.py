@@ -244,10 +244,7 @@ class _Part:
         self, rows: range, columns: range, fill: str | None = None, stroke: str | None = None
     ) -> Iterator[Rectangle]:
         """A box on these stitches, as far as they are in the window."""
-        left, right = (
-            max(columns.start, self.columns.start),
-            min(columns.stop, self.columns.stop),
-        )
+        left, right = (max(columns.start, self.columns.start), min(columns.stop, self.columns.stop))
         low, high = max(rows.start, self.rows.start), min(rows.stop, self.rows.stop)
         if left < right and low < high:
             width, height = self.cell * (right - left), self._row_height * (high - low)

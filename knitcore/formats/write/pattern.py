@@ -132,10 +132,7 @@ def pattern_pages(
             flow.text(paragraph, bullet=True)
     _parts(flow, facts, style.regions)
     opening, sections = written_sections(
-        piece,
-        style.construction,
-        first_side=style.first_side,
-        breaks=_breaks(piece, style.regions),
+        piece, style.construction, first_side=style.first_side, breaks=_breaks(piece, style.regions)
     )
     _abbreviations(flow, [*opening, *(line for lines in sections for line in lines)])
     _instructions(flow, piece, style, opening, sections)

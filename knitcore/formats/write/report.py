@@ -102,13 +102,7 @@ def _regions(
     yield Label(MARGIN_MM, 22.0, f"{size}, {_in_cm(at_rest)}", 3.4)
     yield Label(MARGIN_MM, 26.0, f"{material.name} ({material.identifier})", 3.0)
     places = (MARGIN_MM, 62.0, 84.0, 124.0, 164.0)
-    head = (
-        "region",
-        "stitches",
-        "Y course, N/mm",
-        "Y wale, N/mm",
-        "1/Y course × wale, mm/N",
-    )
+    head = ("region", "stitches", "Y course, N/mm", "Y wale, N/mm", "1/Y course × wale, mm/N")
     for x, text in zip(places, head, strict=True):
         yield Label(x, 30.0, text, 3.0)
     yield Lines(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)

@@ -66,12 +66,7 @@ def test_a_stopped_batch_resumes(tmp_path: Path) -> None:
 
     with pytest.raises(CancelledError, match="3 of 6"):
         run_batch(
-            square,
-            TASKS,
-            workers=1,
-            keep=tmp_path,
-            progress=count,
-            cancelled=lambda: done == 3,
+            square, TASKS, workers=1, keep=tmp_path, progress=count, cancelled=lambda: done == 3
         )
     assert len(list(tmp_path.iterdir())) == 3
     (tmp_path / "number-0.json").write_text(json.dumps({"square": "kept"}))

@@ -17,13 +17,7 @@ from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.glove import CROTCH_ROWS, Hand, glove
 from knitcore.garment.piece import Piece
 from knitcore.garment.plan import GarmentPlan
-from knitcore.garment.regions import (
-    Region,
-    fill_regions,
-    misfits,
-    region_numbers,
-    yarn_use,
-)
+from knitcore.garment.regions import Region, fill_regions, misfits, region_numbers, yarn_use
 from knitcore.garment.shaped import ShapedChart
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worked_piece import piece_rows

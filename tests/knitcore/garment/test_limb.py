@@ -43,8 +43,7 @@ def test_beyond_its_lock_up_it_cannot_be_worn() -> None:
 
 
 @pytest.mark.parametrize(
-    ("at", "girths"),
-    [([0.0], [100.0]), ([0.0, 0.0], [100.0, 100.0]), ([0.0, 1.0], [100.0, 9.9])],
+    ("at", "girths"), [([0.0], [100.0]), ([0.0, 0.0], [100.0, 100.0]), ([0.0, 1.0], [100.0, 9.9])]
 )
 def test_impossible_limbs_are_refused(at: list[float], girths: list[float]) -> None:
     with pytest.raises(InputError):

@@ -91,9 +91,7 @@ def test_a_row_more_changes_little(piece: NDArray[np.bool_], side: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "piece",
-    [HEM, SEED_HEM, WELT, PANEL, DRAWN],
-    ids=["hem", "seed hem", "welt", "panel", "drawn"],
+    "piece", [HEM, SEED_HEM, WELT, PANEL, DRAWN], ids=["hem", "seed hem", "welt", "panel", "drawn"]
 )
 def test_a_growing_piece_keeps_its_answer(piece: NDArray[np.bool_]) -> None:
     """13 % a row at most, below 16 stitches (where row and column are a seventh of it) 18 %.

@@ -30,12 +30,7 @@ from knitcore.formats.write import report
 from knitcore.formats.write.chart_drawing import chart_pages, chart_pdf, chart_svg
 from knitcore.formats.write.chart_key import HEAVY, ChartStyle, RegionMark, tinted
 from knitcore.formats.write.drawn_page import Label, Page, Rectangle, to_pdf, to_svg
-from knitcore.formats.write.export import (
-    FORMATS,
-    ExportKind,
-    ExportOptions,
-    export_chart,
-)
+from knitcore.formats.write.export import FORMATS, ExportKind, ExportOptions, export_chart
 from knitcore.formats.write.extensibility_drawing import region_fields
 from knitcore.formats.write.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radius_mm
 from knitcore.garment.glove import Hand, glove
