@@ -23,6 +23,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
+from knitcore.materials import Material
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -115,6 +116,20 @@ class Atlas:
 
     def __len__(self) -> int:
         return len(self.keys)
+
+    def check_material(self, material: Material) -> None:
+        """Refuse another material than that of the atlas.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.material != material.identifier:
+            raise InputError(
+                "atlas",
+                f"it was built for {self.material}, not for {material.identifier}.",
+                "Build an atlas of this material.",
+            )
 
     def column(self, name: str) -> Array:
         """One of :data:`VALUES` for all repeats."""

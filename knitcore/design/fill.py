@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
-from knitcore.base.errors import Cancelled, InputError
+from knitcore.base.errors import Cancelled, InputError, SearchProgress
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat.grid import check_cloth
 from knitcore.design.atlas import Atlas
@@ -28,7 +28,6 @@ from knitcore.design.explain import OFF, Patch, unreached
 from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patch_placing import placed
-from knitcore.design.progress import SearchProgress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
 from knitcore.design.region_patches import best_labels, connected, smooth, unevenness
 from knitcore.materials import Material
@@ -139,12 +138,7 @@ def fill_field(
             raise InputError(
                 "target", "there is no target inside the outline.", "Paint a target there."
             )
-    if atlas.material != material.identifier:
-        raise InputError(
-            "atlas",
-            f"it was built for {atlas.material}, not for {material.identifier}.",
-            "Build an atlas of this material.",
-        )
+    atlas.check_material(material)
     if parts is None:
         parts = np.zeros(target.shape[1:], dtype=np.intp)
     watch = SearchProgress(progress, cancelled)

@@ -20,12 +20,11 @@ from scipy.optimize import brentq
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_positive, check_range
-from knitcore.base.errors import Cancelled, InputError
+from knitcore.base.errors import Cancelled, InputError, SearchProgress
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat import strip_test
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
-from knitcore.design.progress import SearchProgress
 from knitcore.materials import Material
 
 FORCES_N_PER_MM = (0.01, 0.05, 0.2)
@@ -120,12 +119,7 @@ def fill_shape(
         If it was asked to stop.
     """
     target = _checked(width, across, strain, smallest_band, direction)
-    if atlas.material != material.identifier:
-        raise InputError(
-            "atlas",
-            f"it was built for {atlas.material}, not for {material.identifier}.",
-            "Build an atlas of this material.",
-        )
+    atlas.check_material(material)
     run = _Run(target, across, direction, strain, material, atlas, smallest_band, cancelled)
     return run.solve(np.random.default_rng(seed), progress)
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -156,7 +157,7 @@ def fit_simulated(
             notes.append(f"{test.source} has one pull, so the scatter between pulls is unknown.")
     fit = fit_strips(strips, cancelled=cancelled)
     residuals = {
-        d: _residuals(test, strip, simulated)
+        d: Residuals.of(test, strip.strain[-1], partial(_between, strip.strain, simulated))
         for d, test, strip, simulated in zip(Direction, tests, strips, fit.stress, strict=True)
     }
     return LawFit.of(
@@ -313,9 +314,6 @@ def _law(unknowns: Array) -> ConstitutiveLaw:
     )
 
 
-def _residuals(test: StretchTest, strip: MeasuredStrip, simulated: Array) -> Residuals:
-    points = test.pooled()
-    inside = points.strain_along <= strip.strain[-1]
-    along = points.strain_along[inside]
-    fitted = np.interp(along, np.append(0.0, strip.strain), np.append(0.0, simulated))
-    return Residuals(along, points.strain_across[inside], points.stress[inside], fitted)
+def _between(strain: Array, stress: Array, along: Array, _: Array) -> Array:
+    """Stress at strains between those of a simulation, which begins at rest."""
+    return np.asarray(np.interp(along, np.append(0.0, strain), np.append(0.0, stress)))

@@ -16,7 +16,7 @@ from knitcore.garment.gauge import Gauge
 from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
 from knitcore.materials.law_uncertainty import log_interval
-from knitcore.materials.loop_lengths import loop_lengths_mm
+from knitcore.materials.material import loop_lengths_mm
 from knitcore.prediction.predict import predict
 
 MISFIT = 0.10

@@ -17,8 +17,8 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.layout import DesignRegion, region_cells
 from knitcore.formats.write.chart_key import tinted
 from knitcore.formats.write.drawn_page import Label, Rectangle, Shape
-from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.piece import Piece
+from knitcore.garment.shaped import largest_rectangle
 from knitcore.materials import Material
 from knitcore.mechanics.local_moduli import local_moduli
 from knitcore.prediction.predict import predict

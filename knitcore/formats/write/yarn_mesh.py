@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
-from knitcore.cloth.space.surface import Surface
+from knitcore.cloth.space.surface import Surface, corners_of, filled
 from knitcore.draw.laid_out import laid_corners_mm
 from knitcore.draw.loops import loop_centre_line, loop_kinds
 from knitcore.draw.tubes import TriangleMesh, tube_mesh
@@ -98,6 +98,21 @@ def write_glb(chart: StitchChart | Piece, material: Material) -> bytes:
 def write_stl(chart: StitchChart | Piece, material: Material) -> bytes:
     """Binary STL in mm."""
     return mesh_file(yarn_mesh(chart, material), 1.0, "stl")
+
+
+def write_curled_glb(
+    chart: StitchChart,
+    corners_mm: NDArray[np.float64],
+    material: Material,
+    stitches: NDArray[np.bool_] | None = None,
+) -> bytes:
+    """Binary glTF 2.0 in metres: the loops on a curled surface, courses as closed tubes.
+
+    Parameters are those of :func:`course_centre_lines`.
+    """
+    corners = corners_mm if stitches is None else filled(corners_mm, corners_of(stitches))
+    lines = course_centre_lines(chart, corners, material, stitches)
+    return mesh_file(solid(lines, yarn_radius_mm(chart, material)), 0.001, "glb")
 
 
 def mesh_file(mesh: TriangleMesh, scale: float, kind: str) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -65,6 +66,11 @@ def write_csv(
     return path
 
 
+def csv_pair(folder: Path, **options: Any) -> list[Path]:
+    """A course-wise and a wale-wise test as CSV files."""
+    return [write_csv(folder / f"{direction}.csv", direction, **options) for direction in Direction]
+
+
 def save_as_xlsx(csv_file: Path) -> Path:
     """The table of a CSV file as people save it in a workbook."""
     book = openpyxl.Workbook()
@@ -114,6 +120,11 @@ def write_h5(
             group["forces"] = stress * width_mm
             group["frames"] = np.arange(len(along), dtype=float)
     return path
+
+
+def h5_pair(folder: Path, **options: Any) -> list[Path]:
+    """A course-wise and a wale-wise test in the authors' layout."""
+    return [write_h5(folder / f"{direction}.h5", direction, **options) for direction in Direction]
 
 
 def hanging_yarn(
