@@ -4,8 +4,6 @@ A batch is a function and named tasks for it. Results are stored as one JSON doc
 so a batch that was stopped, even by force, continues where it left off.
 """
 
-from __future__ import annotations
-
 import json
 import logging
 import multiprocessing

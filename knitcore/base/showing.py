@@ -4,8 +4,6 @@ SVG and tables without scripts, fonts or addresses. Lines and text have the colo
 around them, light or dark. Objects use them in ``_repr_html_``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from html import escape
 from itertools import pairwise

@@ -6,8 +6,6 @@ named after the pure fabric whose segments are all like that. The four parities 
 surroundings code, determine its part of the composite: there are only 16 kinds of stitch.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -5,8 +5,6 @@ the same fabric. Upside down it is another one, because loops point upwards. A r
 if no smaller rectangle tiles it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 from itertools import combinations

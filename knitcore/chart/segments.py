@@ -5,8 +5,6 @@ odd one (the paper's Fig. 3a, b). These two maps are all that the reduced-symmet
 chart.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

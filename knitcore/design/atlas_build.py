@@ -1,7 +1,5 @@
 """Build the atlas of a material, here or on a cluster; a stopped build can be continued."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil

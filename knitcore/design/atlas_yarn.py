@@ -6,8 +6,6 @@ fabrics of the same yarn relate the results to the measured material
 (:mod:`knitcore.prediction.swept`).
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path

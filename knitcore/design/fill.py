@@ -9,8 +9,6 @@ with the nearest effective moduli, from an atlas or a mixture of two of its repe
 seed gives the same chart.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

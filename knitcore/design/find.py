@@ -1,7 +1,5 @@
 """Find a fabric: the repeats of one or more atlases that meet the targets most surely."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Targets for parts of a chart, as maps of moduli."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ give its own stiffness, and so its moduli. Divided by those of its repeat's flat
 the swatch is made, they give the factor between the patch and a large cloth of its repeat.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Put repeats into patches, and fit the patches to each other stitch by stitch."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

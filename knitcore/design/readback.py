@@ -11,8 +11,6 @@ segments around four stitches an even number must be odd; where it is not, the l
 given up: a spanning tree of the most certain segments decides knit or purl.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array

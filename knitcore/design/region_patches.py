@@ -1,7 +1,5 @@
 """Choose patches of an atlas's repeats so that they meet a map of target moduli."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage

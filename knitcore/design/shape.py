@@ -9,8 +9,6 @@ single bands are changed where that helps. Results are judged by the outline of 
 the estimate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

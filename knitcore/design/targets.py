@@ -1,7 +1,5 @@
 """Quantities that a fabric can be searched for, and their values for the repeats of an atlas."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import StrEnum

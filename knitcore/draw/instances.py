@@ -1,7 +1,5 @@
 """A fabric as a few meshes and the positions of their copies, for renderers with instancing."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A piece laid flat at rest: the one rule for its size, on the page, in patterns and in files."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ its proportions are drawn, not computed: lengths and contacts are those of the s
 yarn's diameter.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

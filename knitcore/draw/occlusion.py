@@ -1,7 +1,5 @@
 """Ambient occlusion: how much of the light from all around reaches the yarn between other yarn."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ cloth when it is stretched. A rectangle may represent a single stitch, a block o
 region.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

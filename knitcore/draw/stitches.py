@@ -15,8 +15,6 @@ relaxed fabrics, and pure fabrics are exactly relaxed. A purl is the mirror imag
 surroundings (a few more with their neighbours) represent all.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

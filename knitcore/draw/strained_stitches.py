@@ -1,7 +1,5 @@
 """Values of a strip test at the stitches of its chart, which lie on the quarter grid's nodes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tubes around centre lines, as triangle meshes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

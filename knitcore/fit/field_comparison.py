@@ -1,7 +1,5 @@
 """Difference between a law and a measured displacement field."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 

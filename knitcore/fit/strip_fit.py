@@ -12,8 +12,6 @@ unknown the ends are left free to narrow, so that the strip strains evenly.
 :mod:`knitcore.fit.strip_errors` estimates the errors of the result.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ with the law of a pure fabric. Along the limb the tube is either free and shorte
 test, or held at its length. The limb's girth may change along its length.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

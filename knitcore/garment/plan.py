@@ -1,7 +1,5 @@
 """A garment plan: outline, regions, and the numbers that follow from them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

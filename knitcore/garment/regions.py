@@ -1,7 +1,5 @@
 """Regions of a garment, their fills, and the borders between them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Templates for limbs: tubes from a circumference profile, and a brace knitted sideways."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -4,8 +4,6 @@ They have a type of their own and are never mixed with the face grid;
 :mod:`knitcore.chart.row_sides` has the rule.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -7,8 +7,6 @@ is more; along the hand the glove is held by crotches and tips. Pressure is that
 part's fabric (:mod:`knitcore.garment.limb`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache

@@ -1,7 +1,5 @@
 """The pressure of a garment where it is worn, and the width that gives a target pressure."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from numbers import Real
 

@@ -9,8 +9,6 @@ every Young's modulus stays within 1 % of its printed value, and every stiffness
 rounds to the printed one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from knitcore.base.errors import InputError

@@ -1,7 +1,5 @@
 """The library: the paper's eight yarns, and their variants."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Materials: one yarn at one machine setting, with a law for each pure fabric."""
 
-from __future__ import annotations
-
 import copyreg
 from collections.abc import Mapping
 from dataclasses import dataclass, field

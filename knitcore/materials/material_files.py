@@ -27,8 +27,6 @@ The model of a file and the YAML library are imported when a file is read or wri
 the library need neither.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Measured stress–strain curves that are stored with a material."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ rather than its stiffness. The exact place of the clamp is fitted too, because a
 near it. B comes out proportional to the linear density.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Trace the centreline of one yarn in a photo."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import dataclass
 from pathlib import Path

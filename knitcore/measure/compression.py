@@ -7,8 +7,6 @@ incompressible core) and rho_0 = depth_core - depth_0, where depth_0 is the dept
 force stays above 1 mN. k and p by least squares over the readings from 1 mN to 1 N.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ CSV: a header line with ``depth_mm, force_n`` and, where there are several tests
 (``yarn-number``); the diameter may be a column ``diameter_mm``.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

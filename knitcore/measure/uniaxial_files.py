@@ -13,8 +13,6 @@ rest, ``length_mm``, and that of the points between which the strain across is r
 one row per point in the order of the pull.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from enum import StrEnum

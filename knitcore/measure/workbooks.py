@@ -1,7 +1,5 @@
 """Workbooks of testing machines and of people, XLS and XLSX, as rows of cells."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence

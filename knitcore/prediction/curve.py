@@ -1,7 +1,5 @@
 """Strains of a chart at given stresses, with their interval."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -17,8 +17,6 @@ Measured materials do not look sweeps up: the packaged ones are of one of severa
 repeat may take, and no nearer to another of its shapes than the learned prediction is.
 """
 
-from __future__ import annotations
-
 from knitcore.base.errors import InputError
 from knitcore.chart.phases import pure_fabric
 from knitcore.chart.stitch_chart import StitchChart, as_chart

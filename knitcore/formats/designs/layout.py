@@ -3,8 +3,6 @@
 The same fields are in the project file, in the service's designs and in the page.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, Self

@@ -6,8 +6,6 @@ that graph alone (which loop was pulled through which, from which bed and by whi
 from the program: :mod:`knitcore.formats.write.knit_graph`.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 import typing

@@ -14,8 +14,6 @@ row is written without ``*``. Read are rows and rounds in any order and grouping
 purls are refused by name. Reference: https://stitch-maps.com/about/knitspeak/
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -11,8 +11,6 @@ Only ``law`` is needed; the constants may also stand at the top, with or without
 (``stiffness_xxxx_n_per_mm``), so that the output of ``knitcore fit --json`` is such a file too.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field

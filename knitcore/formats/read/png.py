@@ -6,8 +6,6 @@ in
 the file. Any other picture is read by its brightness.
 """
 
-from __future__ import annotations
-
 import io
 import json
 from pathlib import Path

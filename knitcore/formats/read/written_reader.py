@@ -6,8 +6,6 @@ brackets with ``twice`` or ``N times``, and one ``*…; rep from *`` with ``to e
 sts`` are known, and at the edges decreases, ``m1``, casting on and binding off.
 """
 
-from __future__ import annotations
-
 import re
 
 from knitcore.base.errors import InputError

@@ -1,7 +1,5 @@
 """The words of one written row: stitches, brackets, repeats, yarns, and shaping at the edges."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass

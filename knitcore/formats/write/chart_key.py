@@ -1,7 +1,5 @@
 """The key of a drawn chart (symbols, yarns, repeats, a note), and the style of the drawing."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 Lengths in mm; the origin is the top left corner, y points down.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import re

@@ -1,7 +1,5 @@
 """All files that a chart can be written to."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace

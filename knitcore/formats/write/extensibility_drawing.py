@@ -4,8 +4,6 @@ The width of a rectangle is the extensibility along the course, 1/Y_x, its heigh
 wale, 1/Y_y, both to one scale.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ together. A bind-off chain along an edge differs from stitches by its yarn: the 
 machine makes is pulled through the chained one, on the next needle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any

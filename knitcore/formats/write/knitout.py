@@ -13,8 +13,6 @@ tucks the yarn of a block into the next one, so that no slit is left.
 Specification: https://textiles-lab.github.io/knitout/knitout.html
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

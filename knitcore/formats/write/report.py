@@ -1,7 +1,5 @@
 """A design on paper: its numbers with intervals, maps, curves, assumptions, and the chart."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
 

@@ -1,7 +1,5 @@
 """Maps of target moduli from a spreadsheet (see :mod:`knitcore.formats.write.stitch_values`)."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Values of every stitch, for ParaView (VTU) and spreadsheets (CSV)."""
 
-from __future__ import annotations
-
 import csv
 import io
 import tempfile

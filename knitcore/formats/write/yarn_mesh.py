@@ -3,8 +3,6 @@
 The loops are drawn; the cloth lies flat at rest, with the stitch size that `predict` gives.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

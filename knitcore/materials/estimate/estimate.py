@@ -6,8 +6,6 @@ or stitch setting. There are only eight yarns, five of them from one machine. Ex
 is predicted best, so it comes first.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Every input that is a choice among names: unknown ones are refused with those that are known."""
 
-from __future__ import annotations
-
 import pytest
 
 from knitcore import InputError

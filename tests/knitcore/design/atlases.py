@@ -1,7 +1,5 @@
 """An atlas that several tests search, built when the first of them asks: not while collecting."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from knitcore.chart.repeats import repeats_up_to

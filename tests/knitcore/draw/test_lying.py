@@ -1,7 +1,5 @@
 """Stitches on a curled sheet."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.chart.stitch_chart import StitchChart

@@ -1,7 +1,5 @@
 """Measured displacement fields: reading, comparing, calibrating."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, replace
 from pathlib import Path
 

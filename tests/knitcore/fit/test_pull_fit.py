@@ -1,7 +1,5 @@
 """A law comes back from tests made of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path

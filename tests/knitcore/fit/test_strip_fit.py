@@ -1,7 +1,5 @@
 """A law fitted to simulated tests gives back what made them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Written rows of outlines and of several yarns."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

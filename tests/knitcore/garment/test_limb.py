@@ -1,7 +1,5 @@
 """A tube of any chart on a limb."""
 
-from __future__ import annotations
-
 import pytest
 
 from knitcore.base.errors import InputError

@@ -1,7 +1,5 @@
 """The glove on a hand of simple bodies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

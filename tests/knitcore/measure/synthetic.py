@@ -1,7 +1,5 @@
 """Made measurements of which the truth is known."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The bending modulus comes back from drawn photos."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

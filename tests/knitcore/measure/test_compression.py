@@ -1,7 +1,5 @@
 """k and p come back from made tests."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

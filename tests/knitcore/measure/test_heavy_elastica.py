@@ -1,7 +1,5 @@
 """The heavy elastica against independent solutions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Files of stretch tests: what is read, left out and refused."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path

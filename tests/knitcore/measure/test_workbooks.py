@@ -1,7 +1,5 @@
 """Workbooks are read as rows of cells, as far as a table of measurements goes."""
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Answers change by no more than the chart does: single stitches, run lengths, growing pieces."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

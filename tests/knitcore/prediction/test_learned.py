@@ -1,7 +1,5 @@
 """The learned answer: exact where it must be, continuous everywhere, honest outside what it saw."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sizes that know their surroundings."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

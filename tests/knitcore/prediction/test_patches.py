@@ -1,7 +1,5 @@
 """Large charts in patches: two halves of pure fabrics, whose answers are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

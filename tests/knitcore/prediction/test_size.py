@@ -1,7 +1,5 @@
 """Relaxed sizes that are given."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Charts that were themselves simulated: sweeps, and sizes of a relaxation."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

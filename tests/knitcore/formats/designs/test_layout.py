@@ -1,7 +1,5 @@
 """Outline, regions, repeats and shelf of a design."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """KnitSpeak: written, read back, and read as others write it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Law files read back what was written, and refuse what is no law."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict
 from pathlib import Path

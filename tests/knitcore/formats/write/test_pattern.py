@@ -1,7 +1,5 @@
 """Patterns to knit from."""
 
-from __future__ import annotations
-
 import io
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A yarn that is not in the library: how well left-out yarns are predicted, and what is warned."""
 
-from __future__ import annotations
-
 import math
 from itertools import combinations
 from typing import Any

@@ -1,7 +1,5 @@
 """The mixed model against its definition and against made yarns."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
