@@ -11,12 +11,6 @@ from knitcore.formats.read.chart_files import read_chart
 CHART = StitchChart.parse("KKP\nPPK")
 
 
-def test_text(tmp_path: Path) -> None:
-    file = tmp_path / "chart.txt"
-    file.write_text("KKP\nPPK\n", encoding="utf-8")
-    assert read_chart(file) == CHART
-
-
 def test_png_has_dark_purls_and_the_top_row_first(tmp_path: Path) -> None:
     file = tmp_path / "chart.png"
     Image.fromarray(np.where(CHART.purl[::-1], 20, 240).astype(np.uint8)).save(file)
