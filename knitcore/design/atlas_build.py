@@ -131,20 +131,12 @@ def entry_of(prediction: Prediction) -> Entry:
         course.relaxed_mm,
         wale.relaxed_mm,
     )
-    curves = np.concatenate(
-        [
-            strains(STRESS_N_PER_MM)
-            for strains in (
-                course.strain,
-                wale.strain,
-                course.across_strain,
-                wale.across_strain,
-                course.held_strain,
-                wale.held_strain,
-            )
-        ]
-    )
-    as_kept = tuple(curves.astype(np.float32).tolist())
+    curves = [
+        getattr(along, strain)(STRESS_N_PER_MM)
+        for strain in ("strain", "across_strain", "held_strain")
+        for along in (course, wale)
+    ]
+    as_kept = tuple(np.concatenate(curves).astype(np.float32).tolist())
     return Entry(values, as_kept, prediction.provenance.value)
 
 

@@ -19,6 +19,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain, pairwise, product
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -142,13 +143,8 @@ class Patches:
             return np.tensordot(share, [part.across(stress) for part in parts], axes=1)
 
         response, stiff, soft, held = (
-            self._response(direction, kind)
-            for kind in (
-                lambda along: along.response,
-                lambda along: along.stiff,
-                lambda along: along.soft,
-                lambda along: along.held,
-            )
+            self._response(direction, attrgetter(kind))
+            for kind in ("response", "stiff", "soft", "held")
         )
         modulus = response.modulus_n_per_mm
         return Along(

@@ -150,7 +150,7 @@ def _scale(
     _, folds = sizes_and_folds(chart, material)
     records = _records(phases, material)
     for direction in Direction:
-        flat = np.array([_size(record, direction) for record in records])[phases]
+        flat = np.array([record.stitch_size_mm(direction) for record in records])[phases]
         flat = flat.reshape(chart.rows, 2, chart.columns, 2).mean(axis=(1, 3))
         mean = float((flat * folds[..., direction.axis]).mean())
         folds[..., direction.axis] *= patches.relaxed_mm(direction) / mean
@@ -165,7 +165,7 @@ def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    laws = tuple(_own_laws(quarter_phases(chart), material))
+    laws = tuple(record.law for record in _records(quarter_phases(chart), material))
     shape = chart.purl.shape
     none = partial(np.zeros, (2, len(SPREAD_AT)))
     return QuarterLaws(laws, np.zeros(shape, dtype=np.intp), np.ones((*shape, 2)), none)
@@ -179,14 +179,6 @@ def _records(cells: NDArray[np.uint8], material: Material) -> list[FabricRecord]
 
 def _shares(cells: NDArray[np.uint8]) -> Array:
     return np.bincount(cells.ravel(), minlength=4) / cells.size
-
-
-def _size(record: FabricRecord, direction: Direction) -> float:
-    return record.stitch_size_mm(direction)
-
-
-def _own_laws(cells: NDArray[np.uint8], material: Material) -> list[ConstitutiveLaw]:
-    return [record.law for record in _records(cells, material)]
 
 
 def _own_log_sd(
@@ -223,7 +215,9 @@ def _fitted_laws(
             continue
         constants[direction.axis] = [_fitted(strains * part) for part in parts[direction.axis]]
     alone = np.array([[_fitted_alone(r.law, d) for r in records] for d in Direction])
-    own = np.array([[_constants(r.law, d) for r in records] for d in Direction])
+    own = np.array(
+        [[(r.law.modulus(d), r.law.alpha(d), r.law.beta(d)) for r in records] for d in Direction]
+    )
     kept = np.minimum((constants / alone)[..., 0].min(axis=0), 1.0)[:, None]
     kappa = kept * [(r.law.kappa_xx, r.law.kappa_yy) for r in records]
     regained = kept * np.log(np.divide(own, alone, out=np.ones_like(own), where=alone * own > 0))
@@ -260,13 +254,6 @@ def _fitted_laws(
     return laws
 
 
-def _constants(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
-    """Young's modulus (N/mm), alpha and beta (N/mm) of a law."""
-    if direction is Direction.COURSE:
-        return law.modulus_course, law.alpha_xx, law.beta_xx
-    return law.modulus_wale, law.alpha_yy, law.beta_yy
-
-
 @lru_cache(maxsize=64)
 def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
     """The constants that a law has by :func:`_fitted`, which knows no kappa."""
@@ -292,7 +279,9 @@ def _flat_strain(
     cells: NDArray[np.uint8], records: list[FabricRecord], direction: Direction
 ) -> Array:
     lines = cells if direction is Direction.COURSE else cells.T
-    along, across = (np.array([_size(r, d) for r in records]) for d in (direction, direction.other))
+    along, across = (
+        np.array([r.stitch_size_mm(d) for r in records]) for d in (direction, direction.other)
+    )
     counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)
     kinds, same = np.unique(counts, axis=0, return_inverse=True)
     lengths = kinds * along

@@ -70,26 +70,26 @@ _ABBREVIATIONS = {
     "m1p": "make one: lift the strand between two stitches and purl it twisted",
 }
 
-_RESTS_ON: dict[Source | None, tuple[str, ...]] = {
+_RESTS_ON: dict[Source | None, str] = {
     None: (
         "Sizes are computed stitch by stitch from the fabrics of this yarn. Where fabrics meet "
-        "they are partly assumed, because such borders were not knitted and measured.",
+        "they are partly assumed, because such borders were not knitted and measured."
     ),
-    Source.MEASURED: ("This fabric was knitted in this yarn, measured at rest and stretched.",),
+    Source.MEASURED: "This fabric was knitted in this yarn, measured at rest and stretched.",
     Source.ESTIMATED: (
         "This fabric was not knitted and stretched in this yarn: size and stretch are estimated "
-        "from the yarn's tests and from other yarns.",
+        "from the yarn's tests and from other yarns."
     ),
     Source.SWEPT: (
-        "Size and stretch were computed from the yarn, loop by loop; nothing was knitted.",
+        "Size and stretch were computed from the yarn, loop by loop; nothing was knitted."
     ),
     Source.LEARNED: (
         "Size and stretch are computed from stockinette, garter, rib and seed of this yarn, "
-        "corrected by simulations of other charts; this chart was not knitted.",
+        "corrected by simulations of other charts; this chart was not knitted."
     ),
     Source.LEARNED_OF_SIZE: (
         "The size at rest is your own gauge. The stretch is computed from stockinette, garter, rib "
-        "and seed of this yarn, corrected by simulations of other charts.",
+        "and seed of this yarn, corrected by simulations of other charts."
     ),
 }
 """Basis of a prediction's numbers, in a knitter's words; None is for a piece with an outline."""
@@ -437,13 +437,12 @@ def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
 
 def _evidence(flow: _Flow, facts: _Facts) -> None:
     flow.heading("Where the numbers come from")
-    source = None if facts.prediction is None else facts.prediction.provenance
+    prediction = facts.prediction
+    source = None if prediction is None else prediction.provenance
+    notes = () if prediction is None else prediction.notes
     for sentence in (
-        *_RESTS_ON[source],
-        *(() if facts.prediction is None else facts.prediction.notes),
-    ):
-        flow.text(sentence, bullet=True)
-    for sentence in (
+        _RESTS_ON[source],
+        *notes,
         "The report of this design has all numbers, their intervals and methods.",
         "Knit a swatch. If its gauge differs from this pattern's, trust the swatch.",
     ):
