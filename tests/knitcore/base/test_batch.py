@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from knitcore import CancelledError, InputError
 from knitcore.base.batch import BatchProgress, run_batch
-from knitcore.base.errors import CancelledError, InputError
 
 TASKS = {f"number-{n}": n for n in range(6)}
 

@@ -9,15 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from knitcore import Fabric, InputError, StitchChart, predict
+from knitcore import CancelledError, Direction, Fabric, InputError, StitchChart, material, predict
 from knitcore.base.batch import run_batch
-from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Direction
 from knitcore.chart.repeats import repeats_up_to
 from knitcore.design.atlas import FORMAT, load_atlas, save_atlas
 from knitcore.design.atlas_build import AT_ONCE, build_atlas, parts_folder
 from knitcore.law.uniaxial import strain_at_stress
-from knitcore.materials import material
 from tests.knitcore.design.atlases import REPEATS, acrylic_atlas
 
 ACRYLIC = material("acrylic")

@@ -4,15 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from knitcore import Fabric, InputError, StitchChart
-from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Direction
+from knitcore import CancelledError, Direction, Fabric, InputError, StitchChart, material
 from knitcore.design.atlas_build import predict_repeat
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.part_targets import PartTarget, target_maps, target_parts
 from knitcore.design.patch_check import finite_size
 from knitcore.design.region_patches import connected
-from knitcore.materials import material
 from knitcore.mechanics.local_moduli import LocalModuli, local_moduli
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.design.atlases import REPEATS, acrylic_atlas

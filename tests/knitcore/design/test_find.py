@@ -6,15 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from knitcore import Fabric, InputError, StitchChart
-from knitcore.chart.fabric import Direction
+from knitcore import Direction, Fabric, InputError, StitchChart, material
 from knitcore.chart.repeats import repeats_up_to
 from knitcore.design.atlas import CURVES, VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.cost import CostLimits
 from knitcore.design.find import FoundFabrics, Quantity, Target, WornTube, find_fabric
 from knitcore.law.uniaxial import strain_at_stress
-from knitcore.materials import material
 from knitcore.mechanics.pressure import limb_pressure
 from tests.knitcore.design.atlases import REPEATS, acrylic_atlas
 

@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction
+from knitcore import Direction, InputError
 from knitcore.fit.pull_fit import Reduction, median_curve
 from knitcore.fit.strip_fit import fit_tests
 from knitcore.law.constitutive import ConstitutiveLaw

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Direction
+from knitcore import CancelledError, Direction
 from knitcore.fit.measured_strip import LEVELS, MeasuredStrip
 from knitcore.fit.pull_fit import Reduction
 from knitcore.fit.strip_fit import fit_strips, fit_tests, flattening

@@ -2,13 +2,9 @@
 
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import Direction, Fabric, InputError, StitchChart, material, predict
 from knitcore.garment.limb import PLACES, on_limb, tube_for, tube_pressure
-from knitcore.materials import material
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure
-from knitcore.prediction.predict import predict
 
 ACRYLIC = material("acrylic")
 CHART = StitchChart.parse("KKPP\nKKPP")

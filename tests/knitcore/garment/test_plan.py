@@ -3,8 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from knitcore import Fabric, InputError, StitchChart
-from knitcore.chart.fabric import Direction
+from knitcore import Direction, Fabric, InputError, StitchChart, material
 from knitcore.formats.designs.design_file import design_from_mapping
 from knitcore.formats.designs.garment_design import design_of_plan
 from knitcore.formats.designs.layout import layout_notes
@@ -20,7 +19,6 @@ from knitcore.garment.shaped import ShapedChart
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worked_piece import piece_rows
 from knitcore.garment.worn_piece import Fit, worn
-from knitcore.materials import material
 
 WOOL = material("glove-wool:published")
 PLANS = (

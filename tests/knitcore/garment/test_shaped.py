@@ -4,8 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from knitcore import InputError, StitchChart
-from knitcore.chart.fabric import Fabric
+from knitcore import Fabric, InputError, StitchChart
 from knitcore.chart.phases import LEFT, RIGHT, surroundings
 from knitcore.formats.designs.design_file import DesignFile, design_from_mapping
 from knitcore.garment.shaped import ShapedChart, largest_rectangle

@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 import yaml
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError
 from knitcore.materials import (
     MeasuredCurve,
     load_library,

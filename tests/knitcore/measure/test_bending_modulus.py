@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from knitcore.base.errors import InputError
+from knitcore import InputError
 from knitcore.measure.bending_modulus import (
     STANDARD_GRAVITY_M_PER_S2,
     MeasuredBending,

@@ -8,8 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction
+from knitcore import Direction, InputError
 from knitcore.fit.pull_fit import Reduction
 from knitcore.fit.strip_fit import fit_tests
 from knitcore.measure.uniaxial_files import read_stretch_test

@@ -6,7 +6,7 @@ from pathlib import Path
 import openpyxl
 import pytest
 
-from knitcore.base.errors import InputError
+from knitcore import InputError
 from knitcore.measure import workbooks
 from knitcore.measure.workbooks import is_workbook, read_workbook
 

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from knitcore import StitchChart, predict
-from knitcore.chart.fabric import Direction
-from knitcore.materials import material
+from knitcore import Direction, StitchChart, material, predict
 
 LOADS = [0.05, 0.1, 0.2]
 CLOTHS = ["K", "K/P", "KP", "KP/PK", "KKPP", "K/K/P/P", "KP/KK", "KKPP/KKPP/PPKK/PPKK", "KKKKPPPP"]

@@ -8,9 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from knitcore import RelaxedSize, StitchChart, predict
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError, RelaxedSize, StitchChart, predict
 from knitcore.law.constitutive import Transverse
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import Laws, load_library, load_variants, material

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from knitcore import Direction, RelaxedSize, StitchChart, predict
-from knitcore.chart.fabric import Fabric
+from knitcore import Direction, Fabric, RelaxedSize, StitchChart, predict
 from knitcore.materials import Material, material
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import packaged_model

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction
+from knitcore import Direction, InputError
 from knitcore.formats.read.law_files import LawFile, law_from_mapping, load_law, save_law
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import MeasuredCurve

@@ -12,8 +12,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore import InputError, StitchChart
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError, StitchChart, material
 from knitcore.chart.row_sides import Construction
 from knitcore.formats.designs.garment_design import design_of_plan
 from knitcore.formats.designs.layout import (
@@ -33,7 +32,6 @@ from knitcore.formats.write.extensibility_drawing import region_fields
 from knitcore.formats.write.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radius_mm
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
-from knitcore.materials import material
 from knitcore.mechanics.local_moduli import local_moduli
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.pieces import pieces

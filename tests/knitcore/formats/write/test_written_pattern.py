@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore import InputError, StitchChart
-from knitcore.chart.fabric import Fabric
+from knitcore import Fabric, InputError, StitchChart
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.formats.read.written_reader import looks_written, read_piece_rows, read_rows
 from knitcore.formats.write.written_pattern import row_words, write_rows
