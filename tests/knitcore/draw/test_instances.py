@@ -3,8 +3,8 @@ import pytest
 
 from knitcore import StitchChart, material
 from knitcore.draw.fabric_loops import POINTS
+from knitcore.draw.instances import occlusion
 from knitcore.draw.lattice import Lattice
-from knitcore.draw.occlusion import occlusion
 from knitcore.draw.stitches import StitchShapes, stitch_shapes
 
 WIDE_MM = 6.0
