@@ -38,11 +38,8 @@ def primitive_repeats(rows: int, columns: int) -> tuple[StitchChart, ...]:
     """
     stitches = rows * columns
     if rows < 1 or columns < 1 or stitches > LARGEST:
-        raise InputError(
-            "repeat",
-            f"{columns}x{rows} stitches cannot be enumerated.",
-            f"Use at most {LARGEST} stitches, such as 4x4.",
-        )
+        problem = f"{columns}x{rows} stitches cannot be enumerated."
+        raise InputError("repeat", problem, f"Use at most {LARGEST} stitches, such as 4x4.")
     codes = np.arange(2**stitches)
     weights = 1 << np.arange(stitches)[::-1]  # the order of codes is that of StitchChart.canonical
     bits = (codes[:, None] & weights) > 0

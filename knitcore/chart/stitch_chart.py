@@ -89,11 +89,8 @@ class StitchChart:
                 continue
             if row.count("K") + row.count("P") < len(row):
                 column, symbol = next((i, s) for i, s in enumerate(row, start=1) if s not in "KP")
-                raise InputError(
-                    "chart",
-                    f"line {number}, stitch {column} is {symbol!r}, which is neither K nor P.",
-                    "Write every stitch as K or P.",
-                )
+                problem = f"line {number}, stitch {column} is {symbol!r}, which is neither K nor P."
+                raise InputError("chart", problem, "Write every stitch as K or P.")
             if not rows:
                 first_line = number
             elif len(row) != len(rows[0]):
@@ -282,11 +279,8 @@ def check_chart_size(rows: int, columns: int) -> None:
             "chart", f"{columns}x{rows} has no stitches.", "Give at least 1 column and 1 row."
         )
     if max(rows, columns) > MAX_STITCHES_PER_SIDE:
-        raise InputError(
-            "chart",
-            f"{size_in_words(columns, rows)} is too large.",
-            f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
-        )
+        remedy = f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns."
+        raise InputError("chart", f"{size_in_words(columns, rows)} is too large.", remedy)
 
 
 def size_in_words(columns: int, rows: int) -> str:

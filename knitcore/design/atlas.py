@@ -125,11 +125,8 @@ class Atlas:
         InputError
         """
         if self.material != material.identifier:
-            raise InputError(
-                "atlas",
-                f"it was built for {self.material}, not for {material.identifier}.",
-                "Build an atlas of this material.",
-            )
+            problem = f"it was built for {self.material}, not for {material.identifier}."
+            raise InputError("atlas", problem, "Build an atlas of this material.")
 
     def column(self, name: str) -> Array:
         """One of :data:`VALUES` for all repeats."""

@@ -170,11 +170,8 @@ def known_entries(file: Path | None, fingerprint: str) -> dict[str, Entry]:
         return {}
     atlas = load_atlas(file)
     if atlas.fingerprint != fingerprint:
-        raise InputError(
-            "out",
-            f"{file.name} is the atlas of {atlas.material} with other laws.",
-            "Name another file, or remove this one.",
-        )
+        problem = f"{file.name} is the atlas of {atlas.material} with other laws."
+        raise InputError("out", problem, "Name another file, or remove this one.")
     return atlas.entries()
 
 

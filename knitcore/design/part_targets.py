@@ -88,11 +88,8 @@ def _cells(target: PartTarget, rows: int, columns: int) -> NDArray[np.bool_]:
         )
     values = (target.course_n_per_mm, target.wale_n_per_mm)
     if any(v is not None and not (math.isfinite(v) and v > 0) for v in values):
-        raise InputError(
-            "wishes",
-            f"“{target.name}” has a target stiffness that is not positive.",
-            "Give N/mm above 0.",
-        )
+        problem = f"“{target.name}” has a target stiffness that is not positive."
+        raise InputError("wishes", problem, "Give N/mm above 0.")
     return cells
 
 

@@ -355,19 +355,14 @@ def _checked(
         raise InputError("width", "is not a profile.", "Give the width of at least three lines.")
     given = target[~np.isnan(target)]
     if not (np.isfinite(given).all() and (given > 0.05).all() and (given < 3).all()):
-        raise InputError(
-            "width",
-            "is outside 0.05 to 3 times the width at rest.",
-            "Give every width as a multiple of the width at rest.",
-        )
+        problem = "is outside 0.05 to 3 times the width at rest."
+        raise InputError("width", problem, "Give every width as a multiple of the width at rest.")
     lines = (across, len(target)) if direction is Direction.COURSE else (len(target), across)
     check_chart_size(*lines)
     if across < 3 or across * len(target) > _MAX_STITCHES:
-        raise InputError(
-            "across",
-            f"{across} x {len(target)} stitches are too many to pull repeatedly.",
-            f"Use at least 3 across and at most {_MAX_STITCHES} stitches.",
-        )
+        problem = f"{across} x {len(target)} stitches are too many to pull repeatedly."
+        remedy = f"Use at least 3 across and at most {_MAX_STITCHES} stitches."
+        raise InputError("across", problem, remedy)
     check_positive("strain", strain, what="a stretch", most=5)
     check_range("smallest_band", smallest_band, 1, len(target), "lines")
     return target

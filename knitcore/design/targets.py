@@ -98,11 +98,9 @@ class WornTube:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.worn_mm) and 0 < self.rest_mm < self.worn_mm <= 5000):
-            raise InputError(
-                "limb",
-                f"{self.rest_mm:g} mm on {self.worn_mm:g} mm exerts no pressure.",
-                "Give a tube that is smaller than the limb, both in mm.",
-            )
+            problem = f"{self.rest_mm:g} mm on {self.worn_mm:g} mm exerts no pressure."
+            remedy = "Give a tube that is smaller than the limb, both in mm."
+            raise InputError("limb", problem, remedy)
 
     @property
     def strain(self) -> float:
@@ -144,17 +142,12 @@ class Target:
                     f"targets.{self.quantity}", f"its {name} is {number:g}.", "Give more than 0."
                 )
         if self.quantity.needs_load and not 0 < self.load_n_per_mm <= MAX_LOAD_N_PER_MM:
-            raise InputError(
-                f"targets.{self.quantity}",
-                f"its load is {self.load_n_per_mm:g} N/mm.",
-                f"Give above 0 to {MAX_LOAD_N_PER_MM:g} N/mm.",
-            )
+            problem = f"its load is {self.load_n_per_mm:g} N/mm."
+            remedy = f"Give above 0 to {MAX_LOAD_N_PER_MM:g} N/mm."
+            raise InputError(f"targets.{self.quantity}", problem, remedy)
         if self.quantity.needs_limb and self.limb is None:
-            raise InputError(
-                f"targets.{self.quantity}",
-                "it names no limb.",
-                "Give the circumference of the tube and of the limb.",
-            )
+            remedy = "Give the circumference of the tube and of the limb."
+            raise InputError(f"targets.{self.quantity}", "it names no limb.", remedy)
 
     @property
     def label(self) -> str:

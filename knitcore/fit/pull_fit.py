@@ -162,11 +162,8 @@ def fit_law(
         recommended one, which needs simulated tests (:func:`knitcore.fit.strip_fit.fit_tests`).
     """
     if reduction is Reduction.RECOMMENDED:
-        raise InputError(
-            "reduction",
-            "the recommended reduction needs simulated tests.",
-            "Call knitcore.fit.strip_fit.fit_tests.",
-        )
+        problem = "the recommended reduction needs simulated tests."
+        raise InputError("reduction", problem, "Call knitcore.fit.strip_fit.fit_tests.")
     notes = [*course.notes, *wale.notes, *check_pair(course, wale)]
     fits, ratios, law = _fit(course, wale, reduction)
     replicates = [
@@ -299,11 +296,8 @@ def _quantities(law: ConstitutiveLaw) -> dict[str, float]:
 def _jackknife(replicates: list[list[dict[str, float]]]) -> dict[str, float]:
     """Standard errors from estimates with one part left out, summed over independent tests."""
     if min(len(test) for test in replicates) < 2:
-        raise InputError(
-            "tests",
-            "have too few different readings for a standard error.",
-            "Give pulls with readings all the way from rest to the largest force.",
-        )
+        remedy = "Give pulls with readings all the way from rest to the largest force."
+        raise InputError("tests", "have too few different readings for a standard error.", remedy)
     errors = {}
     for name in replicates[0][0]:
         variance = 0.0

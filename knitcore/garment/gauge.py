@@ -160,11 +160,8 @@ class GaugeSet:
             If the material lacks it.
         """
         if fabric not in self.gauges:
-            raise InputError(
-                "material",
-                f"{self.material} has no {fabric}.",
-                "Choose another fabric, or a material that has it.",
-            )
+            remedy = "Choose another fabric, or a material that has it."
+            raise InputError("material", f"{self.material} has no {fabric}.", remedy)
         return self.gauges[fabric]
 
 

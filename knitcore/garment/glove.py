@@ -91,11 +91,9 @@ class Hand:
         ):
             raise InputError("fingers", "four fingers are needed.", "Give lengths and girths.")
         if self.thumb_crotch_mm >= self.palm_mm:
-            raise InputError(
-                "thumb_crotch_mm",
-                "the thumb's crotch lies beyond the fingers'.",
-                f"Give less than palm_mm, {self.palm_mm:g} mm.",
-            )
+            problem = "the thumb's crotch lies beyond the fingers'."
+            remedy = f"Give less than palm_mm, {self.palm_mm:g} mm."
+            raise InputError("thumb_crotch_mm", problem, remedy)
 
 
 @dataclass(frozen=True)

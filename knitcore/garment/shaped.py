@@ -128,19 +128,14 @@ def check_outline(stitch: NDArray[np.bool_]) -> None:
                 "outline", f"row {row} has no stitch.", "Crop the chart, or fill the row."
             )
         if columns[-1] - columns[0] + 1 != len(columns):
-            raise InputError(
-                "outline",
-                f"row {row} is in two parts, which one yarn cannot knit in one row.",
-                "Close the gap, or make it two pieces.",
-            )
+            problem = f"row {row} is in two parts, which one yarn cannot knit in one row."
+            raise InputError("outline", problem, "Close the gap, or make it two pieces.")
         spans.append((int(columns[0]), int(columns[-1])))
     for row, (below, above) in enumerate(pairwise(spans), start=1):
         if above[0] > below[1] or above[1] < below[0]:
-            raise InputError(
-                "outline",
-                f"row {row + 1} does not stand on row {row}: the outline is in several parts.",
-                "Let neighbouring rows overlap by at least one stitch.",
-            )
+            problem = f"row {row + 1} does not stand on row {row}: the outline is in several parts."
+            remedy = "Let neighbouring rows overlap by at least one stitch."
+            raise InputError("outline", problem, remedy)
 
 
 def largest_rectangle(stitch: NDArray[np.bool_]) -> tuple[slice, slice]:

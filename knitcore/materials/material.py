@@ -163,11 +163,9 @@ class Material:
             return self.fabrics[fabric]
         except KeyError:
             known = ", ".join(self.fabrics)
-            raise InputError(
-                "material",
-                f"{self.identifier} has no {fabric}; it has {known}.",
-                f"Add a measured or estimated law for {fabric}, or use a chart without it.",
-            ) from None
+            problem = f"{self.identifier} has no {fabric}; it has {known}."
+            remedy = f"Add a measured or estimated law for {fabric}, or use a chart without it."
+            raise InputError("material", problem, remedy) from None
 
     def law(self, fabric: Fabric) -> ConstitutiveLaw:
         """The constitutive law of one pure fabric."""
@@ -232,10 +230,8 @@ def loop_lengths_mm(quarters: NDArray[np.uint8], material: Material) -> Array:
     for phase in np.unique(quarters):
         length = material.record(PHASES[phase]).loop_length_mm
         if length is None:
-            raise InputError(
-                "material",
-                f"{material.identifier} has no loop length for {PHASES[phase]}.",
-                "Unravel ten stitches of a swatch, measure the yarn, and add loop_length_mm.",
-            )
+            problem = f"{material.identifier} has no loop length for {PHASES[phase]}."
+            remedy = "Unravel ten stitches of a swatch, measure the yarn, and add loop_length_mm."
+            raise InputError("material", problem, remedy)
         lengths[phase] = length
     return np.asarray(lengths[quarters].mean(axis=-1))

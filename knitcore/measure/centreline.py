@@ -77,11 +77,8 @@ def load_grey(path: Path) -> Array:
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             with Image.open(path, formats=("JPEG", "PNG", "TIFF", "BMP", "WEBP")) as image:
                 if image.width * image.height > MAX_PIXELS:
-                    raise InputError(
-                        path.name,
-                        f"has {image.width} x {image.height} pixels.",
-                        "Give a photo of up to 60 megapixels.",
-                    )
+                    problem = f"has {image.width} x {image.height} pixels."
+                    raise InputError(path.name, problem, "Give a photo of up to 60 megapixels.")
                 upright = ImageOps.exif_transpose(image).convert("L")
                 return np.asarray(upright, dtype=float) / 255.0
     except UnidentifiedImageError:

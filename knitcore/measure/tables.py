@@ -43,18 +43,13 @@ def read_table(path: Path, header: str) -> pd.DataFrame:
             path.name, "is not text in UTF-8.", "Save it as CSV in UTF-8, or as XLSX."
         ) from None
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        raise InputError(
-            path.name,
-            f"cannot be read as CSV ({str(error).strip()}).",
-            f"Give a header line {header} and comma-separated numbers.",
-        ) from None
+        problem = f"cannot be read as CSV ({str(error).strip()})."
+        remedy = f"Give a header line {header} and comma-separated numbers."
+        raise InputError(path.name, problem, remedy) from None
     for separator, name in ((";", "semicolons"), ("\t", "tabs")):
         if separator in str(table.columns[0]):
-            raise InputError(
-                path.name,
-                f"has {name} between its columns.",
-                "Save it with commas between columns and decimal points, or as XLSX.",
-            )
+            remedy = "Save it with commas between columns and decimal points, or as XLSX."
+            raise InputError(path.name, f"has {name} between its columns.", remedy)
     return table
 
 

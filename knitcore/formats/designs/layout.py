@@ -226,11 +226,8 @@ def check_layout(chart: StitchChart, layout: DesignLayout) -> None:
 def _check_motif(field: str, name: str, motif: str) -> None:
     widths = {len(row) for row in motif.split("/")}
     if len(widths) > 1:
-        raise InputError(
-            field,
-            f"the pattern of {name} has rows of {min(widths)} and of {max(widths)} stitches.",
-            "Give every row of a repeat the same number of stitches.",
-        )
+        problem = f"the pattern of {name} has rows of {min(widths)} and of {max(widths)} stitches."
+        raise InputError(field, problem, "Give every row of a repeat the same number of stitches.")
 
 
 def layout_notes(chart: StitchChart, layout: DesignLayout) -> tuple[str, ...]:

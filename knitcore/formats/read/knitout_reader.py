@@ -259,19 +259,13 @@ def _check(row: int, course: Mapping[int, Any], below: Mapping[int, Any]) -> Non
     for needle, loop in course.items():
         own = below.get(needle)
         if own is not None and own not in loop.parent_loops:
-            raise InputError(
-                "knitout",
-                f"on needle {needle}, course {row + 1} is not pulled through course {row}.",
-                _REMEDY,
-            )
+            problem = f"on needle {needle}, course {row + 1} is not pulled through course {row}."
+            raise InputError("knitout", problem, _REMEDY)
         places = {_needle(parent): parent for parent in loop.parent_loops}
         if any(n != needle and n in course and below.get(n) is p for n, p in places.items()):
             raise InputError(
                 "knitout", f"a loop moves to needle {needle} in course {row + 1}.", _REMEDY
             )
         if own is None and any(parent.parent_loops for parent in loop.parent_loops):
-            raise InputError(
-                "knitout",
-                f"needle {needle} begins in course {row + 1} with a loop from elsewhere.",
-                _REMEDY,
-            )
+            problem = f"needle {needle} begins in course {row + 1} with a loop from elsewhere."
+            raise InputError("knitout", problem, _REMEDY)

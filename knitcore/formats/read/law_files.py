@@ -109,11 +109,8 @@ def law_from_mapping(data: Mapping[str, Any]) -> LawFile:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         if where.startswith("curves"):
-            raise InputError(
-                where,
-                f"{first['msg']}.",
-                "Give curves as `knitcore fit --out` writes them, or leave them out.",
-            ) from None
+            remedy = "Give curves as `knitcore fit --out` writes them, or leave them out."
+            raise InputError(where, f"{first['msg']}.", remedy) from None
         raise InputError(
             f"law.{where}" if where else "law",
             f"{first['msg']}.",

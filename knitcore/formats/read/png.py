@@ -92,11 +92,9 @@ def read_png_piece(file: Path) -> Piece:
             flat.alpha_composite(image.convert("RGBA"))
             return Piece.plain(StitchChart(np.asarray(flat.convert("L"))[::-1] < 128))
     except Image.DecompressionBombError:
-        raise InputError(
-            "chart",
-            f"{file.name} has more pixels than any chart has stitches.",
-            f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
-        ) from None
+        problem = f"{file.name} has more pixels than any chart has stitches."
+        remedy = f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns."
+        raise InputError("chart", problem, remedy) from None
     except InputError:
         raise
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError):

@@ -172,11 +172,8 @@ def export_chart(
     exporter = FORMATS.get(kind) or _of_extension(kind)
     if not exporter.holds_outlines and not piece.is_rectangle:
         known = ", ".join(name for name, built_in in FORMATS.items() if built_in.holds_outlines)
-        raise InputError(
-            "to",
-            f"{kind} cannot hold an outline: the cells outside it would become stitches.",
-            f"Export {known}, or a rectangular part.",
-        )
+        problem = f"{kind} cannot hold an outline: the cells outside it would become stitches."
+        raise InputError("to", problem, f"Export {known}, or a rectangular part.")
     with nullcontext() if kind in FORMATS else running(Group.EXPORTERS, kind):
         content = exporter.write(piece, material, options)
     if isinstance(content, ExportedFile):

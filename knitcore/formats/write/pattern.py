@@ -272,11 +272,8 @@ def _photo(png: bytes) -> tuple[bytes, tuple[int, int]]:
     try:
         with Image.open(io.BytesIO(png), formats=["PNG"]) as image:
             if max(image.size) > MAX_PHOTO_PIXELS:  # before any pixel is decoded
-                raise InputError(
-                    "photo",
-                    f"it has {image.width}x{image.height} pixels.",
-                    f"Use at most {MAX_PHOTO_PIXELS} a side.",
-                )
+                problem = f"it has {image.width}x{image.height} pixels."
+                raise InputError("photo", problem, f"Use at most {MAX_PHOTO_PIXELS} a side.")
             flat = Image.new("RGBA", image.size, "white")
             flat.alpha_composite(image.convert("RGBA"))
     except InputError:

@@ -217,11 +217,8 @@ def _loop_lengths(given: Mapping[Fabric, float] | float) -> dict[Fabric, float]:
     loops = dict(given) if isinstance(given, Mapping) else dict.fromkeys(FABRICS, given)
     missing = [f.value for f in FABRICS if f not in loops]
     if missing:
-        raise InputError(
-            "loop_length_mm",
-            f"is missing for {', '.join(missing)}.",
-            "Unravel ten stitches of each fabric and divide, or give one length for all.",
-        )
+        remedy = "Unravel ten stitches of each fabric and divide, or give one length for all."
+        raise InputError("loop_length_mm", f"is missing for {', '.join(missing)}.", remedy)
     for fabric, length in loops.items():
         check_range(f"loop_length_mm.{fabric}", length, 1, 100, "mm")
     return loops

@@ -101,11 +101,8 @@ def table_of(materials: Sequence[Material]) -> LibraryTable:
         for fabric in FABRICS:
             record = material.record(fabric)
             if bending is None or record.loop_length_mm is None:
-                raise InputError(
-                    material.identifier,
-                    f"has no bending modulus or no loop length of its {fabric}.",
-                    "Give both.",
-                )
+                problem = f"has no bending modulus or no loop length of its {fabric}."
+                raise InputError(material.identifier, problem, "Give both.")
             for direction in DIRECTIONS:
                 scale = math.log(bending / record.loop_length_mm**3)
                 modulus = math.log(record.law.modulus(direction))
