@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -292,11 +291,8 @@ def size_in_words(columns: int, rows: int) -> str:
 def _period(grid: NDArray[np.bool_], *, cut: bool = False) -> int:
     """Smallest period along axis 0 (one that occurs twice, if it may be cut; else a divisor)."""
     n = int(grid.shape[0])
-    return next((p for p in _candidates(n, cut=cut) if np.array_equal(grid[p:], grid[: n - p])), n)
-
-
-def _candidates(n: int, *, cut: bool) -> Iterator[int]:
-    return (p for p in range(1, n // 2 + 1) if cut or n % p == 0)
+    periods = (p for p in range(1, n // 2 + 1) if cut or n % p == 0)
+    return next((p for p in periods if np.array_equal(grid[p:], grid[: n - p])), n)
 
 
 def as_chart(chart: StitchChart | str) -> StitchChart:

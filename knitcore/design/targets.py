@@ -1,6 +1,7 @@
 """Quantities that a fabric can be searched for, and their values for the repeats of an atlas."""
 
 import math
+import re
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Self
@@ -19,13 +20,7 @@ USUAL_LOAD_N_PER_MM = 0.1
 MAX_LOAD_N_PER_MM = 0.5
 
 
-_UNITS = ("_n_per_mm", "_mm_per_n", "_mmhg")
-
-
-def _without_unit(name: str) -> str:
-    for unit in _UNITS:
-        name = name.removesuffix(unit)
-    return name
+_UNIT = re.compile(r"_(n_per_mm|mm_per_n|mmhg)$")
 
 
 class Quantity(StrEnum):
@@ -58,7 +53,7 @@ class Quantity(StrEnum):
         True
         """
         for quantity in cls:
-            if name in (quantity, _without_unit(quantity)):
+            if name in (quantity, _UNIT.sub("", quantity)):
                 return quantity
         raise InputError("quantity", f"{name!r} is not known.", f"Use {', '.join(cls)}.")
 

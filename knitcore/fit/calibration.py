@@ -155,7 +155,8 @@ def calibrate(
     fitted = problem.law_of(values)
     jacobian = np.asarray(fit.jac, dtype=float)
     covariance = np.linalg.pinv(jacobian.T @ jacobian)
-    spread = np.sqrt(np.diag(covariance)) * _slopes(values)
+    slopes = np.where(np.arange(len(names)) == 2, 1.0, values)  # d value / d unknown
+    spread = np.sqrt(np.diag(covariance)) * slopes
     strain, ratio = problem.force_ratios(fitted)
     return Calibration(
         law=fitted,
@@ -261,10 +262,3 @@ def _to_values(unknowns: Array) -> Array:
     out = np.exp(unknowns)
     out[2] = unknowns[2]
     return np.asarray(out)
-
-
-def _slopes(values: Array) -> Array:
-    """d value / d unknown."""
-    out = values.copy()
-    out[2] = 1.0
-    return out

@@ -268,7 +268,10 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
                 "Give the test pulled along the rows (x) first and the one along the columns (y)"
                 " second.",
             )
-    samples = [_sample_name(test.description) for test in (course, wale)]
+    samples = [
+        " ".join(w for w in test.description.split() if w not in ("X", "Y", "New")).lower()
+        for test in (course, wale)
+    ]
     if all(samples) and samples[0] != samples[1]:
         return (
             f"The tests name different samples ({course.description!r}, {wale.description!r}).",
@@ -290,10 +293,6 @@ def stated_direction(test: StretchTest) -> Direction | None:
         elif letters and not named:
             stated.add(Direction.COURSE if letters[-1] == "X" else Direction.WALE)
     return stated.pop() if len(stated) == 1 else None
-
-
-def _sample_name(description: str) -> str:
-    return " ".join(w for w in description.split() if w not in ("X", "Y", "New")).lower()
 
 
 def _same_points(a: StretchTest, b: StretchTest) -> bool:

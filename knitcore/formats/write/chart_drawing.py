@@ -227,7 +227,7 @@ class _Part:
     def header(self) -> Iterator[Shape]:
         part = ""
         if len(self.rows) < self.chart.rows or len(self.columns) < self.chart.columns:
-            first, last = _stitch_number(self.chart, self.columns)
+            first, last = (self.chart.columns - self.columns[end] for end in (-1, 0))
             part = f"rows {self.rows.start + 1}–{self.rows.stop}, stitches {first}–{last} of "
         name = f"{self.style.title}: " if self.style.title else ""
         yield Label(MARGIN_MM, MARGIN_MM, name + part + _title(self.chart), 4.0)
@@ -356,10 +356,6 @@ class _Part:
             number = self.chart.columns - column
             if number % every == 0 or number == 1:
                 yield Label(self.x(column) + self.cell / 2, y, str(number), SMALL_MM, "middle")
-
-
-def _stitch_number(chart: StitchChart, columns: range) -> tuple[int, int]:
-    return chart.columns - columns.stop + 1, chart.columns - columns.start
 
 
 def _multiple(chart: StitchChart) -> str:

@@ -315,17 +315,17 @@ def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequen
 
 def _gauge(flow: _Flow, facts: _Facts) -> None:
     flow.heading("Gauge and size")
-    stitch = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
+    width, height = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
     of = "of the whole cloth at rest."
     if facts.prediction is None:
         of = "at rest, the mean of all parts; each has its own below."
-    flow.text(f"{_per_10_cm(*stitch)} {of}")
+    flow.text(f"{100 / width:.1f} stitches and {100 / height:.1f} rows to 10 cm {of}")
     places = (0.0, 62.0, 124.0)
     flow.row(("", "along the rows", "along the columns"), places, bold=True)
     size = facts.size
-    width = _interval(size.width_mm, size.width_interval_mm, 0.1, "cm", 1)
-    height = _interval(size.height_mm, size.height_interval_mm, 0.1, "cm", 1)
-    flow.row(("Finished size", width, height), places)
+    across = _interval(size.width_mm, size.width_interval_mm, 0.1, "cm", 1)
+    up = _interval(size.height_mm, size.height_interval_mm, 0.1, "cm", 1)
+    flow.row(("Finished size", across, up), places)
     if facts.prediction is not None:
         pulled = [_pulled(facts.prediction.along(direction)) for direction in Direction]
         flow.row((f"Stretch under {PULL_N_PER_MM * 100:g} N on 10 cm", *pulled), places)
@@ -336,10 +336,6 @@ def _pulled(along: Along) -> str:
     low, high = along.strain_interval(PULL_N_PER_MM)
     strain = float(along.strain(PULL_N_PER_MM))
     return _interval(strain, Interval(float(low), float(high)), 100.0, "%", 0)
-
-
-def _per_10_cm(width_mm: float, height_mm: float) -> str:
-    return f"{100 / width_mm:.1f} stitches and {100 / height_mm:.1f} rows to 10 cm"
 
 
 def _interval(value: float, ends: Interval, scale: float, unit: str, digits: int) -> str:
