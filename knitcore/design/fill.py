@@ -341,19 +341,11 @@ class _Fill:
         regions = []
         for patch, choice in enumerate(trial.choices):
             cells = patches == patch
-            row, column = map(int, np.argwhere(cells)[0])
+            place, deviations = np.argwhere(cells)[0].tolist(), (*off[patch], *there[patch])
+            moduli_there = self._moduli(choice, judged[patch])
+            stitches = int(cells.sum())
             regions.append(
-                Patch(
-                    choice.repeat.key,
-                    int(cells.sum()),
-                    row,
-                    column,
-                    float(off[patch, 0]),
-                    float(off[patch, 1]),
-                    float(there[patch, 0]),
-                    float(there[patch, 1]),
-                    *self._moduli(choice, judged[patch]),
-                )
+                Patch(choice.repeat.key, stitches, *place, *map(float, deviations), *moduli_there)
             )
         self._progress.look(1.0)
         return FilledField(

@@ -51,7 +51,7 @@ def placed(
     local = _LocalCost(target, table, stitch)
     purl = kept.purl.copy()
     for patch, repeat in enumerate(repeats):
-        purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
+        purl[patches == patch] = repeat.resized(*purl.shape).purl[patches == patch]
     if patches.max() > 0:
         _shift(purl, patches, repeats, local, rng, look)
         if scattered:
@@ -100,7 +100,7 @@ def _shift(
             best = purl[cells]
             least = local.around(purl, rows, columns)
             for image in _images(repeats[patch]):
-                purl[cells] = _tiled(image, purl)[cells]
+                purl[cells] = image.resized(*purl.shape).purl[cells]
                 cost = local.around(purl, rows, columns)
                 if cost < least - _ENOUGH:
                     best, least, improved = purl[cells], cost, True
@@ -140,11 +140,6 @@ def _turn(
                 purl[rows, columns] ^= True
         if not improved:
             return
-
-
-def _tiled(repeat: StitchChart, purl: Grid) -> Grid:
-    rows, columns = purl.shape
-    return repeat.resized(rows, columns).purl
 
 
 def _images(repeat: StitchChart) -> list[StitchChart]:

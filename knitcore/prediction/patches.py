@@ -5,9 +5,8 @@ and in steps of that size from there. The densities of a patch are means over th
 size around it, of stitches that know their neighbours beyond the window: the last row of a hem
 counts as one row of it, not as a texture of its own. The patches at the ends are smaller than their
 windows and grow with the chart, so one row more changes little. Up to twice that size, densities
-pass gradually from those of the whole chart to those of patches. They are shifted so that
-their mean is the whole chart's: a cut across a repeat then does not change the result for the
-whole.
+pass gradually from those of the whole chart to those of patches. They are shifted so that their
+mean is the whole chart's: a cut across a repeat then does not change the result for the whole.
 
 Patches form lines along the pull: in a line all patches carry the same force per row (wale), and
 their stretched sizes add up; all lines are strained alike, and their forces add up.

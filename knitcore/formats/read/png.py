@@ -2,8 +2,7 @@
 
 A piece with an outline or with yarns of its own is a picture with a palette, its "no stitch"
 transparent and its yarns light where they knit and dark where they purl; the names of the yarns are
-in
-the file. Any other picture is read by its brightness.
+in the file. Any other picture is read by its brightness.
 """
 
 import io

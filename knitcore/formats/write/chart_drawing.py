@@ -53,6 +53,8 @@ LINE = 1.15
 """Distance of lines of numbers over the size of their type."""
 OVERVIEW_CELL_MM = 2.0
 HEADER_MM = 14.0
+LEFT_MM, TOP_MM = MARGIN_MM + 6.0, HEADER_MM + MARGIN_MM
+"""Place of a chart on its page."""
 A4_MM = (210.0, 297.0)
 NUMBERED_UP_TO = 40
 """Most stitches of a row that are all numbered; longer rows get every fifth number."""
@@ -174,10 +176,6 @@ class _Part:
         return self.piece.chart
 
     @property
-    def _is_shaped(self) -> bool:
-        return not self.piece.is_rectangle
-
-    @property
     def _row_height(self) -> float:
         return self.cell * self.style.aspect
 
@@ -190,27 +188,19 @@ class _Part:
         return self._row_height * len(self.rows)
 
     @property
-    def _left(self) -> float:
-        return MARGIN_MM + 6.0
-
-    @property
     def bottom(self) -> float:
-        return self._top + self._height
-
-    @property
-    def _top(self) -> float:
-        return HEADER_MM + MARGIN_MM
+        return TOP_MM + self._height
 
     def x(self, column: int) -> float:
-        return self._left + self.cell * (column - self.columns.start)
+        return LEFT_MM + self.cell * (column - self.columns.start)
 
     def y(self, row: int) -> float:
         """Upper edge of a row (rows count from the bottom)."""
-        return self._top + self._row_height * (self.rows.stop - 1 - row)
+        return TOP_MM + self._row_height * (self.rows.stop - 1 - row)
 
     def _shapes(self) -> Iterator[Shape]:
         yield from self.header()
-        yield Rectangle(self._left, self._top, self._width, self._height, fill="#ffffff")
+        yield Rectangle(LEFT_MM, TOP_MM, self._width, self._height, fill="#ffffff")
         yield from self._colours()
         yield from self._grid()
         yield self.purls(INK)
@@ -218,7 +208,7 @@ class _Part:
         yield from self.region_borders()
         if self.style.repeats:
             yield from self._placements()
-        elif not self._is_shaped:
+        elif self.piece.is_rectangle:
             yield from self._repeat()
         yield from self._row_numbers()
         yield from self._stitch_numbers()
@@ -235,7 +225,7 @@ class _Part:
         how = "worked flat" if flat else "worked in the round"
         about = (
             f"{self.piece.shaped.stitches} stitches inside the outline"
-            if self._is_shaped
+            if not self.piece.is_rectangle
             else _multiple(self.chart)
         )
         yield Label(MARGIN_MM, MARGIN_MM + 5.5, f"{how}; {about}", 3.0)
@@ -260,14 +250,14 @@ class _Part:
 
     def _grid(self) -> Iterator[Lines]:
         """Fine lines, heavier every ten stitches from the right and every ten rows."""
-        right, total = self._left + self._width, self.chart.columns
+        right, total = LEFT_MM + self._width, self.chart.columns
         fine: list[tuple[float, float, float, float]] = []
         tenth: list[tuple[float, float, float, float]] = []
         for column in range(self.columns.start, self.columns.stop + 1):
-            line = (self.x(column), self._top, self.x(column), self.bottom)
+            line = (self.x(column), TOP_MM, self.x(column), self.bottom)
             (fine if (total - column) % TENTHS else tenth).append(line)
         for row in range(self.rows.start - 1, self.rows.stop):
-            line = (self._left, self.y(row), right, self.y(row))
+            line = (LEFT_MM, self.y(row), right, self.y(row))
             (fine if (row + 1) % TENTHS else tenth).append(line)
         yield Lines(tuple(fine), GRID, 0.15)
         yield Lines(tuple(tenth), TENTH, 0.3)
@@ -278,8 +268,8 @@ class _Part:
             self.rows.start : self.rows.stop, self.columns.start : self.columns.stop
         ]
         rows, columns = np.nonzero(window)
-        x = self._left + self.cell * (columns + 0.5)
-        y = self._top + self._row_height * (len(self.rows) - 0.5 - rows)
+        x = LEFT_MM + self.cell * (columns + 0.5)
+        y = TOP_MM + self._row_height * (len(self.rows) - 0.5 - rows)
         radius = round(0.22 * min(self.cell, self._row_height), 3)
         return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, colour)
 
@@ -345,9 +335,9 @@ class _Part:
             side = side_of_row(row, self.style.construction, self.style.first_side)
             y = self.y(row) + self._row_height / 2 + SMALL_MM * 0.35
             if side is Side.RS:
-                yield Label(self._left + self._width + 1.2, y, str(row + 1), SMALL_MM)
+                yield Label(LEFT_MM + self._width + 1.2, y, str(row + 1), SMALL_MM)
             else:
-                yield Label(self._left - 1.2, y, str(row + 1), SMALL_MM, "end")
+                yield Label(LEFT_MM - 1.2, y, str(row + 1), SMALL_MM, "end")
 
     def _stitch_numbers(self) -> Iterator[Shape]:
         y = self.bottom + 3.4
