@@ -11,8 +11,8 @@ from itertools import combinations
 from math import prod
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.patterns import PATTERNS, rib, welt
@@ -87,9 +87,7 @@ def striped_repeats() -> tuple[StitchChart, ...]:
     return tuple(chart for chart in distinct if max(chart.purl.shape) > 4)
 
 
-def _symmetries(
-    rows: int, columns: int
-) -> Iterator[tuple[NDArray[np.intp], tuple[int, int] | None]]:
+def _symmetries(rows: int, columns: int) -> Iterator[tuple[Indices, tuple[int, int] | None]]:
     """Orders of the cells under all translations, each also mirrored.
 
     The second value is the shift of a translation that would make a repeat smaller: one along a

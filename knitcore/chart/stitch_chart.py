@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.base import showing
+from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 
@@ -51,7 +51,7 @@ class StitchChart:
     True
     """
 
-    purl: NDArray[np.bool_]
+    purl: Mask
 
     def __post_init__(self) -> None:
         grid = np.array(self.purl, dtype=bool)
@@ -288,7 +288,7 @@ def size_in_words(columns: int, rows: int) -> str:
     return " x ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in counts)
 
 
-def _period(grid: NDArray[np.bool_], *, cut: bool = False) -> int:
+def _period(grid: Mask, *, cut: bool = False) -> int:
     """Smallest period along axis 0 (one that occurs twice, if it may be cut; else a divisor)."""
     n = int(grid.shape[0])
     periods = (p for p in range(1, n // 2 + 1) if cut or n % p == 0)

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
@@ -186,7 +186,7 @@ class Atlas:
         return tuple(knitting_cost(self.chart(k)) for k in range(len(self)))
 
     @cached_property
-    def stitches(self) -> NDArray[np.intp]:
+    def stitches(self) -> Indices:
         """Number of stitches of each repeat."""
         return np.array([len(key.replace("/", "")) for key in self.keys], dtype=np.intp)
 

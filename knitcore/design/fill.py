@@ -13,9 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, InputError, SearchProgress
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
@@ -31,8 +30,6 @@ from knitcore.design.region_patches import best_labels, connected, smooth, uneve
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Interval
 from knitcore.mechanics.local_moduli import LocalModuli, local_moduli, stitch_table
-
-Labels = NDArray[np.intp]
 
 CLOSE = 0.03
 """A repeat of the atlas nearer than this (in logarithms) is taken as it is."""
@@ -70,7 +67,7 @@ class FilledField:
     """
 
     chart: StitchChart
-    patches: Labels
+    patches: Indices
     regions: tuple[Patch, ...]
     local: LocalModuli
     off_share: float
@@ -83,9 +80,9 @@ def fill_field(
     material: Material,
     atlas: Atlas,
     *,
-    parts: Labels | None = None,
+    parts: Indices | None = None,
     kept: StitchChart | None = None,
-    stitch: NDArray[np.bool_] | None = None,
+    stitch: Mask | None = None,
     smallest_patch: int = 4,
     scattered: bool = True,
     seed: int = 0,
@@ -168,9 +165,9 @@ class _Fill:
     def __init__(
         self,
         target: Array,
-        parts: Labels,
+        parts: Indices,
         kept: StitchChart | None,
-        stitch: NDArray[np.bool_] | None,
+        stitch: Mask | None,
         material: Material,
         atlas: Atlas,
         scattered: bool,
@@ -229,7 +226,7 @@ class _Fill:
     def _of_atlas(self, entry: int) -> _Choice:
         return _Choice(self._atlas.chart(entry), self._atlas.log_moduli[entry])
 
-    def _mixed(self, patches: Labels, choices: list[_Choice]) -> list[_Choice]:
+    def _mixed(self, patches: Indices, choices: list[_Choice]) -> list[_Choice]:
         """Mixtures, where they come nearer than repeats of the atlas."""
         targets = self._targets(patches, len(choices))
         off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - targets)).max(axis=1)
@@ -261,7 +258,7 @@ class _Fill:
             return None
         return _Choice(mixture.repeat, mixture.log_moduli)
 
-    def _chosen_again(self, patches: Labels, last: _Trial) -> list[_Choice] | None:
+    def _chosen_again(self, patches: Indices, last: _Trial) -> list[_Choice] | None:
         """The nearest repeats, given each patch's factors in the swatch; None if none changes."""
         targets = self._targets(patches, len(last.choices)) - last.factors
         if self._is_alone(last.choices):
@@ -277,7 +274,7 @@ class _Fill:
         return improved if changed else None
 
     def _trial(
-        self, patches: Labels, choices: list[_Choice], start: float, *, check: bool
+        self, patches: Indices, choices: list[_Choice], start: float, *, check: bool
     ) -> _Trial:
         repeats = [choice.repeat for choice in choices]
         chart = placed(
@@ -306,7 +303,7 @@ class _Fill:
         off = _spread(self._judged(choices, factors), patches) - self._target_map
         return _Trial(chart, tuple(choices), factors, self._off_share(off) + 0.1 * self._rms(off))
 
-    def _targets(self, patches: Labels, count: int) -> Array:
+    def _targets(self, patches: Indices, count: int) -> Array:
         """(patches, 2) medians of the targets' logarithms, NaN where a patch has none."""
         medians = np.full((count, 2), np.nan)
         for patch in range(count):
@@ -331,7 +328,7 @@ class _Fill:
             (message,),
         )
 
-    def _filled(self, patches: Labels, trial: _Trial, *, check: bool) -> FilledField:
+    def _filled(self, patches: Indices, trial: _Trial, *, check: bool) -> FilledField:
         moduli = np.stack([choice.log_moduli for choice in trial.choices])
         targets = self._targets(patches, len(trial.choices))
         off, there = np.expm1(moduli - targets), np.full(moduli.shape, np.nan)
@@ -341,12 +338,12 @@ class _Fill:
         regions = []
         for patch, choice in enumerate(trial.choices):
             cells = patches == patch
-            place, deviations = np.argwhere(cells)[0].tolist(), (*off[patch], *there[patch])
-            moduli_there = self._moduli(choice, judged[patch])
-            stitches = int(cells.sum())
-            regions.append(
-                Patch(choice.repeat.key, stitches, *place, *map(float, deviations), *moduli_there)
-            )
+            row, column = np.argwhere(cells)[0].tolist()
+            repeat = choice.repeat.key, int(cells.sum()), row, column
+            course, wale = off[patch].tolist()
+            swatch_course, swatch_wale = there[patch].tolist()
+            deviations = course, wale, swatch_course, swatch_wale
+            regions.append(Patch(*repeat, *deviations, *self._moduli(choice, judged[patch])))
         self._progress.look(1.0)
         return FilledField(
             trial.chart,
@@ -394,7 +391,7 @@ class _Fill:
         return moduli if self._is_alone(choices) else moduli + factors
 
 
-def _spread(values: Array, patches: Labels) -> Array:
+def _spread(values: Array, patches: Indices) -> Array:
     """(2, rows, columns) of values (patches, 2); NaN at stitches that are kept."""
     known = np.vstack([values, np.full(2, np.nan)])
     return known[patches].transpose(2, 0, 1)
@@ -406,7 +403,7 @@ def _reaching(ends: Sequence[float], factor: float) -> Interval:
     return Interval(low * min(factor, 1.0), high * max(factor, 1.0))
 
 
-def _extent(cells: NDArray[np.bool_]) -> tuple[int, int]:
+def _extent(cells: Mask) -> tuple[int, int]:
     rows, columns = (np.flatnonzero(cells.any(axis=axis)) for axis in (1, 0))
     return int(np.ptp(rows)) + 1, int(np.ptp(columns)) + 1
 

@@ -5,13 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import check_chart_size
 
-Parts = NDArray[np.intp]
+Parts = Indices
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Part
     return parts
 
 
-def _cells(target: PartTarget, rows: int, columns: int) -> NDArray[np.bool_]:
+def _cells(target: PartTarget, rows: int, columns: int) -> Mask:
     cells = np.zeros((rows, columns), dtype=bool)
     for row, first, length in target.runs:
         if not (0 <= row < rows and first >= 0 and length >= 1 and first + length <= columns):
@@ -93,7 +92,7 @@ def _cells(target: PartTarget, rows: int, columns: int) -> NDArray[np.bool_]:
     return cells
 
 
-def _refuse(target: PartTarget, other: PartTarget, cells: NDArray[np.bool_], axis: int) -> None:
+def _refuse(target: PartTarget, other: PartTarget, cells: Mask, axis: int) -> None:
     row, column = np.argwhere(cells)[0] + 1
     values = [(w.course_n_per_mm, w.wale_n_per_mm)[axis] for w in (other, target)]
     raise InputError(

@@ -3,15 +3,13 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.chart.phases import surroundings
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.mechanics.local_moduli import StitchTable, windows_of
 
-Grid = NDArray[np.bool_]
 Look = Callable[[float], None]
 
 BORDER = 2
@@ -21,13 +19,13 @@ _ENOUGH = 1e-12
 
 
 def placed(
-    patches: NDArray[np.intp],
+    patches: Indices,
     repeats: list[StitchChart],
     target: Array,
     table: StitchTable,
     *,
     kept: StitchChart,
-    stitch: Grid,
+    stitch: Mask,
     scattered: bool,
     seed: int,
     look: Look,
@@ -62,12 +60,12 @@ def placed(
 class _LocalCost:
     """Squared deviations of local moduli from the map, by windows."""
 
-    def __init__(self, target: Array, table: StitchTable, stitch: Grid) -> None:
+    def __init__(self, target: Array, table: StitchTable, stitch: Mask) -> None:
         self._stitch = stitch
         have = table.log_moduli[:, None, None]
         self._cost = np.nansum((have - target[..., None]) ** 2, axis=0)
 
-    def around(self, purl: Grid, rows: slice, columns: slice) -> float:
+    def around(self, purl: Mask, rows: slice, columns: slice) -> float:
         """Cost of all stitches whose surroundings a change inside the window can alter."""
         (row, far_row), (column, far_column) = (
             windows_of(s, n) for s, n in zip((rows, columns), purl.shape, strict=True)
@@ -82,8 +80,8 @@ class _LocalCost:
 
 
 def _shift(
-    purl: Grid,
-    patches: NDArray[np.intp],
+    purl: Mask,
+    patches: Indices,
     repeats: list[StitchChart],
     local: _LocalCost,
     rng: np.random.Generator,
@@ -110,9 +108,9 @@ def _shift(
 
 
 def _turn(
-    purl: Grid,
-    patches: NDArray[np.intp],
-    free: Grid,
+    purl: Mask,
+    patches: Indices,
+    free: Mask,
     local: _LocalCost,
     rng: np.random.Generator,
     look: Look,

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.bounds import check_positive, check_range
 from knitcore.base.errors import Cancelled, InputError, SearchProgress
 from knitcore.chart.fabric import Direction, Fabric
@@ -326,7 +326,7 @@ class _Run:
         ]
 
 
-def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> NDArray[np.intp]:
+def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> Indices:
     """Repeats that stretch and narrow differently."""
     shapes = np.array([atlas.chart(k).purl.shape for k in range(len(atlas))])
     side = direction.of(shapes[:, 0], shapes[:, 1])

@@ -9,10 +9,9 @@ yarn's diameter.
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Codes
 from knitcore.chart.stitch_chart import StitchChart
 
 SELF, LEFT, RIGHT, ABOVE = 1, 2, 4, 8
@@ -26,7 +25,7 @@ _KNOTS = np.array([0.0, 0.08, 0.21, 0.29, 0.42, 0.5])
 """Foot centre, foot end, lower leg, upper leg, head end, head centre; fractions of a stitch."""
 
 
-def loop_kinds(chart: StitchChart) -> NDArray[np.uint8]:
+def loop_kinds(chart: StitchChart) -> Codes:
     """Kind of loop of each stitch, 0 to 15, shape (rows, columns).
 
     The stitch itself, its left and right neighbours and the one above decide how the yarn runs; at
@@ -36,7 +35,7 @@ def loop_kinds(chart: StitchChart) -> NDArray[np.uint8]:
     left = np.concatenate([purl[:, :1], purl[:, :-1]], axis=1)
     right = np.concatenate([purl[:, 1:], purl[:, -1:]], axis=1)
     above = np.concatenate([purl[1:], purl[-1:]], axis=0)
-    kinds: NDArray[np.uint8] = purl * SELF | left * LEFT | right * RIGHT | above * ABOVE
+    kinds: Codes = purl * SELF | left * LEFT | right * RIGHT | above * ABOVE
     return kinds
 
 

@@ -27,9 +27,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -242,7 +241,7 @@ def _points(test: StretchTest, reduction: Reduction) -> tuple[Array, Array, Arra
     return columns[0], columns[1], columns[2], columns[3]
 
 
-def _shared_range(test: StretchTest, strain: Array) -> NDArray[np.bool_]:
+def _shared_range(test: StretchTest, strain: Array) -> Mask:
     """Points between the strains where every complete pull has begun and none has ended."""
     peak = test.peak_stress
     complete = [r for r in test.runs if r.stress.max() >= COMPLETE_SHARE * peak]

@@ -2,9 +2,7 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from knitcore.base.arrays import Mask
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
@@ -78,13 +76,13 @@ class Part:
     """A named part of an outline in one pure fabric, before it is filled."""
 
     name: str
-    cells: NDArray[np.bool_]
+    cells: Mask
     fabric: Fabric
 
 
 def make_plan(
     name: str,
-    stitch: NDArray[np.bool_],
+    stitch: Mask,
     parts: tuple[Part, ...],
     material: Material,
     gauges: GaugeSet,

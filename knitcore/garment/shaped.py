@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.base import showing
+from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.phases import continued
 from knitcore.chart.stitch_chart import StitchChart
@@ -33,7 +33,7 @@ class ShapedChart:
     """
 
     chart: StitchChart
-    stitch: NDArray[np.bool_]
+    stitch: Mask
 
     def __post_init__(self) -> None:
         inside = np.array(self.stitch, dtype=bool)
@@ -104,7 +104,7 @@ class ShapedChart:
         return hash((self.stitch.tobytes(), self.chart.purl[self.stitch].tobytes()))
 
 
-def outline_marks(outline: str) -> NDArray[np.bool_]:
+def outline_marks(outline: str) -> Mask:
     """Read an outline as a mask (rows, columns) of stitches, row 0 at the bottom.
 
     Raises
@@ -118,7 +118,7 @@ def outline_marks(outline: str) -> NDArray[np.bool_]:
     return np.array([[mark == INSIDE for mark in line] for line in marks[::-1]])
 
 
-def check_outline(stitch: NDArray[np.bool_]) -> None:
+def check_outline(stitch: Mask) -> None:
     """Refuse an outline in several parts, naming the row."""
     spans = []
     for row, inside in enumerate(stitch, start=1):
@@ -138,7 +138,7 @@ def check_outline(stitch: NDArray[np.bool_]) -> None:
             raise InputError("outline", problem, remedy)
 
 
-def largest_rectangle(stitch: NDArray[np.bool_]) -> tuple[slice, slice]:
+def largest_rectangle(stitch: Mask) -> tuple[slice, slice]:
     """Rows and columns of the rectangle with the most stitches that lies wholly inside.
 
     Row by row, each column has a height: the stitches without a gap down from this row. The

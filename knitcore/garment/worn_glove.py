@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
@@ -156,7 +156,7 @@ class _Loop:
     """
 
     names: dict[int, str]
-    rows: NDArray[np.intp]
+    rows: Indices
     first: int
     at_mm: Array
     begins_mm: float
@@ -283,7 +283,7 @@ def _thumb(hand: Hand, layout: GloveLayout, heights_mm: Array, trunk: Curve, roo
 def _fingers(
     hand: Hand,
     layout: GloveLayout,
-    palm_rows: NDArray[np.intp],
+    palm_rows: Indices,
     heights_mm: Array,
     palm: Curve,
     palm_mm: float,

@@ -7,10 +7,9 @@ from enum import StrEnum
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.base import showing
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Codes
 from knitcore.base.choice import Choice
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction, Fabric
@@ -214,7 +213,7 @@ class Material:
         return showing.captioned(showing.html_table(head, rows), title, self.note)
 
 
-def loop_lengths_mm(quarters: NDArray[np.uint8], material: Material) -> Array:
+def loop_lengths_mm(quarters: Codes, material: Material) -> Array:
     """Yarn of stitches, (...): the mean loop length of their quarters' fabrics.
 
     Parameters

@@ -15,10 +15,8 @@ from skimage.measure import label, regionprops
 from skimage.morphology import isotropic_opening, skeletonize
 from skimage.transform import rescale
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
-
-Mask = NDArray[np.bool_]
 
 MAX_PIXELS = 60_000_000
 MAX_BYTES = 100 * 2**20

@@ -6,10 +6,9 @@ import re
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
@@ -47,7 +46,7 @@ class StretchRun:
         """Number of points."""
         return len(self.stress)
 
-    def only(self, points: slice | NDArray[np.bool_]) -> StretchRun:
+    def only(self, points: slice | Mask) -> StretchRun:
         """The run with some of its points."""
         return StretchRun(
             self.name, self.strain_along[points], self.strain_across[points], self.stress[points]
@@ -146,7 +145,7 @@ class StretchTest:
         return replace(self, runs=runs, width_mm=(width_mm,) * len(runs))
 
 
-def misread_forces(force: Array) -> NDArray[np.bool_]:
+def misread_forces(force: Array) -> Mask:
     """Isolated readings far from their neighbours (a digit misread from a display)."""
     if len(force) < 7:
         return np.zeros(len(force), dtype=bool)

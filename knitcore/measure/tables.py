@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.measure.workbooks import is_workbook, read_workbook
 
@@ -53,7 +52,7 @@ def read_table(path: Path, header: str) -> pd.DataFrame:
     return table
 
 
-def rows_by_label(table: pd.DataFrame, column: str, default: str) -> dict[str, NDArray[np.intp]]:
+def rows_by_label(table: pd.DataFrame, column: str, default: str) -> dict[str, Indices]:
     """Rows of a table by their label in a column, in the order in which the labels come.
 
     Parameters

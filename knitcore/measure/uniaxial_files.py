@@ -20,9 +20,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.measure.stretch_test import (
     MIN_POINTS,
@@ -351,7 +350,7 @@ def _check_header(name: str, columns: list[str]) -> None:
 
 
 def _run(
-    name: str, label: str, rows: NDArray[np.intp], values: dict[str, Array]
+    name: str, label: str, rows: Indices, values: dict[str, Array]
 ) -> tuple[StretchRun, float]:
     title = f"{name}, run {label}" if label else name
     width = values["width_mm"][rows]

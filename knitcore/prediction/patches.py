@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.response import Response, response_through
@@ -245,7 +245,7 @@ def in_patches(repeat: StitchChart, material: Material, size: RelaxedSize | None
     )
 
 
-def _cuts(stitches: int) -> NDArray[np.intp]:
+def _cuts(stitches: int) -> Indices:
     """Where patches begin and end: the middle and steps from there, as far as there are stitches.
 
     Examples
@@ -262,7 +262,7 @@ def _cuts(stitches: int) -> NDArray[np.intp]:
 
 
 def _densities_of(
-    repeat: StitchChart, whole: Densities, rows: NDArray[np.intp], columns: NDArray[np.intp]
+    repeat: StitchChart, whole: Densities, rows: Indices, columns: Indices
 ) -> Densities:
     """Densities of the patches, row by row, as means over the window of each.
 
@@ -278,7 +278,7 @@ def _densities_of(
     return Densities(_shares(shares), excess, np.clip(straight, 0.0, 1.0), _shares(ways))
 
 
-def _windows(cuts: NDArray[np.intp]) -> Array:
+def _windows(cuts: Indices) -> Array:
     """(patches, stitches) weights that take the mean over the window of each patch."""
     weights = np.zeros((len(cuts) - 1, end := int(cuts[-1])))
     for own, (low, high) in zip(weights, pairwise(cuts.tolist()), strict=True):

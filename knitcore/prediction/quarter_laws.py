@@ -28,10 +28,9 @@ from functools import lru_cache, partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Codes, Indices
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.phases import pure_fabric, quarter_phases
 from knitcore.chart.stitch_chart import StitchChart
@@ -75,7 +74,7 @@ class QuarterLaws:
     """
 
     laws: tuple[ConstitutiveLaw, ...]
-    patch: NDArray[np.intp]
+    patch: Indices
     scale: Array
     log_sd: Callable[[], Array]
 
@@ -121,8 +120,8 @@ def quarter_laws(
 
 
 def _each(
-    patches: Patches, phases: NDArray[np.uint8]
-) -> Iterator[tuple[tuple[slice, slice], NDArray[np.uint8], Prediction]]:
+    patches: Patches, phases: Codes
+) -> Iterator[tuple[tuple[slice, slice], Codes, Prediction]]:
     """Stitches, quarter cells and prediction of each patch."""
     for (below, above), line in zip(pairwise(patches.rows), patches.predictions, strict=True):
         for (left, right), prediction in zip(pairwise(patches.columns), line, strict=True):
@@ -130,7 +129,7 @@ def _each(
             yield (slice(below, above), slice(left, right)), cells, prediction
 
 
-def _stress_log_sd(phases: NDArray[np.uint8], patches: Patches, material: Material) -> Array:
+def _stress_log_sd(phases: Codes, patches: Patches, material: Material) -> Array:
     """The mean of the patches."""
     spread, all_cells = np.zeros((2, len(SPREAD_AT))), 4 * patches.rows[-1] * patches.columns[-1]
     for _, cells, prediction in _each(patches, phases):
@@ -140,9 +139,7 @@ def _stress_log_sd(phases: NDArray[np.uint8], patches: Patches, material: Materi
     return spread
 
 
-def _scale(
-    chart: StitchChart, phases: NDArray[np.uint8], patches: Patches, material: Material
-) -> Array:
+def _scale(chart: StitchChart, phases: Codes, patches: Patches, material: Material) -> Array:
     """Folded sizes of the stitches over those of their phases, with the predicted mean.
 
     Each stitch folds by its surroundings, so that a hem is narrower than the cloth above it.
@@ -171,18 +168,18 @@ def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
     return QuarterLaws(laws, np.zeros(shape, dtype=np.intp), np.ones((*shape, 2)), none)
 
 
-def _records(cells: NDArray[np.uint8], material: Material) -> list[FabricRecord]:
+def _records(cells: Codes, material: Material) -> list[FabricRecord]:
     """Records of the four phases; one that does not occur is replaced by one that does."""
     present = np.unique(cells)
     return [material.record(PHASES[k if k in present else present[0]]) for k in range(4)]
 
 
-def _shares(cells: NDArray[np.uint8]) -> Array:
+def _shares(cells: Codes) -> Array:
     return np.bincount(cells.ravel(), minlength=4) / cells.size
 
 
 def _own_log_sd(
-    cells: NDArray[np.uint8], prediction: Prediction, material: Material, direction: Direction
+    cells: Codes, prediction: Prediction, material: Material, direction: Direction
 ) -> Array:
     """Part of the predicted stress interval that does not come from the laws' own uncertainty."""
     along = prediction.along(direction)
@@ -194,7 +191,7 @@ def _own_log_sd(
 
 
 def _fitted_laws(
-    cells: NDArray[np.uint8], prediction: Prediction, material: Material, parts: Array | None
+    cells: Codes, prediction: Prediction, material: Material, parts: Array | None
 ) -> list[ConstitutiveLaw]:
     """Laws of the phases that give a patch its predicted response.
 
@@ -260,7 +257,7 @@ def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, fl
     return _fitted(law_strains(law, direction, STRESSES))
 
 
-def _parts(cells: NDArray[np.uint8], material: Material) -> Array:
+def _parts(cells: Codes, material: Material) -> Array:
     """Ratios of the phases' strains to the cloth's at :data:`STRESSES`, (2, phases, stresses).
 
     They are half as far from 1 as in the flat composite, and as far in wide areas of one phase.
@@ -275,9 +272,7 @@ def _parts(cells: NDArray[np.uint8], material: Material) -> Array:
     return np.array(ratios)
 
 
-def _flat_strain(
-    cells: NDArray[np.uint8], records: list[FabricRecord], direction: Direction
-) -> Array:
+def _flat_strain(cells: Codes, records: list[FabricRecord], direction: Direction) -> Array:
     lines = cells if direction is Direction.COURSE else cells.T
     along, across = (
         np.array([r.stitch_size_mm(d) for r in records]) for d in (direction, direction.other)

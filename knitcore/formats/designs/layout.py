@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
@@ -114,7 +114,7 @@ def layout_fields(design: DesignLayout) -> dict[str, Any]:
     return {name: getattr(design, name) for name in DesignLayout.model_fields}
 
 
-def region_cells(region: DesignRegion, rows: int, columns: int) -> NDArray[np.bool_]:
+def region_cells(region: DesignRegion, rows: int, columns: int) -> Mask:
     """The stitches of a region, bool (rows, columns), row 0 at the bottom.
 
     Raises
@@ -135,7 +135,7 @@ def region_cells(region: DesignRegion, rows: int, columns: int) -> NDArray[np.bo
     return cells
 
 
-def runs_of(cells: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
+def runs_of(cells: Mask) -> list[tuple[int, int, int]]:
     """The inverse of :func:`region_cells`."""
     edges = np.diff(np.pad(cells.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     starts, stops = np.argwhere(edges == 1).tolist(), np.argwhere(edges == -1)[:, 1].tolist()
@@ -242,7 +242,7 @@ def layout_notes(chart: StitchChart, layout: DesignLayout) -> tuple[str, ...]:
     )
 
 
-def _outline_notes(stitch: NDArray[np.bool_]) -> Iterator[str]:
+def _outline_notes(stitch: Mask) -> Iterator[str]:
     try:
         check_outline(stitch)
     except InputError as error:
@@ -263,7 +263,7 @@ def _yarn_notes(regions: Sequence[DesignRegion]) -> Iterator[str]:
 
 
 def _region_notes(
-    chart: StitchChart, stitch: NDArray[np.bool_], regions: Sequence[DesignRegion]
+    chart: StitchChart, stitch: Mask, regions: Sequence[DesignRegion]
 ) -> Iterator[str]:
     above = np.zeros(stitch.shape, dtype=bool)
     notes = []

@@ -10,9 +10,9 @@ import json
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, PngImagePlugin, UnidentifiedImageError
 
+from knitcore.base.arrays import Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
 from knitcore.garment.piece import Piece, PieceYarn
@@ -102,7 +102,7 @@ def read_png_piece(file: Path) -> Piece:
         ) from None
 
 
-def _piece(index: NDArray[np.intp], said: str, name: str) -> Piece:
+def _piece(index: Indices, said: str, name: str) -> Piece:
     damaged = InputError("chart", f"{name} is damaged.", "Export it again as PNG.")
     try:
         yarns = tuple(PieceYarn(str(yarn), str(colour)) for yarn, colour in json.loads(said))

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Mask
 from knitcore.chart.row_sides import Construction, Side, side_of_row
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.write.chart_key import (
@@ -297,7 +297,7 @@ class _Part:
             if lines:
                 yield Lines(tuple(lines), region.colour, 0.6)
 
-    def _edges(self, changes: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    def _edges(self, changes: Mask) -> list[tuple[int, int]]:
         """Rows and columns of the chart at which something changes."""
         first = np.array([self.rows.start, self.columns.start])
         return [(int(r), int(c)) for r, c in np.argwhere(changes) + first]

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
 from knitcore.cloth.space.surface import Surface, corners_of, filled
@@ -26,11 +26,8 @@ DEFAULT_DIAMETER_SHARE = 0.3
 
 
 def course_centre_lines(
-    chart: StitchChart,
-    corners_mm: NDArray[np.float64],
-    material: Material,
-    stitches: NDArray[np.bool_] | None = None,
-) -> tuple[NDArray[np.float64], ...]:
+    chart: StitchChart, corners_mm: Array, material: Material, stitches: Mask | None = None
+) -> tuple[Array, ...]:
     """The yarn of every course on a surface, mm: (stitches * (POINTS - 1) + 1, 3).
 
     Parameters
@@ -41,7 +38,7 @@ def course_centre_lines(
     shown = np.ones(chart.purl.shape, dtype=bool) if stitches is None else stitches
     surface = Surface(corners_mm)
     radius, kinds = yarn_radius_mm(chart, material), loop_kinds(chart)
-    lines: list[NDArray[np.float64]] = []
+    lines: list[Array] = []
     for row in range(chart.rows):
         for columns in _runs(shown[row]):
             shapes = np.stack([loop_centre_line(int(k), POINTS) for k in kinds[row, columns]])
@@ -78,7 +75,7 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
     return solid(lines, yarn_radius_mm(grid, material))
 
 
-def solid(lines: Iterable[NDArray[np.float64]], radius_mm: float) -> TriangleMesh:
+def solid(lines: Iterable[Array], radius_mm: float) -> TriangleMesh:
     """Closed tubes around centre lines, mm."""
     tubes = [_closed(tube_mesh(line, radius_mm, SIDES)) for line in lines]
     offsets = np.cumsum([0, *(len(t.vertices) for t in tubes[:-1])])
@@ -99,10 +96,7 @@ def write_stl(chart: StitchChart | Piece, material: Material) -> bytes:
 
 
 def write_curled_glb(
-    chart: StitchChart,
-    corners_mm: NDArray[np.float64],
-    material: Material,
-    stitches: NDArray[np.bool_] | None = None,
+    chart: StitchChart, corners_mm: Array, material: Material, stitches: Mask | None = None
 ) -> bytes:
     """Binary glTF 2.0 in metres: the loops on a curled surface, courses as closed tubes.
 
@@ -133,7 +127,7 @@ def _closed(mesh: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(mesh.vertices, faces)
 
 
-def _runs(stitches: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+def _runs(stitches: Mask) -> list[Indices]:
     """Columns of the stitches of a row, those side by side together."""
     columns = np.flatnonzero(stitches)
     runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)

@@ -12,13 +12,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import strain_at_stress
-from knitcore.materials.estimate.mixed_model import Mask
 from knitcore.materials.estimate.yarn_statistics import (
     DIRECTIONS,
     FABRICS,
