@@ -11,22 +11,16 @@ from knitcore.formats.read.written_reader import looks_written, read_piece_rows,
 from knitcore.formats.write.written_pattern import row_words, write_rows
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
-from tests.knitcore.charts import stitch_charts
+from tests.knitcore.charts import WAYS_TO_WORK, stitch_charts
 from tests.knitcore.pieces import pieces
 
 YARNS = PieceYarn("cream", "#ffffee"), PieceYarn("blue", "#0000ff")
 TWO_YARNS = "Yarn A: red (#ff0000)\nYarn B: blue (#0000ff)\n"
 
 
-@given(
-    chart=stitch_charts(),
-    construction=st.sampled_from(Construction),
-    first_side=st.sampled_from(Side),
-)
-def test_written_text_is_read_back(
-    chart: StitchChart, construction: Construction, first_side: Side
-) -> None:
-    assert read_rows(write_rows(chart, construction, first_side=first_side)) == chart
+@given(chart=stitch_charts(), way=WAYS_TO_WORK)
+def test_written_text_is_read_back(chart: StitchChart, way: tuple[Construction, Side]) -> None:
+    assert read_rows(write_rows(chart, way[0], first_side=way[1])) == chart
 
 
 @given(
