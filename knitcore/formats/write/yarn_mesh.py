@@ -1,19 +1,23 @@
 """The yarn of a chart as a solid: one closed tube a course, as glTF (metres) or STL (mm).
 
-The loops are drawn; the cloth lies flat at rest, with the stitch size that `predict` gives.
+The cloth lies flat at rest, with the stitch size that `predict` gives. A loop has the right
+topology for any neighbours: feet go behind the loops of the row below, legs pass in front, the head
+passes behind the legs of the row above; a purl is the mirror image. Only its proportions are drawn,
+not computed: lengths and contacts are those of the stitch cell and the yarn's diameter.
 """
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
-from knitcore.base.arrays import Array, Indices, Mask
+from knitcore.base.arrays import Array, Codes, Indices, Mask
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
 from knitcore.cloth.space.surface import Surface, corners_of, filled
 from knitcore.draw.laid_out import laid_corners_mm
-from knitcore.draw.loops import loop_centre_line, loop_kinds
 from knitcore.draw.tubes import TriangleMesh, tube_mesh
 from knitcore.garment.piece import Piece
 from knitcore.materials import Material
@@ -23,6 +27,16 @@ MAX_STITCHES = 10_000
 POINTS, SIDES = 17, 6
 DEFAULT_DIAMETER_SHARE = 0.3
 """Yarn diameter over stitch width if the material has no yarn diameter."""
+
+SELF, LEFT, RIGHT, ABOVE = 1, 2, 4, 8
+"""Bits of a kind of loop; a bit is set if that stitch is a purl."""
+
+_NECK = 0.17
+"""Lean of the legs, out at the head and in at the neck, in stitch widths (0: a cosine)."""
+_REACH = 0.78
+"""Half the height of a loop in row heights: loops reach through those of the row below."""
+_KNOTS = np.array([0.0, 0.08, 0.21, 0.29, 0.42, 0.5])
+"""Foot centre, foot end, lower leg, upper leg, head end, head centre; fractions of a stitch."""
 
 
 def course_centre_lines(
@@ -132,3 +146,37 @@ def _runs(stitches: Mask) -> list[Indices]:
     columns = np.flatnonzero(stitches)
     runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
     return [run for run in runs if len(run)]
+
+
+def loop_kinds(chart: StitchChart) -> Codes:
+    """Kind of loop of each stitch, 0 to 15, shape (rows, columns).
+
+    The stitch itself, its left and right neighbours and the one above decide how the yarn runs; at
+    an edge the stitch itself stands in for the missing neighbour.
+    """
+    purl = chart.purl.astype(np.uint8)
+    left = np.concatenate([purl[:, :1], purl[:, :-1]], axis=1)
+    right = np.concatenate([purl[:, 1:], purl[:, -1:]], axis=1)
+    above = np.concatenate([purl[1:], purl[-1:]], axis=0)
+    kinds: Codes = purl * SELF | left * LEFT | right * RIGHT | above * ABOVE
+    return kinds
+
+
+@lru_cache(maxsize=256)
+def loop_centre_line(kind: int, points: int = 48) -> Array:
+    """Centre line of one kind of loop, shape (points, 3).
+
+    x and y are in units of stitch width and row height, from the centre of the cell, z in units of
+    the yarn's radius, positive towards the face. It begins and ends on the cell's left and right
+    edges, where it meets the neighbours' loops. The array is cached and read-only.
+    """
+    u = np.linspace(0.0, 1.0, points)
+    side, left, right, above = (1.0 - 2.0 * bool(kind & bit) for bit in (SELF, LEFT, RIGHT, ABOVE))
+    x = u - 0.5 + _NECK * np.sin(4 * np.pi * u)
+    y = -_REACH * np.cos(2 * np.pi * u)
+    half_left = PchipInterpolator(_KNOTS, [(side + left) / 2, side, -side, -above, above, above])
+    half_right = PchipInterpolator(_KNOTS, [(side + right) / 2, side, -side, -above, above, above])
+    z = np.where(u <= 0.5, half_left(np.minimum(u, 0.5)), half_right(np.minimum(1 - u, 0.5)))
+    line = np.stack([x, y, -z], axis=1)
+    line.setflags(write=False)
+    return line
