@@ -37,13 +37,7 @@ class ShapedChart:
 
     def __post_init__(self) -> None:
         inside = np.array(self.stitch, dtype=bool)
-        if inside.shape != self.chart.purl.shape:
-            raise InputError(
-                "outline",
-                f"it has {inside.shape[-1]}x{inside.shape[0]} cells, the chart "
-                f"{self.chart.columns}x{self.chart.rows}.",
-                "Give one mark for every stitch of the chart.",
-            )
+        check_outline_size(inside, self.chart)
         check_outline(inside)
         inside.setflags(write=False)
         object.__setattr__(self, "stitch", inside)
@@ -116,6 +110,15 @@ def outline_marks(outline: str) -> Mask:
     if not marks or len({len(line) for line in marks}) > 1 or set("".join(marks)) - set("x."):
         raise InputError("outline", "it is not a grid of x and dots.", "Write x or . per stitch.")
     return np.array([[mark == INSIDE for mark in line] for line in marks[::-1]])
+
+
+def check_outline_size(stitch: Mask, chart: StitchChart) -> None:
+    """Refuse an outline of another size than the chart."""
+    if stitch.shape != chart.purl.shape:
+        size = f"{stitch.shape[-1]}x{stitch.shape[0]} cells, the chart {chart.columns}x{chart.rows}"
+        raise InputError(
+            "outline", f"it has {size}.", "Give one mark for every stitch of the chart."
+        )
 
 
 def check_outline(stitch: Mask) -> None:

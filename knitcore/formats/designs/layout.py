@@ -14,7 +14,7 @@ from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
-from knitcore.garment.shaped import ShapedChart, check_outline, outline_marks
+from knitcore.garment.shaped import ShapedChart, check_outline, check_outline_size, outline_marks
 
 MAX_TEXT = 1_200_000
 MAX_ITEMS = 200
@@ -193,14 +193,7 @@ def check_layout(chart: StitchChart, layout: DesignLayout) -> None:
         Naming the region, repeat or outline, the problem and the remedy.
     """
     if layout.outline is not None:
-        marks = outline_marks(layout.outline)
-        if marks.shape != chart.purl.shape:
-            raise InputError(
-                "outline",
-                f"it has {marks.shape[1]}x{marks.shape[0]} cells, the chart "
-                f"{chart.columns}x{chart.rows}.",
-                "Give one mark for every stitch of the chart.",
-            )
+        check_outline_size(outline_marks(layout.outline), chart)
     for field, items in (("regions", layout.regions), ("repeats", layout.repeats)):
         twice = [i for i, n in Counter(item.id for item in items).items() if n > 1]
         if twice:
