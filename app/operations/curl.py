@@ -12,7 +12,7 @@ from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.cloth.space.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece, Pull
 from knitcore.cloth.space.curl import curl as curl_piece
-from knitcore.formats.write.curled import write_curled_glb, write_curled_npz
+from knitcore.formats.write.yarn_mesh import write_curled_glb
 from knitcore.garment.shaped import outline_marks
 
 from ..cli.options import out_option
@@ -127,14 +127,12 @@ def _result(piece: CurledPiece, request: CurlRequest) -> CurlResult:
 @out_option("--out", help="Write the shape to FILE.npz or FILE.glb.", suffixes=(".npz", ".glb"))
 def _and_write(request: CurlRequest, context: Context, out: Path | None) -> CurlResult:
     piece = _curled(request, context)
-    if out is not None:
-        glb = out.suffix.lower() == ".glb"
+    if out is not None and out.suffix.lower() == ".glb":
         material = context.material(request.material)
-        out.write_bytes(
-            write_curled_glb(piece.chart, piece.corners_mm, material, piece.stitches)
-            if glb
-            else write_curled_npz(piece)
-        )
+        drawn = write_curled_glb(piece.chart, piece.corners_mm, material, piece.stitches)
+        out.write_bytes(drawn)
+    elif out is not None:
+        piece.write(out)
     return _result(piece, request)
 
 

@@ -15,7 +15,7 @@ from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
 from knitcore.design.part_targets import Parts, PartTarget, target_maps, target_parts
-from knitcore.formats.write.stitch_maps import read_wanted_moduli
+from knitcore.formats.read.stitch_maps import read_wanted_moduli
 from knitcore.garment.shaped import outline_marks
 
 from ..cli.options import atlas_option, design_option, resolve_chart, write_design_of

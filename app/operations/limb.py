@@ -15,7 +15,7 @@ from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import check_stitches
 from knitcore.cloth.space.limb_tube import TubeOnLimb, worn_tube
 from knitcore.draw.body import Body
-from knitcore.formats.write.curled import write_curled_glb
+from knitcore.formats.write.yarn_mesh import write_curled_glb
 from knitcore.garment.limb import (
     LEAST_GIRTH_MM,
     MAX_GIRTHS,

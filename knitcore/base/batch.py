@@ -4,8 +4,6 @@ A batch is a function and named tasks for it. Results are stored as one JSON doc
 so a batch that was stopped, even by force, continues where it left off.
 """
 
-from __future__ import annotations
-
 import json
 import logging
 import multiprocessing
@@ -128,11 +126,8 @@ def run_batch(
 def _check(tasks: Mapping[str, Any], scheduler: str | None, workers: int | None) -> None:
     for key in tasks:
         if not _KEY.fullmatch(key):
-            raise InputError(
-                "tasks",
-                f"{key!r} cannot name a file.",
-                "Use up to 120 letters, digits and the signs . _ + -.",
-            )
+            remedy = "Use up to 120 letters, digits and the signs . _ + -."
+            raise InputError("tasks", f"{key!r} cannot name a file.", remedy)
     if workers is not None and workers < 1:
         raise InputError(
             "workers", f"{workers} is not a number of worker processes.", "Give at least 1."
@@ -219,11 +214,9 @@ def _cluster(scheduler: str) -> Iterator[tuple[Executor, int]]:
     try:
         client = Client(scheduler, timeout=CONNECT_S, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
-        raise InputError(
-            "scheduler",
-            f"no Dask scheduler answers at {scheduler} ({error}).",
-            "Start one with `dask scheduler`, or leave it out to work on this machine.",
-        ) from None
+        problem = f"no Dask scheduler answers at {scheduler} ({error})."
+        remedy = "Start one with `dask scheduler`, or leave it out to work on this machine."
+        raise InputError("scheduler", problem, remedy) from None
     with client:
         threads = sum(client.nthreads().values())
         executor = client.get_executor(retries=MAX_LOSSES - 1, pure=False)

@@ -1,7 +1,5 @@
 """Ranges of numbers that callers give; NaN lies in none."""
 
-from __future__ import annotations
-
 from math import inf
 from numbers import Integral
 

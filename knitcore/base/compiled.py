@@ -6,8 +6,6 @@ the logger of this module says so, as a detail (``DEBUG``), for programs that ha
 the record's attribute ``compiling`` is the module of the function.
 """
 
-from __future__ import annotations
-
 import gc
 import logging
 import time

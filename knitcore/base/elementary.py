@@ -4,8 +4,6 @@ Those of the system's mathematical library differ in it between processors with 
 products. These are sums and products alone, with relative errors of some 1e-15.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -10,6 +10,7 @@ KnitcoreError
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 Cancelled = Callable[[], bool]
 """Function that a long computation calls at times; True stops it with :class:`CancelledError`."""
@@ -46,9 +47,7 @@ class InputError(KnitcoreError, ValueError):
         self.remedy = remedy
         self.most = most
 
-    def __reduce__(
-        self,
-    ) -> tuple[type[InputError], tuple[str, str, str], dict[str, object]]:
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str], dict[str, object]]:
         # so that it can be pickled between processes
         kept: dict[str, object] = {"most": self.most, "others": self.others}
         return type(self), (self.field, self.problem, self.remedy), kept
@@ -70,3 +69,24 @@ def check_cancelled(cancelled: Cancelled | None) -> None:
     """Raise :class:`CancelledError` if the caller wants to stop."""
     if cancelled is not None and cancelled():
         raise CancelledError("The caller stopped the computation.")
+
+
+@dataclass
+class SearchProgress:
+    """Progress that never decreases, and a request to stop."""
+
+    progress: Callable[[float], None] | None
+    cancelled: Cancelled | None
+    done: float = 0.0
+
+    def look(self, done: float) -> None:
+        """Report progress, and stop if asked to."""
+        self.stop_if_asked()
+        self.done = max(self.done, min(done, 1.0))
+        if self.progress is not None:
+            self.progress(self.done)
+
+    def stop_if_asked(self) -> None:
+        """Stop if asked to."""
+        if self.cancelled is not None and self.cancelled():
+            raise CancelledError(f"stopped after {self.done:.0%}")

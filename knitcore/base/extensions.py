@@ -6,8 +6,6 @@ imported only when something is requested that is not built in, or a list of eve
 An extension that cannot be used is left out with a warning; the others are not affected.
 """
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Container, Iterator

@@ -4,16 +4,14 @@ SVG and tables without scripts, fonts or addresses. Lines and text have the colo
 around them, light or dark. Objects use them in ``_repr_html_``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from html import escape
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 
 INKS = ("#3f74b5", "#d98032")
 """Colours of the first and the second curve."""
@@ -52,7 +50,7 @@ def html_table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     return f"<table>{''.join(lines)}</table>"
 
 
-def stitches(purl: NDArray[np.bool_], inside: NDArray[np.bool_] | None = None) -> str:
+def stitches(purl: Mask, inside: Mask | None = None) -> str:
     """A chart: knits are light, purls dark with a dash; the bottom row is row 0.
 
     Parameters

@@ -4,8 +4,6 @@ At the sizes of these blocks a second BLAS thread only waits, and waiting thread
 other work needs: computations were up to 200 times slower.
 """
 
-from __future__ import annotations
-
 import os
 import threading
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Named repeats that knitters know, as seen from the face."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from knitcore.chart.stitch_chart import StitchChart

@@ -6,11 +6,9 @@ named after the pure fabric whose segments are all like that. The four parities 
 surroundings code, determine its part of the composite: there are only 16 kinds of stitch.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Codes, Mask
 from knitcore.chart.fabric import PHASES, Fabric
 from knitcore.chart.segments import segment_map
 from knitcore.chart.stitch_chart import StitchChart, as_chart
@@ -20,12 +18,8 @@ LEFT, RIGHT, BELOW, ABOVE = 1, 2, 4, 8
 
 
 def surroundings(
-    chart: StitchChart,
-    *,
-    periodic: bool = False,
-    tube: bool = False,
-    stitch: NDArray[np.bool_] | None = None,
-) -> NDArray[np.uint8]:
+    chart: StitchChart, *, periodic: bool = False, tube: bool = False, stitch: Mask | None = None
+) -> Codes:
     """The 4-bit code of odd segments around every stitch, shape (rows, columns).
 
     Parameters
@@ -63,8 +57,8 @@ def quarter_phases(
     *,
     periodic: bool = False,
     tube: bool = False,
-    stitch: NDArray[np.bool_] | None = None,
-) -> NDArray[np.uint8]:
+    stitch: Mask | None = None,
+) -> Codes:
     """Phase of every quarter cell, with edges and outline as in :func:`surroundings`.
 
     Returns
@@ -85,7 +79,7 @@ def quarter_phases(
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
 
 
-def continued(chart: StitchChart, stitch: NDArray[np.bool_]) -> StitchChart:
+def continued(chart: StitchChart, stitch: Mask) -> StitchChart:
     """A chart with its pattern mirrored about the stitches at its outline into "no stitch".
 
     So a segment that would cross the outline has the parity of the one on the stitch's other side,
@@ -132,9 +126,7 @@ def reference_fabric(chart: StitchChart) -> Fabric:
     return PHASES[2 * course_odd + wale_odd]
 
 
-def _before_and_after(
-    odd: NDArray[np.bool_], there: NDArray[np.bool_]
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _before_and_after(odd: Mask, there: Mask) -> tuple[Mask, Mask]:
     """Parity of the segments before and after each stitch along axis 0.
 
     A missing segment takes the parity of the other one.
@@ -146,7 +138,7 @@ def _before_and_after(
     return np.where(there[:-1], before, after), np.where(there[1:], after, before)
 
 
-def _quarters_of_codes() -> NDArray[np.uint8]:
+def _quarters_of_codes() -> Codes:
     codes = np.arange(16)
     course = np.stack([codes & LEFT, codes & RIGHT], axis=-1) > 0  # (16, left/right)
     wale = np.stack([codes & BELOW, codes & ABOVE], axis=-1) > 0  # (16, below/above)

@@ -5,16 +5,14 @@ the same fabric. Upside down it is another one, because loops point upwards. A r
 if no smaller rectangle tiles it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 from itertools import combinations
 from math import prod
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.patterns import PATTERNS, rib, welt
@@ -40,11 +38,8 @@ def primitive_repeats(rows: int, columns: int) -> tuple[StitchChart, ...]:
     """
     stitches = rows * columns
     if rows < 1 or columns < 1 or stitches > LARGEST:
-        raise InputError(
-            "repeat",
-            f"{columns}x{rows} stitches cannot be enumerated.",
-            f"Use at most {LARGEST} stitches, such as 4x4.",
-        )
+        problem = f"{columns}x{rows} stitches cannot be enumerated."
+        raise InputError("repeat", problem, f"Use at most {LARGEST} stitches, such as 4x4.")
     codes = np.arange(2**stitches)
     weights = 1 << np.arange(stitches)[::-1]  # the order of codes is that of StitchChart.canonical
     bits = (codes[:, None] & weights) > 0
@@ -92,9 +87,7 @@ def striped_repeats() -> tuple[StitchChart, ...]:
     return tuple(chart for chart in distinct if max(chart.purl.shape) > 4)
 
 
-def _symmetries(
-    rows: int, columns: int
-) -> Iterator[tuple[NDArray[np.intp], tuple[int, int] | None]]:
+def _symmetries(rows: int, columns: int) -> Iterator[tuple[Indices, tuple[int, int] | None]]:
     """Orders of the cells under all translations, each also mirrored.
 
     The second value is the shift of a translation that would make a repeat smaller: one along a

@@ -1,7 +1,5 @@
 """Results of computations: a short text for people, plain values for programs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import fields

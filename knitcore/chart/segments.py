@@ -5,13 +5,11 @@ odd one (the paper's Fig. 3a, b). These two maps are all that the reduced-symmet
 chart.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Mask
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart
@@ -38,8 +36,8 @@ class SegmentMap(Result):
     periodic : whether the chart is a repeat that continues beyond its edges.
     """
 
-    course_odd: NDArray[np.bool_]
-    wale_odd: NDArray[np.bool_]
+    course_odd: Mask
+    wale_odd: Mask
     periodic: bool
 
     def counts(self, direction: Direction) -> SegmentCounts:

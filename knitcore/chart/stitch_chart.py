@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.base import showing
+from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 
@@ -52,7 +51,7 @@ class StitchChart:
     True
     """
 
-    purl: NDArray[np.bool_]
+    purl: Mask
 
     def __post_init__(self) -> None:
         grid = np.array(self.purl, dtype=bool)
@@ -89,11 +88,8 @@ class StitchChart:
                 continue
             if row.count("K") + row.count("P") < len(row):
                 column, symbol = next((i, s) for i, s in enumerate(row, start=1) if s not in "KP")
-                raise InputError(
-                    "chart",
-                    f"line {number}, stitch {column} is {symbol!r}, which is neither K nor P.",
-                    "Write every stitch as K or P.",
-                )
+                problem = f"line {number}, stitch {column} is {symbol!r}, which is neither K nor P."
+                raise InputError("chart", problem, "Write every stitch as K or P.")
             if not rows:
                 first_line = number
             elif len(row) != len(rows[0]):
@@ -282,11 +278,8 @@ def check_chart_size(rows: int, columns: int) -> None:
             "chart", f"{columns}x{rows} has no stitches.", "Give at least 1 column and 1 row."
         )
     if max(rows, columns) > MAX_STITCHES_PER_SIDE:
-        raise InputError(
-            "chart",
-            f"{size_in_words(columns, rows)} is too large.",
-            f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
-        )
+        remedy = f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns."
+        raise InputError("chart", f"{size_in_words(columns, rows)} is too large.", remedy)
 
 
 def size_in_words(columns: int, rows: int) -> str:
@@ -295,14 +288,11 @@ def size_in_words(columns: int, rows: int) -> str:
     return " x ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in counts)
 
 
-def _period(grid: NDArray[np.bool_], *, cut: bool = False) -> int:
+def _period(grid: Mask, *, cut: bool = False) -> int:
     """Smallest period along axis 0 (one that occurs twice, if it may be cut; else a divisor)."""
     n = int(grid.shape[0])
-    return next((p for p in _candidates(n, cut=cut) if np.array_equal(grid[p:], grid[: n - p])), n)
-
-
-def _candidates(n: int, *, cut: bool) -> Iterator[int]:
-    return (p for p in range(1, n // 2 + 1) if cut or n % p == 0)
+    periods = (p for p in range(1, n // 2 + 1) if cut or n % p == 0)
+    return next((p for p in periods if np.array_equal(grid[p:], grid[: n - p])), n)
 
 
 def as_chart(chart: StitchChart | str) -> StitchChart:

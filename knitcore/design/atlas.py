@@ -16,13 +16,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
+from knitcore.materials import Material
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -116,6 +117,17 @@ class Atlas:
     def __len__(self) -> int:
         return len(self.keys)
 
+    def check_material(self, material: Material) -> None:
+        """Refuse another material than that of the atlas.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.material != material.identifier:
+            problem = f"it was built for {self.material}, not for {material.identifier}."
+            raise InputError("atlas", problem, "Build an atlas of this material.")
+
     def column(self, name: str) -> Array:
         """One of :data:`VALUES` for all repeats."""
         return self.values[:, VALUES.index(name)]
@@ -174,7 +186,7 @@ class Atlas:
         return tuple(knitting_cost(self.chart(k)) for k in range(len(self)))
 
     @cached_property
-    def stitches(self) -> NDArray[np.intp]:
+    def stitches(self) -> Indices:
         """Number of stitches of each repeat."""
         return np.array([len(key.replace("/", "")) for key in self.keys], dtype=np.intp)
 

@@ -1,7 +1,5 @@
 """Build the atlas of a material, here or on a cluster; a stopped build can be continued."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil
@@ -133,20 +131,12 @@ def entry_of(prediction: Prediction) -> Entry:
         course.relaxed_mm,
         wale.relaxed_mm,
     )
-    curves = np.concatenate(
-        [
-            strains(STRESS_N_PER_MM)
-            for strains in (
-                course.strain,
-                wale.strain,
-                course.across_strain,
-                wale.across_strain,
-                course.held_strain,
-                wale.held_strain,
-            )
-        ]
-    )
-    as_kept = tuple(curves.astype(np.float32).tolist())
+    curves = [
+        getattr(along, strain)(STRESS_N_PER_MM)
+        for strain in ("strain", "across_strain", "held_strain")
+        for along in (course, wale)
+    ]
+    as_kept = tuple(np.concatenate(curves).astype(np.float32).tolist())
     return Entry(values, as_kept, prediction.provenance.value)
 
 
@@ -180,11 +170,8 @@ def known_entries(file: Path | None, fingerprint: str) -> dict[str, Entry]:
         return {}
     atlas = load_atlas(file)
     if atlas.fingerprint != fingerprint:
-        raise InputError(
-            "out",
-            f"{file.name} is the atlas of {atlas.material} with other laws.",
-            "Name another file, or remove this one.",
-        )
+        problem = f"{file.name} is the atlas of {atlas.material} with other laws."
+        raise InputError("out", problem, "Name another file, or remove this one.")
     return atlas.entries()
 
 

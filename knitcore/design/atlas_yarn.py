@@ -1,12 +1,9 @@
 """Yarn-level results for an atlas: repeats relaxed and stretched one by one, small ones first.
 
 A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
-in a folder beside the atlas, and the run can be stopped at any point and resumed. The pure
-fabrics of the same yarn relate the results to the measured material
-(:mod:`knitcore.prediction.swept`).
+in a folder beside the atlas, and the run can be stopped at any point and resumed. The pure fabrics
+of the same yarn relate the results to the measured material (:mod:`knitcore.prediction.swept`).
 """
-
-from __future__ import annotations
 
 import json
 from collections.abc import Mapping

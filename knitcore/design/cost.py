@@ -1,7 +1,5 @@
 """The cost of knitting a repeat: transfers, crossings and curl."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from knitcore.chart.segments import segment_map

@@ -1,7 +1,5 @@
 """Report the targets that a filled chart misses, patch by patch, and suggest alternatives."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -9,17 +9,14 @@ with the nearest effective moduli, from an atlas or a mixture of two of its repe
 seed gives the same chart.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.bounds import check_range
-from knitcore.base.errors import Cancelled, InputError
+from knitcore.base.errors import Cancelled, InputError, SearchProgress
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat.grid import check_cloth
 from knitcore.design.atlas import Atlas
@@ -28,14 +25,11 @@ from knitcore.design.explain import OFF, Patch, unreached
 from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patch_placing import placed
-from knitcore.design.progress import SearchProgress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
 from knitcore.design.region_patches import best_labels, connected, smooth, unevenness
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Interval
 from knitcore.mechanics.local_moduli import LocalModuli, local_moduli, stitch_table
-
-Labels = NDArray[np.intp]
 
 CLOSE = 0.03
 """A repeat of the atlas nearer than this (in logarithms) is taken as it is."""
@@ -73,7 +67,7 @@ class FilledField:
     """
 
     chart: StitchChart
-    patches: Labels
+    patches: Indices
     regions: tuple[Patch, ...]
     local: LocalModuli
     off_share: float
@@ -86,9 +80,9 @@ def fill_field(
     material: Material,
     atlas: Atlas,
     *,
-    parts: Labels | None = None,
+    parts: Indices | None = None,
     kept: StitchChart | None = None,
-    stitch: NDArray[np.bool_] | None = None,
+    stitch: Mask | None = None,
     smallest_patch: int = 4,
     scattered: bool = True,
     seed: int = 0,
@@ -139,12 +133,7 @@ def fill_field(
             raise InputError(
                 "target", "there is no target inside the outline.", "Paint a target there."
             )
-    if atlas.material != material.identifier:
-        raise InputError(
-            "atlas",
-            f"it was built for {atlas.material}, not for {material.identifier}.",
-            "Build an atlas of this material.",
-        )
+    atlas.check_material(material)
     if parts is None:
         parts = np.zeros(target.shape[1:], dtype=np.intp)
     watch = SearchProgress(progress, cancelled)
@@ -176,9 +165,9 @@ class _Fill:
     def __init__(
         self,
         target: Array,
-        parts: Labels,
+        parts: Indices,
         kept: StitchChart | None,
-        stitch: NDArray[np.bool_] | None,
+        stitch: Mask | None,
         material: Material,
         atlas: Atlas,
         scattered: bool,
@@ -237,7 +226,7 @@ class _Fill:
     def _of_atlas(self, entry: int) -> _Choice:
         return _Choice(self._atlas.chart(entry), self._atlas.log_moduli[entry])
 
-    def _mixed(self, patches: Labels, choices: list[_Choice]) -> list[_Choice]:
+    def _mixed(self, patches: Indices, choices: list[_Choice]) -> list[_Choice]:
         """Mixtures, where they come nearer than repeats of the atlas."""
         targets = self._targets(patches, len(choices))
         off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - targets)).max(axis=1)
@@ -269,7 +258,7 @@ class _Fill:
             return None
         return _Choice(mixture.repeat, mixture.log_moduli)
 
-    def _chosen_again(self, patches: Labels, last: _Trial) -> list[_Choice] | None:
+    def _chosen_again(self, patches: Indices, last: _Trial) -> list[_Choice] | None:
         """The nearest repeats, given each patch's factors in the swatch; None if none changes."""
         targets = self._targets(patches, len(last.choices)) - last.factors
         if self._is_alone(last.choices):
@@ -285,7 +274,7 @@ class _Fill:
         return improved if changed else None
 
     def _trial(
-        self, patches: Labels, choices: list[_Choice], start: float, *, check: bool
+        self, patches: Indices, choices: list[_Choice], start: float, *, check: bool
     ) -> _Trial:
         repeats = [choice.repeat for choice in choices]
         chart = placed(
@@ -314,7 +303,7 @@ class _Fill:
         off = _spread(self._judged(choices, factors), patches) - self._target_map
         return _Trial(chart, tuple(choices), factors, self._off_share(off) + 0.1 * self._rms(off))
 
-    def _targets(self, patches: Labels, count: int) -> Array:
+    def _targets(self, patches: Indices, count: int) -> Array:
         """(patches, 2) medians of the targets' logarithms, NaN where a patch has none."""
         medians = np.full((count, 2), np.nan)
         for patch in range(count):
@@ -339,7 +328,7 @@ class _Fill:
             (message,),
         )
 
-    def _filled(self, patches: Labels, trial: _Trial, *, check: bool) -> FilledField:
+    def _filled(self, patches: Indices, trial: _Trial, *, check: bool) -> FilledField:
         moduli = np.stack([choice.log_moduli for choice in trial.choices])
         targets = self._targets(patches, len(trial.choices))
         off, there = np.expm1(moduli - targets), np.full(moduli.shape, np.nan)
@@ -349,20 +338,12 @@ class _Fill:
         regions = []
         for patch, choice in enumerate(trial.choices):
             cells = patches == patch
-            row, column = map(int, np.argwhere(cells)[0])
-            regions.append(
-                Patch(
-                    choice.repeat.key,
-                    int(cells.sum()),
-                    row,
-                    column,
-                    float(off[patch, 0]),
-                    float(off[patch, 1]),
-                    float(there[patch, 0]),
-                    float(there[patch, 1]),
-                    *self._moduli(choice, judged[patch]),
-                )
-            )
+            row, column = np.argwhere(cells)[0].tolist()
+            repeat = choice.repeat.key, int(cells.sum()), row, column
+            course, wale = off[patch].tolist()
+            swatch_course, swatch_wale = there[patch].tolist()
+            deviations = course, wale, swatch_course, swatch_wale
+            regions.append(Patch(*repeat, *deviations, *self._moduli(choice, judged[patch])))
         self._progress.look(1.0)
         return FilledField(
             trial.chart,
@@ -410,7 +391,7 @@ class _Fill:
         return moduli if self._is_alone(choices) else moduli + factors
 
 
-def _spread(values: Array, patches: Labels) -> Array:
+def _spread(values: Array, patches: Indices) -> Array:
     """(2, rows, columns) of values (patches, 2); NaN at stitches that are kept."""
     known = np.vstack([values, np.full(2, np.nan)])
     return known[patches].transpose(2, 0, 1)
@@ -422,7 +403,7 @@ def _reaching(ends: Sequence[float], factor: float) -> Interval:
     return Interval(low * min(factor, 1.0), high * max(factor, 1.0))
 
 
-def _extent(cells: NDArray[np.bool_]) -> tuple[int, int]:
+def _extent(cells: Mask) -> tuple[int, int]:
     rows, columns = (np.flatnonzero(cells.any(axis=axis)) for axis in (1, 0))
     return int(np.ptp(rows)) + 1, int(np.ptp(columns)) + 1
 

@@ -1,15 +1,12 @@
 """Find a fabric: the repeats of one or more atlases that meet the targets most surely."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
@@ -166,7 +163,7 @@ def _canonical(key: str) -> str:
     return StitchChart.parse(key).canonical().key
 
 
-def _allowed(atlas: Atlas, limits: CostLimits | None) -> NDArray[np.intp]:
+def _allowed(atlas: Atlas, limits: CostLimits | None) -> Indices:
     if limits is None:
         return np.arange(len(atlas))
     return np.flatnonzero([limits.allow(cost) for cost in atlas.costs])

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.phases import quarter_phases
 from knitcore.chart.stitch_chart import StitchChart
@@ -121,11 +120,7 @@ class Mixer:
         return Stripes(chart, *moduli, float(np.nanmax(np.abs(np.log(moduli) - target))))
 
     def _turned(
-        self,
-        best: Stripes | None,
-        target: Array,
-        most: tuple[int, int],
-        look: Callable[[], None],
+        self, best: Stripes | None, target: Array, most: tuple[int, int], look: Callable[[], None]
     ) -> Stripes | None:
         """The best mixtures and repeats, improved by turning a stitch, row or column at a time."""
         rng = np.random.default_rng(0)
@@ -219,9 +214,9 @@ class _Estimates:
     """Stripes stacked along a direction, arrays of one length."""
 
     direction: Direction
-    partners: NDArray[np.intp]
-    widths: NDArray[np.intp]
-    side: NDArray[np.intp]
+    partners: Indices
+    widths: Indices
+    side: Indices
     log_moduli: Array
 
     def within(self, most_rows: int, most_columns: int) -> _Estimates:
@@ -251,7 +246,7 @@ def _turn_some(chart: StitchChart, most: tuple[int, int], rng: np.random.Generat
     return StitchChart(purl).repeat()
 
 
-def _partners(atlas: Atlas) -> NDArray[np.intp]:
+def _partners(atlas: Atlas) -> Indices:
     small = sorted(range(len(atlas)), key=lambda k: (int(atlas.stitches[k]), k))
     return np.array(small[:_PARTNERS], dtype=np.intp)
 

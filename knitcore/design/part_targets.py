@@ -1,19 +1,16 @@
 """Targets for parts of a chart, as maps of moduli."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import check_chart_size
 
-Parts = NDArray[np.intp]
+Parts = Indices
 
 
 @dataclass(frozen=True)
@@ -73,7 +70,7 @@ def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Part
     return parts
 
 
-def _cells(target: PartTarget, rows: int, columns: int) -> NDArray[np.bool_]:
+def _cells(target: PartTarget, rows: int, columns: int) -> Mask:
     cells = np.zeros((rows, columns), dtype=bool)
     for row, first, length in target.runs:
         if not (0 <= row < rows and first >= 0 and length >= 1 and first + length <= columns):
@@ -90,15 +87,12 @@ def _cells(target: PartTarget, rows: int, columns: int) -> NDArray[np.bool_]:
         )
     values = (target.course_n_per_mm, target.wale_n_per_mm)
     if any(v is not None and not (math.isfinite(v) and v > 0) for v in values):
-        raise InputError(
-            "wishes",
-            f"“{target.name}” has a target stiffness that is not positive.",
-            "Give N/mm above 0.",
-        )
+        problem = f"“{target.name}” has a target stiffness that is not positive."
+        raise InputError("wishes", problem, "Give N/mm above 0.")
     return cells
 
 
-def _refuse(target: PartTarget, other: PartTarget, cells: NDArray[np.bool_], axis: int) -> None:
+def _refuse(target: PartTarget, other: PartTarget, cells: Mask, axis: int) -> None:
     row, column = np.argwhere(cells)[0] + 1
     values = [(w.course_n_per_mm, w.wale_n_per_mm)[axis] for w in (other, target)]
     raise InputError(

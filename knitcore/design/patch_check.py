@@ -6,14 +6,11 @@ give its own stiffness, and so its moduli. Divided by those of its repeat's flat
 the swatch is made, they give the factor between the patch and a large cloth of its repeat.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.errors import Cancelled
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
@@ -30,10 +27,10 @@ LOADED = 0.2
 def finite_size(
     chart: StitchChart,
     material: Material,
-    patches: NDArray[np.intp],
+    patches: Indices,
     repeats: Sequence[StitchChart],
     *,
-    stitch: NDArray[np.bool_],
+    stitch: Mask,
     cancelled: Cancelled | None = None,
 ) -> Array:
     """(patches, 2) moduli of each patch in the swatch over those of its repeat, course and wale.

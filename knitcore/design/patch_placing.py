@@ -1,19 +1,15 @@
 """Put repeats into patches, and fit the patches to each other stitch by stitch."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.chart.phases import surroundings
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.mechanics.local_moduli import StitchTable, windows_of
 
-Grid = NDArray[np.bool_]
 Look = Callable[[float], None]
 
 BORDER = 2
@@ -23,13 +19,13 @@ _ENOUGH = 1e-12
 
 
 def placed(
-    patches: NDArray[np.intp],
+    patches: Indices,
     repeats: list[StitchChart],
     target: Array,
     table: StitchTable,
     *,
     kept: StitchChart,
-    stitch: Grid,
+    stitch: Mask,
     scattered: bool,
     seed: int,
     look: Look,
@@ -53,7 +49,7 @@ def placed(
     local = _LocalCost(target, table, stitch)
     purl = kept.purl.copy()
     for patch, repeat in enumerate(repeats):
-        purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
+        purl[patches == patch] = repeat.resized(*purl.shape).purl[patches == patch]
     if patches.max() > 0:
         _shift(purl, patches, repeats, local, rng, look)
         if scattered:
@@ -64,12 +60,12 @@ def placed(
 class _LocalCost:
     """Squared deviations of local moduli from the map, by windows."""
 
-    def __init__(self, target: Array, table: StitchTable, stitch: Grid) -> None:
+    def __init__(self, target: Array, table: StitchTable, stitch: Mask) -> None:
         self._stitch = stitch
         have = table.log_moduli[:, None, None]
         self._cost = np.nansum((have - target[..., None]) ** 2, axis=0)
 
-    def around(self, purl: Grid, rows: slice, columns: slice) -> float:
+    def around(self, purl: Mask, rows: slice, columns: slice) -> float:
         """Cost of all stitches whose surroundings a change inside the window can alter."""
         (row, far_row), (column, far_column) = (
             windows_of(s, n) for s, n in zip((rows, columns), purl.shape, strict=True)
@@ -84,8 +80,8 @@ class _LocalCost:
 
 
 def _shift(
-    purl: Grid,
-    patches: NDArray[np.intp],
+    purl: Mask,
+    patches: Indices,
     repeats: list[StitchChart],
     local: _LocalCost,
     rng: np.random.Generator,
@@ -102,7 +98,7 @@ def _shift(
             best = purl[cells]
             least = local.around(purl, rows, columns)
             for image in _images(repeats[patch]):
-                purl[cells] = _tiled(image, purl)[cells]
+                purl[cells] = image.resized(*purl.shape).purl[cells]
                 cost = local.around(purl, rows, columns)
                 if cost < least - _ENOUGH:
                     best, least, improved = purl[cells], cost, True
@@ -112,9 +108,9 @@ def _shift(
 
 
 def _turn(
-    purl: Grid,
-    patches: NDArray[np.intp],
-    free: Grid,
+    purl: Mask,
+    patches: Indices,
+    free: Mask,
     local: _LocalCost,
     rng: np.random.Generator,
     look: Look,
@@ -142,11 +138,6 @@ def _turn(
                 purl[rows, columns] ^= True
         if not improved:
             return
-
-
-def _tiled(repeat: StitchChart, purl: Grid) -> Grid:
-    rows, columns = purl.shape
-    return repeat.resized(rows, columns).purl
 
 
 def _images(repeat: StitchChart) -> list[StitchChart]:

@@ -11,19 +11,14 @@ segments around four stitches an even number must be odd; where it is not, the l
 given up: a spanning tree of the most certain segments decides knit or purl.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.chart.phases import ABOVE, BELOW, LEFT, RIGHT, surroundings
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.mechanics.local_moduli import StitchTable
-
-Odd = NDArray[np.bool_]
 
 EXACT = 0.01
 """Largest deviation (in logarithms) of a map that counts as a chart's own."""
@@ -52,7 +47,7 @@ def nearest_chart(target: Array, table: StitchTable) -> StitchChart:
     return _integrated(course, wale, cost)
 
 
-def _given(costs: Array, across: Odd) -> Array:
+def _given(costs: Array, across: Mask) -> Array:
     """Costs (lines, stitches, before, after), given the segments across the lines.
 
     ``costs`` is (lines, stitches, before, after, below, above); ``across`` (stitches, lines - 1)
@@ -64,7 +59,7 @@ def _given(costs: Array, across: Odd) -> Array:
     return costs[line, stitch, :, :, below, above]
 
 
-def _ends(segments: Odd, stitches: int) -> tuple[Odd, Odd]:
+def _ends(segments: Mask, stitches: int) -> tuple[Mask, Mask]:
     """Segments before and after each stitch along axis 1; an edge borrows the other side's."""
     if stitches == 1:
         none = np.zeros((len(segments), 1), dtype=bool)
@@ -73,7 +68,7 @@ def _ends(segments: Odd, stitches: int) -> tuple[Odd, Odd]:
     return np.concatenate([first, segments], axis=1), np.concatenate([segments, last], axis=1)
 
 
-def _least(costs: Array) -> Odd:
+def _least(costs: Array) -> Mask:
     """Segments (lines, stitches - 1) of least total cost, each line for itself.
 
     ``costs`` is (lines, stitches, before, after).
@@ -96,7 +91,7 @@ def _least(costs: Array) -> Odd:
     return segments.astype(bool)
 
 
-def _integrated(course: Odd, wale: Odd, cost: Array) -> StitchChart:
+def _integrated(course: Mask, wale: Mask, cost: Array) -> StitchChart:
     """The chart that has the most certain of the segments."""
     rows, columns = cost.shape[:2]
     left, right = _ends(course, columns)

@@ -1,17 +1,12 @@
 """Choose patches of an atlas's repeats so that they meet a map of target moduli."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.chart.phases import surroundings
 from knitcore.design.atlas import Atlas
 from knitcore.mechanics.local_moduli import StitchTable
-
-Labels = NDArray[np.intp]
 
 MAX_LABELS = 48
 """Most repeats in one chart."""
@@ -37,7 +32,7 @@ def unevenness(atlas: Atlas, table: StitchTable) -> Array:
 
 def best_labels(
     atlas: Atlas, uneven: Array, log_course: Array, log_wale: Array
-) -> tuple[Labels, Array]:
+) -> tuple[Indices, Array]:
     """The best repeats for a map, and the cost of each at every stitch.
 
     Parameters
@@ -65,14 +60,14 @@ def best_labels(
     return chosen, cost + price[chosen, None, None]
 
 
-def smooth(cost: Array, smallest: int, parts: Labels) -> Labels:
+def smooth(cost: Array, smallest: int, parts: Indices) -> Indices:
     """Labels (rows, columns) of low cost in patches of at least smallest x smallest stitches.
 
     Starts from the cheapest label of every stitch, lets neighbours agree where that costs little,
     and gives patches that are too small to their cheapest neighbour in the same part. A part that
     is itself smaller is one patch: its repeat is cut off at its edge.
     """
-    labels: Labels = cost.argmin(axis=0)
+    labels: Indices = cost.argmin(axis=0)
     if len(cost) == 1:
         return labels
     fine = np.partition(cost, 1, axis=0)
@@ -86,7 +81,7 @@ def smooth(cost: Array, smallest: int, parts: Labels) -> Labels:
     return _absorb(labels, cost, smallest, connected(parts))
 
 
-def connected(labels: Labels) -> Labels:
+def connected(labels: Indices) -> Indices:
     """Connected patches of one label, numbered from 0."""
     numbered = np.zeros(labels.shape, dtype=np.intp)
     count = 0
@@ -97,13 +92,13 @@ def connected(labels: Labels) -> Labels:
     return numbered
 
 
-def _neighbours_like(labels: Labels, label: int) -> NDArray[np.intp]:
+def _neighbours_like(labels: Indices, label: int) -> Indices:
     like = np.pad((labels == label).astype(np.intp), 1)
-    total: NDArray[np.intp] = like[:-2, 1:-1] + like[2:, 1:-1] + like[1:-1, :-2] + like[1:-1, 2:]
+    total: Indices = like[:-2, 1:-1] + like[2:, 1:-1] + like[1:-1, :-2] + like[1:-1, 2:]
     return total
 
 
-def _absorb(labels: Labels, cost: Array, smallest: int, parts: Labels) -> Labels:
+def _absorb(labels: Indices, cost: Array, smallest: int, parts: Indices) -> Indices:
     """Give patches that are too small to the neighbour that suits them best, smallest first."""
     labels = labels.copy()
     least = np.minimum(smallest, _sides(parts))
@@ -124,7 +119,7 @@ def _absorb(labels: Labels, cost: Array, smallest: int, parts: Labels) -> Labels
         labels[cells] = choices[np.argmin(cost[choices][:, cells].sum(axis=1))]
 
 
-def _sides(numbered: Labels) -> Labels:
+def _sides(numbered: Indices) -> Indices:
     """(numbers, 2) rows and columns that each number extends over."""
     boxes = ndimage.find_objects(numbered + 1)
     return np.array([[side.stop - side.start for side in box] for box in boxes], dtype=np.intp)

@@ -9,8 +9,6 @@ single bands are changed where that helps. Results are judged by the outline of 
 the estimate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -18,14 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.bounds import check_positive, check_range
-from knitcore.base.errors import Cancelled, InputError
+from knitcore.base.errors import Cancelled, InputError, SearchProgress
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat import strip_test
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
-from knitcore.design.progress import SearchProgress
 from knitcore.materials import Material
 
 FORCES_N_PER_MM = (0.01, 0.05, 0.2)
@@ -120,12 +117,7 @@ def fill_shape(
         If it was asked to stop.
     """
     target = _checked(width, across, strain, smallest_band, direction)
-    if atlas.material != material.identifier:
-        raise InputError(
-            "atlas",
-            f"it was built for {atlas.material}, not for {material.identifier}.",
-            "Build an atlas of this material.",
-        )
+    atlas.check_material(material)
     run = _Run(target, across, direction, strain, material, atlas, smallest_band, cancelled)
     return run.solve(np.random.default_rng(seed), progress)
 
@@ -334,7 +326,7 @@ class _Run:
         ]
 
 
-def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> NDArray[np.intp]:
+def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> Indices:
     """Repeats that stretch and narrow differently."""
     shapes = np.array([atlas.chart(k).purl.shape for k in range(len(atlas))])
     side = direction.of(shapes[:, 0], shapes[:, 1])
@@ -363,19 +355,14 @@ def _checked(
         raise InputError("width", "is not a profile.", "Give the width of at least three lines.")
     given = target[~np.isnan(target)]
     if not (np.isfinite(given).all() and (given > 0.05).all() and (given < 3).all()):
-        raise InputError(
-            "width",
-            "is outside 0.05 to 3 times the width at rest.",
-            "Give every width as a multiple of the width at rest.",
-        )
+        problem = "is outside 0.05 to 3 times the width at rest."
+        raise InputError("width", problem, "Give every width as a multiple of the width at rest.")
     lines = (across, len(target)) if direction is Direction.COURSE else (len(target), across)
     check_chart_size(*lines)
     if across < 3 or across * len(target) > _MAX_STITCHES:
-        raise InputError(
-            "across",
-            f"{across} x {len(target)} stitches are too many to pull repeatedly.",
-            f"Use at least 3 across and at most {_MAX_STITCHES} stitches.",
-        )
+        problem = f"{across} x {len(target)} stitches are too many to pull repeatedly."
+        remedy = f"Use at least 3 across and at most {_MAX_STITCHES} stitches."
+        raise InputError("across", problem, remedy)
     check_positive("strain", strain, what="a stretch", most=5)
     check_range("smallest_band", smallest_band, 1, len(target), "lines")
     return target

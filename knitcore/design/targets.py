@@ -1,8 +1,7 @@
 """Quantities that a fabric can be searched for, and their values for the repeats of an atlas."""
 
-from __future__ import annotations
-
 import math
+import re
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Self
@@ -21,13 +20,7 @@ USUAL_LOAD_N_PER_MM = 0.1
 MAX_LOAD_N_PER_MM = 0.5
 
 
-_UNITS = ("_n_per_mm", "_mm_per_n", "_mmhg")
-
-
-def _without_unit(name: str) -> str:
-    for unit in _UNITS:
-        name = name.removesuffix(unit)
-    return name
+_UNIT = re.compile(r"_(n_per_mm|mm_per_n|mmhg)$")
 
 
 class Quantity(StrEnum):
@@ -60,7 +53,7 @@ class Quantity(StrEnum):
         True
         """
         for quantity in cls:
-            if name in (quantity, _without_unit(quantity)):
+            if name in (quantity, _UNIT.sub("", quantity)):
                 return quantity
         raise InputError("quantity", f"{name!r} is not known.", f"Use {', '.join(cls)}.")
 
@@ -100,11 +93,9 @@ class WornTube:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.worn_mm) and 0 < self.rest_mm < self.worn_mm <= 5000):
-            raise InputError(
-                "limb",
-                f"{self.rest_mm:g} mm on {self.worn_mm:g} mm exerts no pressure.",
-                "Give a tube that is smaller than the limb, both in mm.",
-            )
+            problem = f"{self.rest_mm:g} mm on {self.worn_mm:g} mm exerts no pressure."
+            remedy = "Give a tube that is smaller than the limb, both in mm."
+            raise InputError("limb", problem, remedy)
 
     @property
     def strain(self) -> float:
@@ -146,17 +137,12 @@ class Target:
                     f"targets.{self.quantity}", f"its {name} is {number:g}.", "Give more than 0."
                 )
         if self.quantity.needs_load and not 0 < self.load_n_per_mm <= MAX_LOAD_N_PER_MM:
-            raise InputError(
-                f"targets.{self.quantity}",
-                f"its load is {self.load_n_per_mm:g} N/mm.",
-                f"Give above 0 to {MAX_LOAD_N_PER_MM:g} N/mm.",
-            )
+            problem = f"its load is {self.load_n_per_mm:g} N/mm."
+            remedy = f"Give above 0 to {MAX_LOAD_N_PER_MM:g} N/mm."
+            raise InputError(f"targets.{self.quantity}", problem, remedy)
         if self.quantity.needs_limb and self.limb is None:
-            raise InputError(
-                f"targets.{self.quantity}",
-                "it names no limb.",
-                "Give the circumference of the tube and of the limb.",
-            )
+            remedy = "Give the circumference of the tube and of the limb."
+            raise InputError(f"targets.{self.quantity}", "it names no limb.", remedy)
 
     @property
     def label(self) -> str:

@@ -4,8 +4,6 @@ They come from the packaged store of the yarn level, which holds acrylic and cot
 get those of acrylic, scaled to their own stitches, and labelled as an estimate.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

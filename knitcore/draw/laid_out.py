@@ -1,13 +1,10 @@
 """A piece laid flat at rest: the one rule for its size, on the page, in patterns and in files."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.chart.fabric import Direction
 from knitcore.draw.lattice import resting_lattice
 from knitcore.garment.shaped import ShapedChart
@@ -133,8 +130,8 @@ def _stitch_mm(answer: Prediction) -> Array:
     return np.array([answer.along(direction).relaxed_mm for direction in Direction])
 
 
-def _reached(shaped: ShapedChart) -> NDArray[np.bool_]:
+def _reached(shaped: ShapedChart) -> Mask:
     """Mask (rows + 1, columns + 1) of the corners that belong to a stitch."""
     cells = np.pad(shaped.stitch, 1)
-    reached: NDArray[np.bool_] = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
+    reached: Mask = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
     return reached

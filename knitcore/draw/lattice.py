@@ -1,7 +1,5 @@
 """Positions of the stitches of a chart in the plane: on a straight lattice, or drawn in."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

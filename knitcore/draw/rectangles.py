@@ -5,12 +5,9 @@ cloth when it is stretched. A rectangle may represent a single stitch, a block o
 region.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import Direction
 from knitcore.chart.phases import surroundings
 from knitcore.chart.stitch_chart import StitchChart
@@ -18,15 +15,13 @@ from knitcore.draw.placing import PlacedStitches
 from knitcore.materials import Material
 from knitcore.mechanics.local_moduli import stitch_table
 
-Labels = NDArray[np.intp]
-
 FILL = 0.94
 """Largest side of a rectangle, over the size of its group."""
 LARGEST = 12.0
 """Largest size of a region's rectangle, in stitches."""
 
 
-def stitch_labels(rows: int, columns: int, block: int = 1) -> Labels:
+def stitch_labels(rows: int, columns: int, block: int = 1) -> Indices:
     """Groups of ``block`` x ``block`` stitches, numbered from 0, shape (rows, columns).
 
     Examples
@@ -39,7 +34,7 @@ def stitch_labels(rows: int, columns: int, block: int = 1) -> Labels:
 
 
 def extensibility_rectangles(
-    chart: StitchChart, material: Material, placement: PlacedStitches, labels: Labels
+    chart: StitchChart, material: Material, placement: PlacedStitches, labels: Indices
 ) -> Array:
     """Corners of one rectangle for each group of stitches, (groups, 4, 2), mm.
 

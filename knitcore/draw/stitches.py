@@ -15,14 +15,12 @@ relaxed fabrics, and pure fabrics are exactly relaxed. A purl is the mirror imag
 surroundings (a few more with their neighbours) represent all.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import PHASES
 from knitcore.chart.phases import (
     ABOVE,
@@ -75,7 +73,7 @@ class StitchShapes:
     """
 
     lines: Array
-    index: NDArray[np.intp]
+    index: Indices
     lattice: Lattice
     yarn_radius_mm: float
     source: str
@@ -144,7 +142,7 @@ def _of_stored(
 # -- put together from quarters ----------------------------------------------------------------
 
 
-def _of_quarters(chart: StitchChart, fabrics: FabricLines) -> tuple[Array, NDArray[np.intp]]:
+def _of_quarters(chart: StitchChart, fabrics: FabricLines) -> tuple[Array, Indices]:
     bits = _parities(chart)
     code = bits @ (1 << np.arange(bits.shape[-1]))
     codes, index = np.unique(code, return_inverse=True)

@@ -1,14 +1,12 @@
 """Values of a strip test at the stitches of its chart, which lie on the quarter grid's nodes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.cloth.flat.strip_results import LockUp, StripTest
 
 
@@ -62,9 +60,7 @@ def stitch_at(test: StripTest, spot: LockUp) -> tuple[int, int]:
     return min(max(row, 1), rows) - 1, min(max(column, 1), columns) - 1
 
 
-def _carried(
-    rest_mm: Array, moved_mm: Array, strain: Array, there: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _carried(rest_mm: Array, moved_mm: Array, strain: Array, there: Mask) -> Array:
     """Positions at each step, extrapolated from the nearest stitch where there is none."""
     row, column = distance_transform_edt(~there, return_distances=False, return_indices=True)
     stretched = (rest_mm - rest_mm[row, column]) * (1 + strain[:, row, column])

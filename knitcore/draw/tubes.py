@@ -1,7 +1,5 @@
 """Tubes around centre lines, as triangle meshes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +17,7 @@ class TriangleMesh:
     faces: NDArray[np.uint32]
 
 
-def tube_mesh(centre_line: NDArray[np.float64], radius_mm: float, sides: int = 8) -> TriangleMesh:
+def tube_mesh(centre_line: Array, radius_mm: float, sides: int = 8) -> TriangleMesh:
     """A tube of constant radius around one line, open at both ends.
 
     Parameters
@@ -43,9 +41,7 @@ def tube_mesh(centre_line: NDArray[np.float64], radius_mm: float, sides: int = 8
     )
 
 
-def tube_vertices(
-    centre_lines: NDArray[np.float64], radius_mm: float, sides: int = 8
-) -> NDArray[np.float32]:
+def tube_vertices(centre_lines: Array, radius_mm: float, sides: int = 8) -> NDArray[np.float32]:
     """Vertices of tubes around many lines of equally many points, (lines, points * sides, 3).
 
     The cross-sections are carried along a line without twist, and turned a little on the way so
@@ -105,7 +101,7 @@ def resampled(lines: Array, points: int) -> Array:
     return between
 
 
-def _carried_normals(tangent: NDArray[np.float64]) -> NDArray[np.float64]:
+def _carried_normals(tangent: Array) -> Array:
     """Unit normals carried from point to point by the smallest rotation of the tangent."""
     normals = np.empty_like(tangent)
     normal = _upward(tangent[:, 0])
@@ -117,15 +113,15 @@ def _carried_normals(tangent: NDArray[np.float64]) -> NDArray[np.float64]:
     return normals
 
 
-def _upward(tangent: NDArray[np.float64]) -> NDArray[np.float64]:
+def _upward(tangent: Array) -> Array:
     """The unit normal nearest to +y; nearest to +x for a line along y."""
     steep = np.abs(tangent[:, 1]) > 0.95
     helper = np.where(steep[:, None], (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     normal = helper - tangent * _dot(helper, tangent)[:, None]
-    unit: NDArray[np.float64] = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    unit: Array = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     return unit
 
 
-def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    product: NDArray[np.float64] = np.einsum("ij,ij->i", a, b)
+def _dot(a: Array, b: Array) -> Array:
+    product: Array = np.einsum("ij,ij->i", a, b)
     return product

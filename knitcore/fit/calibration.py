@@ -20,12 +20,10 @@ from scipy.optimize import least_squares
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, InputError, check_cancelled
 from knitcore.chart.fabric import Direction
-from knitcore.cloth.flat.grid import QuarterGrid
-from knitcore.cloth.flat.grid_sheet import Sheet
 from knitcore.cloth.flat.sheet_models import SheetModel
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE, pull
 from knitcore.cloth.flat.strip_uncertainty import LOG_SHEAR_PRIOR
-from knitcore.fit.field_comparison import Edges, field_differences, field_sheet
+from knitcore.fit.field_comparison import Edges, even_sheet, field_differences, field_sheet
 from knitcore.fit.measured_field import MeasuredField
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.stretch_test import StretchTest
@@ -157,7 +155,8 @@ def calibrate(
     fitted = problem.law_of(values)
     jacobian = np.asarray(fit.jac, dtype=float)
     covariance = np.linalg.pinv(jacobian.T @ jacobian)
-    spread = np.sqrt(np.diag(covariance)) * _slopes(values)
+    slopes = np.where(np.arange(len(names)) == 2, 1.0, values)  # d value / d unknown
+    spread = np.sqrt(np.diag(covariance)) * slopes
     strain, ratio = problem.force_ratios(fitted)
     return Calibration(
         law=fitted,
@@ -246,13 +245,9 @@ class _Problem:
         if self.forces is None:
             return self.strain, np.empty(0)
         across, along = self.forces.width_mm, self.forces.length_mm
-        rows = max(4, round(40 * along / across))
-        grid = (
-            QuarterGrid.uniform(40, rows, across, along)
-            if self.direction is Direction.WALE
-            else QuarterGrid.uniform(rows, 40, along, across)
-        )
-        test = pull(Sheet(grid, [law], SheetModel()), self.direction, self.strain)
+        cells = 40, max(4, round(40 * along / across))
+        sheet = even_sheet(law, self.direction, cells, (across, along), SheetModel())
+        test = pull(sheet, self.direction, self.strain)
         return test.strain, test.stress_n_per_mm / self.stress[: test.steps]
 
 
@@ -267,10 +262,3 @@ def _to_values(unknowns: Array) -> Array:
     out = np.exp(unknowns)
     out[2] = unknowns[2]
     return np.asarray(out)
-
-
-def _slopes(values: Array) -> Array:
-    """d value / d unknown."""
-    out = values.copy()
-    out[2] = 1.0
-    return out

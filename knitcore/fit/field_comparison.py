@@ -1,7 +1,5 @@
 """Difference between a law and a measured displacement field."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -100,12 +98,21 @@ def field_sheet(
     cells_across: int = CELLS_ACROSS,
 ) -> Sheet:
     """The measured region as a sheet of one law; lengths in px (the law has no length scale)."""
-    along = max(2, round(cells_across * field.length / field.width))
-    if direction is Direction.WALE:
-        grid = QuarterGrid.uniform(cells_across, along, field.width, field.length)
-    else:
-        grid = QuarterGrid.uniform(along, cells_across, field.length, field.width)
-    return Sheet(grid, [law], model)
+    cells = cells_across, max(2, round(cells_across * field.length / field.width))
+    return even_sheet(law, direction, cells, (field.width, field.length), model)
+
+
+def even_sheet(
+    law: ConstitutiveLaw,
+    direction: Direction,
+    cells: tuple[int, int],
+    size: tuple[float, float],
+    model: SheetModel,
+) -> Sheet:
+    """A rectangle of one law; ``cells`` and ``size`` are across the pull and along it."""
+    columns, rows = direction.of(cells[::-1], cells)
+    width, height = direction.of(size[::-1], size)
+    return Sheet(QuarterGrid.uniform(columns, rows, width, height), [law], model)
 
 
 def field_differences(

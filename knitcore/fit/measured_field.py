@@ -74,11 +74,9 @@ class MeasuredField:
         """
         known = {frame.number for frame in self.frames}
         if not numbers or not numbers <= known:
-            raise InputError(
-                "frames",
-                f"the file has no stretched picture {_listed(numbers - known)}.",
-                f"Use {_listed(known)}; a picture without motion is the reference for these.",
-            )
+            problem = f"the file has no stretched picture {_listed(numbers - known)}."
+            remedy = f"Use {_listed(known)}; a picture without motion is the reference for these."
+            raise InputError("frames", problem, remedy)
         kept = tuple(frame for frame in self.frames if frame.number in numbers)
         return MeasuredField(self.width, self.length, kept)
 
@@ -111,11 +109,9 @@ def load_field(path: Path | str) -> MeasuredField:
             numbers = np.asarray(archive["frame"], dtype=int)
             pitch = float(archive["pitch_px"]) if "pitch_px" in archive else PITCH_PX
     except (OSError, EOFError, KeyError, ValueError, TypeError, BadZipFile, zlib.error) as error:
-        raise InputError(
-            "field",
-            f"{Path(path).name} cannot be read as a displacement field.",
-            "Give an .npz with displacement (frames, 2, rows, columns) and frame (frames,).",
-        ) from error
+        problem = f"{Path(path).name} cannot be read as a displacement field."
+        remedy = "Give an .npz with displacement (frames, 2, rows, columns) and frame (frames,)."
+        raise InputError("field", problem, remedy) from error
     return measured_field(displacement, numbers, pitch)
 
 
@@ -134,11 +130,8 @@ def measured_field(
         or displacement.shape[1] != 2
         or numbers.shape != (len(displacement),)
     ):
-        raise InputError(
-            "field",
-            f"displacement has shape {displacement.shape}, frame {numbers.shape}.",
-            "Use (frames, 2, rows, columns) and (frames,).",
-        )
+        problem = f"displacement has shape {displacement.shape}, frame {numbers.shape}."
+        raise InputError("field", problem, "Use (frames, 2, rows, columns) and (frames,).")
     if len(np.unique(numbers)) < len(numbers):
         raise InputError("field", "frame numbers repeat.", "Number each picture once.")
     if not (np.isfinite(pitch_px) and pitch_px > 0):

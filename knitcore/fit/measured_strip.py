@@ -66,11 +66,8 @@ class MeasuredStrip:
         columns = [_resampled(run, strain, top) for run in test.runs]
         stress, waist = (np.array(part) for part in zip(*columns, strict=True))
         if not np.all(np.isfinite(stress).any(axis=0)):
-            raise InputError(
-                test.source,
-                "has no readings over part of the pull.",
-                "Give readings from rest to the largest force.",
-            )
+            problem = "has no readings over part of the pull."
+            raise InputError(test.source, problem, "Give readings from rest to the largest force.")
         width = float(np.mean(test.width_mm))
         across = None if test.across_mm is None else min(test.across_mm, width)
         return cls(direction, width, test.length_mm, strain, stress, waist, across)

@@ -20,18 +20,17 @@ Standard errors by the jackknife over pulls (over blocks of strain when there is
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
-from knitcore.fit.median_curve import median_curve
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.least_squares import (
     ALPHA_SHARE_LIMIT,
@@ -46,6 +45,8 @@ from knitcore.measure.uniaxial_files import Marks
 
 BINS = 40
 """Strain intervals of a pull in the uniform reduction."""
+CURVE_POINTS = 60
+"""Strains of a median curve."""
 BLOCKS = 10
 """Blocks of the jackknife when there is one pull only."""
 COMPLETE_SHARE = 0.9
@@ -81,6 +82,16 @@ class Residuals:
     strain_across: Array
     stress: Array
     fitted: Array
+
+    @classmethod
+    def of(
+        cls, test: StretchTest, largest_strain: float, law: Callable[[Array, Array], Array]
+    ) -> Residuals:
+        """The points of a test up to a strain; ``law`` gives the stress by both strains."""
+        points = test.pooled()
+        points = points.only(points.strain_along <= largest_strain)
+        along, across = points.strain_along, points.strain_across
+        return cls(along, across, points.stress, law(along, across))
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,10 +133,7 @@ class LawFit:
 
     @classmethod
     def of(
-        cls,
-        tests: Sequence[StretchTest],
-        residuals: dict[Direction, Residuals],
-        **more: Any,
+        cls, tests: Sequence[StretchTest], residuals: dict[Direction, Residuals], **more: Any
     ) -> LawFit:
         """The fit of a course-wise and a wale-wise test; ``more`` are its other fields."""
         off = {d: r.stress - r.fitted for d, r in residuals.items()}
@@ -153,11 +161,8 @@ def fit_law(
         recommended one, which needs simulated tests (:func:`knitcore.fit.strip_fit.fit_tests`).
     """
     if reduction is Reduction.RECOMMENDED:
-        raise InputError(
-            "reduction",
-            "the recommended reduction needs simulated tests.",
-            "Call knitcore.fit.strip_fit.fit_tests.",
-        )
+        problem = "the recommended reduction needs simulated tests."
+        raise InputError("reduction", problem, "Call knitcore.fit.strip_fit.fit_tests.")
     notes = [*course.notes, *wale.notes, *check_pair(course, wale)]
     fits, ratios, law = _fit(course, wale, reduction)
     replicates = [
@@ -166,8 +171,8 @@ def fit_law(
     ]
     errors = _jackknife(replicates)
     residuals = {
-        Direction.COURSE: _residuals(course, fits[0], ratios[1]),
-        Direction.WALE: _residuals(wale, fits[1], ratios[0]),
+        d: Residuals.of(test, fit.largest_strain, partial(fit.stress, poisson_coupling=ratio))
+        for d, test, fit, ratio in zip(Direction, (course, wale), fits, ratios[::-1], strict=True)
     }
     for direction, fit in zip(Direction, fits, strict=True):
         notes += _range_notes(direction, fit)
@@ -236,7 +241,7 @@ def _points(test: StretchTest, reduction: Reduction) -> tuple[Array, Array, Arra
     return columns[0], columns[1], columns[2], columns[3]
 
 
-def _shared_range(test: StretchTest, strain: Array) -> NDArray[np.bool_]:
+def _shared_range(test: StretchTest, strain: Array) -> Mask:
     """Points between the strains where every complete pull has begun and none has ended."""
     peak = test.peak_stress
     complete = [r for r in test.runs if r.stress.max() >= COMPLETE_SHARE * peak]
@@ -290,11 +295,8 @@ def _quantities(law: ConstitutiveLaw) -> dict[str, float]:
 def _jackknife(replicates: list[list[dict[str, float]]]) -> dict[str, float]:
     """Standard errors from estimates with one part left out, summed over independent tests."""
     if min(len(test) for test in replicates) < 2:
-        raise InputError(
-            "tests",
-            "have too few different readings for a standard error.",
-            "Give pulls with readings all the way from rest to the largest force.",
-        )
+        remedy = "Give pulls with readings all the way from rest to the largest force."
+        raise InputError("tests", "have too few different readings for a standard error.", remedy)
     errors = {}
     for name in replicates[0][0]:
         variance = 0.0
@@ -306,12 +308,36 @@ def _jackknife(replicates: list[list[dict[str, float]]]) -> dict[str, float]:
     return errors
 
 
-def _residuals(test: StretchTest, fit: DirectionFit, poisson_coupling: float) -> Residuals:
-    points = test.pooled()
-    inside = points.strain_along <= fit.largest_strain
-    along, across = points.strain_along[inside], points.strain_across[inside]
-    return Residuals(
-        along, across, points.stress[inside], fit.stress(along, across, poisson_coupling)
+def median_curve(test: StretchTest) -> MeasuredCurve:
+    """Median stress of the pulls at equal steps of strain.
+
+    Each pull is first averaged over steps of strain, which removes the camera's noise.
+    The curve goes as far as at least half of the pulls do.
+
+    Raises
+    ------
+    InputError
+        If the pulls have no range of strain in common.
+
+    Examples
+    --------
+    >>> from knitcore.measure.stretch_test import StretchRun
+    >>> strain = np.linspace(0, 0.5, 200)
+    >>> runs = tuple(StretchRun("", strain, -strain, k * strain) for k in (0.9, 1.0, 2.0))
+    >>> curve = median_curve(StretchTest("", "", runs, (70.0,) * 3))
+    >>> round(curve.strain[-1], 3), round(curve.stress_n_per_mm[-1], 2), curve.pulls
+    (0.496, 0.5, 3)
+    """
+    centres = (np.arange(CURVE_POINTS) + 0.5) / CURVE_POINTS * test.usual_strain
+    stresses = np.full((len(test.runs), CURVE_POINTS), np.nan)
+    for stress, run in zip(stresses, test.runs, strict=True):
+        mean = run.averaged(CURVE_POINTS, test.usual_strain)
+        outside = (centres < run.strain_along.min()) | (centres > run.strain_along.max())
+        stress[:] = np.where(outside, np.nan, np.interp(centres, mean.strain_along, mean.stress))
+    known = np.isfinite(stresses).sum(axis=0) * 2 >= len(test.runs)
+    median = np.nanmedian(stresses[:, known], axis=0)
+    return MeasuredCurve(
+        tuple(centres[known].round(5).tolist()), tuple(median.round(6).tolist()), len(test.runs)
     )
 
 

@@ -11,8 +11,6 @@ Standard errors of single constants are those of the jackknife over pulls, of th
 fit, a few neighbouring points counting as one, and of the widths.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields

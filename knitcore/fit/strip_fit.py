@@ -12,11 +12,10 @@ unknown the ends are left free to narrow, so that the strip strains evenly.
 :mod:`knitcore.fit.strip_errors` estimates the errors of the result.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -26,13 +25,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
 from knitcore.chart.fabric import Direction
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE
-from knitcore.fit.measured_strip import (
-    CELLS,
-    LEVELS,
-    WAIST_NOISE,
-    MeasuredStrip,
-    force_noise,
-)
+from knitcore.fit.measured_strip import CELLS, LEVELS, WAIST_NOISE, MeasuredStrip, force_noise
 from knitcore.fit.pull_fit import LawFit, Reduction, Residuals, fit_law, rms
 from knitcore.fit.strip_errors import LinearFit
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -162,7 +155,7 @@ def fit_simulated(
             notes.append(f"{test.source} has one pull, so the scatter between pulls is unknown.")
     fit = fit_strips(strips, cancelled=cancelled)
     residuals = {
-        d: _residuals(test, strip, simulated)
+        d: Residuals.of(test, strip.strain[-1], partial(_between, strip.strain, simulated))
         for d, test, strip, simulated in zip(Direction, tests, strips, fit.stress, strict=True)
     }
     return LawFit.of(
@@ -182,11 +175,7 @@ def fit_simulated(
     )
 
 
-def fit_strips(
-    strips: Sequence[MeasuredStrip],
-    *,
-    cancelled: Cancelled | None = None,
-) -> StripFit:
+def fit_strips(strips: Sequence[MeasuredStrip], *, cancelled: Cancelled | None = None) -> StripFit:
     """Fit a law to a course-wise and a wale-wise strip.
 
     Parameters
@@ -323,9 +312,6 @@ def _law(unknowns: Array) -> ConstitutiveLaw:
     )
 
 
-def _residuals(test: StretchTest, strip: MeasuredStrip, simulated: Array) -> Residuals:
-    points = test.pooled()
-    inside = points.strain_along <= strip.strain[-1]
-    along = points.strain_along[inside]
-    fitted = np.interp(along, np.append(0.0, strip.strain), np.append(0.0, simulated))
-    return Residuals(along, points.strain_across[inside], points.stress[inside], fitted)
+def _between(strain: Array, stress: Array, along: Array, _: Array) -> Array:
+    """Stress at strains between those of a simulation, which begins at rest."""
+    return np.asarray(np.interp(along, np.append(0.0, strain), np.append(0.0, stress)))

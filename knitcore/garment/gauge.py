@@ -121,10 +121,7 @@ class GaugeSet:
 
     @classmethod
     def of_material(
-        cls,
-        material: Material,
-        swatch: Gauge | None = None,
-        fabric: Fabric = Fabric.STOCKINETTE,
+        cls, material: Material, swatch: Gauge | None = None, fabric: Fabric = Fabric.STOCKINETTE
     ) -> GaugeSet:
         """The gauges of a material, or of a knitter who knits ``fabric`` at a swatch's gauge.
 
@@ -163,11 +160,8 @@ class GaugeSet:
             If the material lacks it.
         """
         if fabric not in self.gauges:
-            raise InputError(
-                "material",
-                f"{self.material} has no {fabric}.",
-                "Choose another fabric, or a material that has it.",
-            )
+            remedy = "Choose another fabric, or a material that has it."
+            raise InputError("material", f"{self.material} has no {fabric}.", remedy)
         return self.gauges[fabric]
 
 

@@ -74,17 +74,11 @@ class Hand:
     )
 
     def __post_init__(self) -> None:
-        lengths = {
-            "cuff_mm": self.cuff_mm,
-            "wrist_mm": self.wrist_mm,
-            "palm_mm": self.palm_mm,
-            "thumb_crotch_mm": self.thumb_crotch_mm,
-            "wrist_circumference_mm": self.wrist_circumference_mm,
-            "palm_circumference_mm": self.palm_circumference_mm,
-            "thumb": min(self.thumb.length_mm, self.thumb.circumference_mm),
-        }
-        for name, value in lengths.items():
-            check_range(name, value, 5, 600, "mm", "a size of a hand")
+        lengths = "cuff_mm", "wrist_mm", "palm_mm", "thumb_crotch_mm"
+        for name in (*lengths, "wrist_circumference_mm", "palm_circumference_mm"):
+            check_range(name, getattr(self, name), 5, 600, "mm", "a size of a hand")
+        thumb = min(self.thumb.length_mm, self.thumb.circumference_mm)
+        check_range("thumb", thumb, 5, 600, "mm", "a size of a hand")
         if not (0 <= self.gusset_mm < self.thumb.length_mm and 0 <= self.gusset_girth_mm <= 100):
             raise InputError(
                 "gusset_mm",
@@ -97,11 +91,9 @@ class Hand:
         ):
             raise InputError("fingers", "four fingers are needed.", "Give lengths and girths.")
         if self.thumb_crotch_mm >= self.palm_mm:
-            raise InputError(
-                "thumb_crotch_mm",
-                "the thumb's crotch lies beyond the fingers'.",
-                f"Give less than palm_mm, {self.palm_mm:g} mm.",
-            )
+            problem = "the thumb's crotch lies beyond the fingers'."
+            remedy = f"Give less than palm_mm, {self.palm_mm:g} mm."
+            raise InputError("thumb_crotch_mm", problem, remedy)
 
 
 @dataclass(frozen=True)

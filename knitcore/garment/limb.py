@@ -5,8 +5,6 @@ with the law of a pure fabric. Along the limb the tube is either free and shorte
 test, or held at its length. The limb's girth may change along its length.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,12 +17,7 @@ from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.law.response import MAX_STRESS_N_PER_MM
 from knitcore.materials.law_uncertainty import Interval
-from knitcore.mechanics.pressure import (
-    MAX_CIRCUMFERENCE_MM,
-    MIN_LENGTH,
-    MMHG_PER_KPA,
-    worn_strain,
-)
+from knitcore.mechanics.pressure import MAX_CIRCUMFERENCE_MM, MIN_LENGTH, MMHG_PER_KPA, worn_strain
 from knitcore.prediction.prediction import Along
 
 PLACES = 21
@@ -85,11 +78,8 @@ def tube_pressure(along: Along, rest_mm: float, worn_mm: float) -> TubePressure:
     axial = float(along.across_strain(free))
     tensions = _tensions(along, strain, free, axial)
     if tensions.high >= MAX_STRESS_N_PER_MM:
-        raise InputError(
-            "worn_mm",
-            f"a strain of {strain:.2f} is at or beyond the lock-up of this chart.",
-            "Make the tube larger.",
-        )
+        problem = f"a strain of {strain:.2f} is at or beyond the lock-up of this chart."
+        raise InputError("worn_mm", problem, "Make the tube larger.")
     soft, stiff = (float(end) / free if free else 1.0 for end in along.stress_interval(strain))
     kpa = tensions.scaled(2 * math.pi / worn_mm * 1000.0)
     return TubePressure(
@@ -160,19 +150,14 @@ class MeasuredLimb:
 
     def __post_init__(self) -> None:
         if len(self.at_mm) != len(self.girths_mm) or not 2 <= len(self.at_mm) <= MAX_GIRTHS:
-            raise InputError(
-                "girths",
-                "the lists differ in length.",
-                f"Give 2 to {MAX_GIRTHS} places, and as many sizes.",
-            )
+            remedy = f"Give 2 to {MAX_GIRTHS} places, and as many sizes."
+            raise InputError("girths", "the lists differ in length.", remedy)
         if min(np.diff(self.at_mm)) <= 0.0:
             raise InputError("girths", "the places do not increase.", "Give them in order.")
         if min(self.girths_mm) < LEAST_GIRTH_MM:
-            raise InputError(
-                "girths",
-                f"{min(self.girths_mm):g} mm around is no limb and no tube.",
-                f"Give {LEAST_GIRTH_MM:g} mm or more: the length around, not the width.",
-            )
+            problem = f"{min(self.girths_mm):g} mm around is no limb and no tube."
+            remedy = f"Give {LEAST_GIRTH_MM:g} mm or more: the length around, not the width."
+            raise InputError("girths", problem, remedy)
 
     def girth_mm(self, at_mm: Array) -> Array:
         """Circumference at places along the limb; beyond an end it stays as at the end."""

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import runs
+from knitcore.base.arrays import Indices, Mask, runs
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.shaped import ShapedChart
@@ -55,7 +54,7 @@ class Piece:
 
     shaped: ShapedChart
     yarns: tuple[PieceYarn, ...]
-    yarn_of: NDArray[np.intp]
+    yarn_of: Indices
     gauge: RelaxedSize | None = None
 
     def __post_init__(self) -> None:
@@ -101,9 +100,9 @@ class Piece:
         row_runs = runs(self.yarn_of[row, first:last])
         return tuple(YarnRun(first + start, first + stop, yarn) for start, stop, yarn in row_runs)
 
-    def cells(self, yarn: int) -> NDArray[np.bool_]:
+    def cells(self, yarn: int) -> Mask:
         """The stitches of one yarn."""
-        cells: NDArray[np.bool_] = self.shaped.stitch & (self.yarn_of == yarn)
+        cells: Mask = self.shaped.stitch & (self.yarn_of == yarn)
         return cells
 
     def cropped(self) -> Piece:

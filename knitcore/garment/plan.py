@@ -1,12 +1,8 @@
 """A garment plan: outline, regions, and the numbers that follow from them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from knitcore.base.arrays import Mask
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
@@ -80,13 +76,13 @@ class Part:
     """A named part of an outline in one pure fabric, before it is filled."""
 
     name: str
-    cells: NDArray[np.bool_]
+    cells: Mask
     fabric: Fabric
 
 
 def make_plan(
     name: str,
-    stitch: NDArray[np.bool_],
+    stitch: Mask,
     parts: tuple[Part, ...],
     material: Material,
     gauges: GaugeSet,

@@ -1,13 +1,11 @@
 """Regions of a garment, their fills, and the borders between them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Mask
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.chart.phases import quarter_phases
@@ -16,7 +14,7 @@ from knitcore.garment.gauge import Gauge
 from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
 from knitcore.materials.law_uncertainty import log_interval
-from knitcore.materials.loop_lengths import loop_lengths_mm
+from knitcore.materials.material import loop_lengths_mm
 from knitcore.prediction.predict import predict
 
 MISFIT = 0.10
@@ -37,7 +35,7 @@ class Region:
     """
 
     name: str
-    cells: NDArray[np.bool_]
+    cells: Mask
     fill: StitchChart
     colour: str = ""
 
@@ -73,7 +71,7 @@ class RegionNumbers:
     modulus_wale_n_per_mm: float
 
 
-def fill_regions(stitch: NDArray[np.bool_], regions: Sequence[Region]) -> ShapedChart:
+def fill_regions(stitch: Mask, regions: Sequence[Region]) -> ShapedChart:
     """The chart that regions make inside an outline.
 
     Raises
@@ -106,7 +104,7 @@ def fill_regions(stitch: NDArray[np.bool_], regions: Sequence[Region]) -> Shaped
 
 
 def misfits(
-    regions: Sequence[Region], gauges: Sequence[Gauge], stitch: NDArray[np.bool_]
+    regions: Sequence[Region], gauges: Sequence[Gauge], stitch: Mask
 ) -> tuple[RegionMisfit, ...]:
     """Borders between regions of different gauge.
 
@@ -195,7 +193,7 @@ def yarn_use(
     material: Material,
     *,
     linear_density_tex: float | None = None,
-    cells: NDArray[np.bool_] | None = None,
+    cells: Mask | None = None,
 ) -> YarnUse:
     """Yarn of all stitches; each needs the mean loop length of its four quarters' fabrics.
 

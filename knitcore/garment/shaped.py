@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.base import showing
+from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.phases import continued
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.garment.inscribed import largest_rectangle
 
 INSIDE, OUTSIDE = "x", "."
 
@@ -34,17 +33,11 @@ class ShapedChart:
     """
 
     chart: StitchChart
-    stitch: NDArray[np.bool_]
+    stitch: Mask
 
     def __post_init__(self) -> None:
         inside = np.array(self.stitch, dtype=bool)
-        if inside.shape != self.chart.purl.shape:
-            raise InputError(
-                "outline",
-                f"it has {inside.shape[-1]}x{inside.shape[0]} cells, the chart "
-                f"{self.chart.columns}x{self.chart.rows}.",
-                "Give one mark for every stitch of the chart.",
-            )
+        check_outline_size(inside, self.chart)
         check_outline(inside)
         inside.setflags(write=False)
         object.__setattr__(self, "stitch", inside)
@@ -105,7 +98,7 @@ class ShapedChart:
         return hash((self.stitch.tobytes(), self.chart.purl[self.stitch].tobytes()))
 
 
-def outline_marks(outline: str) -> NDArray[np.bool_]:
+def outline_marks(outline: str) -> Mask:
     """Read an outline as a mask (rows, columns) of stitches, row 0 at the bottom.
 
     Raises
@@ -119,7 +112,16 @@ def outline_marks(outline: str) -> NDArray[np.bool_]:
     return np.array([[mark == INSIDE for mark in line] for line in marks[::-1]])
 
 
-def check_outline(stitch: NDArray[np.bool_]) -> None:
+def check_outline_size(stitch: Mask, chart: StitchChart) -> None:
+    """Refuse an outline of another size than the chart."""
+    if stitch.shape != chart.purl.shape:
+        size = f"{stitch.shape[-1]}x{stitch.shape[0]} cells, the chart {chart.columns}x{chart.rows}"
+        raise InputError(
+            "outline", f"it has {size}.", "Give one mark for every stitch of the chart."
+        )
+
+
+def check_outline(stitch: Mask) -> None:
     """Refuse an outline in several parts, naming the row."""
     spans = []
     for row, inside in enumerate(stitch, start=1):
@@ -129,16 +131,38 @@ def check_outline(stitch: NDArray[np.bool_]) -> None:
                 "outline", f"row {row} has no stitch.", "Crop the chart, or fill the row."
             )
         if columns[-1] - columns[0] + 1 != len(columns):
-            raise InputError(
-                "outline",
-                f"row {row} is in two parts, which one yarn cannot knit in one row.",
-                "Close the gap, or make it two pieces.",
-            )
+            problem = f"row {row} is in two parts, which one yarn cannot knit in one row."
+            raise InputError("outline", problem, "Close the gap, or make it two pieces.")
         spans.append((int(columns[0]), int(columns[-1])))
     for row, (below, above) in enumerate(pairwise(spans), start=1):
         if above[0] > below[1] or above[1] < below[0]:
-            raise InputError(
-                "outline",
-                f"row {row + 1} does not stand on row {row}: the outline is in several parts.",
-                "Let neighbouring rows overlap by at least one stitch.",
-            )
+            problem = f"row {row + 1} does not stand on row {row}: the outline is in several parts."
+            remedy = "Let neighbouring rows overlap by at least one stitch."
+            raise InputError("outline", problem, remedy)
+
+
+def largest_rectangle(stitch: Mask) -> tuple[slice, slice]:
+    """Rows and columns of the rectangle with the most stitches that lies wholly inside.
+
+    Row by row, each column has a height: the stitches without a gap down from this row. The
+    largest rectangle with its top in the row is the largest one under these heights, found with a
+    stack of columns whose heights rise. If several are equal, the lowest is taken.
+
+    Parameters
+    ----------
+    stitch : bool (rows, columns), where there is a stitch; empty slices if there is none.
+    """
+    most, best = 0, (slice(0, 0), slice(0, 0))
+    heights = np.zeros(stitch.shape[1] + 1, dtype=int)  # the last one ends every rectangle
+    for row, inside in enumerate(stitch, start=1):
+        heights[:-1] = np.where(inside, heights[:-1] + 1, 0)
+        rising: list[tuple[int, int]] = []  # first column and height
+        for column, height in enumerate(heights.tolist()):
+            first = column
+            while rising and rising[-1][1] >= height:
+                first, tall = rising.pop()
+                if tall * (column - first) > most:
+                    most = tall * (column - first)
+                    best = slice(row - tall, row), slice(first, column)
+            rising.append((first, height))
+    return best

@@ -1,7 +1,5 @@
 """Templates for limbs: tubes from a circumference profile, and a brace knitted sideways."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -226,11 +224,8 @@ def _check_profile(profile: Sequence[Girth]) -> None:
         raise InputError("profile", "it has no length.", "Give at least two circumferences.")
     for before, after in pairwise(profile):
         if not after.at_mm > before.at_mm:
-            raise InputError(
-                "profile",
-                f"{after.at_mm:g} mm does not come after {before.at_mm:g} mm.",
-                "Give positions in rising order.",
-            )
+            problem = f"{after.at_mm:g} mm does not come after {before.at_mm:g} mm."
+            raise InputError("profile", problem, "Give positions in rising order.")
     for girth in profile:
         _check_length("profile", girth.circumference_mm)
     _check_length("profile", profile[-1].at_mm - profile[0].at_mm)

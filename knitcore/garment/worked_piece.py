@@ -4,8 +4,6 @@ They have a type of their own and are never mixed with the face grid;
 :mod:`knitcore.chart.row_sides` has the rule.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -87,17 +85,13 @@ def piece_rows(
 def _check_rounds(rows: Sequence[PieceRow]) -> None:
     for number, row in enumerate(rows, start=1):
         if len(set(row.yarns)) > 1:
-            raise InputError(
-                "construction",
-                f"round {number} has several yarns: intarsia leaves each at the wrong end.",
-                "Work it flat, or change yarns only between rounds.",
-            )
+            problem = f"round {number} has several yarns: intarsia leaves each at the wrong end."
+            remedy = "Work it flat, or change yarns only between rounds."
+            raise InputError("construction", problem, remedy)
         if max(abs(row.first), abs(row.last)) > 1:
-            raise InputError(
-                "construction",
-                f"round {number} gains or loses several stitches at one edge.",
-                "Work it flat, or change by one stitch at each edge of a round.",
-            )
+            problem = f"round {number} gains or loses several stitches at one edge."
+            remedy = "Work it flat, or change by one stitch at each edge of a round."
+            raise InputError("construction", problem, remedy)
 
 
 def piece_from_rows(rows: Sequence[PieceRow], yarns: Sequence[PieceYarn]) -> Piece:

@@ -7,8 +7,6 @@ is more; along the hand the glove is held by crotches and tips. Pressure is that
 part's fabric (:mod:`knitcore.garment.limb`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
@@ -16,7 +14,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
@@ -158,7 +156,7 @@ class _Loop:
     """
 
     names: dict[int, str]
-    rows: NDArray[np.intp]
+    rows: Indices
     first: int
     at_mm: Array
     begins_mm: float
@@ -285,7 +283,7 @@ def _thumb(hand: Hand, layout: GloveLayout, heights_mm: Array, trunk: Curve, roo
 def _fingers(
     hand: Hand,
     layout: GloveLayout,
-    palm_rows: NDArray[np.intp],
+    palm_rows: Indices,
     heights_mm: Array,
     palm: Curve,
     palm_mm: float,

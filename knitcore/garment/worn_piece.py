@@ -1,7 +1,5 @@
 """The pressure of a garment where it is worn, and the width that gives a target pressure."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from numbers import Real
 
@@ -72,11 +70,8 @@ class Fit:
     def __post_init__(self) -> None:
         for name, value in (("ease", self.ease), ("mmhg", self.mmhg or 0.0)):
             if not isinstance(value, Real):
-                raise InputError(
-                    name,
-                    f"a {type(value).__name__} is not one number.",
-                    "Give one number for the whole garment.",
-                )
+                problem = f"a {type(value).__name__} is not one number."
+                raise InputError(name, problem, "Give one number for the whole garment.")
         check_range("ease", self.ease, -0.6, 1, what="an ease")
 
     def rest_mm(

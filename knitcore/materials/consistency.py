@@ -9,8 +9,6 @@ every Young's modulus stays within 1 % of its printed value, and every stiffness
 rounds to the printed one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from knitcore.base.errors import InputError
@@ -104,8 +102,5 @@ def _diagonal(modulus: Figure, stiffness: Figure, factor: float) -> float:
 
 
 def _refuse(name: str, stated: float, actual: float) -> None:
-    raise InputError(
-        name,
-        f"{stated:g} is stated, but the stiffnesses give {actual:.4g}.",
-        "nu_yx = C_yyxx/C_yyyy, nu_xy = C_xxyy/C_xxxx and Y = (1 - nu_xy nu_yx) C must hold.",
-    )
+    remedy = "nu_yx = C_yyxx/C_yyyy, nu_xy = C_xxyy/C_xxxx and Y = (1 - nu_xy nu_yx) C must hold."
+    raise InputError(name, f"{stated:g} is stated, but the stiffnesses give {actual:.4g}.", remedy)

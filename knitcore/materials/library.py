@@ -1,7 +1,5 @@
 """The library: the paper's eight yarns, and their variants."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -130,11 +128,8 @@ def as_material(of: Material | str) -> Material:
     if isinstance(of, Material):
         return of
     if not isinstance(of, str):
-        raise InputError(
-            "material",
-            f"a {type(of).__name__} is not a material.",
-            "Give a Material, or the identifier of one such as 'acrylic'.",
-        )
+        remedy = "Give a Material, or the identifier of one such as 'acrylic'."
+        raise InputError("material", f"a {type(of).__name__} is not a material.", remedy)
     return material(of)
 
 

@@ -27,8 +27,6 @@ The model of a file and the YAML library are imported when a file is read or wri
 the library need neither.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -90,11 +88,8 @@ def load_material_file(path: str | Path) -> Material:
             "material", f"{file} cannot be read: {reason}.", "Give valid JSON or YAML."
         ) from error
     if not isinstance(data, dict):
-        raise InputError(
-            "material",
-            f"{file} does not hold a material.",
-            "Begin with identifier, name and fabrics.",
-        )
+        problem = f"{file} does not hold a material."
+        raise InputError("material", problem, "Begin with identifier, name and fabrics.")
     if "fabrics" not in data and ("law" in data or "alpha_xx" in data or "laws" in data):
         raise InputError(
             "material",

@@ -1,7 +1,5 @@
 """Measured stress–strain curves that are stored with a material."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,11 +33,9 @@ class MeasuredCurve:
     def __post_init__(self) -> None:
         points = len(self.strain)
         if points != len(self.stress_n_per_mm) or not 2 <= points <= MAX_POINTS:
-            raise InputError(
-                "measured",
-                f"a curve of {points} strains and {len(self.stress_n_per_mm)} stresses.",
-                f"Give 2 to {MAX_POINTS} points, a stress for each strain.",
-            )
+            problem = f"a curve of {points} strains and {len(self.stress_n_per_mm)} stresses."
+            remedy = f"Give 2 to {MAX_POINTS} points, a stress for each strain."
+            raise InputError("measured", problem, remedy)
         if not np.all(np.isfinite([self.strain, self.stress_n_per_mm])):
             raise InputError(
                 "measured", "a curve has values that are not finite.", "Leave those points out."

@@ -1,7 +1,5 @@
 """The paper's tables as packaged data: each figure as printed, as used, and why they differ."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -7,8 +7,6 @@ machine, clamp to clamp: their laws stay. ``scripts/refit_laws.py`` writes the f
 ``docs/fit-a-law.md`` gives the errors.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import cache

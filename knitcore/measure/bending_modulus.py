@@ -6,8 +6,6 @@ rather than its stiffness. The exact place of the clamp is fitted too, because a
 near it. B comes out proportional to the linear density.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -107,11 +105,9 @@ def measure_bending(
     photos, notes = [], []
     for path, length in zip(paths, lengths, strict=True):
         if length is None and px_per_mm is None:
-            raise InputError(
-                "length_mm",
-                "neither the hanging length nor a scale is given, so the photo has no scale.",
-                "Give length_mm (clamp to free end, along the yarn) or px_per_mm.",
-            )
+            problem = "neither the hanging length nor a scale is given, so the photo has no scale."
+            remedy = "Give length_mm (clamp to free end, along the yarn) or px_per_mm."
+            raise InputError("length_mm", problem, remedy)
         name = Path(path).name
         line = trace_centreline(load_grey(path), name=name)
         notes += _doubts(name, line, length)
@@ -137,11 +133,8 @@ def _doubts(name: str, line: Centreline, length_mm: float | None) -> list[str]:
     notes = []
     if not line.tip_in_photo:
         if length_mm is None:
-            raise InputError(
-                name,
-                "the free end is outside the photo, so its length is unknown.",
-                "Give length_mm, or a photo of the whole hanging yarn.",
-            )
+            problem = "the free end is outside the photo, so its length is unknown."
+            raise InputError(name, problem, "Give length_mm, or a photo of the whole hanging yarn.")
         notes.append(f"{name}: the yarn reaches the photo's border; is its end missing?")
     if line.next_largest > 0.2:
         notes.append(
@@ -158,11 +151,8 @@ def _lengths(length_mm: float | Sequence[float] | None, count: int) -> list[floa
     if len(given) == 1:
         given = given * count
     if len(given) != count:
-        raise InputError(
-            "length_mm",
-            f"{len(given)} lengths are given for {count} photos.",
-            "Give one length for all, or one per photo in the same order.",
-        )
+        remedy = "Give one length for all, or one per photo in the same order."
+        raise InputError("length_mm", f"{len(given)} lengths are given for {count} photos.", remedy)
     for value in given:
         check_range("length_mm", value, 5, 5000, "mm", "a hanging length")
     return list(given)
@@ -187,11 +177,8 @@ def _fit_photo(
             "Correct px_per_mm or length_mm.",
         )
     if not 0.02 <= width <= 20:
-        raise InputError(
-            name,
-            f"with this scale the yarn is {width:.3g} mm wide.",
-            "Check the unit of length_mm or px_per_mm.",
-        )
+        problem = f"with this scale the yarn is {width:.3g} mm wide."
+        raise InputError(name, problem, "Check the unit of length_mm or px_per_mm.")
     arc, traced = line.arc_px / scale, np.stack([line.x_px, line.y_px], axis=1) / scale
     part = arc <= FITTED_SHARE * length
     load, rms, shift = _elastica_through(name, arc[part], traced[part], length)
@@ -226,11 +213,8 @@ def _elastica_through(
     costs = [cost(value) for value in LOG_LOADS]
     best = int(np.argmin(costs))
     if best == 0:
-        raise InputError(
-            name,
-            "the yarn does not sag under its weight.",
-            "Hang a longer piece, and photograph it level.",
-        )
+        problem = "the yarn does not sag under its weight."
+        raise InputError(name, problem, "Hang a longer piece, and photograph it level.")
     if best == len(costs) - 1:
         raise InputError(
             name, "the yarn is too straight: its bend is not resolved.", "Hang a shorter piece."
@@ -240,9 +224,7 @@ def _elastica_through(
     )
     rms = float(np.sqrt(minimum.fun))
     if rms > WORST_RMS_SHARE * length_mm:
-        raise InputError(
-            name,
-            f"the traced line is {rms:.1f} mm off any hanging yarn's shape.",
-            "The photo must be level, with the clamp at one side and the yarn hanging freely.",
-        )
+        problem = f"the traced line is {rms:.1f} mm off any hanging yarn's shape."
+        remedy = "The photo must be level, with the clamp at one side and the yarn hanging freely."
+        raise InputError(name, problem, remedy)
     return float(np.exp(minimum.x)), rms, difference(float(minimum.x)).mean(axis=0)

@@ -1,7 +1,5 @@
 """Trace the centreline of one yarn in a photo."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,10 +15,8 @@ from skimage.measure import label, regionprops
 from skimage.morphology import isotropic_opening, skeletonize
 from skimage.transform import rescale
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
-
-Mask = NDArray[np.bool_]
 
 MAX_PIXELS = 60_000_000
 MAX_BYTES = 100 * 2**20
@@ -79,11 +75,8 @@ def load_grey(path: Path) -> Array:
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             with Image.open(path, formats=("JPEG", "PNG", "TIFF", "BMP", "WEBP")) as image:
                 if image.width * image.height > MAX_PIXELS:
-                    raise InputError(
-                        path.name,
-                        f"has {image.width} x {image.height} pixels.",
-                        "Give a photo of up to 60 megapixels.",
-                    )
+                    problem = f"has {image.width} x {image.height} pixels."
+                    raise InputError(path.name, problem, "Give a photo of up to 60 megapixels.")
                 upright = ImageOps.exif_transpose(image).convert("L")
                 return np.asarray(upright, dtype=float) / 255.0
     except UnidentifiedImageError:

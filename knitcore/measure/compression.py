@@ -7,8 +7,6 @@ incompressible core) and rho_0 = depth_core - depth_0, where depth_0 is the dept
 force stays above 1 mN. k and p by least squares over the readings from 1 mN to 1 N.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -89,11 +87,8 @@ def fit_compression(
     """
     diameter = diameter_mm if diameter_mm is not None else test.diameter_mm
     if diameter is None:
-        raise InputError(
-            f"{test.name}, diameter_mm",
-            "the yarn's diameter is unknown.",
-            "Give it, or a sheet 'Yarn Diameters' with a column that names the yarn.",
-        )
+        remedy = "Give it, or a sheet 'Yarn Diameters' with a column that names the yarn."
+        raise InputError(f"{test.name}, diameter_mm", "the yarn's diameter is unknown.", remedy)
     for name, value in (("diameter_mm", diameter), ("probe_width_mm", probe_width_mm)):
         check_range(f"{test.name}, {name}", value, 0.01, 50, "mm", "its size")
     depth, force, depth_core, thickness = _loading(test)
@@ -148,19 +143,13 @@ def _loading(test: CompressionTest) -> tuple[Array, Array, float, float]:
     depth_core = float(test.depth_mm[core])
     thickness = depth_core - float(test.depth_mm[touch])
     if thickness <= 0:
-        raise InputError(
-            f"{test.name}, depth",
-            "does not grow while the force does.",
-            "Depth must increase towards the yarn, in mm.",
-        )
+        remedy = "Depth must increase towards the yarn, in mm."
+        raise InputError(f"{test.name}, depth", "does not grow while the force does.", remedy)
     depth, force = test.depth_mm[touch:core], test.force_n[touch:core]
     used = (force <= FIT_LIMIT_N) & (depth < depth_core)
     if used.sum() < MIN_READINGS:
-        raise InputError(
-            test.name,
-            f"has {used.sum()} readings between 1 mN and 1 N.",
-            f"Record at least {MIN_READINGS}.",
-        )
+        problem = f"has {used.sum()} readings between 1 mN and 1 N."
+        raise InputError(test.name, problem, f"Record at least {MIN_READINGS}.")
     return depth[used], force[used], depth_core, thickness
 
 
@@ -200,18 +189,12 @@ def _touch_and_core(test: CompressionTest) -> tuple[int, int]:
             f"{test.name}, force", f"reaches {peak:.4g} N.", "Give newton; the readings may be mN."
         )
     if peak < CORE_N * (1 - CORE_TOLERANCE):
-        raise InputError(
-            test.name,
-            f"is cut off: the force ends at {peak:.3g} N.",
-            f"The test must reach {CORE_N:g} N, where the yarn's core is taken to be.",
-        )
+        remedy = f"The test must reach {CORE_N:g} N, where the yarn's core is taken to be."
+        raise InputError(test.name, f"is cut off: the force ends at {peak:.3g} N.", remedy)
     beyond = peak > CORE_N * (1 + CORE_TOLERANCE)
     core = int(np.argmax(force >= CORE_N)) if beyond else int(np.argmax(force))
     below = np.flatnonzero(force[:core] < TOUCH_N)
     if below.size == 0:
-        raise InputError(
-            test.name,
-            f"starts in contact, at {force[0]:.3g} N.",
-            "Record from before the probe touches the yarn (below 1 mN).",
-        )
+        remedy = "Record from before the probe touches the yarn (below 1 mN)."
+        raise InputError(test.name, f"starts in contact, at {force[0]:.3g} N.", remedy)
     return int(below[-1]) + 1, core

@@ -8,8 +8,6 @@ CSV: a header line with ``depth_mm, force_n`` and, where there are several tests
 (``yarn-number``); the diameter may be a column ``diameter_mm``.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,11 +89,9 @@ def _of_sheet(
         None,
     )
     if header is None or header + 2 >= len(sheet):
-        raise InputError(
-            where,
-            "has no column whose name contains 'force', or no readings below it.",
-            "Give a row of names (force, strain), a row of units, then the readings.",
-        )
+        problem = "has no column whose name contains 'force', or no readings below it."
+        remedy = "Give a row of names (force, strain), a row of units, then the readings."
+        raise InputError(where, problem, remedy)
     names = [str(v).strip().lower() for v in sheet[header]]
     units = [str(v).strip().lower() for v in sheet[header + 1]] + [""] * len(names)
     force = next(i for i, name in enumerate(names) if "force" in name)
@@ -162,11 +158,9 @@ def _read_csv(path: Path) -> list[CompressionTest]:
     table.columns = [str(c).strip().lower() for c in table.columns]
     missing = [c for c in ("depth_mm", "force_n") if c not in table.columns]
     if missing or table.empty:
-        raise InputError(
-            path.name,
-            f"has no column {', '.join(missing)}." if missing else "has no rows.",
-            "Give a header line depth_mm,force_n and one row per reading.",
-        )
+        problem = f"has no column {', '.join(missing)}." if missing else "has no rows."
+        remedy = "Give a header line depth_mm,force_n and one row per reading."
+        raise InputError(path.name, problem, remedy)
     columns = {
         name: numbers(f"{path.name}, column {name}", table[name])
         for name in ("depth_mm", "force_n", "diameter_mm")

@@ -9,8 +9,6 @@ moment balance reads
 so the shape depends on one number only.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.integrate import cumulative_simpson
 from scipy.linalg import solve_banded

@@ -6,10 +6,9 @@ import re
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
@@ -47,7 +46,7 @@ class StretchRun:
         """Number of points."""
         return len(self.stress)
 
-    def only(self, points: slice | NDArray[np.bool_]) -> StretchRun:
+    def only(self, points: slice | Mask) -> StretchRun:
         """The run with some of its points."""
         return StretchRun(
             self.name, self.strain_along[points], self.strain_across[points], self.stress[points]
@@ -146,7 +145,7 @@ class StretchTest:
         return replace(self, runs=runs, width_mm=(width_mm,) * len(runs))
 
 
-def misread_forces(force: Array) -> NDArray[np.bool_]:
+def misread_forces(force: Array) -> Mask:
     """Isolated readings far from their neighbours (a digit misread from a display)."""
     if len(force) < 7:
         return np.zeros(len(force), dtype=bool)
@@ -178,39 +177,26 @@ def check_run(run: StretchRun, *, first_row: int = 1) -> None:
         in another unit, falls, or never rises.
     """
     if run.length < MIN_POINTS:
-        raise InputError(
-            run.name,
-            f"has {run.length} usable points.",
-            f"Give at least {MIN_POINTS} points between rest and the largest force.",
-        )
+        remedy = f"Give at least {MIN_POINTS} points between rest and the largest force."
+        raise InputError(run.name, f"has {run.length} usable points.", remedy)
     _check_percent(run, first_row)
     _check_stress(run, first_row)
     for name, values in (("strain_along", run.strain_along), ("force", run.stress)):
         if np.ptp(values) == 0:
-            raise InputError(
-                f"{run.name}, {name}",
-                "is the same in every row.",
-                "Give the readings of a pull from rest to the largest force.",
-            )
+            remedy = "Give the readings of a pull from rest to the largest force."
+            raise InputError(f"{run.name}, {name}", "is the same in every row.", remedy)
     along, across = run.strain_along, run.strain_across
     if along.max() < 0.01:
-        raise InputError(
-            run.name,
-            f"the strain along the pull never exceeds {along.max():.4f}.",
-            "Give strain as change of length over initial length, and the whole pull.",
-        )
+        problem = f"the strain along the pull never exceeds {along.max():.4f}."
+        remedy = "Give strain as change of length over initial length, and the whole pull."
+        raise InputError(run.name, problem, remedy)
     if across[np.argmax(along)] > 0.5 * along.max() and np.ptp(across) > np.ptp(along):
-        raise InputError(
-            run.name,
-            "the sample grows more across than along the pull.",
-            "Exchange strain_along and strain_across, or course and wale.",
-        )
+        remedy = "Exchange strain_along and strain_across, or course and wale."
+        raise InputError(run.name, "the sample grows more across than along the pull.", remedy)
     if _rank_correlation(along, run.stress) < 0.3:
-        raise InputError(
-            run.name,
-            "the force does not grow with the strain along the pull.",
-            "Check that force and strain belong to the same run and are in the same order.",
-        )
+        problem = "the force does not grow with the strain along the pull."
+        remedy = "Check that force and strain belong to the same run and are in the same order."
+        raise InputError(run.name, problem, remedy)
 
 
 def _check_percent(run: StretchRun, first_row: int) -> None:
@@ -224,34 +210,25 @@ def _check_percent(run: StretchRun, first_row: int) -> None:
     ):
         if wrong.any():
             worst = int(np.argmax(np.where(wrong, np.abs(values), 0.0)))
-            raise InputError(
-                f"{run.name}, {name}",
-                f"{values[worst]:.4g} in row {worst + first_row} {how}",
-                f"Divide the strains by 100: {example}.",
-            )
+            problem = f"{values[worst]:.4g} in row {worst + first_row} {how}"
+            remedy = f"Divide the strains by 100: {example}."
+            raise InputError(f"{run.name}, {name}", problem, remedy)
 
 
 def _check_stress(run: StretchRun, first_row: int) -> None:
     peak = float(run.stress.max())
     if peak <= 0:
-        raise InputError(
-            f"{run.name}, force",
-            "never rises above zero.",
-            "Give tension as a positive force in newton.",
-        )
+        remedy = "Give tension as a positive force in newton."
+        raise InputError(f"{run.name}, force", "never rises above zero.", remedy)
     if peak > 50.0:
-        raise InputError(
-            f"{run.name}, force",
-            f"gives a stress of {peak:.3g} N/mm, more than yarn carries.",
-            "Give the force in newton (not mN, gram or kgf) and the width in mm.",
-        )
+        problem = f"gives a stress of {peak:.3g} N/mm, more than yarn carries."
+        remedy = "Give the force in newton (not mN, gram or kgf) and the width in mm."
+        raise InputError(f"{run.name}, force", problem, remedy)
     pushed = int(np.argmin(run.stress))
     if run.stress[pushed] < -0.5 * peak:
-        raise InputError(
-            f"{run.name}, force",
-            f"is compression in row {pushed + first_row} ({run.stress[pushed]:.3g} N/mm).",
-            "Give tension as a positive force in newton, zeroed before the pull.",
-        )
+        problem = f"is compression in row {pushed + first_row} ({run.stress[pushed]:.3g} N/mm)."
+        remedy = "Give tension as a positive force in newton, zeroed before the pull."
+        raise InputError(f"{run.name}, force", problem, remedy)
     fall = np.maximum.accumulate(run.stress) - run.stress
     fallen = fall > FALL_SHARE * peak
     if fallen.mean() > 0.02:
@@ -278,11 +255,8 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
         If a file says that it was pulled in the other direction, or both are the same test.
     """
     if _same_points(course, wale):
-        raise InputError(
-            "test_wale",
-            f"{wale.source} holds the same points as {course.source}.",
-            "Give one test course-wise and one wale-wise.",
-        )
+        problem = f"{wale.source} holds the same points as {course.source}."
+        raise InputError("test_wale", problem, "Give one test course-wise and one wale-wise.")
     stated = {d: stated_direction(t) for d, t in zip(Direction, (course, wale), strict=True)}
     for direction, test in zip(Direction, (course, wale), strict=True):
         said = stated[direction]
@@ -293,7 +267,10 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
                 "Give the test pulled along the rows (x) first and the one along the columns (y)"
                 " second.",
             )
-    samples = [_sample_name(test.description) for test in (course, wale)]
+    samples = [
+        " ".join(w for w in test.description.split() if w not in ("X", "Y", "New")).lower()
+        for test in (course, wale)
+    ]
     if all(samples) and samples[0] != samples[1]:
         return (
             f"The tests name different samples ({course.description!r}, {wale.description!r}).",
@@ -315,10 +292,6 @@ def stated_direction(test: StretchTest) -> Direction | None:
         elif letters and not named:
             stated.add(Direction.COURSE if letters[-1] == "X" else Direction.WALE)
     return stated.pop() if len(stated) == 1 else None
-
-
-def _sample_name(description: str) -> str:
-    return " ".join(w for w in description.split() if w not in ("X", "Y", "New")).lower()
 
 
 def _same_points(a: StretchTest, b: StretchTest) -> bool:

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.measure.workbooks import is_workbook, read_workbook
 
@@ -43,22 +42,17 @@ def read_table(path: Path, header: str) -> pd.DataFrame:
             path.name, "is not text in UTF-8.", "Save it as CSV in UTF-8, or as XLSX."
         ) from None
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        raise InputError(
-            path.name,
-            f"cannot be read as CSV ({str(error).strip()}).",
-            f"Give a header line {header} and comma-separated numbers.",
-        ) from None
+        problem = f"cannot be read as CSV ({str(error).strip()})."
+        remedy = f"Give a header line {header} and comma-separated numbers."
+        raise InputError(path.name, problem, remedy) from None
     for separator, name in ((";", "semicolons"), ("\t", "tabs")):
         if separator in str(table.columns[0]):
-            raise InputError(
-                path.name,
-                f"has {name} between its columns.",
-                "Save it with commas between columns and decimal points, or as XLSX.",
-            )
+            remedy = "Save it with commas between columns and decimal points, or as XLSX."
+            raise InputError(path.name, f"has {name} between its columns.", remedy)
     return table
 
 
-def rows_by_label(table: pd.DataFrame, column: str, default: str) -> dict[str, NDArray[np.intp]]:
+def rows_by_label(table: pd.DataFrame, column: str, default: str) -> dict[str, Indices]:
     """Rows of a table by their label in a column, in the order in which the labels come.
 
     Parameters

@@ -13,8 +13,6 @@ rest, ``length_mm``, and that of the points between which the strain across is r
 one row per point in the order of the pull.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from enum import StrEnum
@@ -22,9 +20,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.measure.stretch_test import (
     MIN_POINTS,
@@ -111,19 +108,13 @@ def _read_hdf5(path: Path, marks: Marks) -> StretchTest:
         raise _not_utf_8(path.name) from None
     except (OSError, RuntimeError, KeyError) as error:
         reason = (str(error).splitlines() or ["no reason given"])[0]
-        raise InputError(
-            path.name,
-            f"cannot be read as HDF5 ({reason}).",
-            "The file may be cut off or damaged: copy it again.",
-        ) from None
+        remedy = "The file may be cut off or damaged: copy it again."
+        raise InputError(path.name, f"cannot be read as HDF5 ({reason}).", remedy) from None
 
 
 def _not_utf_8(name: str) -> InputError:
-    return InputError(
-        name,
-        "has a name or a text that is not UTF-8.",
-        "Name groups and datasets in plain letters, as docs/fit-a-law.md lists them.",
-    )
+    remedy = "Name groups and datasets in plain letters, as docs/fit-a-law.md lists them."
+    return InputError(name, "has a name or a text that is not UTF-8.", remedy)
 
 
 def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
@@ -131,11 +122,9 @@ def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
     keys = _pulls(name, file, notes)
     clamp_px, fabric_px = (_numbers(name, file, key) for key in ("clampSize", "fabricSize"))
     if not all(size.size and size.min() > 0 for size in (clamp_px, fabric_px)):
-        raise InputError(
-            f"{name}, clampSize and fabricSize",
-            "must both hold a positive number of pixels.",
-            f"clampSize is the length in pixels of a clamp of {CLAMP_MM} mm.",
-        )
+        problem = "must both hold a positive number of pixels."
+        remedy = f"clampSize is the length in pixels of a clamp of {CLAMP_MM} mm."
+        raise InputError(f"{name}, clampSize and fabricSize", problem, remedy)
     mm_per_px = CLAMP_MM / float(clamp_px.mean())
     width_mm = float(fabric_px.mean()) * mm_per_px
     tracked = {key: _tracked(name, file, key, marks, notes) for key in keys}
@@ -170,11 +159,8 @@ def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
 
 
 def _no_pull(name: str, notes: list[str]) -> InputError:
-    return InputError(
-        name,
-        "has no usable pull. " + " ".join(notes),
-        "Give at least one pull that is tracked from rest to the largest force.",
-    )
+    remedy = "Give at least one pull that is tracked from rest to the largest force."
+    return InputError(name, "has no usable pull. " + " ".join(notes), remedy)
 
 
 def _pulls(name: str, file: h5py.File, notes: list[str]) -> list[str]:
@@ -187,11 +173,8 @@ def _pulls(name: str, file: h5py.File, notes: list[str]) -> list[str]:
         if (match := re.fullmatch(r"video[ _]?(\d+)", key, re.IGNORECASE))
     )
     if not videos or len(videos) > MAX_VIDEOS:
-        raise InputError(
-            name,
-            f"has {len(videos)} groups named video1, video2, ….",
-            f"Give 1 to {MAX_VIDEOS} pulls in the layout of docs/fit-a-law.md.",
-        )
+        remedy = f"Give 1 to {MAX_VIDEOS} pulls in the layout of docs/fit-a-law.md."
+        raise InputError(name, f"has {len(videos)} groups named video1, video2, ….", remedy)
     if len(videos) > 1 and videos[0][0] == 1:
         videos = videos[1:]
         notes.append("video1 conditions the sample and is left out.")
@@ -236,11 +219,8 @@ def _tracked(
     force = _numbers(name, file, f"{key}/forces").ravel()
     points = _numbers(name, file, f"{key}/traj")
     if points.ndim != 3 or points.shape[0] < 4 or points.shape[1] != 2:
-        raise InputError(
-            f"{name}, {key}/traj",
-            f"has the shape {points.shape}.",
-            "It must be (7 points, 2 coordinates, frames), or (4, 2, frames).",
-        )
+        remedy = "It must be (7 points, 2 coordinates, frames), or (4, 2, frames)."
+        raise InputError(f"{name}, {key}/traj", f"has the shape {points.shape}.", remedy)
     if points.shape[0] < 7:
         points = _seven(points, notes)
     frames = min(len(force), points.shape[2])
@@ -270,11 +250,9 @@ def _tracked(
         for first, second in (marks.points, Marks.CLAMPS.points, (_RIGHT, _LEFT))
     )
     if min(along[0], across[0]) <= 0:
-        raise InputError(
-            f"{name}, {key}/traj",
-            "two points coincide in the first tracked frame.",
-            "Track the points from the unstretched sample on.",
-        )
+        problem = "two points coincide in the first tracked frame."
+        remedy = "Track the points from the unstretched sample on."
+        raise InputError(f"{name}, {key}/traj", problem, remedy)
     return _Tracked(along, clamps, across, force[good])
 
 
@@ -337,11 +315,9 @@ def _read_table(path: Path) -> StretchTest:
     }
     clamps, across = (lengths.get(column) for column in TABLE_LENGTHS)
     if across is not None and across > WIDER_THAN_CLAMPED * min(widths):
-        raise InputError(
-            f"{path.name}, column across_mm",
-            f"{across:g} mm is more than the clamped width.",
-            "Give the distance, in mm at rest, of the points that you track across.",
-        )
+        problem = f"{across:g} mm is more than the clamped width."
+        remedy = "Give the distance, in mm at rest, of the points that you track across."
+        raise InputError(f"{path.name}, column across_mm", problem, remedy)
     return StretchTest(path.name, "", runs, widths, (), clamps, across)
 
 
@@ -365,39 +341,29 @@ def _column_name(text: str) -> str:
 def _check_header(name: str, columns: list[str]) -> None:
     percent = [c for c in columns if "strain" in c and ("%" in c or "percent" in c)]
     if percent:
-        raise InputError(
-            f"{name}, {percent[0]}",
-            "is a strain in percent (%).",
-            "Divide the strains by 100 and name the columns strain_along and strain_across.",
-        )
+        remedy = "Divide the strains by 100 and name the columns strain_along and strain_across."
+        raise InputError(f"{name}, {percent[0]}", "is a strain in percent (%).", remedy)
     missing = [c for c in CSV_COLUMNS if c not in columns]
     if missing:
-        raise InputError(
-            name,
-            f"has no column {', '.join(missing)} (it has {', '.join(columns[:8])}).",
-            f"The header line must name {', '.join(CSV_COLUMNS)}.",
-        )
+        problem = f"has no column {', '.join(missing)} (it has {', '.join(columns[:8])})."
+        raise InputError(name, problem, f"The header line must name {', '.join(CSV_COLUMNS)}.")
 
 
 def _run(
-    name: str, label: str, rows: NDArray[np.intp], values: dict[str, Array]
+    name: str, label: str, rows: Indices, values: dict[str, Array]
 ) -> tuple[StretchRun, float]:
     title = f"{name}, run {label}" if label else name
     width = values["width_mm"][rows]
     if width.min() < 5:
         row = int(rows[np.argmin(width)])
-        raise InputError(
-            f"{title}, column width_mm",
-            f"{width.min():g} in row {row + 2} is below 5 mm, so it may be in cm or m.",
-            "Give the clamped width at rest in mm.",
-        )
+        problem = f"{width.min():g} in row {row + 2} is below 5 mm, so it may be in cm or m."
+        remedy = "Give the clamped width at rest in mm."
+        raise InputError(f"{title}, column width_mm", problem, remedy)
     if np.ptp(width) > 0.01 * width[0]:
         row = int(rows[np.argmax(np.abs(width - width[0]) > 0.01 * width[0])])
-        raise InputError(
-            f"{title}, column width_mm",
-            f"changes from {width[0]:g} to {values['width_mm'][row]:g} mm in row {row + 2}.",
-            "Stress is force per width at rest: give that width in every row of a run.",
-        )
+        problem = f"changes from {width[0]:g} to {values['width_mm'][row]:g} mm in row {row + 2}."
+        remedy = "Stress is force per width at rest: give that width in every row of a run."
+        raise InputError(f"{title}, column width_mm", problem, remedy)
     force = values["force_n"][rows]
     good = ~misread_forces(force)
     run = StretchRun(

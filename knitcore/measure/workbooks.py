@@ -1,7 +1,5 @@
 """Workbooks of testing machines and of people, XLS and XLSX, as rows of cells."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
@@ -109,8 +107,5 @@ def _cells(row: Sequence[Any]) -> list[Cell]:
 
 
 def _too_large(path: Path) -> InputError:
-    return InputError(
-        path.name,
-        "is larger than what is read of a workbook.",
-        f"Give the tests only: at most {MAX_BYTES // 2**20} MB and {MAX_CELLS:,} cells.",
-    )
+    remedy = f"Give the tests only: at most {MAX_BYTES // 2**20} MB and {MAX_CELLS:,} cells."
+    return InputError(path.name, "is larger than what is read of a workbook.", remedy)

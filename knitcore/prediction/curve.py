@@ -1,7 +1,5 @@
 """Strains of a chart at given stresses, with their interval."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,18 +67,12 @@ def increasing(stress_n_per_mm: ArrayLike) -> Array:
     """
     stress = np.atleast_1d(np.asarray(stress_n_per_mm, dtype=float))
     if not np.all(np.isfinite(stress)) or np.any(np.diff(stress) <= 0) or np.any(stress < 0):
-        raise InputError(
-            "stress",
-            "must be finite, increasing and at least 0.",
-            "Give, for example, 0, 0.1, 0.2 N/mm.",
-        )
+        problem = "must be finite, increasing and at least 0."
+        raise InputError("stress", problem, "Give, for example, 0, 0.1, 0.2 N/mm.")
     if stress[-1] > MAX_STRESS_N_PER_MM:
-        raise InputError(
-            "stress",
-            f"{stress[-1]:g} N/mm is more than any fabric carries.",
-            f"Give at most {MAX_STRESS_N_PER_MM:g} N/mm.",
-            most=MAX_STRESS_N_PER_MM,
-        )
+        problem = f"{stress[-1]:g} N/mm is more than any fabric carries."
+        remedy = f"Give at most {MAX_STRESS_N_PER_MM:g} N/mm."
+        raise InputError("stress", problem, remedy, most=MAX_STRESS_N_PER_MM)
     return stress
 
 

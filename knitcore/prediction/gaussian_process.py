@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,9 @@ class Samples:
 
     features: Array
     numbers: Array
-    pure: NDArray[np.bool_]
+    pure: Mask
 
-    def __getitem__(self, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Samples:
+    def __getitem__(self, rows: Mask | NDArray[np.int64]) -> Samples:
         return Samples(self.features[rows], self.numbers[rows], self.pure[rows])
 
 

@@ -1,7 +1,5 @@
 """Charts that mix pure fabrics: the learned response with its intervals, bounds and notes."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.chart.fabric import PHASES
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material, Origin
@@ -124,7 +124,7 @@ def _between(values: Array, places: Array, axis: int = 0) -> Array:
     return low + weight * (high - low)
 
 
-def _sizes_and_folds(windows: NDArray[np.bool_], material: Material) -> Array:
+def _sizes_and_folds(windows: Mask, material: Material) -> Array:
     """(windows, 4) size, and size over the flat mixture's."""
     composition = densities_of(windows)
     phases = present(composition.shares)

@@ -5,9 +5,8 @@ and in steps of that size from there. The densities of a patch are means over th
 size around it, of stitches that know their neighbours beyond the window: the last row of a hem
 counts as one row of it, not as a texture of its own. The patches at the ends are smaller than their
 windows and grow with the chart, so one row more changes little. Up to twice that size, densities
-pass gradually from those of the whole chart to those of patches. They are shifted so that
-their mean is the whole chart's: a cut across a repeat then does not change the result for the
-whole.
+pass gradually from those of the whole chart to those of patches. They are shifted so that their
+mean is the whole chart's: a cut across a repeat then does not change the result for the whole.
 
 Patches form lines along the pull: in a line all patches carry the same force per row (wale), and
 their stretched sizes add up; all lines are strained alike, and their forces add up.
@@ -19,12 +18,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import chain, pairwise, product
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.response import Response, response_through
@@ -142,13 +142,8 @@ class Patches:
             return np.tensordot(share, [part.across(stress) for part in parts], axes=1)
 
         response, stiff, soft, held = (
-            self._response(direction, kind)
-            for kind in (
-                lambda along: along.response,
-                lambda along: along.stiff,
-                lambda along: along.soft,
-                lambda along: along.held,
-            )
+            self._response(direction, attrgetter(kind))
+            for kind in ("response", "stiff", "soft", "held")
         )
         modulus = response.modulus_n_per_mm
         return Along(
@@ -250,7 +245,7 @@ def in_patches(repeat: StitchChart, material: Material, size: RelaxedSize | None
     )
 
 
-def _cuts(stitches: int) -> NDArray[np.intp]:
+def _cuts(stitches: int) -> Indices:
     """Where patches begin and end: the middle and steps from there, as far as there are stitches.
 
     Examples
@@ -267,10 +262,7 @@ def _cuts(stitches: int) -> NDArray[np.intp]:
 
 
 def _densities_of(
-    repeat: StitchChart,
-    whole: Densities,
-    rows: NDArray[np.intp],
-    columns: NDArray[np.intp],
+    repeat: StitchChart, whole: Densities, rows: Indices, columns: Indices
 ) -> Densities:
     """Densities of the patches, row by row, as means over the window of each.
 
@@ -286,7 +278,7 @@ def _densities_of(
     return Densities(_shares(shares), excess, np.clip(straight, 0.0, 1.0), _shares(ways))
 
 
-def _windows(cuts: NDArray[np.intp]) -> Array:
+def _windows(cuts: Indices) -> Array:
     """(patches, stitches) weights that take the mean over the window of each patch."""
     weights = np.zeros((len(cuts) - 1, end := int(cuts[-1])))
     for own, (low, high) in zip(weights, pairwise(cuts.tolist()), strict=True):

@@ -17,8 +17,6 @@ Measured materials do not look sweeps up: the packaged ones are of one of severa
 repeat may take, and no nearer to another of its shapes than the learned prediction is.
 """
 
-from __future__ import annotations
-
 from knitcore.base.errors import InputError
 from knitcore.chart.phases import pure_fabric
 from knitcore.chart.stitch_chart import StitchChart, as_chart
@@ -66,11 +64,8 @@ def predict(
     """
     chart, material = as_chart(chart), as_material(material)
     if not isinstance(size, RelaxedSize | None):
-        raise InputError(
-            "size",
-            f"a {type(size).__name__} is not a relaxed size.",
-            "Give a RelaxedSize, such as RelaxedSize.from_gauge(22, 30).",
-        )
+        remedy = "Give a RelaxedSize, such as RelaxedSize.from_gauge(22, 30)."
+        raise InputError("size", f"a {type(size).__name__} is not a relaxed size.", remedy)
     fabric = pure_fabric(chart)
     if fabric is not None:
         pure = predict_pure(fabric, material)

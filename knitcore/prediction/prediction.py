@@ -173,11 +173,7 @@ class Prediction:
         )
         known_by = relaxed.known_by
         return replace(
-            self,
-            course=course,
-            wale=wale,
-            relaxed_source=known_by,
-            size_errors=(known_by.errors,),
+            self, course=course, wale=wale, relaxed_source=known_by, size_errors=(known_by.errors,)
         )
 
     def modulus_n_per_mm(self, direction: Direction | str) -> float:

@@ -1,7 +1,5 @@
 """Pure fabrics: their own law and size."""
 
-from __future__ import annotations
-
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.response import free_response, held_response, stiffened
 from knitcore.law.uniaxial import free_transverse_strains

@@ -22,18 +22,15 @@ The flat composite is taken as lines of cells along the pull: in a line the phas
 one force, and all lines are strained alike.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Codes, Indices
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.phases import pure_fabric, quarter_phases
 from knitcore.chart.stitch_chart import StitchChart
@@ -77,17 +74,13 @@ class QuarterLaws:
     """
 
     laws: tuple[ConstitutiveLaw, ...]
-    patch: NDArray[np.intp]
+    patch: Indices
     scale: Array
     log_sd: Callable[[], Array]
 
 
 def quarter_laws(
-    chart: StitchChart,
-    material: Material,
-    size: RelaxedSize | None = None,
-    *,
-    even: bool = False,
+    chart: StitchChart, material: Material, size: RelaxedSize | None = None, *, even: bool = False
 ) -> QuarterLaws:
     """Compute the laws and sizes of the quarter cells of a piece.
 
@@ -127,8 +120,8 @@ def quarter_laws(
 
 
 def _each(
-    patches: Patches, phases: NDArray[np.uint8]
-) -> Iterator[tuple[tuple[slice, slice], NDArray[np.uint8], Prediction]]:
+    patches: Patches, phases: Codes
+) -> Iterator[tuple[tuple[slice, slice], Codes, Prediction]]:
     """Stitches, quarter cells and prediction of each patch."""
     for (below, above), line in zip(pairwise(patches.rows), patches.predictions, strict=True):
         for (left, right), prediction in zip(pairwise(patches.columns), line, strict=True):
@@ -136,7 +129,7 @@ def _each(
             yield (slice(below, above), slice(left, right)), cells, prediction
 
 
-def _stress_log_sd(phases: NDArray[np.uint8], patches: Patches, material: Material) -> Array:
+def _stress_log_sd(phases: Codes, patches: Patches, material: Material) -> Array:
     """The mean of the patches."""
     spread, all_cells = np.zeros((2, len(SPREAD_AT))), 4 * patches.rows[-1] * patches.columns[-1]
     for _, cells, prediction in _each(patches, phases):
@@ -146,9 +139,7 @@ def _stress_log_sd(phases: NDArray[np.uint8], patches: Patches, material: Materi
     return spread
 
 
-def _scale(
-    chart: StitchChart, phases: NDArray[np.uint8], patches: Patches, material: Material
-) -> Array:
+def _scale(chart: StitchChart, phases: Codes, patches: Patches, material: Material) -> Array:
     """Folded sizes of the stitches over those of their phases, with the predicted mean.
 
     Each stitch folds by its surroundings, so that a hem is narrower than the cloth above it.
@@ -156,7 +147,7 @@ def _scale(
     _, folds = sizes_and_folds(chart, material)
     records = _records(phases, material)
     for direction in Direction:
-        flat = np.array([_size(record, direction) for record in records])[phases]
+        flat = np.array([record.stitch_size_mm(direction) for record in records])[phases]
         flat = flat.reshape(chart.rows, 2, chart.columns, 2).mean(axis=(1, 3))
         mean = float((flat * folds[..., direction.axis]).mean())
         folds[..., direction.axis] *= patches.relaxed_mm(direction) / mean
@@ -171,32 +162,24 @@ def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    laws = tuple(_own_laws(quarter_phases(chart), material))
+    laws = tuple(record.law for record in _records(quarter_phases(chart), material))
     shape = chart.purl.shape
     none = partial(np.zeros, (2, len(SPREAD_AT)))
     return QuarterLaws(laws, np.zeros(shape, dtype=np.intp), np.ones((*shape, 2)), none)
 
 
-def _records(cells: NDArray[np.uint8], material: Material) -> list[FabricRecord]:
+def _records(cells: Codes, material: Material) -> list[FabricRecord]:
     """Records of the four phases; one that does not occur is replaced by one that does."""
     present = np.unique(cells)
     return [material.record(PHASES[k if k in present else present[0]]) for k in range(4)]
 
 
-def _shares(cells: NDArray[np.uint8]) -> Array:
+def _shares(cells: Codes) -> Array:
     return np.bincount(cells.ravel(), minlength=4) / cells.size
 
 
-def _size(record: FabricRecord, direction: Direction) -> float:
-    return record.stitch_size_mm(direction)
-
-
-def _own_laws(cells: NDArray[np.uint8], material: Material) -> list[ConstitutiveLaw]:
-    return [record.law for record in _records(cells, material)]
-
-
 def _own_log_sd(
-    cells: NDArray[np.uint8], prediction: Prediction, material: Material, direction: Direction
+    cells: Codes, prediction: Prediction, material: Material, direction: Direction
 ) -> Array:
     """Part of the predicted stress interval that does not come from the laws' own uncertainty."""
     along = prediction.along(direction)
@@ -208,7 +191,7 @@ def _own_log_sd(
 
 
 def _fitted_laws(
-    cells: NDArray[np.uint8], prediction: Prediction, material: Material, parts: Array | None
+    cells: Codes, prediction: Prediction, material: Material, parts: Array | None
 ) -> list[ConstitutiveLaw]:
     """Laws of the phases that give a patch its predicted response.
 
@@ -229,7 +212,9 @@ def _fitted_laws(
             continue
         constants[direction.axis] = [_fitted(strains * part) for part in parts[direction.axis]]
     alone = np.array([[_fitted_alone(r.law, d) for r in records] for d in Direction])
-    own = np.array([[_constants(r.law, d) for r in records] for d in Direction])
+    own = np.array(
+        [[(r.law.modulus(d), r.law.alpha(d), r.law.beta(d)) for r in records] for d in Direction]
+    )
     kept = np.minimum((constants / alone)[..., 0].min(axis=0), 1.0)[:, None]
     kappa = kept * [(r.law.kappa_xx, r.law.kappa_yy) for r in records]
     regained = kept * np.log(np.divide(own, alone, out=np.ones_like(own), where=alone * own > 0))
@@ -266,20 +251,13 @@ def _fitted_laws(
     return laws
 
 
-def _constants(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
-    """Young's modulus (N/mm), alpha and beta (N/mm) of a law."""
-    if direction is Direction.COURSE:
-        return law.modulus_course, law.alpha_xx, law.beta_xx
-    return law.modulus_wale, law.alpha_yy, law.beta_yy
-
-
 @lru_cache(maxsize=64)
 def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
     """The constants that a law has by :func:`_fitted`, which knows no kappa."""
     return _fitted(law_strains(law, direction, STRESSES))
 
 
-def _parts(cells: NDArray[np.uint8], material: Material) -> Array:
+def _parts(cells: Codes, material: Material) -> Array:
     """Ratios of the phases' strains to the cloth's at :data:`STRESSES`, (2, phases, stresses).
 
     They are half as far from 1 as in the flat composite, and as far in wide areas of one phase.
@@ -294,11 +272,11 @@ def _parts(cells: NDArray[np.uint8], material: Material) -> Array:
     return np.array(ratios)
 
 
-def _flat_strain(
-    cells: NDArray[np.uint8], records: list[FabricRecord], direction: Direction
-) -> Array:
+def _flat_strain(cells: Codes, records: list[FabricRecord], direction: Direction) -> Array:
     lines = cells if direction is Direction.COURSE else cells.T
-    along, across = (np.array([_size(r, d) for r in records]) for d in (direction, direction.other))
+    along, across = (
+        np.array([r.stitch_size_mm(d) for r in records]) for d in (direction, direction.other)
+    )
     counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)
     kinds, same = np.unique(counts, axis=0, return_inverse=True)
     lengths = kinds * along

@@ -8,8 +8,6 @@ A relaxation alone gives the size in the same way. It takes seconds, so the page
 painting pauses.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

@@ -14,7 +14,7 @@ from app.context import Context
 from app.operations import find as find_module
 from app.service.results.atlases import repeats_of
 from knitcore.base.errors import InputError
-from knitcore.formats.write.stitch_maps import read_wanted_moduli
+from knitcore.formats.read.stitch_maps import read_wanted_moduli
 
 WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.135, "tolerance": 0.05, "weight": 1.0}
 

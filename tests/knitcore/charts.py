@@ -7,6 +7,10 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from knitcore import StitchChart
+from knitcore.chart.row_sides import Construction, Side
+
+WAYS_TO_WORK = st.tuples(st.sampled_from(Construction), st.sampled_from(Side))
+"""Flat or in the round, and the side of the first row."""
 
 
 def stitch_charts(most: int = 12) -> st.SearchStrategy[StitchChart]:

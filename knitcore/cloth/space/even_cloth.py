@@ -23,7 +23,7 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.bending_constants import bends_of, mirrored_bending
 from knitcore.cloth.space.stitch_sheet import TWIST, Net, StitchSheet
 from knitcore.materials import Material
-from knitcore.materials.loop_lengths import loop_lengths_mm
+from knitcore.materials.material import loop_lengths_mm
 from knitcore.prediction.predict import predict
 from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.study.bending import MAX_STITCHES, ROLLS_FROM, bending_length_mm

@@ -9,8 +9,6 @@ Only ``format``, ``version`` and ``chart`` (K/P lines, top row first) are needed
 means is in :mod:`knitcore.formats.designs.layout`. The schema is :func:`design_schema`.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path

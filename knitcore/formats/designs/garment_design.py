@@ -1,7 +1,5 @@
 """A garment plan as a design document: chart, outline, regions, fills and intarsia yarns."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

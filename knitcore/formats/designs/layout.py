@@ -3,20 +3,18 @@
 The same fields are in the project file, in the service's designs and in the page.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
-from knitcore.garment.shaped import ShapedChart, check_outline, outline_marks
+from knitcore.garment.shaped import ShapedChart, check_outline, check_outline_size, outline_marks
 
 MAX_TEXT = 1_200_000
 MAX_ITEMS = 200
@@ -116,7 +114,7 @@ def layout_fields(design: DesignLayout) -> dict[str, Any]:
     return {name: getattr(design, name) for name in DesignLayout.model_fields}
 
 
-def region_cells(region: DesignRegion, rows: int, columns: int) -> NDArray[np.bool_]:
+def region_cells(region: DesignRegion, rows: int, columns: int) -> Mask:
     """The stitches of a region, bool (rows, columns), row 0 at the bottom.
 
     Raises
@@ -137,7 +135,7 @@ def region_cells(region: DesignRegion, rows: int, columns: int) -> NDArray[np.bo
     return cells
 
 
-def runs_of(cells: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
+def runs_of(cells: Mask) -> list[tuple[int, int, int]]:
     """The inverse of :func:`region_cells`."""
     edges = np.diff(np.pad(cells.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     starts, stops = np.argwhere(edges == 1).tolist(), np.argwhere(edges == -1)[:, 1].tolist()
@@ -195,14 +193,7 @@ def check_layout(chart: StitchChart, layout: DesignLayout) -> None:
         Naming the region, repeat or outline, the problem and the remedy.
     """
     if layout.outline is not None:
-        marks = outline_marks(layout.outline)
-        if marks.shape != chart.purl.shape:
-            raise InputError(
-                "outline",
-                f"it has {marks.shape[1]}x{marks.shape[0]} cells, the chart "
-                f"{chart.columns}x{chart.rows}.",
-                "Give one mark for every stitch of the chart.",
-            )
+        check_outline_size(outline_marks(layout.outline), chart)
     for field, items in (("regions", layout.regions), ("repeats", layout.repeats)):
         twice = [i for i, n in Counter(item.id for item in items).items() if n > 1]
         if twice:
@@ -228,11 +219,8 @@ def check_layout(chart: StitchChart, layout: DesignLayout) -> None:
 def _check_motif(field: str, name: str, motif: str) -> None:
     widths = {len(row) for row in motif.split("/")}
     if len(widths) > 1:
-        raise InputError(
-            field,
-            f"the pattern of {name} has rows of {min(widths)} and of {max(widths)} stitches.",
-            "Give every row of a repeat the same number of stitches.",
-        )
+        problem = f"the pattern of {name} has rows of {min(widths)} and of {max(widths)} stitches."
+        raise InputError(field, problem, "Give every row of a repeat the same number of stitches.")
 
 
 def layout_notes(chart: StitchChart, layout: DesignLayout) -> tuple[str, ...]:
@@ -247,7 +235,7 @@ def layout_notes(chart: StitchChart, layout: DesignLayout) -> tuple[str, ...]:
     )
 
 
-def _outline_notes(stitch: NDArray[np.bool_]) -> Iterator[str]:
+def _outline_notes(stitch: Mask) -> Iterator[str]:
     try:
         check_outline(stitch)
     except InputError as error:
@@ -268,7 +256,7 @@ def _yarn_notes(regions: Sequence[DesignRegion]) -> Iterator[str]:
 
 
 def _region_notes(
-    chart: StitchChart, stitch: NDArray[np.bool_], regions: Sequence[DesignRegion]
+    chart: StitchChart, stitch: Mask, regions: Sequence[DesignRegion]
 ) -> Iterator[str]:
     above = np.zeros(stitch.shape, dtype=bool)
     notes = []

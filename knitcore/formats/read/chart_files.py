@@ -1,7 +1,5 @@
 """Reading a chart from a file of any kind that holds one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

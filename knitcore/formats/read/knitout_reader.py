@@ -3,29 +3,39 @@
 The one place that runs the package ``knitout-interpreter``. The interpreter checks every
 instruction against a machine's state and links the loops to a knit graph; the chart is read from
 that graph alone (which loop was pulled through which, from which bed and by which carrier), not
-from the program: :mod:`knitcore.formats.write.knit_graph`.
+from the program. A stitch of the chart is a loop that was pulled through others; loops that were
+pulled through none are cast on, or tucks that tie two yarns together. A bind-off chain along an
+edge differs from stitches by its yarn: the next loop that the machine makes is pulled through the
+chained one, on the next needle.
 """
-
-from __future__ import annotations
 
 import re
 import sys
 import typing
 import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.formats.write.knit_graph import carrier_of as _carrier
-from knitcore.formats.write.knit_graph import piece_of_loops
-from knitcore.formats.write.knit_graph import time_of as _time
-from knitcore.formats.write.knitout import MAX_NEEDLES, Finish, KnitoutProgram, knitout_program
+from knitcore.formats.write.knitout import (
+    MAX_NEEDLES,
+    TAG_STITCHES,
+    Finish,
+    KnitoutProgram,
+    knitout_program,
+)
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
+from knitcore.garment.shaped import ShapedChart
 
 MAX_BYTES = 4_000_000
 _HOLDS = re.compile(r"^; carrier (\d{1,2}) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
+_REMEDY = "Give knits and purls, course by course, without tucks, misses, lace, cables, short rows."
 
 
 class KnitoutMismatchError(KnitcoreError):
@@ -73,7 +83,7 @@ def knitted_chart(program: str) -> KnittedChart:
         yarns = {_carrier(min(loops, key=_time)): MAIN_YARN}
     others = sorted({_carrier(loop) for loop in loops} - set(yarns))
     notes = [f"Yarn of carrier {c} counts as waste yarn." for c in others]
-    return KnittedChart(piece_of_loops(loops, yarns), (*notes, *said))
+    return KnittedChart(_piece_of_loops(loops, yarns), (*notes, *said))
 
 
 def verified(
@@ -147,3 +157,115 @@ def _parser() -> Any:
 
 def _one_line(message: object) -> str:
     return " ".join(str(message).split()).rstrip(".")[:300]
+
+
+def _piece_of_loops(loops: Sequence[Any], yarns: Mapping[int, PieceYarn]) -> Piece:
+    """The piece that all loops of a machine make, with its yarns by carrier.
+
+    Loops of other carriers are waste or separate strands.
+    """
+    courses = _courses(sorted(loops, key=_time), frozenset(yarns))
+    if not courses:
+        raise InputError("knitout", "the program knits no stitch.", _REMEDY)
+    for row, course in enumerate(courses):
+        _check(row, course, courses[row - 1] if row else {})
+    first = min(min(course) for course in courses)
+    width = max(max(course) for course in courses) + 1 - first
+    purl = np.zeros((len(courses), width), dtype=bool)
+    stitch, yarn_of = purl.copy(), np.zeros(purl.shape, dtype=np.intp)
+    known = list(dict.fromkeys(yarns.values()))
+    for row, course in enumerate(courses):
+        for needle, loop in course.items():
+            purl[row, needle - first] = not loop.source_needle.is_front
+            yarn_of[row, needle - first] = known.index(yarns[_carrier(loop)])
+            stitch[row, needle - first] = True
+    return Piece(ShapedChart(StitchChart(purl), stitch), tuple(known), yarn_of)
+
+
+def _carrier(loop: Any) -> int:
+    """Number of the carrier that made a loop."""
+    return int(loop.yarn.carrier.carrier_id)
+
+
+def _time(loop: Any) -> int:
+    """Number of a loop in the order in which a machine makes them."""
+    return int(loop.loop_count_on_machine)
+
+
+def _needle(loop: Any) -> int:
+    return int(loop.source_needle.position)
+
+
+def _courses(loops: Sequence[Any], carriers: frozenset[int]) -> list[dict[int, Any]]:
+    """Stitches by needle, course by course.
+
+    A course ends where a needle knits again, and where something else is cast on or bound off.
+    """
+    child = {parent: loop for loop in loops for parent in loop.parent_loops}
+    courses: list[dict[int, Any]] = []
+    course: dict[int, Any] = {}
+    for loop in loops:
+        if not loop.parent_loops and _ties(loop, child):
+            continue
+        mine = _carrier(loop) in carriers
+        if not mine or not loop.parent_loops or _is_chained(loop, child):
+            courses, course = [*courses, course] if course else courses, {}
+            continue
+        if _needle(loop) in course:
+            courses, course = [*courses, course], {}
+        course[_needle(loop)] = loop
+    courses = [*courses, course] if course else courses
+    return courses if _carrier(loops[-1]) not in carriers else _without_tag(courses)
+
+
+def _ties(tuck: Any, child: Mapping[Any, Any]) -> bool:
+    """Say whether a tuck was laid onto a needle that held a loop already."""
+    stitch = child.get(tuck)
+    return stitch is not None and any(
+        other is not tuck and _needle(other) == _needle(tuck) and _time(other) < _time(tuck)
+        for other in stitch.parent_loops
+    )
+
+
+def _is_chained(loop: Any, child: Mapping[Any, Any]) -> bool:
+    before, after = loop.prior_loop_on_yarn, loop.next_loop_on_yarn
+    return (
+        before is not None
+        and after is not None
+        and before in loop.parent_loops
+        and _needle(before) != _needle(loop)
+        and child.get(loop) is after
+        and _time(after) == _time(loop) + 1
+        and _needle(after) != _needle(loop)
+    )
+
+
+def _without_tag(courses: list[dict[int, Any]]) -> list[dict[int, Any]]:
+    """Remove the few stitches on one needle that hold a bind-off: its last chain, and a tag."""
+    tag = TAG_STITCHES + 1
+    end = courses[-tag:]
+    wide_below = len(courses) > tag and len(courses[-tag - 1]) > 1
+    if wide_below and {tuple(course) for course in end} == {tuple(end[0])} and len(end[0]) == 1:
+        return courses[:-tag]
+    return courses
+
+
+def _check(row: int, course: Mapping[int, Any], below: Mapping[int, Any]) -> None:
+    """Refuse a course that does not stand on the course below."""
+    needles = sorted(course)
+    gap = next((a for a, b in pairwise(needles) if b != a + 1), None)
+    if gap is not None:
+        raise InputError("knitout", f"course {row + 1} skips the needle after {gap}.", _REMEDY)
+    for needle, loop in course.items():
+        own = below.get(needle)
+        if own is not None and own not in loop.parent_loops:
+            problem = f"on needle {needle}, course {row + 1} is not pulled through course {row}."
+            raise InputError("knitout", problem, _REMEDY)
+        places = {_needle(parent): parent for parent in loop.parent_loops}
+        if any(n != needle and n in course and below.get(n) is p for n, p in places.items()):
+            raise InputError(
+                "knitout", f"a loop moves to needle {needle} in course {row + 1}.", _REMEDY
+            )
+        if own is None and any(parent.parent_loops for parent in loop.parent_loops):
+            problem = f"needle {needle} begins in course {row + 1} with a loop from elsewhere."
+            raise InputError("knitout", problem, _REMEDY)

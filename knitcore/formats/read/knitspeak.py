@@ -14,8 +14,6 @@ row is written without ``*``. Read are rows and rounds in any order and grouping
 purls are refused by name. Reference: https://stitch-maps.com/about/knitspeak/
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -218,10 +216,8 @@ def _row(line: Line, words: str) -> _Row:
     head, tail = _stitches(line, before or ""), _stitches(line, after or "")
     stated = int(last or 1) if to_last else 0
     if not unit or len(tail) != stated:
-        raise line.wrong(
-            f"{len(tail)} stitches follow the repeat, but it says {stated}.",
-            'Make "to last N sts" agree with what follows.',
-        )
+        problem = f"{len(tail)} stitches follow the repeat, but it says {stated}."
+        raise line.wrong(problem, 'Make "to last N sts" agree with what follows.')
     return _Row(line, head, unit, tail)
 
 

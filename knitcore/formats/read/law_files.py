@@ -11,8 +11,6 @@ Only ``law`` is needed; the constants may also stand at the top, with or without
 (``stiffness_xxxx_n_per_mm``), so that the output of ``knitcore fit --json`` is such a file too.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -111,11 +109,8 @@ def law_from_mapping(data: Mapping[str, Any]) -> LawFile:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         if where.startswith("curves"):
-            raise InputError(
-                where,
-                f"{first['msg']}.",
-                "Give curves as `knitcore fit --out` writes them, or leave them out.",
-            ) from None
+            remedy = "Give curves as `knitcore fit --out` writes them, or leave them out."
+            raise InputError(where, f"{first['msg']}.", remedy) from None
         raise InputError(
             f"law.{where}" if where else "law",
             f"{first['msg']}.",

@@ -2,20 +2,17 @@
 
 A piece with an outline or with yarns of its own is a picture with a palette, its "no stitch"
 transparent and its yarns light where they knit and dark where they purl; the names of the yarns are
-in
-the file. Any other picture is read by its brightness.
+in the file. Any other picture is read by its brightness.
 """
-
-from __future__ import annotations
 
 import io
 import json
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, PngImagePlugin, UnidentifiedImageError
 
+from knitcore.base.arrays import Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
 from knitcore.garment.piece import Piece, PieceYarn
@@ -94,11 +91,9 @@ def read_png_piece(file: Path) -> Piece:
             flat.alpha_composite(image.convert("RGBA"))
             return Piece.plain(StitchChart(np.asarray(flat.convert("L"))[::-1] < 128))
     except Image.DecompressionBombError:
-        raise InputError(
-            "chart",
-            f"{file.name} has more pixels than any chart has stitches.",
-            f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
-        ) from None
+        problem = f"{file.name} has more pixels than any chart has stitches."
+        remedy = f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns."
+        raise InputError("chart", problem, remedy) from None
     except InputError:
         raise
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError):
@@ -107,7 +102,7 @@ def read_png_piece(file: Path) -> Piece:
         ) from None
 
 
-def _piece(index: NDArray[np.intp], said: str, name: str) -> Piece:
+def _piece(index: Indices, said: str, name: str) -> Piece:
     damaged = InputError("chart", f"{name} is damaged.", "Export it again as PNG.")
     try:
         yarns = tuple(PieceYarn(str(yarn), str(colour)) for yarn, colour in json.loads(said))

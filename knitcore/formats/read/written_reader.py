@@ -6,8 +6,6 @@ brackets with ``twice`` or ``N times``, and one ``*…; rep from *`` with ``to e
 sts`` are known, and at the edges decreases, ``m1``, casting on and binding off.
 """
 
-from __future__ import annotations
-
 import re
 
 from knitcore.base.errors import InputError
@@ -68,11 +66,9 @@ def read_piece_rows(text: str) -> Piece:
     lines = list(lines_of(text))
     cast_on = _CAST_ON.fullmatch(lines[0].text) if lines else None
     if cast_on is None:
-        raise InputError(
-            "rows",
-            "the first line does not say how many stitches are cast on.",
-            'Begin with "Cast on 20 sts." (add "and join in the round" for rounds).',
-        )
+        problem = "the first line does not say how many stitches are cast on."
+        remedy = 'Begin with "Cast on 20 sts." (add "and join in the round" for rounds).'
+        raise InputError("rows", problem, remedy)
     stitches = int(cast_on[1])
     check_chart_size(1, stitches)
     construction = Construction.ROUND if cast_on[2] else Construction.FLAT
@@ -131,16 +127,12 @@ class _Reader:
         start, stop = int(first), int(last or first)
         self._check_name(line, name)
         if start != len(self._rows) + 1 or stop < start:
-            raise line.wrong(
-                f"it is for row {start}, but row {len(self._rows) + 1} comes next.",
-                "Number the rows from 1 without gaps.",
-            )
+            problem = f"it is for row {start}, but row {len(self._rows) + 1} comes next."
+            raise line.wrong(problem, "Number the rows from 1 without gaps.")
         check_chart_size(stop, self._needle)
         if side is not None and Side(side.upper()) is not self._side(start - 1):
-            raise line.wrong(
-                f"row {start} is a {self._side(start - 1)} row.",
-                "Correct the side, or say in the first line on which side row 1 is.",
-            )
+            remedy = "Correct the side, or say in the first line on which side row 1 is."
+            raise line.wrong(f"row {start} is a {self._side(start - 1)} row.", remedy)
         repeat = _REPEAT.fullmatch(body.rstrip("."))
         if repeat is not None:
             self._repeat(line, int(repeat[1]), int(repeat[2] or repeat[1]), stop - start + 1)
@@ -151,20 +143,16 @@ class _Reader:
 
     def _add(self, line: Line, work: Work) -> None:
         if self._needle + work.first + work.last != len(work.stitches):
-            raise line.wrong(
-                f"it does not fit the {self._needle} stitches on the needle.",
-                "Write out rows with another count.",
-            )
+            problem = f"it does not fit the {self._needle} stitches on the needle."
+            raise line.wrong(problem, "Write out rows with another count.")
         self._rows.append(work)
         self._needle = len(work.stitches)
 
     def _check_name(self, line: Line, name: str) -> None:
         is_round = name.lower().startswith(("rnd", "round"))
         if is_round != (self._construction is Construction.ROUND):
-            raise line.wrong(
-                "rows and rounds are mixed.",
-                'Write "Rnd" after "join in the round", and "Row" in flat knitting.',
-            )
+            remedy = 'Write "Rnd" after "join in the round", and "Row" in flat knitting.'
+            raise line.wrong("rows and rounds are mixed.", remedy)
 
     def _repeat(self, line: Line, first: int, last: int, count: int) -> None:
         if not 1 <= first <= last <= len(self._rows):

@@ -1,7 +1,5 @@
 """The words of one written row: stitches, brackets, repeats, yarns, and shaping at the edges."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -143,10 +141,8 @@ def _shaped(line: Line, stitches: Stitches, first: int, last: int) -> tuple[int,
         elif form in ("m1", "m1p") and index == end - 1 and end > 2:
             last += 1
         else:
-            raise line.wrong(
-                f"{form} is stitch {index + 1} of {end + 1}.",
-                "Shape at the edges only: ssk first, k2tog last, m1 beside the edge stitch.",
-            )
+            remedy = "Shape at the edges only: ssk first, k2tog last, m1 beside the edge stitch."
+            raise line.wrong(f"{form} is stitch {index + 1} of {end + 1}.", remedy)
     return first, last
 
 
@@ -179,10 +175,8 @@ def _words(line: Line, words: str, worked: int) -> Stitches:
     tail = _items(line, after, worked) if after else ()
     stated = 0 if end else int(last or 1)
     if taken(tail) != stated:
-        raise line.wrong(
-            f"{taken(tail)} stitches follow the repeat, but it says {stated}.",
-            'Make "to last N sts" agree with what follows.',
-        )
+        problem = f"{taken(tail)} stitches follow the repeat, but it says {stated}."
+        raise line.wrong(problem, 'Make "to last N sts" agree with what follows.')
     room = worked - taken(head) - taken(tail)
     if any(stitch.form for stitch in body) or room < len(body) or room % len(body):
         raise line.wrong(
@@ -214,10 +208,8 @@ def _items(line: Line, words: str, worked: int) -> Stitches:
         elif run is not None:
             added, used = (WrittenStitch(run[1].lower() == "p"),) * int(run[2]), run.end()
         else:
-            raise line.wrong(
-                f"{rest[:30]!r} cannot be read.",
-                'Write k3, p2, (k1, p1) 3 times, or "*…; rep from * to end".',
-            )
+            problem = f"{rest[:30]!r} cannot be read."
+            raise line.wrong(problem, 'Write k3, p2, (k1, p1) 3 times, or "*…; rep from * to end".')
         stitches += added
         if len(stitches) > MAX_STITCHES_PER_SIDE:
             raise line.wrong("it has too many stitches.", f"Use {worked}.")

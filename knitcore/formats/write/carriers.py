@@ -1,7 +1,5 @@
 """Carriers of a machine for the stitches of a piece: one for each block of colour (intarsia)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from knitcore.base.errors import InputError

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Mask
 from knitcore.chart.row_sides import Construction, Side, side_of_row
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.write.chart_key import (
@@ -53,6 +53,8 @@ LINE = 1.15
 """Distance of lines of numbers over the size of their type."""
 OVERVIEW_CELL_MM = 2.0
 HEADER_MM = 14.0
+LEFT_MM, TOP_MM = MARGIN_MM + 6.0, HEADER_MM + MARGIN_MM
+"""Place of a chart on its page."""
 A4_MM = (210.0, 297.0)
 NUMBERED_UP_TO = 40
 """Most stitches of a row that are all numbered; longer rows get every fifth number."""
@@ -174,10 +176,6 @@ class _Part:
         return self.piece.chart
 
     @property
-    def _is_shaped(self) -> bool:
-        return not self.piece.is_rectangle
-
-    @property
     def _row_height(self) -> float:
         return self.cell * self.style.aspect
 
@@ -190,27 +188,19 @@ class _Part:
         return self._row_height * len(self.rows)
 
     @property
-    def _left(self) -> float:
-        return MARGIN_MM + 6.0
-
-    @property
     def bottom(self) -> float:
-        return self._top + self._height
-
-    @property
-    def _top(self) -> float:
-        return HEADER_MM + MARGIN_MM
+        return TOP_MM + self._height
 
     def x(self, column: int) -> float:
-        return self._left + self.cell * (column - self.columns.start)
+        return LEFT_MM + self.cell * (column - self.columns.start)
 
     def y(self, row: int) -> float:
         """Upper edge of a row (rows count from the bottom)."""
-        return self._top + self._row_height * (self.rows.stop - 1 - row)
+        return TOP_MM + self._row_height * (self.rows.stop - 1 - row)
 
     def _shapes(self) -> Iterator[Shape]:
         yield from self.header()
-        yield Rectangle(self._left, self._top, self._width, self._height, fill="#ffffff")
+        yield Rectangle(LEFT_MM, TOP_MM, self._width, self._height, fill="#ffffff")
         yield from self._colours()
         yield from self._grid()
         yield self.purls(INK)
@@ -218,7 +208,7 @@ class _Part:
         yield from self.region_borders()
         if self.style.repeats:
             yield from self._placements()
-        elif not self._is_shaped:
+        elif self.piece.is_rectangle:
             yield from self._repeat()
         yield from self._row_numbers()
         yield from self._stitch_numbers()
@@ -227,7 +217,7 @@ class _Part:
     def header(self) -> Iterator[Shape]:
         part = ""
         if len(self.rows) < self.chart.rows or len(self.columns) < self.chart.columns:
-            first, last = _stitch_number(self.chart, self.columns)
+            first, last = (self.chart.columns - self.columns[end] for end in (-1, 0))
             part = f"rows {self.rows.start + 1}–{self.rows.stop}, stitches {first}–{last} of "
         name = f"{self.style.title}: " if self.style.title else ""
         yield Label(MARGIN_MM, MARGIN_MM, name + part + _title(self.chart), 4.0)
@@ -235,7 +225,7 @@ class _Part:
         how = "worked flat" if flat else "worked in the round"
         about = (
             f"{self.piece.shaped.stitches} stitches inside the outline"
-            if self._is_shaped
+            if not self.piece.is_rectangle
             else _multiple(self.chart)
         )
         yield Label(MARGIN_MM, MARGIN_MM + 5.5, f"{how}; {about}", 3.0)
@@ -244,10 +234,7 @@ class _Part:
         self, rows: range, columns: range, fill: str | None = None, stroke: str | None = None
     ) -> Iterator[Rectangle]:
         """A box on these stitches, as far as they are in the window."""
-        left, right = (
-            max(columns.start, self.columns.start),
-            min(columns.stop, self.columns.stop),
-        )
+        left, right = (max(columns.start, self.columns.start), min(columns.stop, self.columns.stop))
         low, high = max(rows.start, self.rows.start), min(rows.stop, self.rows.stop)
         if left < right and low < high:
             width, height = self.cell * (right - left), self._row_height * (high - low)
@@ -263,14 +250,14 @@ class _Part:
 
     def _grid(self) -> Iterator[Lines]:
         """Fine lines, heavier every ten stitches from the right and every ten rows."""
-        right, total = self._left + self._width, self.chart.columns
+        right, total = LEFT_MM + self._width, self.chart.columns
         fine: list[tuple[float, float, float, float]] = []
         tenth: list[tuple[float, float, float, float]] = []
         for column in range(self.columns.start, self.columns.stop + 1):
-            line = (self.x(column), self._top, self.x(column), self.bottom)
+            line = (self.x(column), TOP_MM, self.x(column), self.bottom)
             (fine if (total - column) % TENTHS else tenth).append(line)
         for row in range(self.rows.start - 1, self.rows.stop):
-            line = (self._left, self.y(row), right, self.y(row))
+            line = (LEFT_MM, self.y(row), right, self.y(row))
             (fine if (row + 1) % TENTHS else tenth).append(line)
         yield Lines(tuple(fine), GRID, 0.15)
         yield Lines(tuple(tenth), TENTH, 0.3)
@@ -281,8 +268,8 @@ class _Part:
             self.rows.start : self.rows.stop, self.columns.start : self.columns.stop
         ]
         rows, columns = np.nonzero(window)
-        x = self._left + self.cell * (columns + 0.5)
-        y = self._top + self._row_height * (len(self.rows) - 0.5 - rows)
+        x = LEFT_MM + self.cell * (columns + 0.5)
+        y = TOP_MM + self._row_height * (len(self.rows) - 0.5 - rows)
         radius = round(0.22 * min(self.cell, self._row_height), 3)
         return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, colour)
 
@@ -310,7 +297,7 @@ class _Part:
             if lines:
                 yield Lines(tuple(lines), region.colour, 0.6)
 
-    def _edges(self, changes: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    def _edges(self, changes: Mask) -> list[tuple[int, int]]:
         """Rows and columns of the chart at which something changes."""
         first = np.array([self.rows.start, self.columns.start])
         return [(int(r), int(c)) for r, c in np.argwhere(changes) + first]
@@ -348,9 +335,9 @@ class _Part:
             side = side_of_row(row, self.style.construction, self.style.first_side)
             y = self.y(row) + self._row_height / 2 + SMALL_MM * 0.35
             if side is Side.RS:
-                yield Label(self._left + self._width + 1.2, y, str(row + 1), SMALL_MM)
+                yield Label(LEFT_MM + self._width + 1.2, y, str(row + 1), SMALL_MM)
             else:
-                yield Label(self._left - 1.2, y, str(row + 1), SMALL_MM, "end")
+                yield Label(LEFT_MM - 1.2, y, str(row + 1), SMALL_MM, "end")
 
     def _stitch_numbers(self) -> Iterator[Shape]:
         y = self.bottom + 3.4
@@ -359,10 +346,6 @@ class _Part:
             number = self.chart.columns - column
             if number % every == 0 or number == 1:
                 yield Label(self.x(column) + self.cell / 2, y, str(number), SMALL_MM, "middle")
-
-
-def _stitch_number(chart: StitchChart, columns: range) -> tuple[int, int]:
-    return chart.columns - columns.stop + 1, chart.columns - columns.start
 
 
 def _multiple(chart: StitchChart) -> str:

@@ -1,14 +1,10 @@
 """The key of a drawn chart (symbols, yarns, repeats, a note), and the style of the drawing."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from knitcore.base.arrays import Mask
 from knitcore.base.bounds import check_range
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
@@ -42,7 +38,7 @@ class RegionMark:
 
     name: str
     colour: str
-    cells: NDArray[np.bool_]
+    cells: Mask
 
 
 @dataclass(frozen=True)

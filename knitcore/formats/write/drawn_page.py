@@ -3,8 +3,6 @@
 Lengths in mm; the origin is the top left corner, y points down.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import re
@@ -126,10 +124,7 @@ def _svg_page(parent: ET.Element, page: Page) -> None:
 def _svg(root: ET.Element, shape: Shape) -> None:
     match shape:
         case Rectangle():
-            box = ET.SubElement(root, "rect", x=f"{shape.x:.3f}", y=f"{shape.y:.3f}")
-            box.set("width", f"{shape.width:.3f}")
-            box.set("height", f"{shape.height:.3f}")
-            box.set("fill", shape.fill or "none")
+            box = ET.SubElement(root, "rect", _place(shape), fill=shape.fill or "none")
             if shape.stroke:
                 box.set("stroke", shape.stroke)
                 box.set("stroke-width", f"{shape.line_width:g}")
@@ -142,23 +137,21 @@ def _svg(root: ET.Element, shape: Shape) -> None:
             for x, y in shape.centres:
                 ET.SubElement(group, "circle", cx=f"{x:.3f}", cy=f"{y:.3f}", r=f"{shape.radius:g}")
         case Label():
-            text = ET.SubElement(
-                root,
-                "text",
-                {"text-anchor": shape.anchor, "font-size": f"{shape.size:g}"},
-                x=f"{shape.x:.3f}",
-                y=f"{shape.y:.3f}",
-                fill="#222222",
-            )
+            size = {"text-anchor": shape.anchor, "font-size": f"{shape.size:g}"}
+            place = {"x": f"{shape.x:.3f}", "y": f"{shape.y:.3f}", "fill": "#222222"}
+            text = ET.SubElement(root, "text", size | place)
             text.set("font-family", "Helvetica, Arial, sans-serif")
             if shape.bold:
                 text.set("font-weight", "bold")
             text.text = _allowed(shape.text)
         case Photo():
-            photo = ET.SubElement(root, "image", x=f"{shape.x:.3f}", y=f"{shape.y:.3f}")
-            photo.set("width", f"{shape.width:.3f}")
-            photo.set("height", f"{shape.height:.3f}")
-            photo.set("href", "data:image/png;base64," + base64.b64encode(shape.png).decode())
+            data = "data:image/png;base64," + base64.b64encode(shape.png).decode()
+            ET.SubElement(root, "image", _place(shape), href=data)
+
+
+def _place(shape: Rectangle | Photo) -> dict[str, str]:
+    sides = ("x", "y", "width", "height")
+    return {side: f"{getattr(shape, side):.3f}" for side in sides}
 
 
 def _allowed(text: str) -> str:
@@ -210,7 +203,10 @@ def _pdf(canvas: object, shape: Shape, top: float) -> None:
             canvas.lines([(a, top - b, c, top - d) for a, b, c, d in shape.lines])
         case Dots():
             canvas.setFillColor(HexColor(shape.fill))
-            _circles(canvas, shape.centres, shape.radius, top)
+            path = canvas.beginPath()
+            for x, y in shape.centres:
+                path.circle(x, top - y, shape.radius)
+            canvas.drawPath(path, fill=1, stroke=0)
         case Label():
             font = _embedded("VeraBd" if shape.bold else "Vera")
             width = CONDENSED * canvas.stringWidth(shape.text, font, shape.size)
@@ -238,15 +234,3 @@ def _embedded(font: str) -> str:
 
     pdfmetrics.registerFont(TTFont(font, f"{font}.ttf"))
     return font
-
-
-def _circles(
-    canvas: object, centres: Sequence[tuple[float, float]], radius: float, top: float
-) -> None:
-    from reportlab.pdfgen.canvas import Canvas
-
-    assert isinstance(canvas, Canvas)  # noqa: S101 - reportlab has no types
-    path = canvas.beginPath()
-    for x, y in centres:
-        path.circle(x, top - y, radius)
-    canvas.drawPath(path, fill=1, stroke=0)

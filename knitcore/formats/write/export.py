@@ -1,7 +1,5 @@
 """All files that a chart can be written to."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
@@ -12,14 +10,26 @@ from knitcore.base.extensions import Group, offered, running
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.draw.laid_out import mean_stitch_mm
-from knitcore.formats.designs import design_file as design
-from knitcore.formats.designs.layout import DesignLayout, layout_fields, piece_of, region_cells
-from knitcore.formats.read import knitout_reader, knitspeak, png
-from knitcore.formats.write import chart_drawing, pattern, report, stitch_values, yarn_mesh
-from knitcore.formats.write import written_pattern as written
+from knitcore.formats.designs.design_file import DesignFile, write_design
+from knitcore.formats.designs.layout import (
+    DesignLayout,
+    DesignRepeat,
+    layout_fields,
+    piece_of,
+    region_cells,
+)
+from knitcore.formats.read.knitout_reader import verified
+from knitcore.formats.read.knitspeak import write_knitspeak
+from knitcore.formats.read.png import write_png
+from knitcore.formats.write.chart_drawing import chart_pdf, chart_svg
 from knitcore.formats.write.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
 from knitcore.formats.write.drawn_page import Page, to_long_svg, to_pdf
 from knitcore.formats.write.knitout import Finish
+from knitcore.formats.write.pattern import pattern_pages
+from knitcore.formats.write.report import design_report
+from knitcore.formats.write.stitch_values import write_csv, write_vtu
+from knitcore.formats.write.written_pattern import write_rows
+from knitcore.formats.write.yarn_mesh import write_glb, write_stl
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
 from knitcore.materials import Material
@@ -105,8 +115,8 @@ class Exporter:
     ----------
     identifier : the name of the format.
     suffix, media_type : of its files, such as ``.txt`` and ``text/plain; charset=utf-8``.
-    write : the content of a file, or the file with notes of its own; may raise InputError for a
-        piece that the format cannot hold.
+    write : the content of a file, a text in UTF-8 or bytes, or the file with notes of its own; may
+        raise InputError for a piece that the format cannot hold.
     notes : for the user, about every file.
     holds_outlines : whether it can hold "no stitch"; other charts are refused.
     holds_yarns : whether it can hold several yarns; they are left out otherwise, with a note.
@@ -115,7 +125,7 @@ class Exporter:
     identifier: str
     suffix: str
     media_type: str
-    write: Callable[[Piece, Material, ExportOptions], bytes | ExportedFile]
+    write: Callable[[Piece, Material, ExportOptions], str | bytes | ExportedFile]
     notes: tuple[str, ...] = ()
     holds_outlines: bool = True
     holds_yarns: bool = True
@@ -162,11 +172,8 @@ def export_chart(
     exporter = FORMATS.get(kind) or _of_extension(kind)
     if not exporter.holds_outlines and not piece.is_rectangle:
         known = ", ".join(name for name, built_in in FORMATS.items() if built_in.holds_outlines)
-        raise InputError(
-            "to",
-            f"{kind} cannot hold an outline: the cells outside it would become stitches.",
-            f"Export {known}, or a rectangular part.",
-        )
+        problem = f"{kind} cannot hold an outline: the cells outside it would become stitches."
+        raise InputError("to", problem, f"Export {known}, or a rectangular part.")
     with nullcontext() if kind in FORMATS else running(Group.EXPORTERS, kind):
         content = exporter.write(piece, material, options)
     if isinstance(content, ExportedFile):
@@ -174,7 +181,8 @@ def export_chart(
     notes = exporter.notes
     if not exporter.holds_yarns and len(piece.yarns) > 1:
         notes = (*notes, f"{kind} has no colours: the yarns are left out.")
-    return ExportedFile(kind, bytes(content), exporter.suffix, exporter.media_type, notes)
+    content = content.encode() if isinstance(content, str) else bytes(content)
+    return ExportedFile(kind, content, exporter.suffix, exporter.media_type, notes)
 
 
 def _of_extension(kind: str) -> Exporter:
@@ -186,67 +194,54 @@ def _of_extension(kind: str) -> Exporter:
 
 
 def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    program = knitout_reader.verified(piece, finish=options.finish)
+    program = verified(piece, finish=options.finish)
     notes = ["Knitted on a virtual V-bed machine: the face is this chart."]
     if not piece.is_rectangle:
         notes.append(f"{program.shaping_transfers} further transfers shape the edges.")
     if program.carriers > 1:
         yarns = "; ".join(f"{y.name} ({y.colour})" for y in piece.yarns)
         notes.append(f"Intarsia with {program.carriers} carriers: {yarns}.")
+    figures = program.transfers, program.carriers
     return ExportedFile(
-        ExportKind.KNITOUT,
-        program.text.encode(),
-        FORMATS[ExportKind.KNITOUT].suffix,
-        _TEXT,
-        tuple(notes),
-        transfers=program.transfers,
-        carriers=program.carriers,
+        ExportKind.KNITOUT, program.text.encode(), ".k", _TEXT, tuple(notes), *figures
     )
 
 
 def _report(piece: Piece, material: Material, options: ExportOptions) -> bytes:
     style = _style(piece, material, options)
-    return report.design_report(piece, material, options.name, style, options.layout.regions)
+    return design_report(piece, material, options.name, style, options.layout.regions)
 
 
 def _pattern(piece: Piece, material: Material, options: ExportOptions) -> tuple[Page, ...]:
     style = _style(piece, material, options)
     facts = _yarn_facts(piece, material, options)
-    return pattern.pattern_pages(piece, material, style, facts, options.photo)
+    return pattern_pages(piece, material, style, facts, options.photo)
 
 
-def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> bytes:
-    return knitspeak.write_knitspeak(
-        piece.chart, options.construction, first_side=options.first_side
-    ).encode()
+def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> str:
+    return write_knitspeak(piece.chart, options.construction, first_side=options.first_side)
 
 
-def _design(piece: Piece, material: Material, options: ExportOptions) -> bytes:
-    document = design.DesignFile(
+def _written(piece: Piece, _: Material, options: ExportOptions) -> str:
+    return write_rows(piece, options.construction, first_side=options.first_side)
+
+
+def _design(piece: Piece, material: Material, options: ExportOptions) -> str:
+    document = DesignFile(
         name=options.name,
         material=material.identifier,
         chart=piece.chart.text,
         note=options.note,
         **layout_fields(options.layout),
     )
-    return design.write_design(document).encode()
+    return write_design(document)
 
 
 def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartStyle:
     width, height = mean_stitch_mm(piece.shaped, material, piece.gauge)
     aspect = min(max(float(height / width), 0.2), 5.0)
     facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
-    marks = tuple(
-        RepeatMark(
-            f"{repeat.name}: "
-            + multiple_words(
-                StitchChart.parse(repeat.motif), repeat.edge_columns, repeat.edge_rows
-            ),
-            tuple((p.row, p.column, p.rows, p.columns) for p in repeat.placements),
-        )
-        for repeat in options.layout.repeats
-        if repeat.placements
-    )
+    marks = tuple(_repeat_mark(repeat) for repeat in options.layout.repeats if repeat.placements)
     regions = tuple(
         RegionMark(region.name, region.colour, region_cells(region, *piece.chart.purl.shape))
         for region in options.layout.regions
@@ -262,6 +257,12 @@ def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartSty
         options.name,
         regions,
     )
+
+
+def _repeat_mark(repeat: DesignRepeat) -> RepeatMark:
+    motif = StitchChart.parse(repeat.motif)
+    words = f"{repeat.name}: {multiple_words(motif, repeat.edge_columns, repeat.edge_rows)}"
+    return RepeatMark(words, tuple((p.row, p.column, p.rows, p.columns) for p in repeat.placements))
 
 
 def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tuple[str, ...]:
@@ -283,6 +284,10 @@ def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tup
 
 
 _TEXT = "text/plain; charset=utf-8"
+_TXT, _PDF = (".txt", _TEXT), (".pdf", "application/pdf")
+_SVG = ".svg", "image/svg+xml"
+_GLB, _STL = (".glb", "model/gltf-binary"), (".stl", "model/stl")
+_CSV = ".csv", "text/csv; charset=utf-8"
 _LOCAL = ("Local values come from the quarter-cell composite: the stretched, flat fabric.",)
 _DRAWN = ("Loops are drawn schematically; the yarn was not simulated.",)
 
@@ -291,77 +296,25 @@ _BUILT_IN = (
     Exporter(
         ExportKind.KNITSPEAK, ".ks", _TEXT, _knitspeak, holds_outlines=False, holds_yarns=False
     ),
-    Exporter(ExportKind.PNG, ".png", "image/png", lambda p, _, __: png.write_png(p)),
-    Exporter(
-        ExportKind.SVG,
-        ".svg",
-        "image/svg+xml",
-        lambda p, m, o: chart_drawing.chart_svg(p, _style(p, m, o)).encode(),
-    ),
-    Exporter(
-        ExportKind.PDF,
-        ".pdf",
-        "application/pdf",
-        lambda p, m, o: chart_drawing.chart_pdf(p, _style(p, m, o)),
-    ),
-    Exporter(
-        ExportKind.PATTERN,
-        ".pdf",
-        "application/pdf",
-        lambda p, m, o: to_pdf(_pattern(p, m, o), o.name),
-    ),
-    Exporter(
-        ExportKind.PATTERN_SVG,
-        ".svg",
-        "image/svg+xml",
-        lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name).encode(),
-    ),
-    Exporter(ExportKind.REPORT, ".pdf", "application/pdf", _report),
+    Exporter(ExportKind.PNG, ".png", "image/png", lambda p, _, __: write_png(p)),
+    Exporter(ExportKind.SVG, *_SVG, lambda p, m, o: chart_svg(p, _style(p, m, o))),
+    Exporter(ExportKind.PDF, *_PDF, lambda p, m, o: chart_pdf(p, _style(p, m, o))),
+    Exporter(ExportKind.PATTERN, *_PDF, lambda p, m, o: to_pdf(_pattern(p, m, o), o.name)),
+    Exporter(ExportKind.PATTERN_SVG, *_SVG, lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name)),
+    Exporter(ExportKind.REPORT, *_PDF, _report),
     Exporter(
         ExportKind.TEXT,
-        ".txt",
-        _TEXT,
-        lambda p, _, __: f"{p.chart.text}\n".encode(),
+        *_TXT,
+        lambda p, _, __: f"{p.chart.text}\n",
         holds_outlines=False,
         holds_yarns=False,
     ),
-    Exporter(
-        ExportKind.WRITTEN,
-        ".txt",
-        _TEXT,
-        lambda p, _, o: written.write_rows(p, o.construction, first_side=o.first_side).encode(),
-    ),
+    Exporter(ExportKind.WRITTEN, *_TXT, _written),
     Exporter(ExportKind.DESIGN, ".json", "application/json", _design),
-    Exporter(
-        ExportKind.GLB,
-        ".glb",
-        "model/gltf-binary",
-        lambda p, m, _: yarn_mesh.write_glb(p, m),
-        _DRAWN,
-        holds_yarns=False,
-    ),
-    Exporter(
-        ExportKind.STL,
-        ".stl",
-        "model/stl",
-        lambda p, m, _: yarn_mesh.write_stl(p, m),
-        _DRAWN,
-        holds_yarns=False,
-    ),
-    Exporter(
-        ExportKind.VTU,
-        ".vtu",
-        "application/xml",
-        lambda p, m, _: stitch_values.write_vtu(p, m),
-        _LOCAL,
-    ),
-    Exporter(
-        ExportKind.CSV,
-        ".csv",
-        "text/csv; charset=utf-8",
-        lambda p, m, _: stitch_values.write_csv(p, m).encode(),
-        _LOCAL,
-    ),
+    Exporter(ExportKind.GLB, *_GLB, lambda p, m, _: write_glb(p, m), _DRAWN, holds_yarns=False),
+    Exporter(ExportKind.STL, *_STL, lambda p, m, _: write_stl(p, m), _DRAWN, holds_yarns=False),
+    Exporter(ExportKind.VTU, ".vtu", "application/xml", lambda p, m, _: write_vtu(p, m), _LOCAL),
+    Exporter(ExportKind.CSV, *_CSV, lambda p, m, _: write_csv(p, m), _LOCAL),
 )
 FORMATS = {exporter.identifier: exporter for exporter in _BUILT_IN}
 """Built-in formats by name."""

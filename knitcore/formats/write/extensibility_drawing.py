@@ -4,8 +4,6 @@ The width of a rectangle is the extensibility along the course, 1/Y_x, its heigh
 wale, 1/Y_y, both to one scale.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -17,8 +15,8 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.layout import DesignRegion, region_cells
 from knitcore.formats.write.chart_key import tinted
 from knitcore.formats.write.drawn_page import Label, Rectangle, Shape
-from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.piece import Piece
+from knitcore.garment.shaped import largest_rectangle
 from knitcore.materials import Material
 from knitcore.mechanics.local_moduli import local_moduli
 from knitcore.prediction.predict import predict

@@ -13,8 +13,6 @@ tucks the yarn of a block into the next one, so that no slit is left.
 Specification: https://textiles-lab.github.io/knitout/knitout.html
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -95,13 +93,14 @@ def knitout_program(
     body = _Body(piece, plan)
     courses = [*body.cast_on(), *body.courses()]
     finishing = [*(body.waste() if finish is Finish.WASTE else body.bind_off())]
+    yarns = piece.yarns
     lines = [
         ";!knitout-2",
         ";;Machine: SWG091N2",
         ";;Gauge: 15",
         ";;Position: Keep",
         f";;Carriers: {' '.join(map(str, range(1, plan.waste + 1)))}",
-        *(_holds(carrier, piece, yarn) for carrier, yarn in plan.yarns.items()),
+        *(f"; carrier {k} knits {yarns[y].colour} {yarns[y].name}" for k, y in plan.yarns.items()),
         *courses,
         *finishing,
     ]
@@ -115,11 +114,6 @@ def knitout_program(
         _transfers(finishing),
         len(plan.yarns),
     )
-
-
-def _holds(carrier: int, piece: Piece, yarn: int) -> str:
-    held = piece.yarns[yarn]
-    return f"; carrier {carrier} knits {held.colour} {held.name}"
 
 
 def _transfers(lines: Iterable[str]) -> int:

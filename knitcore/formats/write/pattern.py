@@ -70,26 +70,26 @@ _ABBREVIATIONS = {
     "m1p": "make one: lift the strand between two stitches and purl it twisted",
 }
 
-_RESTS_ON: dict[Source | None, tuple[str, ...]] = {
+_RESTS_ON: dict[Source | None, str] = {
     None: (
         "Sizes are computed stitch by stitch from the fabrics of this yarn. Where fabrics meet "
-        "they are partly assumed, because such borders were not knitted and measured.",
+        "they are partly assumed, because such borders were not knitted and measured."
     ),
-    Source.MEASURED: ("This fabric was knitted in this yarn, measured at rest and stretched.",),
+    Source.MEASURED: "This fabric was knitted in this yarn, measured at rest and stretched.",
     Source.ESTIMATED: (
         "This fabric was not knitted and stretched in this yarn: size and stretch are estimated "
-        "from the yarn's tests and from other yarns.",
+        "from the yarn's tests and from other yarns."
     ),
     Source.SWEPT: (
-        "Size and stretch were computed from the yarn, loop by loop; nothing was knitted.",
+        "Size and stretch were computed from the yarn, loop by loop; nothing was knitted."
     ),
     Source.LEARNED: (
         "Size and stretch are computed from stockinette, garter, rib and seed of this yarn, "
-        "corrected by simulations of other charts; this chart was not knitted.",
+        "corrected by simulations of other charts; this chart was not knitted."
     ),
     Source.LEARNED_OF_SIZE: (
         "The size at rest is your own gauge. The stretch is computed from stockinette, garter, rib "
-        "and seed of this yarn, corrected by simulations of other charts.",
+        "and seed of this yarn, corrected by simulations of other charts."
     ),
 }
 """Basis of a prediction's numbers, in a knitter's words; None is for a piece with an outline."""
@@ -132,10 +132,7 @@ def pattern_pages(
             flow.text(paragraph, bullet=True)
     _parts(flow, facts, style.regions)
     opening, sections = written_sections(
-        piece,
-        style.construction,
-        first_side=style.first_side,
-        breaks=_breaks(piece, style.regions),
+        piece, style.construction, first_side=style.first_side, breaks=_breaks(piece, style.regions)
     )
     _abbreviations(flow, [*opening, *(line for lines in sections for line in lines)])
     _instructions(flow, piece, style, opening, sections)
@@ -275,11 +272,8 @@ def _photo(png: bytes) -> tuple[bytes, tuple[int, int]]:
     try:
         with Image.open(io.BytesIO(png), formats=["PNG"]) as image:
             if max(image.size) > MAX_PHOTO_PIXELS:  # before any pixel is decoded
-                raise InputError(
-                    "photo",
-                    f"it has {image.width}x{image.height} pixels.",
-                    f"Use at most {MAX_PHOTO_PIXELS} a side.",
-                )
+                problem = f"it has {image.width}x{image.height} pixels."
+                raise InputError("photo", problem, f"Use at most {MAX_PHOTO_PIXELS} a side.")
             flat = Image.new("RGBA", image.size, "white")
             flat.alpha_composite(image.convert("RGBA"))
     except InputError:
@@ -321,17 +315,17 @@ def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequen
 
 def _gauge(flow: _Flow, facts: _Facts) -> None:
     flow.heading("Gauge and size")
-    stitch = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
+    width, height = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
     of = "of the whole cloth at rest."
     if facts.prediction is None:
         of = "at rest, the mean of all parts; each has its own below."
-    flow.text(f"{_per_10_cm(*stitch)} {of}")
+    flow.text(f"{100 / width:.1f} stitches and {100 / height:.1f} rows to 10 cm {of}")
     places = (0.0, 62.0, 124.0)
     flow.row(("", "along the rows", "along the columns"), places, bold=True)
     size = facts.size
-    width = _interval(size.width_mm, size.width_interval_mm, 0.1, "cm", 1)
-    height = _interval(size.height_mm, size.height_interval_mm, 0.1, "cm", 1)
-    flow.row(("Finished size", width, height), places)
+    across = _interval(size.width_mm, size.width_interval_mm, 0.1, "cm", 1)
+    up = _interval(size.height_mm, size.height_interval_mm, 0.1, "cm", 1)
+    flow.row(("Finished size", across, up), places)
     if facts.prediction is not None:
         pulled = [_pulled(facts.prediction.along(direction)) for direction in Direction]
         flow.row((f"Stretch under {PULL_N_PER_MM * 100:g} N on 10 cm", *pulled), places)
@@ -342,10 +336,6 @@ def _pulled(along: Along) -> str:
     low, high = along.strain_interval(PULL_N_PER_MM)
     strain = float(along.strain(PULL_N_PER_MM))
     return _interval(strain, Interval(float(low), float(high)), 100.0, "%", 0)
-
-
-def _per_10_cm(width_mm: float, height_mm: float) -> str:
-    return f"{100 / width_mm:.1f} stitches and {100 / height_mm:.1f} rows to 10 cm"
 
 
 def _interval(value: float, ends: Interval, scale: float, unit: str, digits: int) -> str:
@@ -440,13 +430,12 @@ def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
 
 def _evidence(flow: _Flow, facts: _Facts) -> None:
     flow.heading("Where the numbers come from")
-    source = None if facts.prediction is None else facts.prediction.provenance
+    prediction = facts.prediction
+    source = None if prediction is None else prediction.provenance
+    notes = () if prediction is None else prediction.notes
     for sentence in (
-        *_RESTS_ON[source],
-        *(() if facts.prediction is None else facts.prediction.notes),
-    ):
-        flow.text(sentence, bullet=True)
-    for sentence in (
+        _RESTS_ON[source],
+        *notes,
         "The report of this design has all numbers, their intervals and methods.",
         "Knit a swatch. If its gauge differs from this pattern's, trust the swatch.",
     ):

@@ -1,9 +1,8 @@
 """A design on paper: its numbers with intervals, maps, curves, assumptions, and the chart."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -102,15 +101,8 @@ def _regions(
     yield Label(MARGIN_MM, 22.0, f"{size}, {_in_cm(at_rest)}", 3.4)
     yield Label(MARGIN_MM, 26.0, f"{material.name} ({material.identifier})", 3.0)
     places = (MARGIN_MM, 62.0, 84.0, 124.0, 164.0)
-    head = (
-        "region",
-        "stitches",
-        "Y course, N/mm",
-        "Y wale, N/mm",
-        "1/Y course × wale, mm/N",
-    )
-    for x, text in zip(places, head, strict=True):
-        yield Label(x, 30.0, text, 3.0)
+    head = ("region", "stitches", "Y course, N/mm", "Y wale, N/mm", "1/Y course × wale, mm/N")
+    yield from _row(places, head, 30.0)
     yield Lines(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
     y = 37.0
     fields = region_fields(piece, regions, material)
@@ -123,8 +115,7 @@ def _regions(
             *(_value(along.modulus_n_per_mm, along.modulus_interval_n_per_mm) for along in both),
             " × ".join(f"{1 / along.modulus_n_per_mm:.2f}" for along in both),
         )
-        for x, text in zip(places, cells, strict=True):
-            yield Label(x, y, text, 3.0)
+        yield from _row(places, cells, y)
         y += 5.0
     if (left_out := len(fields) - MAX_REGIONS) > 0:
         yield Label(MARGIN_MM, y, f"… and {left_out} more, in the maps only.", 3.0)
@@ -143,6 +134,14 @@ def _regions(
         height=A4_MM[1] - top - 44.0,
     )
     yield from _assumptions(LOCAL_ASSUMPTIONS, A4_MM[1] - 30.0)
+
+
+def _row(
+    places: Sequence[float], cells: Sequence[str], y: float, size: float = 3.0
+) -> Iterator[Label]:
+    """A line of a table."""
+    for x, text in zip(places, cells, strict=True):
+        yield Label(x, y, text, size)
 
 
 def _in_cm(size: SizeAtRest) -> str:
@@ -168,8 +167,7 @@ def _numbers(
         along_rows, along_columns = (_value(*value(prediction.along(d))) for d in Direction)
         rows.append((label, along_rows, along_columns))
     for index, cells in enumerate(rows):
-        for x, text in zip((MARGIN_MM, 62.0, 128.0), cells, strict=True):
-            yield Label(x, 36.0 + 5.2 * index, text, 3.2)
+        yield from _row((MARGIN_MM, 62.0, 128.0), cells, 36.0 + 5.2 * index, 3.2)
     yield Lines(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
     yield Label(MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {prediction.provenance}.", 3.0)
 
@@ -232,10 +230,9 @@ def _plot(prediction: Prediction) -> Iterator[Shape]:
         yield Label(left - 1.5, y + 1.0, f"{tallest * share:.2f}", 2.8, "end")
     for index, (direction, strain) in enumerate(strains.items()):
         across, up = left + width * strain / widest, top + height * (1 - stress / tallest)
-        lines = np.stack([across[:-1], up[:-1], across[1:], up[1:]], axis=1).tolist()
-        drawn = tuple((a, b, c, d) for a, b, c, d in lines)
+        points = list(zip(across.tolist(), up.tolist(), strict=True))
         ink = _DIRECTION_INK[direction]
-        yield Lines(drawn, ink, 0.5)
+        yield Lines(tuple((*a, *b) for a, b in pairwise(points)), ink, 0.5)
         line = top + 5.0 + 5.0 * index
         yield Lines(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
         yield Label(left + 13.0, line, f"{direction} ({prediction.provenance})", 2.8)

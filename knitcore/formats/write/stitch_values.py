@@ -1,15 +1,13 @@
 """Values of every stitch, for ParaView (VTU) and spreadsheets (CSV)."""
 
-from __future__ import annotations
-
 import csv
 import io
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.base.arrays import Array
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.draw.laid_out import laid_corners_mm
 from knitcore.garment.piece import Piece
@@ -17,7 +15,7 @@ from knitcore.materials import Material
 from knitcore.mechanics.local_moduli import local_moduli
 
 
-def stitch_values(chart: StitchChart | Piece, material: Material) -> dict[str, NDArray[np.float64]]:
+def stitch_values(chart: StitchChart | Piece, material: Material) -> dict[str, Array]:
     """Local values by name with their units, each (rows, columns), bottom row first."""
     local = local_moduli(Piece.of(chart).shaped.continued(), material)
     return {

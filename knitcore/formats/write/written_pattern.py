@@ -21,8 +21,6 @@ rows say ``with A k10, with B …``::
     Row 9 (RS): K9, bind off the last 3 sts with a separate strand. (9 sts)
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import groupby, pairwise

@@ -1,21 +1,23 @@
 """The yarn of a chart as a solid: one closed tube a course, as glTF (metres) or STL (mm).
 
-The loops are drawn; the cloth lies flat at rest, with the stitch size that `predict` gives.
+The cloth lies flat at rest, with the stitch size that `predict` gives. A loop has the right
+topology for any neighbours: feet go behind the loops of the row below, legs pass in front, the head
+passes behind the legs of the row above; a purl is the mirror image. Only its proportions are drawn,
+not computed: lengths and contacts are those of the stitch cell and the yarn's diameter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
+from knitcore.base.arrays import Array, Codes, Indices, Mask
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
-from knitcore.cloth.space.surface import Surface
+from knitcore.cloth.space.surface import Surface, corners_of, filled
 from knitcore.draw.laid_out import laid_corners_mm
-from knitcore.draw.loops import loop_centre_line, loop_kinds
 from knitcore.draw.tubes import TriangleMesh, tube_mesh
 from knitcore.garment.piece import Piece
 from knitcore.materials import Material
@@ -26,13 +28,20 @@ POINTS, SIDES = 17, 6
 DEFAULT_DIAMETER_SHARE = 0.3
 """Yarn diameter over stitch width if the material has no yarn diameter."""
 
+SELF, LEFT, RIGHT, ABOVE = 1, 2, 4, 8
+"""Bits of a kind of loop; a bit is set if that stitch is a purl."""
+
+_NECK = 0.17
+"""Lean of the legs, out at the head and in at the neck, in stitch widths (0: a cosine)."""
+_REACH = 0.78
+"""Half the height of a loop in row heights: loops reach through those of the row below."""
+_KNOTS = np.array([0.0, 0.08, 0.21, 0.29, 0.42, 0.5])
+"""Foot centre, foot end, lower leg, upper leg, head end, head centre; fractions of a stitch."""
+
 
 def course_centre_lines(
-    chart: StitchChart,
-    corners_mm: NDArray[np.float64],
-    material: Material,
-    stitches: NDArray[np.bool_] | None = None,
-) -> tuple[NDArray[np.float64], ...]:
+    chart: StitchChart, corners_mm: Array, material: Material, stitches: Mask | None = None
+) -> tuple[Array, ...]:
     """The yarn of every course on a surface, mm: (stitches * (POINTS - 1) + 1, 3).
 
     Parameters
@@ -43,7 +52,7 @@ def course_centre_lines(
     shown = np.ones(chart.purl.shape, dtype=bool) if stitches is None else stitches
     surface = Surface(corners_mm)
     radius, kinds = yarn_radius_mm(chart, material), loop_kinds(chart)
-    lines: list[NDArray[np.float64]] = []
+    lines: list[Array] = []
     for row in range(chart.rows):
         for columns in _runs(shown[row]):
             shapes = np.stack([loop_centre_line(int(k), POINTS) for k in kinds[row, columns]])
@@ -80,7 +89,7 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
     return solid(lines, yarn_radius_mm(grid, material))
 
 
-def solid(lines: Iterable[NDArray[np.float64]], radius_mm: float) -> TriangleMesh:
+def solid(lines: Iterable[Array], radius_mm: float) -> TriangleMesh:
     """Closed tubes around centre lines, mm."""
     tubes = [_closed(tube_mesh(line, radius_mm, SIDES)) for line in lines]
     offsets = np.cumsum([0, *(len(t.vertices) for t in tubes[:-1])])
@@ -98,6 +107,18 @@ def write_glb(chart: StitchChart | Piece, material: Material) -> bytes:
 def write_stl(chart: StitchChart | Piece, material: Material) -> bytes:
     """Binary STL in mm."""
     return mesh_file(yarn_mesh(chart, material), 1.0, "stl")
+
+
+def write_curled_glb(
+    chart: StitchChart, corners_mm: Array, material: Material, stitches: Mask | None = None
+) -> bytes:
+    """Binary glTF 2.0 in metres: the loops on a curled surface, courses as closed tubes.
+
+    Parameters are those of :func:`course_centre_lines`.
+    """
+    corners = corners_mm if stitches is None else filled(corners_mm, corners_of(stitches))
+    lines = course_centre_lines(chart, corners, material, stitches)
+    return mesh_file(solid(lines, yarn_radius_mm(chart, material)), 0.001, "glb")
 
 
 def mesh_file(mesh: TriangleMesh, scale: float, kind: str) -> bytes:
@@ -120,8 +141,42 @@ def _closed(mesh: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(mesh.vertices, faces)
 
 
-def _runs(stitches: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+def _runs(stitches: Mask) -> list[Indices]:
     """Columns of the stitches of a row, those side by side together."""
     columns = np.flatnonzero(stitches)
     runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
     return [run for run in runs if len(run)]
+
+
+def loop_kinds(chart: StitchChart) -> Codes:
+    """Kind of loop of each stitch, 0 to 15, shape (rows, columns).
+
+    The stitch itself, its left and right neighbours and the one above decide how the yarn runs; at
+    an edge the stitch itself stands in for the missing neighbour.
+    """
+    purl = chart.purl.astype(np.uint8)
+    left = np.concatenate([purl[:, :1], purl[:, :-1]], axis=1)
+    right = np.concatenate([purl[:, 1:], purl[:, -1:]], axis=1)
+    above = np.concatenate([purl[1:], purl[-1:]], axis=0)
+    kinds: Codes = purl * SELF | left * LEFT | right * RIGHT | above * ABOVE
+    return kinds
+
+
+@lru_cache(maxsize=256)
+def loop_centre_line(kind: int, points: int = 48) -> Array:
+    """Centre line of one kind of loop, shape (points, 3).
+
+    x and y are in units of stitch width and row height, from the centre of the cell, z in units of
+    the yarn's radius, positive towards the face. It begins and ends on the cell's left and right
+    edges, where it meets the neighbours' loops. The array is cached and read-only.
+    """
+    u = np.linspace(0.0, 1.0, points)
+    side, left, right, above = (1.0 - 2.0 * bool(kind & bit) for bit in (SELF, LEFT, RIGHT, ABOVE))
+    x = u - 0.5 + _NECK * np.sin(4 * np.pi * u)
+    y = -_REACH * np.cos(2 * np.pi * u)
+    half_left = PchipInterpolator(_KNOTS, [(side + left) / 2, side, -side, -above, above, above])
+    half_right = PchipInterpolator(_KNOTS, [(side + right) / 2, side, -side, -above, above, above])
+    z = np.where(u <= 0.5, half_left(np.minimum(u, 0.5)), half_right(np.minimum(1 - u, 0.5)))
+    line = np.stack([x, y, -z], axis=1)
+    line.setflags(write=False)
+    return line

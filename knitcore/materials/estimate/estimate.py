@@ -6,21 +6,18 @@ or stitch setting. There are only eight yarns, five of them from one machine. Ex
 is predicted best, so it comes first.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import strain_at_stress
-from knitcore.materials.estimate.mixed_model import Mask
 from knitcore.materials.estimate.yarn_statistics import (
     DIRECTIONS,
     FABRICS,
@@ -219,11 +216,8 @@ def _loop_lengths(given: Mapping[Fabric, float] | float) -> dict[Fabric, float]:
     loops = dict(given) if isinstance(given, Mapping) else dict.fromkeys(FABRICS, given)
     missing = [f.value for f in FABRICS if f not in loops]
     if missing:
-        raise InputError(
-            "loop_length_mm",
-            f"is missing for {', '.join(missing)}.",
-            "Unravel ten stitches of each fabric and divide, or give one length for all.",
-        )
+        remedy = "Unravel ten stitches of each fabric and divide, or give one length for all."
+        raise InputError("loop_length_mm", f"is missing for {', '.join(missing)}.", remedy)
     for fabric, length in loops.items():
         check_range(f"loop_length_mm.{fabric}", length, 1, 100, "mm")
     return loops

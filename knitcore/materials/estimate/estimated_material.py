@@ -1,7 +1,5 @@
 """A material of an estimate, to save and to design with."""
 
-from __future__ import annotations
-
 import math
 
 from knitcore.chart.fabric import Direction

@@ -14,12 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
-
-Mask = NDArray[np.bool_]
 
 _SIGNS = np.tile([1.0, -1.0], 4)
 _CELLS = 8

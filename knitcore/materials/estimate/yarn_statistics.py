@@ -14,13 +14,13 @@ from functools import cache
 
 import numpy as np
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import Material, load_library
-from knitcore.materials.estimate.mixed_model import Mask, MixedModel, covering, interval_factor
+from knitcore.materials.estimate.mixed_model import MixedModel, covering, interval_factor
 from knitcore.materials.law_uncertainty import COVERAGE
 
 LOAD_N_PER_MM = 0.1
@@ -101,11 +101,8 @@ def table_of(materials: Sequence[Material]) -> LibraryTable:
         for fabric in FABRICS:
             record = material.record(fabric)
             if bending is None or record.loop_length_mm is None:
-                raise InputError(
-                    material.identifier,
-                    f"has no bending modulus or no loop length of its {fabric}.",
-                    "Give both.",
-                )
+                problem = f"has no bending modulus or no loop length of its {fabric}."
+                raise InputError(material.identifier, problem, "Give both.")
             for direction in DIRECTIONS:
                 scale = math.log(bending / record.loop_length_mm**3)
                 modulus = math.log(record.law.modulus(direction))

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from knitcore import CancelledError, InputError
 from knitcore.base.batch import BatchProgress, run_batch
-from knitcore.base.errors import CancelledError, InputError
 
 TASKS = {f"number-{n}": n for n in range(6)}
 
@@ -66,12 +66,7 @@ def test_a_stopped_batch_resumes(tmp_path: Path) -> None:
 
     with pytest.raises(CancelledError, match="3 of 6"):
         run_batch(
-            square,
-            TASKS,
-            workers=1,
-            keep=tmp_path,
-            progress=count,
-            cancelled=lambda: done == 3,
+            square, TASKS, workers=1, keep=tmp_path, progress=count, cancelled=lambda: done == 3
         )
     assert len(list(tmp_path.iterdir())) == 3
     (tmp_path / "number-0.json").write_text(json.dumps({"square": "kept"}))

@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
+from knitcore import InputError
 from knitcore.base.bounds import check_count, check_linear_density, check_positive, check_range
-from knitcore.base.errors import InputError
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])

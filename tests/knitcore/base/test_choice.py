@@ -1,12 +1,9 @@
 """Every input that is a choice among names: unknown ones are refused with those that are known."""
 
-from __future__ import annotations
-
 import pytest
 
-from knitcore import InputError
+from knitcore import Direction, Fabric, InputError
 from knitcore.base.choice import Choice
-from knitcore.chart.fabric import Direction, Fabric
 from knitcore.cloth.flat import Clamps
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.study.relax import Branch

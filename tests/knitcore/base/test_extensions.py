@@ -1,7 +1,5 @@
 """Extensions of other packages: the example works, and a bad one harms nothing else."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

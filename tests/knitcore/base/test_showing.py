@@ -1,7 +1,5 @@
 """Results show themselves in a notebook: small pictures without scripts or addresses."""
 
-from __future__ import annotations
-
 import re
 from xml.etree import ElementTree as ET
 

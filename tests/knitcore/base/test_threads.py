@@ -1,7 +1,5 @@
 """Two functions side by side."""
 
-from __future__ import annotations
-
 import pytest
 
 from knitcore.base.threads import side_by_side

@@ -1,16 +1,10 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
-from knitcore.chart.repeats import (
-    known_larger_repeats,
-    primitive_repeats,
-    repeats_up_to,
-)
+from knitcore.chart.repeats import known_larger_repeats, primitive_repeats, repeats_up_to
 from tests.knitcore.charts import stitch_charts
 
 

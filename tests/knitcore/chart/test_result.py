@@ -1,7 +1,5 @@
 """Results as plain values and as short texts."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import dataclass

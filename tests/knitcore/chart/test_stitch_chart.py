@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -22,11 +20,7 @@ def test_text_is_read_back(chart: StitchChart) -> None:
 
 @given(stitch_charts())
 def test_mirrors_and_turning_over_undo_themselves(chart: StitchChart) -> None:
-    for act in (
-        StitchChart.mirror,
-        StitchChart.swap,
-        StitchChart.turn_over,
-    ):
+    for act in (StitchChart.mirror, StitchChart.swap, StitchChart.turn_over):
         assert act(act(chart)) == chart
 
 

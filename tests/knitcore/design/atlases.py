@@ -1,13 +1,11 @@
 """An atlas that several tests search, built when the first of them asks: not while collecting."""
 
-from __future__ import annotations
-
 from functools import cache
 
+from knitcore import material
 from knitcore.chart.repeats import repeats_up_to
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import build_atlas
-from knitcore.materials import material
 
 REPEATS = repeats_up_to(2, 3)
 

@@ -1,15 +1,11 @@
-from __future__ import annotations
-
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from knitcore import Fabric, InputError
-from knitcore.base.errors import CancelledError
+from knitcore import CancelledError, Fabric, InputError, StitchChart, material
 from knitcore.chart.repeats import repeats_up_to
-from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import (
@@ -18,7 +14,6 @@ from knitcore.design.atlas_yarn import (
     yarn_level_folder,
     yarn_level_tasks,
 )
-from knitcore.materials import material
 from knitcore.yarn.library.characterise import RepeatTask
 from knitcore.yarn.library.store import stored_stitch
 

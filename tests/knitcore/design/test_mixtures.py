@@ -1,16 +1,11 @@
-from __future__ import annotations
-
 import math
 
 import pytest
 
-from knitcore import StitchChart
-from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Direction
+from knitcore import CancelledError, Direction, StitchChart, material
 from knitcore.chart.repeats import repeats_up_to
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.mixtures import Mixer
-from knitcore.materials import material
 
 ACRYLIC = material("acrylic")
 

@@ -1,16 +1,18 @@
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 
-from knitcore import Fabric, InputError, StitchChart
-from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Direction
-from knitcore.cloth.flat import strip_test
+from knitcore import (
+    CancelledError,
+    Direction,
+    Fabric,
+    InputError,
+    StitchChart,
+    material,
+    strip_test,
+)
 from knitcore.design.shape import ShapedSwatch, fill_shape
-from knitcore.materials import material
 from tests.knitcore.design.atlases import acrylic_atlas
 
 ACRYLIC = material("acrylic")

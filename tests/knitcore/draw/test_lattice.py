@@ -1,11 +1,8 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from knitcore import Fabric, StitchChart
+from knitcore import Fabric, StitchChart, material
 from knitcore.draw.lattice import flat_lattice, resting_lattice, stretched_sizes_mm
-from knitcore.materials import material
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))

@@ -1,11 +1,9 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from knitcore import InputError
-from knitcore.draw.loops import loop_centre_line
 from knitcore.draw.tubes import tube_mesh
+from knitcore.formats.write.yarn_mesh import loop_centre_line
 
 
 def test_vertices_lie_on_the_radius_around_the_line() -> None:

@@ -1,22 +1,18 @@
 """Measured displacement fields: reading, comparing, calibrating."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError, material
 from knitcore.cloth.flat import SheetModel
 from knitcore.fit.calibration import calibrate
 from knitcore.fit.field_comparison import Edges, compare
 from knitcore.fit.measured_field import MeasuredField, measured_field
 from knitcore.formats.read.law_files import LawFile, law_from_mapping, load_law, save_law
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials import material
 from tests.knitcore.cloth.flat.synthetic import PITCH_PX, camera_arrays
 
 GARTER = material("acrylic:published").law(Fabric.GARTER)

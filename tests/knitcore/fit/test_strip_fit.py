@@ -1,21 +1,18 @@
 """A law fitted to simulated tests gives back what made them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Direction
+from knitcore import CancelledError, Direction
 from knitcore.fit.measured_strip import LEVELS, MeasuredStrip
 from knitcore.fit.pull_fit import Reduction
 from knitcore.fit.strip_fit import fit_strips, fit_tests, flattening
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.uniaxial_files import read_stretch_test
-from tests.knitcore.measure.synthetic import LAW, write_csv, write_h5
+from tests.knitcore.measure.synthetic import LAW, csv_pair, h5_pair
 
 TRUTH = ConstitutiveLaw(
     0.15,
@@ -109,7 +106,7 @@ def test_pulls_that_differ_make_the_law_less_sure() -> None:
 
 @pytest.mark.slow
 def test_a_test_without_the_clamps_distance_strains_evenly(tmp_path: Path) -> None:
-    files = [write_csv(tmp_path / f"{d}.csv", d) for d in Direction]
+    files = csv_pair(tmp_path)
     fit = fit_tests(files[0], files[1])
     assert fit.reduction is Reduction.RECOMMENDED
     assert fit.law.modulus_course == pytest.approx(LAW.modulus_course, rel=0.03)
@@ -134,7 +131,7 @@ def test_four_tracked_points_are_enough(tmp_path: Path) -> None:
     """Right and left are found by their place, whatever their order."""
     import h5py
 
-    files = [write_h5(tmp_path / f"{d}.h5", d) for d in Direction]
+    files = h5_pair(tmp_path)
     for path in files:
         with h5py.File(path, "r+") as file:
             for video in [name for name in file if name.startswith("video")]:
@@ -150,7 +147,7 @@ def test_four_tracked_points_are_enough(tmp_path: Path) -> None:
 
 
 def test_a_corrected_width_scales_the_stress(tmp_path: Path) -> None:
-    files = [write_csv(tmp_path / f"{d}.csv", d) for d in Direction]
+    files = csv_pair(tmp_path)
     as_read, wider = (
         fit_tests(*files, reduction=Reduction.UNIFORM, width_course_mm=width)
         for width in (None, 140.0)

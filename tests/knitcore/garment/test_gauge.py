@@ -1,12 +1,9 @@
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from knitcore import Fabric, InputError
+from knitcore import Fabric, InputError, material
 from knitcore.garment.gauge import Gauge, GaugeLength
-from knitcore.materials import material
 
 
 @pytest.mark.parametrize("per", list(GaugeLength))

@@ -1,16 +1,10 @@
 """A tube of any chart on a limb."""
 
-from __future__ import annotations
-
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import Direction, Fabric, InputError, StitchChart, material, predict
 from knitcore.garment.limb import PLACES, on_limb, tube_for, tube_pressure
-from knitcore.materials import material
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure
-from knitcore.prediction.predict import predict
 
 ACRYLIC = material("acrylic")
 CHART = StitchChart.parse("KKPP\nKKPP")
@@ -43,8 +37,7 @@ def test_beyond_its_lock_up_it_cannot_be_worn() -> None:
 
 
 @pytest.mark.parametrize(
-    ("at", "girths"),
-    [([0.0], [100.0]), ([0.0, 0.0], [100.0, 100.0]), ([0.0, 1.0], [100.0, 9.9])],
+    ("at", "girths"), [([0.0], [100.0]), ([0.0, 0.0], [100.0, 100.0]), ([0.0, 1.0], [100.0, 9.9])]
 )
 def test_impossible_limbs_are_refused(at: list[float], girths: list[float]) -> None:
     with pytest.raises(InputError):

@@ -1,15 +1,13 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
 
-from knitcore import InputError, StitchChart
-from knitcore.chart.fabric import Fabric
+from knitcore import Fabric, InputError, StitchChart
 from knitcore.chart.phases import LEFT, RIGHT, surroundings
 from knitcore.formats.designs.design_file import DesignFile, design_from_mapping
-from knitcore.garment.shaped import ShapedChart
+from knitcore.garment.shaped import ShapedChart, largest_rectangle
 from tests.knitcore.charts import stitch_charts
 
 
@@ -79,3 +77,25 @@ def test_outlines_that_cannot_be_knitted(outline: str, says: str) -> None:
 def test_a_rectangle_has_no_holes() -> None:
     chart = StitchChart.of_fabric("rib", rows=3, columns=4)
     assert ShapedChart.rectangle(chart).stitches == 12
+
+
+@given(arrays(bool, array_shapes(min_dims=2, max_dims=2, max_side=7)))
+def test_no_rectangle_inside_has_more_stitches(stitch: np.ndarray) -> None:
+    rows, columns = stitch.shape
+    most = max(
+        (bottom - top) * (right - left)
+        for top in range(rows)
+        for bottom in range(top, rows + 1)
+        for left in range(columns)
+        for right in range(left, columns + 1)
+        if stitch[top:bottom, left:right].all()
+    )
+    found = stitch[largest_rectangle(stitch)]
+    assert found.all()
+    assert found.size == most
+
+
+def test_a_glove_s_largest_part_is_its_palm() -> None:
+    marks = ["x.x.x", "x.x.x", "xxxxx", "xxxxx", "xxxxx"][::-1]
+    stitch = np.array([[mark == "x" for mark in line] for line in marks])
+    assert largest_rectangle(stitch) == (slice(0, 3), slice(0, 5))

@@ -1,25 +1,16 @@
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.garment.piece import MAIN_YARN
 from knitcore.garment.worked_piece import PieceRow, piece_from_rows, piece_rows
-from tests.knitcore.charts import stitch_charts
+from tests.knitcore.charts import WAYS_TO_WORK, stitch_charts
 
 
-@given(
-    chart=stitch_charts(),
-    construction=st.sampled_from(Construction),
-    first_side=st.sampled_from(Side),
-)
-def test_worked_rows_make_their_chart(
-    chart: StitchChart, construction: Construction, first_side: Side
-) -> None:
-    rows = piece_rows(chart, construction, first_side=first_side)
+@given(chart=stitch_charts(), way=WAYS_TO_WORK)
+def test_worked_rows_make_their_chart(chart: StitchChart, way: tuple[Construction, Side]) -> None:
+    rows = piece_rows(chart, way[0], first_side=way[1])
     assert piece_from_rows(rows, [MAIN_YARN]).chart == chart
 
 

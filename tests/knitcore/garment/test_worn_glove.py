@@ -1,13 +1,11 @@
 """The glove on a hand of simple bodies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
+from knitcore import material
 from knitcore.garment.glove import Finger, Hand
 from knitcore.garment.worn_glove import FINGERS, GloveOnHand, glove_on_hand
-from knitcore.materials import material
 
 WOOL = material("glove-wool:glove")
 HAND = Hand()

@@ -4,8 +4,7 @@ import math
 
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError
 from knitcore.materials import Laws, Origin, load_library, load_variants, material, paper_figures
 
 IDENTIFIERS = (

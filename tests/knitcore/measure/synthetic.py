@@ -1,9 +1,8 @@
 """Made measurements of which the truth is known."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
-from knitcore.chart.fabric import Direction
+from knitcore import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.measure.heavy_elastica import heavy_elastica
@@ -65,6 +64,11 @@ def write_csv(
     return path
 
 
+def csv_pair(folder: Path, **options: Any) -> list[Path]:
+    """A course-wise and a wale-wise test as CSV files."""
+    return [write_csv(folder / f"{direction}.csv", direction, **options) for direction in Direction]
+
+
 def save_as_xlsx(csv_file: Path) -> Path:
     """The table of a CSV file as people save it in a workbook."""
     book = openpyxl.Workbook()
@@ -114,6 +118,11 @@ def write_h5(
             group["forces"] = stress * width_mm
             group["frames"] = np.arange(len(along), dtype=float)
     return path
+
+
+def h5_pair(folder: Path, **options: Any) -> list[Path]:
+    """A course-wise and a wale-wise test in the authors' layout."""
+    return [write_h5(folder / f"{direction}.h5", direction, **options) for direction in Direction]
 
 
 def hanging_yarn(

@@ -1,7 +1,5 @@
 """The bending modulus comes back from drawn photos."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -9,13 +7,24 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from knitcore.base.errors import InputError
-from knitcore.measure.bending_modulus import STANDARD_GRAVITY_M_PER_S2, measure_bending
+from knitcore import InputError
+from knitcore.measure.bending_modulus import (
+    STANDARD_GRAVITY_M_PER_S2,
+    MeasuredBending,
+    measure_bending,
+)
 from knitcore.measure.centreline import load_grey, trace_centreline
 from tests.knitcore.measure.synthetic import hanging_yarn, save_photo
 
 DENSITY = 0.5
 LENGTH = 120.0
+
+
+def measured(folder: Path, *images: Any, name: str = "yarn.png", **options: Any) -> MeasuredBending:
+    """Measure photos of a yarn of 120 mm and 0.5 g/m."""
+    photos = [save_photo(folder / f"{k or ''}{name}", image) for k, image in enumerate(images)]
+    given = {"linear_density_g_per_m": DENSITY, "length_mm": LENGTH} | options
+    return measure_bending(photos, **given)
 
 
 def modulus(load: float) -> float:
@@ -25,8 +34,7 @@ def modulus(load: float) -> float:
 
 @pytest.mark.parametrize("load", [5.0, 60.0, 180.0, 1000.0])
 def test_a_drawn_yarn_gives_its_modulus(tmp_path: Path, load: float) -> None:
-    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(load))
-    found = measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
+    found = measured(tmp_path, hanging_yarn(load))
     assert found.bending_modulus_n_mm2 == pytest.approx(modulus(load), rel=0.04)
     assert found.standard_deviation is None
 
@@ -42,31 +50,25 @@ def test_a_drawn_yarn_gives_its_modulus(tmp_path: Path, load: float) -> None:
     ],
 )
 def test_how_the_photo_looks_does_not_matter(tmp_path: Path, look: dict[str, Any]) -> None:
-    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0, **look))
-    found = measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
+    found = measured(tmp_path, hanging_yarn(100.0, **look))
     assert found.bending_modulus_n_mm2 == pytest.approx(modulus(100.0), rel=0.05)
 
 
 def test_a_given_scale_does_for_the_length(tmp_path: Path) -> None:
-    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
-    found = measure_bending([photo], linear_density_g_per_m=DENSITY, px_per_mm=10.0)
+    found = measured(tmp_path, hanging_yarn(100.0), length_mm=None, px_per_mm=10.0)
     assert found.photos[0].length_mm == pytest.approx(LENGTH, rel=0.02)
     assert found.bending_modulus_n_mm2 == pytest.approx(modulus(100.0), rel=0.05)
 
 
 def test_the_modulus_is_proportional_to_the_density(tmp_path: Path) -> None:
-    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
-    one, two = (
-        measure_bending([photo], linear_density_g_per_m=d, length_mm=LENGTH) for d in (0.4, 0.8)
-    )
+    yarn = hanging_yarn(100.0)
+    one, two = (measured(tmp_path, yarn, linear_density_g_per_m=d) for d in (0.4, 0.8))
     assert two.bending_modulus_n_mm2 == pytest.approx(2 * one.bending_modulus_n_mm2)
 
 
 def test_several_photos_have_a_mean_and_a_spread(tmp_path: Path) -> None:
-    photos = [
-        save_photo(tmp_path / f"{load}.png", hanging_yarn(load)) for load in (80.0, 100.0, 125.0)
-    ]
-    found = measure_bending(photos, linear_density_g_per_m=DENSITY, length_mm=[LENGTH] * 3)
+    yarns = (hanging_yarn(load) for load in (80.0, 100.0, 125.0))
+    found = measured(tmp_path, *yarns, length_mm=[LENGTH] * 3)
     values = [p.bending_modulus_n_mm2 for p in found.photos]
     assert found.bending_modulus_n_mm2 == pytest.approx(np.mean(values))
     assert found.standard_deviation == pytest.approx(np.std(values, ddof=1))
@@ -105,9 +107,8 @@ def half() -> np.ndarray[Any, Any]:
 
 @pytest.mark.parametrize("image", [blank, noise, spot, half])
 def test_a_photo_without_a_yarn_is_refused(tmp_path: Path, image: Any) -> None:
-    photo = save_photo(tmp_path / "nothing.png", image())
     with pytest.raises(InputError) as error:
-        measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
+        measured(tmp_path, image(), name="nothing.png")
     assert error.value.field == "nothing.png"
     assert "yarn" in error.value.problem
 
@@ -116,23 +117,20 @@ def test_a_ruler_is_not_taken_for_hanging_yarn(tmp_path: Path) -> None:
     image = np.full((900, 700), 20, dtype=np.uint8)
     for i in range(800):
         image[50 + i, 20 + i // 2 : 50 + i // 2] = 220
-    photo = save_photo(tmp_path / "ruler.png", image)
     with pytest.raises(InputError, match=r"ruler\.png: .*yarn"):
-        measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
+        measured(tmp_path, image, name="ruler.png")
 
 
 def test_a_missing_scale_is_reported(tmp_path: Path) -> None:
-    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
     with pytest.raises(InputError, match="has no scale") as error:
-        measure_bending([photo], linear_density_g_per_m=DENSITY)
+        measured(tmp_path, hanging_yarn(100.0), length_mm=None)
     assert "length_mm" in error.value.remedy
     assert "px_per_mm" in error.value.remedy
 
 
 def test_a_cut_off_tip_needs_the_length(tmp_path: Path) -> None:
-    photo = save_photo(tmp_path / "cut.png", hanging_yarn(100.0)[:700])
     with pytest.raises(InputError, match="free end is outside"):
-        measure_bending([photo], linear_density_g_per_m=DENSITY, px_per_mm=10.0)
+        measured(tmp_path, hanging_yarn(100.0)[:700], length_mm=None, px_per_mm=10.0)
 
 
 @pytest.mark.parametrize(
@@ -147,10 +145,8 @@ def test_a_cut_off_tip_needs_the_length(tmp_path: Path) -> None:
     ],
 )
 def test_impossible_numbers_are_refused(tmp_path: Path, given: dict[str, Any], says: str) -> None:
-    photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
-    options = {"linear_density_g_per_m": DENSITY, "length_mm": LENGTH} | given
     with pytest.raises(InputError, match=says):
-        measure_bending([photo], **options)
+        measured(tmp_path, hanging_yarn(100.0), **given)
 
 
 def test_files_that_are_not_photos_are_refused(

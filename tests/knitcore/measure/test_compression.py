@@ -1,7 +1,5 @@
 """k and p come back from made tests."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from knitcore.base.errors import InputError
+from knitcore import InputError
 from knitcore.measure.compression import average_compression, fit_compression
 from knitcore.measure.compression_files import CompressionTest, read_compression
 from knitcore.measure.workbooks import read_workbook

@@ -1,7 +1,5 @@
 """The heavy elastica against independent solutions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from knitcore.base.errors import InputError
+from knitcore import InputError
 from knitcore.measure.heavy_elastica import heavy_elastica
 
 

@@ -1,14 +1,12 @@
 """Workbooks are read as rows of cells, as far as a table of measurements goes."""
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
 
 import openpyxl
 import pytest
 
-from knitcore.base.errors import InputError
+from knitcore import InputError
 from knitcore.measure import workbooks
 from knitcore.measure.workbooks import is_workbook, read_workbook
 

@@ -3,11 +3,17 @@
 import numpy as np
 import pytest
 
-from knitcore import RelaxedSize, StitchChart, curve, predict
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import (
+    Direction,
+    Fabric,
+    InputError,
+    RelaxedSize,
+    StitchChart,
+    curve,
+    material,
+    predict,
+)
 from knitcore.law.uniaxial import uniaxial_response
-from knitcore.materials import material
 
 LOADS = [0.01, 0.05, 0.1, 0.2]
 

@@ -1,7 +1,5 @@
 """Densities of charts: invariances, pure fabrics, and how little one stitch changes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Kernel regression: it passes through exact samples and knows where it knows nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The learned answer: exact where it must be, continuous everywhere, honest outside what it saw."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -9,12 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore import StitchChart
+from knitcore import RelaxedSize, StitchChart, material
 from knitcore.chart.fabric import PHASES, Direction
-from knitcore.materials import material
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import LearnedResponse, learned, packaged_model
-from knitcore.prediction.size import RelaxedSize
 from tests.knitcore.charts import stitch_charts
 
 ACRYLIC = material("acrylic:published")

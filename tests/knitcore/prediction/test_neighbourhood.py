@@ -1,14 +1,11 @@
 """Sizes that know their surroundings."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from knitcore import StitchChart
+from knitcore import StitchChart, material
 from knitcore.chart.fabric import PHASES
-from knitcore.materials import material
 from knitcore.prediction import neighbourhood
 from knitcore.prediction.learned import learned
 from knitcore.prediction.neighbourhood import neighbourhood_sizes

@@ -1,13 +1,9 @@
 """Large charts in patches: two halves of pure fabrics, whose answers are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from knitcore import RelaxedSize, StitchChart, predict
-from knitcore.chart.fabric import Direction, Fabric
-from knitcore.materials import material
+from knitcore import Direction, Fabric, RelaxedSize, StitchChart, material, predict
 from knitcore.prediction.prediction import Prediction
 
 YARN = material("acrylic")

@@ -1,13 +1,10 @@
 """Relaxed sizes that are given."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
 
-from knitcore import RelaxedSize
-from knitcore.base.errors import InputError
+from knitcore import InputError, RelaxedSize
 
 
 @pytest.mark.parametrize("size", [0.0, -1.0, 500.1, math.nan, math.inf])

@@ -1,14 +1,11 @@
 """Charts that were themselves simulated: sweeps, and sizes of a relaxation."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pytest
 
-from knitcore import Direction, RelaxedSize, StitchChart, predict
-from knitcore.chart.fabric import Fabric
+from knitcore import Direction, Fabric, RelaxedSize, StitchChart, predict
 from knitcore.materials import Material, material
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import packaged_model

@@ -22,7 +22,7 @@ from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import StitchSheet, sheet_of
 from knitcore.cloth.space.surface import corners_of, filled
 from knitcore.cloth.space.tangent import Tangent
-from knitcore.formats.write.curled import write_curled_glb
+from knitcore.formats.write.yarn_mesh import write_curled_glb
 from knitcore.garment.shaped import outline_marks
 from knitcore.materials import material
 

@@ -1,12 +1,10 @@
 """Outline, regions, repeats and shelf of a design."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -23,11 +21,15 @@ from knitcore.formats.designs.layout import (
     Placement,
     ShelfPattern,
     layout_notes,
+    layout_of,
+    piece_of,
     region_cells,
     runs_of,
 )
+from knitcore.garment.piece import Piece
 from knitcore.garment.shaped import INSIDE, OUTSIDE
 from tests.knitcore.charts import stitch_charts
+from tests.knitcore.pieces import pieces
 
 NAMES = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=20)
 MOTIFS = stitch_charts(4).map(lambda chart: chart.key)
@@ -77,6 +79,8 @@ def designs(draw: st.DrawFn, most: int = 8) -> DesignFile:
     shelf = [ShelfPattern(name=draw(NAMES), motif=draw(MOTIFS))]
     return DesignFile(
         name=draw(NAMES),
+        material=draw(st.none() | NAMES),
+        note=draw(NAMES),
         chart=chart.text,
         outline=outline,
         regions=regions,
@@ -90,7 +94,14 @@ def test_nothing_is_lost(design: DesignFile, tmp_path: Path) -> None:
     file = tmp_path / "design.json"
     file.write_text(write_design(design), encoding="utf-8")
     assert read_design(file) == design
+    assert str(read_design(file).to_chart()) == design.chart
     assert design_from_mapping(design.model_dump(mode="json")) == design
+
+
+@settings(max_examples=40, deadline=None)
+@given(piece=pieces())
+def test_a_layout_makes_the_piece_again(piece: Piece) -> None:
+    assert piece_of(piece.chart, layout_of(piece)) == piece
 
 
 @given(cells=hnp.arrays(np.bool_, hnp.array_shapes(min_dims=2, max_dims=2, max_side=9)))

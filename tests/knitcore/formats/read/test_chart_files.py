@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -11,12 +9,6 @@ from knitcore import InputError, StitchChart
 from knitcore.formats.read.chart_files import read_chart
 
 CHART = StitchChart.parse("KKP\nPPK")
-
-
-def test_text(tmp_path: Path) -> None:
-    file = tmp_path / "chart.txt"
-    file.write_text("KKP\nPPK\n", encoding="utf-8")
-    assert read_chart(file) == CHART
 
 
 def test_png_has_dark_purls_and_the_top_row_first(tmp_path: Path) -> None:

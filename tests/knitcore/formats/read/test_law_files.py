@@ -1,15 +1,12 @@
 """Law files read back what was written, and refuse what is no law."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction
+from knitcore import Direction, InputError
 from knitcore.formats.read.law_files import LawFile, law_from_mapping, load_law, save_law
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import MeasuredCurve
@@ -56,8 +53,7 @@ def test_constants_may_carry_their_unit() -> None:
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["", "not json", "[]", "{}", '{"law": 3}', '{"law": {"alpha_xx": "a"}}', "[" * 100_000],
+    "text", ["", "not json", "[]", "{}", '{"law": 3}', '{"law": {"alpha_xx": "a"}}', "[" * 100_000]
 )
 def test_files_that_are_not_laws_are_refused(tmp_path: Path, text: str) -> None:
     path = tmp_path / "law.json"

@@ -1,10 +1,9 @@
-from __future__ import annotations
-
 import csv
 import io
 import re
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import meshio
@@ -14,8 +13,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore import InputError, StitchChart
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError, StitchChart, material
 from knitcore.chart.row_sides import Construction
 from knitcore.formats.designs.garment_design import design_of_plan
 from knitcore.formats.designs.layout import (
@@ -30,36 +28,29 @@ from knitcore.formats.write import report
 from knitcore.formats.write.chart_drawing import chart_pages, chart_pdf, chart_svg
 from knitcore.formats.write.chart_key import HEAVY, ChartStyle, RegionMark, tinted
 from knitcore.formats.write.drawn_page import Label, Page, Rectangle, to_pdf, to_svg
-from knitcore.formats.write.export import (
-    FORMATS,
-    ExportKind,
-    ExportOptions,
-    export_chart,
-)
+from knitcore.formats.write.export import FORMATS, ExportKind, ExportOptions, export_chart
 from knitcore.formats.write.extensibility_drawing import region_fields
 from knitcore.formats.write.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radius_mm
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
-from knitcore.materials import material
 from knitcore.mechanics.local_moduli import local_moduli
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.pieces import pieces
 
 ACRYLIC = material("acrylic:published")
-CHEAP = (
-    ExportKind.TEXT,
-    ExportKind.PNG,
-    ExportKind.WRITTEN,
-    ExportKind.KNITSPEAK,
-    ExportKind.DESIGN,
-)
 WHOLE = (ExportKind.PNG, ExportKind.WRITTEN, ExportKind.DESIGN)
 """Formats that hold outlines and yarns, and are cheap to read back."""
+CHEAP = (*WHOLE, ExportKind.TEXT, ExportKind.KNITSPEAK)
+
+
+def exported(chart: StitchChart, kind: ExportKind, **options: Any) -> bytes:
+    """The content of a file in acrylic."""
+    return export_chart(chart, kind, ACRYLIC, ExportOptions(**options)).content
 
 
 def round_trip(chart: StitchChart, kind: ExportKind, folder: Path) -> StitchChart:
     file = folder / f"chart{FORMATS[kind].suffix}"
-    file.write_bytes(export_chart(chart, kind, ACRYLIC).content)
+    file.write_bytes(exported(chart, kind))
     return read_chart(file)
 
 
@@ -84,9 +75,8 @@ def test_round_trips_of_large_charts(
 @settings(max_examples=25)
 @given(piece=pieces())
 def test_outlines_and_yarns_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
-    options = ExportOptions(layout=layout_of(piece))
     file = tmp_path / f"piece{FORMATS[kind].suffix}"
-    file.write_bytes(export_chart(piece.chart, kind, ACRYLIC, options).content)
+    file.write_bytes(exported(piece.chart, kind, layout=layout_of(piece)))
     found = read_piece(file)
     assert found == (piece.cropped() if kind is ExportKind.WRITTEN else piece)
 
@@ -95,9 +85,8 @@ def test_outlines_and_yarns_come_back(kind: ExportKind, piece: Piece, tmp_path: 
 @settings(max_examples=1)
 @given(piece=pieces(most_rows=200, most_columns=200))
 def test_large_pieces_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
-    options = ExportOptions(layout=layout_of(piece))
     file = tmp_path / f"piece{FORMATS[kind].suffix}"
-    file.write_bytes(export_chart(piece.chart, kind, ACRYLIC, options).content)
+    file.write_bytes(exported(piece.chart, kind, layout=layout_of(piece)))
     assert read_piece(file).cropped() == piece.cropped()
 
 
@@ -121,10 +110,9 @@ def test_a_coloured_chart_has_its_yarns_in_the_key_with_length_and_mass() -> Non
     region = DesignRegion(
         id="a", name="A", colour="#1f3b70", yarn="navy", runs=[(r, 0, 5) for r in range(4)]
     )
-    options = ExportOptions(
-        note="Mind the edge.", layout=DesignLayout(regions=[region]), linear_density_tex=500
-    )
-    drawing = export_chart(chart, ExportKind.SVG, ACRYLIC, options).content.decode()
+    layout = DesignLayout(regions=[region])
+    options = {"note": "Mind the edge.", "layout": layout, "linear_density_tex": 500}
+    drawing = exported(chart, ExportKind.SVG, **options).decode()
     metres = 20 * (ACRYLIC.record(Fabric.STOCKINETTE).loop_length_mm or 0) / 1000
     assert f"B: navy (#1f3b70), 20 sts, {metres:.1f} m, {metres / 2:.1f} g" in drawing
     assert "A: main yarn" in drawing
@@ -141,16 +129,16 @@ def test_linked_repeats_are_bordered_and_named() -> None:
         edge_columns=1,
         placements=[Placement(row=0, column=0, rows=4, columns=5)] * 2,
     )
-    options = ExportOptions(layout=DesignLayout(repeats=[repeat]))
-    drawing = export_chart(chart, ExportKind.SVG, ACRYLIC, options).content.decode()
+    layout = DesignLayout(repeats=[repeat])
+    drawing = exported(chart, ExportKind.SVG, layout=layout).decode()
     assert "Moss: multiple of 2 + 1 sts, multiple of 2 rows" in drawing
     assert drawing.count(f'stroke="{HEAVY}"') == 2 + 1  # the copies, and the key
 
 
 def test_values_are_those_of_the_stitches_inside() -> None:
     chart = StitchChart.of_fabric("rib", rows=4, columns=6)
-    options = ExportOptions(layout=DesignLayout(outline="xxxx..\n" * 2 + "xxxxxx\n" * 2))
-    lines = export_chart(chart, ExportKind.CSV, ACRYLIC, options).content.decode().splitlines()
+    layout = DesignLayout(outline="xxxx..\n" * 2 + "xxxxxx\n" * 2)
+    lines = exported(chart, ExportKind.CSV, layout=layout).decode().splitlines()
     assert len(lines) == 1 + 2 * 4 + 2 * 6
     moduli = {line.split(",")[3] for line in lines[1:]}
     assert len(moduli) == 1  # the outline's edge does not change the fabric
@@ -181,7 +169,7 @@ def test_knitout_is_read_from_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", list(ExportKind))
 def test_the_same_chart_gives_the_same_bytes(kind: ExportKind) -> None:
     chart = StitchChart.parse("KPK\nPKP")
-    first, again = (export_chart(chart, kind, ACRYLIC).content for _ in range(2))
+    first, again = (exported(chart, kind) for _ in range(2))
     assert first == again
 
 
@@ -265,7 +253,7 @@ def test_stitches_have_a_shape(aspect: float) -> None:
 def test_the_yarn_is_a_solid_of_its_length(kind: ExportKind, unit: float, tmp_path: Path) -> None:
     chart = StitchChart.parse("KPKK\nPPKP\nKKKP")
     file = tmp_path / f"yarn.{kind}"
-    file.write_bytes(export_chart(chart, kind, ACRYLIC).content)
+    file.write_bytes(exported(chart, kind))
     solid = trimesh.load_mesh(file)
     solid.merge_vertices()
     assert solid.is_watertight
@@ -286,16 +274,14 @@ def test_a_mesh_has_a_limit() -> None:
 def test_values_of_every_stitch(tmp_path: Path) -> None:
     chart = StitchChart.parse("KPKK\nPPKP")
     local = local_moduli(chart, ACRYLIC)
-    lines = list(
-        csv.DictReader(io.StringIO(export_chart(chart, ExportKind.CSV, ACRYLIC).content.decode()))
-    )
+    lines = list(csv.DictReader(io.StringIO(exported(chart, ExportKind.CSV).decode())))
     assert [line["stitch"] for line in lines] == list("PPKPKPKK")
     extensibility = [float(line["extensibility_wale_mm_per_n"]) for line in lines]
     table = local.table.extensibility_mm_per_n(Direction.WALE)[local.codes]
     assert extensibility == pytest.approx(table.ravel().tolist(), rel=1e-5)
 
     file = tmp_path / "chart.vtu"
-    file.write_bytes(export_chart(chart, ExportKind.VTU, ACRYLIC).content)
+    file.write_bytes(exported(chart, ExportKind.VTU))
     mesh = meshio.read(file)
     assert mesh.cells_dict["quad"].shape == (8, 4)
     assert mesh.cell_data["modulus_course_n_per_mm"][0] == pytest.approx(
@@ -312,7 +298,7 @@ def test_values_of_every_stitch(tmp_path: Path) -> None:
     ids=["with curves", "patchwork"],
 )
 def test_a_report_has_numbers_and_the_chart(chart: StitchChart, pages: int) -> None:
-    content = export_chart(chart, ExportKind.REPORT, ACRYLIC).content
+    content = exported(chart, ExportKind.REPORT)
     assert content.startswith(b"%PDF-")
     assert content.count(b"/Type /Page\n") == pages
 

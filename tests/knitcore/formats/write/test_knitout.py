@@ -1,12 +1,9 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore import InputError, StitchChart
-from knitcore.chart.fabric import Fabric
+from knitcore import Fabric, InputError, StitchChart
 from knitcore.formats.read.knitout_reader import KnitoutMismatchError, knitted_chart, verified
 from knitcore.formats.write.knitout import Finish, knitout_program
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn

@@ -1,7 +1,5 @@
 """Patterns to knit from."""
 
-from __future__ import annotations
-
 import io
 import re
 from dataclasses import replace
@@ -10,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from knitcore import InputError, StitchChart
+from knitcore import InputError, StitchChart, material
 from knitcore.chart.row_sides import Construction
 from knitcore.formats.read.written_reader import read_rows
 from knitcore.formats.write.chart_key import ChartStyle, RegionMark
@@ -20,7 +18,6 @@ from knitcore.formats.write.pattern import MAX_PHOTO_PIXELS, pattern_pages
 from knitcore.formats.write.written_pattern import write_rows
 from knitcore.garment.piece import Piece
 from knitcore.garment.shaped import ShapedChart
-from knitcore.materials import material
 
 ACRYLIC = material("acrylic")
 CHART = StitchChart(np.arange(24)[None, :] % 2 * (np.arange(16)[:, None] < 6) > 0)

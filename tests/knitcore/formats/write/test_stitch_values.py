@@ -1,16 +1,13 @@
-from __future__ import annotations
-
 import csv
 import io
 
 import numpy as np
 import pytest
 
-from knitcore import StitchChart
+from knitcore import StitchChart, material
 from knitcore.formats.write.stitch_values import write_csv
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
-from knitcore.materials import material
 
 
 @pytest.mark.parametrize("name", ["=cmd|calc!A0", "+1", "-1", "@x", "cream, dark"])

@@ -1,7 +1,5 @@
 """A yarn that is not in the library: how well left-out yarns are predicted, and what is warned."""
 
-from __future__ import annotations
-
 import math
 from itertools import combinations
 from typing import Any
@@ -9,10 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError, material
 from knitcore.law.uniaxial import strain_at_stress
-from knitcore.materials import material
 from knitcore.materials.estimate.estimate import MeasuredSwatch, estimate_yarn
 from knitcore.materials.estimate.yarn_statistics import left_out, library_table
 

@@ -1,13 +1,11 @@
 """The mixed model against its definition and against made yarns."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from knitcore.base.errors import InputError
+from knitcore import InputError
 from knitcore.materials.estimate.mixed_model import MixedModel, interval_factor, leave_one_out
 
 NOTHING = np.zeros((4, 2), dtype=bool)

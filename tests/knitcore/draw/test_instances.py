@@ -1,14 +1,11 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from knitcore import StitchChart
+from knitcore import StitchChart, material
 from knitcore.draw.fabric_loops import POINTS
+from knitcore.draw.instances import occlusion
 from knitcore.draw.lattice import Lattice
-from knitcore.draw.occlusion import occlusion
 from knitcore.draw.stitches import StitchShapes, stitch_shapes
-from knitcore.materials import material
 
 WIDE_MM = 6.0
 

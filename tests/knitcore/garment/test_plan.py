@@ -1,12 +1,9 @@
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from knitcore import Fabric, InputError, StitchChart
-from knitcore.chart.fabric import Direction
+from knitcore import Direction, Fabric, InputError, StitchChart, material
 from knitcore.formats.designs.design_file import design_from_mapping
 from knitcore.formats.designs.garment_design import design_of_plan
 from knitcore.formats.designs.layout import layout_notes
@@ -17,18 +14,11 @@ from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.glove import CROTCH_ROWS, Hand, glove
 from knitcore.garment.piece import Piece
 from knitcore.garment.plan import GarmentPlan
-from knitcore.garment.regions import (
-    Region,
-    fill_regions,
-    misfits,
-    region_numbers,
-    yarn_use,
-)
+from knitcore.garment.regions import Region, fill_regions, misfits, region_numbers, yarn_use
 from knitcore.garment.shaped import ShapedChart
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worked_piece import piece_rows
 from knitcore.garment.worn_piece import Fit, worn
-from knitcore.materials import material
 
 WOOL = material("glove-wool:published")
 PLANS = (

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -7,7 +5,7 @@ import pytest
 from hypothesis import given
 
 from knitcore import StitchChart
-from knitcore.draw.loops import ABOVE, LEFT, RIGHT, SELF, loop_centre_line, loop_kinds
+from knitcore.formats.write.yarn_mesh import ABOVE, LEFT, RIGHT, SELF, loop_centre_line, loop_kinds
 from tests.knitcore.charts import stitch_charts
 
 

@@ -1,15 +1,12 @@
 """Stitches on a curled sheet."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import StitchChart, material
 from knitcore.draw.instances import quaternions
 from knitcore.draw.lattice import flat_lattice
 from knitcore.draw.placing import lying, placed_lines, unstretched
 from knitcore.draw.stitches import stitch_shapes
-from knitcore.materials import material
 
 CHART = StitchChart.of_fabric("stockinette", rows=3, columns=4)
 SHAPES = stitch_shapes(CHART, material("acrylic"), folded=False)

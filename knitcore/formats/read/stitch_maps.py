@@ -1,7 +1,5 @@
 """Maps of target moduli from a spreadsheet (see :mod:`knitcore.formats.write.stitch_values`)."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 
@@ -33,11 +31,8 @@ def read_wanted_moduli(file: Path) -> tuple[Array, Array]:
             table = csv.DictReader(stream)
             names = set(table.fieldnames or ())
             if not {"row", "column"} <= names or not names & set(WANTED):
-                raise InputError(
-                    "target",
-                    f"{file.name} lacks columns.",
-                    f"Give row, column, {' and '.join(WANTED)}.",
-                )
+                problem = f"{file.name} lacks columns."
+                raise InputError("target", problem, f"Give row, column, {' and '.join(WANTED)}.")
             entries = [_entry(line, table.line_num) for line in table]
     except (UnicodeDecodeError, csv.Error):
         raise InputError("target", f"{file.name} is not CSV text.", "Save it as CSV.") from None
@@ -62,9 +57,6 @@ def _entry(line: dict[str, str], number: int) -> tuple[int, int, float, float]:
             "target", f"line {number} holds no numbers.", "Give row, column and moduli."
         ) from None
     if not (1 <= row <= MAX_STITCHES_PER_SIDE and 1 <= column <= MAX_STITCHES_PER_SIDE):
-        raise InputError(
-            "target",
-            f"line {number} is for row {row}, column {column}.",
-            f"Count from 1 to {MAX_STITCHES_PER_SIDE}.",
-        )
+        problem = f"line {number} is for row {row}, column {column}."
+        raise InputError("target", problem, f"Count from 1 to {MAX_STITCHES_PER_SIDE}.")
     return row, column, targets[0], targets[1]
