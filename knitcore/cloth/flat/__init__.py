@@ -6,7 +6,7 @@ from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet, State
 from knitcore.cloth.flat.misfit import Misfit, misfit, relaxed_shape
 from knitcore.cloth.flat.sheet_models import Coupling, EnergyModel, SheetModel
-from knitcore.cloth.flat.strip import Clamps, chart_sheet, homogeneous_sheet, pull, strip_test
+from knitcore.cloth.flat.strip import Clamps, chart_sheet, pull, strip_test
 from knitcore.cloth.flat.strip_results import LockUp, StripTest, SwatchTest
 
 __all__ = [
@@ -23,7 +23,6 @@ __all__ = [
     "StripTest",
     "SwatchTest",
     "chart_sheet",
-    "homogeneous_sheet",
     "misfit",
     "pull",
     "pull_with_force",

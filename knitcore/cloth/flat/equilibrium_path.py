@@ -10,7 +10,7 @@ failure is reported with the part of the path that was reached.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
 from knitcore.cloth.flat.grid_sheet import Linearisation, Sheet, State
-from knitcore.linear.direct_factor import Factor, IndefiniteTangentError
+from knitcore.linear.direct_factor import IndefiniteTangentError
 from knitcore.linear.grid_factor import GridFactor
 
 MAX_NEWTON_STEPS = 30
@@ -84,7 +84,6 @@ class PathSolver:
         without fabric are prescribed in any case.
     tolerance : when a state counts as balanced.
     cancelled : called between linear solves; True stops with :class:`CancelledError`.
-    factor : makes the factorisation for a grid's columns, rows and prescribed unknowns.
     """
 
     def __init__(
@@ -94,14 +93,13 @@ class PathSolver:
         *,
         tolerance: Tolerance | None = None,
         cancelled: Cancelled | None = None,
-        factor: Callable[[int, int, NDArray[np.bool_]], Factor] = GridFactor,
     ) -> None:
         self.sheet = sheet
         self.fixed = fixed | ~sheet.grid.used_corners[:, None]
         self.free = (~self.fixed).astype(float)
         self.tolerance = tolerance or Tolerance()
         self.cancelled = cancelled or (lambda: False)
-        self.factor: Factor = factor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
+        self.factor = GridFactor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
         self._has_factor = False
         self._factor_is_current = False
         self._accepted: Linearisation | None = None  # of the last balanced state

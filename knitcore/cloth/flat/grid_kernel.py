@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
+from knitcore.cloth.flat.grid import corners_of
 from knitcore.law import stiffening
-from knitcore.linear.corner_numbering import corners_of
 
 WRINKLED_SHARE = 0.05
 """Share of the compressive energy that a wrinkled sheet keeps, so that its tangent has a bound."""
