@@ -36,12 +36,12 @@ class Symmetrisation(StrEnum):
     """Rule that makes one of the two measured couplings (an energy needs C_xxyy = C_yyxx).
 
     ``geometric`` keeps both Young's moduli and the product of the Poisson ratios exactly;
-    ``arithmetic`` is the paper's text (Note 9); ``none`` keeps the measured asymmetry.
+    ``arithmetic`` is the paper's text (Note 9); ``script``, C_xxyy alone, is the authors' script.
     """
 
     GEOMETRIC = "geometric"
     ARITHMETIC = "arithmetic"
-    NONE = "none"
+    SCRIPT = "script"
 
 
 class Transverse(StrEnum):
@@ -232,13 +232,14 @@ class ConstitutiveLaw:
         InputError
             If the rule makes the stiffness indefinite (``arithmetic`` on lace bamboo stockinette).
         """
-        if rule is Symmetrisation.NONE:
-            return self
         a, b = self.stiffness_xxyy, self.stiffness_yyxx
-        if rule is Symmetrisation.ARITHMETIC:
-            coupling = (a + b) / 2
-        else:
-            coupling = math.copysign(math.sqrt(a * b), a)
+        match rule:
+            case Symmetrisation.GEOMETRIC:
+                coupling = math.copysign(math.sqrt(a * b), a)
+            case Symmetrisation.ARITHMETIC:
+                coupling = (a + b) / 2
+            case Symmetrisation.SCRIPT:
+                coupling = a
         return replace(self, stiffness_xxyy=coupling, stiffness_yyxx=coupling)
 
     # -- response ---------------------------------------------------------------------------

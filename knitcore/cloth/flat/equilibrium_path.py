@@ -10,17 +10,22 @@ failure is reported with the part of the path that was reached.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
-from knitcore.base.errors import Cancelled, check_cancelled
+from knitcore.base.errors import Cancelled, Progress, check_cancelled
+from knitcore.base.threads import one_blas_thread
 from knitcore.cloth.flat.grid_sheet import Linearisation, Sheet, State
 from knitcore.linear.direct_factor import IndefiniteTangentError
 from knitcore.linear.grid_factor import GridFactor
+
+Balanced = TypeVar("Balanced")
 
 MAX_NEWTON_STEPS = 30
 MAX_HALVINGS = 7
@@ -67,6 +72,34 @@ class Equilibrium:
     energy: float
     reaction: Array
     iterations: int
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Equilibria found, the reason if the path stopped early, and the time taken."""
+
+    equilibria: tuple[Equilibrium, ...]
+    problem: str | None
+    seconds: float
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """Positions per step."""
+        return tuple(e.state for e in self.equilibria)
+
+    @property
+    def energies(self) -> Array:
+        """N·mm per step."""
+        return np.array([e.energy for e in self.equilibria])
+
+    @property
+    def iterations(self) -> tuple[int, ...]:
+        """Linear systems solved per step."""
+        return tuple(e.iterations for e in self.equilibria)
+
+    def forces(self, nodes: NDArray[np.int64], axis: int) -> Array:
+        """Force (N) on prescribed nodes along an axis, per step."""
+        return np.array([e.reaction[nodes, axis].sum() for e in self.equilibria])
 
 
 class StepError(Exception):
@@ -326,3 +359,43 @@ class PathSolver:
             p = z if renewed else z + (new / rz) * p
             rz = new
         return x
+
+
+def as_far_as_it_converges(
+    path: Iterator[Balanced], steps: int, progress: Progress | None
+) -> tuple[tuple[Balanced, ...], str | None]:
+    """Follow a path of so many steps; also say why it stopped early, if it did."""
+    reached: list[Balanced] = []
+    try:
+        with one_blas_thread():
+            for equilibrium in path:
+                reached.append(equilibrium)
+                if progress is not None:
+                    progress(len(reached), steps)
+    except StepError as error:
+        return tuple(reached), f"Step {len(reached) + 1} of {steps} did not converge. {error}"
+    return tuple(reached), None
+
+
+def run_path(
+    sheet: Sheet,
+    fixed: NDArray[np.bool_],
+    targets: list[Array],
+    *,
+    start: State | None = None,
+    tolerance: Tolerance | None = None,
+    progress: Progress | None = None,
+    cancelled: Cancelled | None = None,
+) -> Path:
+    """Follow the targets as far as they converge.
+
+    Raises
+    ------
+    CancelledError
+        If ``cancelled`` returned True.
+    """
+    begin = time.perf_counter()
+    solver = PathSolver(sheet, fixed, tolerance=tolerance, cancelled=cancelled)
+    path = solver.follow(start or sheet.reference, targets)
+    equilibria, problem = as_far_as_it_converges(path, len(targets), progress)
+    return Path(equilibria, problem, time.perf_counter() - begin)

@@ -10,9 +10,8 @@ import numpy as np
 
 from knitcore.base.errors import Cancelled, ConvergenceError, InputError, Progress
 from knitcore.chart.fabric import Direction
-from knitcore.cloth.flat.equilibrium_path import Equilibrium
+from knitcore.cloth.flat.equilibrium_path import Equilibrium, Path, run_path
 from knitcore.cloth.flat.grid_sheet import Sheet
-from knitcore.cloth.flat.load_path import Path, run_path
 from knitcore.cloth.flat.strip import (
     LOCK_UP_SHARE,
     MAX_STRAIN,

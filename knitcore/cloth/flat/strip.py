@@ -14,9 +14,9 @@ from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, InputError, Progress
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.stitch_chart import StitchChart, as_chart
+from knitcore.cloth.flat.equilibrium_path import Path, run_path
 from knitcore.cloth.flat.grid import QuarterGrid, check_cloth
 from knitcore.cloth.flat.grid_sheet import Sheet
-from knitcore.cloth.flat.load_path import Path, run_path
 from knitcore.cloth.flat.misfit import draw_in as draw_in_path
 from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel, energy_model
 from knitcore.cloth.flat.strip_results import StripTest

@@ -36,10 +36,13 @@ from knitcore.chart.fabric import PHASES, Direction
 from knitcore.cloth.flat.fields import cell_strains, corner_means, stiffening_of, utilisation
 from knitcore.cloth.flat.grid_kernel import Nodes
 from knitcore.cloth.flat.grid_sheet import Sheet
-from knitcore.cloth.flat.sheet_models import Coupling
 from knitcore.cloth.flat.strip import Clamps, clamp_edges, clamp_mask, waist_strain
 from knitcore.cloth.flat.strip_results import StripTest
-from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
+from knitcore.law.constitutive import (
+    DEFAULT_SHEAR_MODULUS_N_PER_MM,
+    ConstitutiveLaw,
+    Symmetrisation,
+)
 from knitcore.law.stiffening import StiffeningForm
 from knitcore.linear.grid_factor import GridFactor
 from knitcore.materials.law_uncertainty import (
@@ -341,13 +344,13 @@ def _stiffer_in_shear(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
     return replace(law, shear_stiffening=law.shear_stiffening * math.exp(step))
 
 
-def _coupling_sd(measured: ConstitutiveLaw, rule: Coupling, spread: LawUncertainty) -> float:
+def _coupling_sd(measured: ConstitutiveLaw, rule: Symmetrisation, spread: LawUncertainty) -> float:
     """Standard deviation of r, from those of the Poisson ratios that the model's rule uses."""
     nu_yx, nu_xy = measured.poisson_yx, measured.poisson_xy
-    if rule is Coupling.GEOMETRIC and nu_yx * nu_xy > 0:  # r = sqrt(nu_yx nu_xy)
+    if rule is Symmetrisation.GEOMETRIC and nu_yx * nu_xy > 0:  # r = sqrt(nu_yx nu_xy)
         aspect = math.sqrt(nu_yx / nu_xy)
     else:
         aspect = math.sqrt(measured.stiffness_xxxx / measured.stiffness_yyyy)
-    if rule is Coupling.SCRIPT:  # r = nu_xy aspect
+    if rule is Symmetrisation.SCRIPT:  # r = nu_xy aspect
         return spread.poisson_xy * aspect
     return math.hypot(spread.poisson_yx / aspect, spread.poisson_xy * aspect) / 2

@@ -26,15 +26,13 @@ from knitcore.cloth.cut import (
     Traction,
     cloth_under,
     solve,
-    write_piece_test,
 )
 from knitcore.cloth.cut.assembly import PieceEnergy
 from knitcore.cloth.cut.conditions import Constraints
 from knitcore.cloth.cut.cut_mesh import mesh_of
 from knitcore.cloth.cut.equilibrium import Balance
 from knitcore.cloth.flat import Clamps, EnergyModel, QuarterGrid, Sheet, SheetModel, State
-from knitcore.cloth.flat.equilibrium_path import Tolerance
-from knitcore.cloth.flat.load_path import run_path
+from knitcore.cloth.flat.equilibrium_path import Tolerance, run_path
 from knitcore.cloth.flat.strip import chart_sheet, clamp_mask, stretched
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress, uniaxial_response
@@ -282,7 +280,7 @@ def test_a_patch_of_mixed_stitches_has_one_law_with_the_strains_of_its_answer() 
 def test_results_are_written(tmp_path: Path) -> None:
     test = solve(KITE, cloth_of(), [Held("low"), Pulled("high", y_n=1.0)], steps=2, mesh_mm=12.0)
     for suffix in (".csv", ".npz", ".vtu"):
-        write_piece_test(test, tmp_path / f"out{suffix}")
+        test.write(tmp_path / f"out{suffix}")
     table = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
     assert table["high_y_n"] == pytest.approx([0.5, 1.0])
     stored = np.load(tmp_path / "out.npz")
@@ -290,7 +288,7 @@ def test_results_are_written(tmp_path: Path) -> None:
     assert stored["strain_wale"].shape == (2, test.mesh.nelements)
     assert "utilisation" in (tmp_path / "out.vtu").read_text(errors="ignore")
     with pytest.raises(InputError):
-        write_piece_test(test, tmp_path / "out.xlsx")
+        test.write(tmp_path / "out.xlsx")
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from knitcore.cloth.flat import (
     strain_at_force,
 )
 from knitcore.cloth.flat import equilibrium_path as solver
-from knitcore.cloth.flat.load_path import run_path
+from knitcore.cloth.flat.equilibrium_path import run_path
 from knitcore.cloth.flat.strip import load_levels, lock_up_strain
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response

@@ -15,7 +15,6 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.flat import chart_sheet, misfit, relaxed_shape, strip_test
-from knitcore.cloth.flat.field_files import write_fields
 from knitcore.garment.shaped import outline_marks
 from knitcore.materials import material
 
@@ -181,7 +180,7 @@ def test_a_shaped_piece_draws_in() -> None:
 
 def test_files_hold_the_cloth_alone(tmp_path: Path) -> None:
     test = strip_test(RIB, ACRYLIC, "wale", 0.2, steps=2, stitch=WAISTED)
-    write_fields(test, tmp_path / "piece.vtu")
+    test.write(tmp_path / "piece.vtu")
     mesh = meshio.read(tmp_path / "piece.vtu")
     assert len(mesh.cells_dict["quad"]) == 4 * WAISTED.sum()
     assert np.isfinite(mesh.point_data["displacement_mm"]).all()

@@ -14,7 +14,6 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.flat import (
-    Coupling,
     EnergyModel,
     QuarterGrid,
     SheetModel,
@@ -23,9 +22,9 @@ from knitcore.cloth.flat import (
     relaxed_shape,
     strip_test,
 )
-from knitcore.cloth.flat.field_files import write_fields
 from knitcore.cloth.flat.grid import MAX_CELLS
 from knitcore.cloth.flat.strip import load_levels
+from knitcore.law.constitutive import Symmetrisation
 from knitcore.materials import Laws, load_library, material
 
 ACRYLIC = material("acrylic:published")
@@ -114,7 +113,7 @@ def test_fields_are_consistent() -> None:
 
 def test_npz_has_all_steps(tmp_path: Path) -> None:
     test = strip_test(GARTER, ACRYLIC, "course", 0.3, steps=2)
-    write_fields(test, tmp_path / "swatch.npz")
+    test.write(tmp_path / "swatch.npz")
     with np.load(tmp_path / "swatch.npz") as archive:
         for name in ("ux_mm", "uy_mm", "strain_xx", "strain_yy", "strain_xy"):
             assert archive[name].shape == (2, *archive["x_mm"].shape)
@@ -123,7 +122,7 @@ def test_npz_has_all_steps(tmp_path: Path) -> None:
 
 def test_vtu_can_be_read_back(tmp_path: Path) -> None:
     test = strip_test(GARTER, ACRYLIC, "course", 0.3, steps=2)
-    write_fields(test, tmp_path / "swatch.vtu")
+    test.write(tmp_path / "swatch.vtu")
     mesh = meshio.read(tmp_path / "swatch.vtu")
     assert mesh.point_data["displacement_mm"][:, 0] == pytest.approx(test.ux_mm[-1].ravel())
     assert len(mesh.cells_dict["quad"]) == 4 * GARTER.rows * GARTER.columns
@@ -178,4 +177,4 @@ def test_a_mesh_that_would_not_fit_is_refused() -> None:
 def test_a_rule_that_makes_a_law_indefinite_names_the_way_out() -> None:
     law = material("lace-bamboo:published").law(Fabric.STOCKINETTE)
     with pytest.raises(InputError, match="geometric"):
-        SheetModel(EnergyModel.PUBLISHED, coupling=Coupling.ARITHMETIC).prepare(law)
+        SheetModel(EnergyModel.PUBLISHED, coupling=Symmetrisation.ARITHMETIC).prepare(law)
