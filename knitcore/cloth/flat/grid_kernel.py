@@ -291,49 +291,6 @@ def _zero(matrix: Array) -> None:
 
 
 @compiled
-def strain_change(cells: Cells, state: Nodes, step: Nodes) -> Array:
-    """Change of the mean strains along course and wale of every cell, (2, cells), to first order
-    in a step.
-    """
-    out = np.zeros((2, cells.law.size))
-    x, d = np.empty((4, 2)), np.empty((4, 2))
-    for cell in range(cells.law.size):
-        if not cells.cloth[cell]:
-            continue
-        nodes = _corners_of(cell, cells.columns)
-        _gather(state.corners, nodes, x)
-        _gather(step.corners, nodes, d)
-        centre, centre_step = state.centres[cell], step.centres[cell]
-        size = cells.width[cell], cells.height[cell]
-        for t in range(4):
-            i, j = _FIRST[t], _SECOND[t]
-            along = 0 if _COURSEWISE[t] else 1  # of the edge; the inward derivative is across
-            sign = _ALONG[t]
-            for axis, f0, f1, s0, s1 in (
-                (
-                    along,
-                    sign * (x[j, 0] - x[i, 0]),
-                    sign * (x[j, 1] - x[i, 1]),
-                    sign * (d[j, 0] - d[i, 0]),
-                    sign * (d[j, 1] - d[i, 1]),
-                ),
-                (
-                    1 - along,
-                    _INWARD[t] * (2.0 * centre[0] - x[i, 0] - x[j, 0]),
-                    _INWARD[t] * (2.0 * centre[1] - x[i, 1] - x[j, 1]),
-                    _INWARD[t] * (2.0 * centre_step[0] - d[i, 0] - d[j, 0]),
-                    _INWARD[t] * (2.0 * centre_step[1] - d[i, 1] - d[j, 1]),
-                ),
-            ):
-                if cells.published:
-                    change = s0 if axis == 0 else s1
-                else:
-                    change = (f0 * s0 + f1 * s1) / math.sqrt(f0 * f0 + f1 * f1)
-                out[axis, cell] += 0.25 * change / size[axis]
-    return out
-
-
-@compiled
 def _triangle(
     law: Law,
     published: bool,

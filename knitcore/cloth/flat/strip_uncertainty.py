@@ -33,7 +33,13 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction
-from knitcore.cloth.flat.fields import cell_strains, corner_means, stiffening_of, utilisation
+from knitcore.cloth.flat.fields import (
+    cell_strains,
+    corner_means,
+    stiffening_of,
+    strain_slopes,
+    utilisation,
+)
 from knitcore.cloth.flat.grid_kernel import Nodes
 from knitcore.cloth.flat.grid_sheet import Sheet
 from knitcore.cloth.flat.strip import Clamps, clamp_edges, clamp_mask, waist_strain
@@ -161,6 +167,7 @@ class StripSpread:
         self._factor.factorise(lin.tangent.matrix)
         pulled = grid.edge(clamp_edges(test.direction)[1])
         slope = self._utilisation_slope(step)
+        strain_by_position = strain_slopes(sheet, state)
         force_variance = waist_variance = 0.0
         variances = np.zeros((3, grid.rows + 1, grid.columns + 1))
         for parameter in law_parameters(
@@ -179,7 +186,8 @@ class StripSpread:
             waist = waist_strain(grid, state.corners + corner_step, test.direction)
             full_sd = math.hypot(parameter.sd, parameter.model_sd)
             waist_variance += (full_sd * (waist - test.waist_strain[step])) ** 2
-            strains = sheet.strain_change(state, change.newton_step(corner_step))
+            moved = np.concatenate([part.ravel() for part in change.newton_step(corner_step)])
+            strains = (strain_by_position @ moved).reshape(slope.shape)
             used = (slope * strains).sum(axis=0)
             for name, cells in enumerate((*strains, used)):
                 variances[name] += (full_sd * corner_means(grid, cells)) ** 2
