@@ -100,16 +100,9 @@ class ConstitutiveLaw:
         for name in ("stiffness_xxxx", "stiffness_yyyy", "shear_modulus"):
             if getattr(self, name) <= 0:
                 raise InputError(name, "must be above 0 N/mm.", "Give a positive stiffness.")
-        for name in (
-            "alpha_xx",
-            "alpha_yy",
-            "beta_xx",
-            "beta_yy",
-            "kappa_xx",
-            "kappa_yy",
-            "shear_stiffening",
-        ):
-            if getattr(self, name) < 0:
+        for name in vars(self):
+            may_be_negative = name in ("stiffness_xxyy", "stiffness_yyxx")
+            if getattr(self, name) < 0 and not may_be_negative:
                 raise InputError(name, "must not be negative.", "Give 0 or a positive number.")
         if (self.stiffness_xxyy < 0) != (self.stiffness_yyxx < 0):
             raise InputError(
@@ -251,9 +244,7 @@ class ConstitutiveLaw:
         form: StiffeningForm = StiffeningForm.FULL,
     ) -> tuple[Array, Array]:
         """(sigma_xx, sigma_yy) in N/mm at the given strains (arrays that broadcast)."""
-        ex, ey = np.broadcast_arrays(
-            np.asarray(strain_xx, dtype=float), np.asarray(strain_yy, dtype=float)
-        )
+        ex, ey = _strains(strain_xx, strain_yy)
         stiff = self.stiffening.response(ex, ey, form)
         return (
             self.stiffness_xxxx * ex + self.stiffness_xxyy * ey + stiff.stress_xx,
@@ -301,9 +292,7 @@ class ConstitutiveLaw:
         form: StiffeningForm = StiffeningForm.FULL,
     ) -> Array:
         """d stress / d strain in N/mm, shape (..., 3, 3) in the order xx, yy, xy (engineering)."""
-        ex, ey = np.broadcast_arrays(
-            np.asarray(strain_xx, dtype=float), np.asarray(strain_yy, dtype=float)
-        )
+        ex, ey = _strains(strain_xx, strain_yy)
         stiff = self.stiffening.response(ex, ey, form)
         tangent = np.broadcast_to(self.stiffness, (*ex.shape, 3, 3)).copy()
         tangent[..., 0, 0] += stiff.tangent_xx
@@ -311,3 +300,9 @@ class ConstitutiveLaw:
         tangent[..., 0, 1] += stiff.tangent_xy
         tangent[..., 1, 0] += stiff.tangent_xy
         return tangent
+
+
+def _strains(xx: ArrayLike, yy: ArrayLike) -> tuple[Array, Array]:
+    """Strains as arrays of one shape."""
+    ex, ey = np.broadcast_arrays(np.asarray(xx, dtype=float), np.asarray(yy, dtype=float))
+    return ex, ey

@@ -256,17 +256,14 @@ class PathSolver:
             float(np.prod((level - np.delete(levels, i)) / (levels[i] - np.delete(levels, i))))
             for i in range(len(levels))
         ]
-        states = [state for _, state in self._history]
-        corners = sum(
-            (w * s.corners for w, s in zip(weights, states, strict=True)),
-            start=np.zeros_like(prescribed),
+        guess = State(
+            *(
+                sum((w * at for w, at in zip(weights, places, strict=True)), np.zeros(()))
+                for places in zip(*(state for _, state in self._history), strict=True)
+            )
         )
-        centres = sum(
-            (w * s.centres for w, s in zip(weights, states, strict=True)),
-            start=np.zeros_like(states[0].centres),
-        )
-        corners[self.fixed] = prescribed[self.fixed]
-        return State(corners, centres)
+        guess.corners[self.fixed] = prescribed[self.fixed]
+        return guess
 
     def _residual(self, lin: Linearisation) -> tuple[float, float]:
         """Norm of the unbalanced force, and the largest norm that is tolerated, N."""

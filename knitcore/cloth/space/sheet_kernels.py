@@ -163,7 +163,8 @@ def width_slope(points: RealOrComplex, side: int, slope: RealOrComplex) -> Any:
 
 
 @compiled
-def _hinge_points(x: Array, nodes: Ints, points: Array) -> None:
+def hinge_points(x: Array, nodes: Ints, points: Array) -> None:
+    """Write the points (4, 3) of a hinge, as :func:`turn_slope` takes them."""
     p, q, a, b, c, d = nodes
     for m in range(3):
         points[0, m] = x[p, m]
@@ -198,7 +199,7 @@ def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
     width = np.empty((4, 3))
     for k in range(nodes.shape[0]):
         p, q, a, b, c, d = nodes[k]
-        _hinge_points(x, nodes[k], points)
+        hinge_points(x, nodes[k], points)
         sine, cosine, left, right = turn_slope(points, slope)
         energy, moment, _ = bent(arctan2(sine, cosine), parameters[k])
         total += energy
