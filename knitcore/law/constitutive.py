@@ -204,12 +204,7 @@ class ConstitutiveLaw:
     def stiffening(self) -> CoupledStiffening:
         """The nonlinear part."""
         return CoupledStiffening(
-            self.alpha_xx,
-            self.alpha_yy,
-            self.beta_xx,
-            self.beta_yy,
-            self.kappa_xx,
-            self.kappa_yy,
+            self.alpha_xx, self.alpha_yy, self.beta_xx, self.beta_yy, self.kappa_xx, self.kappa_yy
         )
 
     @property
@@ -238,10 +233,7 @@ class ConstitutiveLaw:
     # -- response ---------------------------------------------------------------------------
 
     def stress(
-        self,
-        strain_xx: ArrayLike,
-        strain_yy: ArrayLike,
-        form: StiffeningForm = StiffeningForm.FULL,
+        self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
     ) -> tuple[Array, Array]:
         """(sigma_xx, sigma_yy) in N/mm at the given strains (arrays that broadcast)."""
         ex, ey = _strains(strain_xx, strain_yy)
@@ -286,10 +278,7 @@ class ConstitutiveLaw:
         return total
 
     def tangent(
-        self,
-        strain_xx: ArrayLike,
-        strain_yy: ArrayLike,
-        form: StiffeningForm = StiffeningForm.FULL,
+        self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
     ) -> Array:
         """d stress / d strain in N/mm, shape (..., 3, 3) in the order xx, yy, xy (engineering)."""
         ex, ey = _strains(strain_xx, strain_yy)

@@ -10,17 +10,8 @@ from hypothesis import strategies as st
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw, Symmetrisation, Transverse
-from knitcore.law.stiffening import (
-    EXTENSION_START,
-    StiffeningForm,
-    shear_response,
-    stiffening,
-)
-from knitcore.law.uniaxial import (
-    held_strains_at_stress,
-    strain_at_stress,
-    uniaxial_response,
-)
+from knitcore.law.stiffening import EXTENSION_START, StiffeningForm, shear_response, stiffening
+from knitcore.law.uniaxial import held_strains_at_stress, strain_at_stress, uniaxial_response
 from knitcore.materials import Laws, load_library, load_variants, material
 
 ROWS = [
@@ -35,6 +26,18 @@ coupled = st.builds(
     st.sampled_from([0.0, 0.4]),
 )
 forms = st.sampled_from(StiffeningForm)
+
+
+SOUND = {
+    "stiffness_xxxx": 0.2,
+    "stiffness_yyyy": 0.9,
+    "stiffness_xxyy": 0.09,
+    "stiffness_yyxx": 0.4,
+    "alpha_xx": 1.1,
+    "alpha_yy": 2.5,
+    "beta_xx": 0.05,
+    "beta_yy": 0.01,
+}
 
 
 def test_the_full_form_is_the_printed_term():
@@ -254,9 +257,7 @@ def test_strains_at_the_lock_up_are_refused_with_the_limit():
 
 def test_a_law_without_stiffening_never_locks():
     law = replace(
-        material("acrylic:published").law(Fabric.SEED).symmetrised(),
-        alpha_xx=0.0,
-        alpha_yy=0.0,
+        material("acrylic:published").law(Fabric.SEED).symmetrised(), alpha_xx=0.0, alpha_yy=0.0
     )
     assert law.lock_up_strain(Direction.WALE) == np.inf
     assert law.energy_density(0.1, 0.1) > 0
@@ -272,15 +273,8 @@ def test_a_law_without_stiffening_never_locks():
         ),
         *(
             ({name: bad}, name)
-            for name in (
-                "alpha_xx",
-                "alpha_yy",
-                "beta_xx",
-                "beta_yy",
-                "kappa_xx",
-                "kappa_yy",
-                "shear_stiffening",
-            )
+            for name in (*SOUND, "kappa_xx", "kappa_yy", "shear_stiffening")
+            if not name.startswith("stiffness")
             for bad in (-0.1, float("inf"))
         ),
         ({"stiffness_xxyy": -0.1}, "stiffness_yyxx"),
@@ -290,19 +284,9 @@ def test_a_law_without_stiffening_never_locks():
     ],
 )
 def test_unphysical_constants_are_refused_by_name(change, field):
-    sound = {
-        "stiffness_xxxx": 0.2,
-        "stiffness_yyyy": 0.9,
-        "stiffness_xxyy": 0.09,
-        "stiffness_yyxx": 0.4,
-        "alpha_xx": 1.1,
-        "alpha_yy": 2.5,
-        "beta_xx": 0.05,
-        "beta_yy": 0.01,
-    }
-    ConstitutiveLaw(**sound)
+    ConstitutiveLaw(**SOUND)
     for may_be_zero in ("alpha_xx", "beta_yy", "kappa_xx", "stiffness_xxyy", "stiffness_yyxx"):
-        ConstitutiveLaw(**sound | {may_be_zero: 0.0})
+        ConstitutiveLaw(**SOUND | {may_be_zero: 0.0})
     with pytest.raises(InputError) as caught:
-        ConstitutiveLaw(**{**sound, **change})
+        ConstitutiveLaw(**{**SOUND, **change})
     assert caught.value.field == field

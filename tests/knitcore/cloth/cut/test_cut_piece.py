@@ -48,12 +48,19 @@ KITE = CutPiece(
     grain_deg=35.0,
     edges={"all": (1, 2, 3, 4), "hole": (5, 6, 7), "low": (1,), "high": (3,)},
 )
+STRIP = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
 
 
 def cloth_of(law: ConstitutiveLaw = LAW, model: SheetModel | None = None) -> Cloth:
     """Cloth of one law everywhere."""
     sheet = Sheet(QuarterGrid.uniform(1, 1, 1.0, 1.0), [law], model or SheetModel())
     return Cloth(sheet, (0.0, 0.0))
+
+
+def stretched_by(piece: CutPiece, y_mm: float, mesh_mm: float = 10.0, steps: int = 1) -> PieceTest:
+    """A piece held at the bottom whose top is pulled upwards."""
+    conditions = [Held("bottom"), Held("top", y_mm=y_mm)]
+    return solve(piece, cloth_of(), conditions, steps=steps, mesh_mm=mesh_mm)
 
 
 def strip_cloth(test: PieceTest) -> tuple[float, float]:
@@ -148,7 +155,7 @@ def test_turning_the_whole_test_turns_the_answer() -> None:
     lying = CutPiece(
         [(y, -x) for x, y in upright.outline], grain_deg=-60.0, edges=dict(upright.edges)
     )
-    a = solve(upright, cloth_of(), [Held("bottom"), Held("top", y_mm=15.0)], steps=2, mesh_mm=10.0)
+    a = stretched_by(upright, 15.0, steps=2)
     b = solve(lying, cloth_of(), [Held("bottom"), Held("top", x_mm=15.0)], steps=2, mesh_mm=10.0)
     (ax, ay), (bx, by) = strip_cloth(a), strip_cloth(b)
     assert (bx, by) == pytest.approx((ay, -ax), rel=1e-9)
@@ -156,46 +163,29 @@ def test_turning_the_whole_test_turns_the_answer() -> None:
 
 
 def test_a_finer_mesh_changes_little_and_from_above() -> None:
-    piece = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
-    conditions = [Held("bottom"), Held("top", y_mm=15.0)]
-    energies = [
-        solve(piece, cloth_of(), conditions, steps=1, mesh_mm=size).energy_n_mm[-1]
-        for size in (15.0, 7.5, 3.75)
-    ]
+    energies = [stretched_by(STRIP, 15.0, size).energy_n_mm[-1] for size in (15.0, 7.5, 3.75)]
     assert energies[0] > energies[1] > energies[2]
     assert energies[1] - energies[2] < 0.7 * (energies[0] - energies[1])
     assert energies[1] == pytest.approx(energies[2], rel=0.02)
 
 
 def test_triangles_and_quadrilaterals_agree() -> None:
-    upright = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
-    (a, b, c, d) = upright.outline
+    (a, b, c, d) = STRIP.outline
     five = CutPiece([a, b, (15.0, 0.0), c, d], grain_deg=45.0, edges={"bottom": (1,), "top": (4,)})
-    energies = [
-        solve(piece, cloth_of(), [Held("bottom"), Held("top", y_mm=12.0)], steps=1, mesh_mm=5.0)
-        for piece in (upright, five)
-    ]
     assert five.is_upright_rectangle is False
-    first, second = (test.energy_n_mm[-1] for test in energies)
+    first, second = (stretched_by(piece, 12.0, 5.0).energy_n_mm[-1] for piece in (STRIP, five))
     assert first == pytest.approx(second, rel=0.02)
 
 
 def test_the_work_of_the_edges_is_the_energy() -> None:
-    piece = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
-    test = solve(
-        piece, cloth_of(), [Held("bottom"), Held("top", y_mm=12.0)], steps=10, mesh_mm=15.0
-    )
+    test = stretched_by(STRIP, 12.0, 15.0, steps=10)
     force = np.concatenate([[0.0], test.force_n[:, 1, 1]])
     assert np.trapezoid(force, dx=12.0 / 10) == pytest.approx(test.energy_n_mm[-1], rel=5e-3)
 
 
 def test_a_force_that_was_measured_gives_the_stretch_again() -> None:
-    piece = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
-    moved = solve(
-        piece, cloth_of(), [Held("bottom"), Held("top", y_mm=12.0)], steps=2, mesh_mm=10.0
-    )
-    x, y = strip_cloth(moved)
-    pulled = solve(piece, cloth_of(), [Held("bottom"), Pulled("top", x, y)], steps=3, mesh_mm=10.0)
+    x, y = strip_cloth(stretched_by(STRIP, 12.0, steps=2))
+    pulled = solve(STRIP, cloth_of(), [Held("bottom"), Pulled("top", x, y)], steps=3, mesh_mm=10.0)
     assert pulled.converged
     assert pulled.moved_mm[-1, 1] == pytest.approx((0.0, 12.0), abs=1e-6)
     assert pulled.force_n[-1, 0] == pytest.approx((-x, -y), rel=1e-7)

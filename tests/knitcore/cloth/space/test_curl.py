@@ -28,7 +28,13 @@ Ints = NDArray[np.int64]
 
 
 def _piece(repeat: str, across: int, up: int) -> CurledPiece:
-    piece = curl(StitchChart.parse(repeat).tile(up, across), ACRYLIC)
+    return _at_rest(StitchChart.parse(repeat).tile(up, across))
+
+
+def _at_rest(
+    chart: StitchChart, *, pull: Pull | None = None, stitches: NDArray[np.bool_] | None = None
+) -> CurledPiece:
+    piece = curl(chart, ACRYLIC, pull=pull, stitches=stitches)
     assert piece.converged
     return piece
 
@@ -48,9 +54,8 @@ def test_reverse_stockinette_rolls_the_other_way() -> None:
 
 @pytest.mark.parametrize("fabric", [Fabric.GARTER, Fabric.RIB, Fabric.SEED])
 def test_balanced_fabrics_lie_flat_at_their_size(fabric: Fabric) -> None:
-    piece = curl(StitchChart.of_fabric(fabric, rows=16, columns=16), ACRYLIC)
+    piece = _at_rest(StitchChart.of_fabric(fabric, rows=16, columns=16))
     record = ACRYLIC.record(fabric)
-    assert piece.converged
     assert piece.depth_mm < 0.1
     assert piece.width_mm == pytest.approx(16 * record.stitch_course_mm, rel=1e-3)
     assert piece.height_mm == pytest.approx(16 * record.stitch_wale_mm, rel=1e-3)
@@ -87,8 +92,7 @@ def test_folds_are_as_wide_and_high_as_the_relaxed_fabric(
 ) -> None:
     """Extent of the inner repeats, over that of the answer."""
     chart = StitchChart.parse(repeat)
-    piece = curl(chart.tile(up, across), ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(chart.tile(up, across))
     answer = predict(chart, ACRYLIC)
     for axis, along in ((1, answer.course), (0, answer.wale)):
         line = piece.corners_mm.mean(axis=1 - axis)
@@ -113,8 +117,7 @@ def test_ribs_that_do_not_balance_are_as_wide_as_predicted_when_laid_flat(repeat
     width = (line[3 * wide] - line[wide]) / (2 * wide)
     predicted = predict(StitchChart.parse(repeat), ACRYLIC).course.relaxed_mm
     assert width == pytest.approx(predicted, rel=0.1)
-    piece = curl(chart, ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(chart)
     assert piece.curl_course_mm < 0.0
     assert UNBALANCED_NOTE in piece.notes
 
@@ -135,8 +138,7 @@ def test_shifted_stripes_fold_into_ridges_of_knits_and_valleys_of_purls() -> Non
     """As the Miura chart of Niu, Dion and Kamien does along its rows."""
     shifts = [*range(7), *range(5, 0, -1)]
     stripes = "/".join("K" * at + "P" * 6 + "K" * (6 - at) for at in shifts for _ in range(2))
-    piece = curl(StitchChart.parse(stripes).tile(1, 2), ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(StitchChart.parse(stripes).tile(1, 2))
     along = np.diff(piece.corners_mm[..., [0, 2]], axis=1)
     along = along[1:] + along[:-1]
     turn = np.linalg.det(np.stack([along[:, :-1], along[:, 1:]], axis=-1))
@@ -147,8 +149,7 @@ def test_shifted_stripes_fold_into_ridges_of_knits_and_valleys_of_purls() -> Non
 
 
 def test_a_single_stitch_is_flat() -> None:
-    piece = curl(StitchChart.parse("K"), ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(StitchChart.parse("K"))
     assert piece.curl_course_mm == pytest.approx(0.0, abs=1e-6)
 
 
@@ -184,8 +185,7 @@ def test_pulled_between_clamps_the_free_sides_curl_and_the_more_so_the_less_it_i
 
 def test_pulled_along_the_rows_top_and_bottom_curl_to_the_front() -> None:
     chart = StitchChart.parse("K").tile(16, 12)
-    piece = curl(chart, ACRYLIC, pull=Pull(Direction.COURSE, 0.2))
-    assert piece.converged
+    piece = _at_rest(chart, pull=Pull(Direction.COURSE, 0.2))
     assert piece.curl_wale_mm > 0.5 * piece.thickness_mm
 
 
@@ -195,8 +195,7 @@ def test_a_shaped_piece_is_the_rectangle_without_what_lies_outside() -> None:
     every = curl(chart, ACRYLIC, stitches=np.ones((10, 10), dtype=bool))
     np.testing.assert_allclose(every.corners_mm, curl(chart, ACRYLIC).corners_mm, atol=1e-9)
     inside = np.tri(10, dtype=bool)[:, ::-1]
-    piece = curl(chart, ACRYLIC, stitches=inside)
-    assert piece.converged
+    piece = _at_rest(chart, stitches=inside)
     assert np.isnan(piece.curl_course_mm)
     assert np.count_nonzero(piece.used) == 55 + 21
     steps = np.linalg.norm(np.diff(piece.corners_mm[:, -1], axis=0), axis=1)
@@ -249,8 +248,7 @@ def test_a_shape_of_another_size_is_nothing_to_begin_with() -> None:
 @pytest.mark.parametrize("outline", OUTLINES.values(), ids=OUTLINES)
 def test_every_outline_comes_to_rest(outline: str) -> None:
     stitches = outline_marks(outline).repeat(2, axis=0).repeat(2, axis=1)
-    piece = curl(StitchChart.parse("K").tile(*stitches.shape), ACRYLIC, stitches=stitches)
-    assert piece.converged
+    piece = _at_rest(StitchChart.parse("K").tile(*stitches.shape), stitches=stitches)
     assert piece.depth_mm > piece.thickness_mm
 
 
@@ -261,9 +259,8 @@ def test_what_lies_flat_lies_flat_around_a_hole(fabric: Fabric) -> None:
     stitches[5:10, 6:11] = False  # odd, so that the chart's parity differs at its sides
     chart = StitchChart.of_fabric(fabric, rows=16, columns=16)
     purl = chart.purl ^ ~stitches & (np.random.default_rng(0).random((16, 16)) < 0.5)
-    piece = curl(StitchChart(purl), ACRYLIC, stitches=stitches)
+    piece = _at_rest(StitchChart(purl), stitches=stitches)
     record = ACRYLIC.record(fabric)
-    assert piece.converged
     assert piece.depth_mm < 0.1
     assert piece.width_mm == pytest.approx(16 * record.stitch_course_mm, rel=1e-3)
 
@@ -355,8 +352,7 @@ def test_panels_fold_as_their_natural_curvature_says(kind: str) -> None:
     """Knits into ridges along the wales and valleys along the courses, purls the other way, so
     that the sheet bends over where knits meet purls; half of the folding would be chance."""
     purl = np.asarray(PURL[kind](*np.indices((SIDE, SIDE))), dtype=bool)
-    piece = curl(StitchChart(purl), ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(StitchChart(purl))
     assert piece.depth_mm > 4.0 * piece.thickness_mm
     share, (knits_across, purls_across, knits_up, purls_up) = _folds(piece)
     assert share > 0.75
