@@ -277,13 +277,6 @@ def respond(
 
 
 @compiled
-def _gather(vectors: Array, nodes: tuple[int, int, int, int], out: Array) -> None:
-    """Write a cell's corners' share (4, 2) of vectors (corners, 2)."""
-    for i in range(4):
-        out[i, 0], out[i, 1] = vectors[nodes[i], 0], vectors[nodes[i], 1]
-
-
-@compiled
 def _zero(matrix: Array) -> None:
     for i in range(matrix.shape[0]):
         for j in range(matrix.shape[1]):
@@ -415,7 +408,8 @@ def assemble(
                 _clear(tangent, cell)
             continue
         node = _corners_of(cell, cells.columns)
-        _gather(corners, node, x)
+        for i in range(4):
+            x[i, 0], x[i, 1] = corners[node[i], 0], corners[node[i], 1]
         centre0, centre1 = centres[cell, 0], centres[cell, 1]
         hx, hy = width[cell], height[cell]
         area = 0.25 * hx * hy

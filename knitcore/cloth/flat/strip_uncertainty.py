@@ -61,6 +61,8 @@ from knitcore.materials.law_uncertainty import (
 from knitcore.materials.material import FabricRecord, Material
 from knitcore.prediction.quarter_laws import SPREAD_AT
 
+Vary = Callable[[ConstitutiveLaw, float], ConstitutiveLaw]
+"""A law after a step of one of its parameters."""
 LOG_SHEAR_PRIOR = (float(np.log(0.02)), 1.0)
 """Mean and standard deviation of ln(C_xyxy / (N/mm)). In acrylic garter, for which it was chosen,
 0.02 N/mm is 0.2 sqrt(Y_x Y_y), the mean of a strip fit's prior; other fabrics may be far from it.
@@ -251,24 +253,23 @@ def law_parameters(
     ``stress_n_per_mm`` is the approximate stress of the cloth.
     """
     parameters = []
+
+    def add(codes: list[int], vary: Vary, sd: float, of_model: float = 0.0) -> None:
+        parameters.append(LawParameter(*_varied(sheet, codes, vary), sd, of_model))
+
     for code in _codes(sheet):
         record = _record(material, code)
-        law, spread = record.law, record.uncertainty
+        spread = record.uncertainty
         for direction in Direction:
-            step = _varied(sheet, [code], partial(_stress_scaled, direction))
             sd = float(spread.log_stress(direction, stress_n_per_mm))
-            parameters.append(LawParameter(*step, sd, model_sd))
-        sd = _coupling_sd(law, sheet.model.rule, spread)
-        parameters.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
+            add([code], partial(_stress_scaled, direction), sd, model_sd)
+        add([code], _coupled, _coupling_sd(record.law, sheet.model.rule, spread))
         if sheet.model.shear_modulus is None and spread.log_shear is not None:
-            parameters.append(
-                LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0)
-            )
-            growth = _varied(sheet, [code], _stiffer_in_shear)
-            parameters.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
+            add([code], partial(_scaled, "shear_modulus"), spread.log_shear)
+            add([code], partial(_scaled, "shear_stiffening"), LOG_SHEAR_STIFFENING)
     assumed = _of_assumed_shear(sheet, material)
     if assumed:
-        parameters.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
+        add(assumed, partial(_scaled, "shear_modulus"), LOG_SHEAR_PRIOR[1])
     return parameters
 
 
@@ -303,7 +304,7 @@ def _of_assumed_shear(sheet: Sheet, material: Material) -> list[int]:
 
 
 def _varied(
-    sheet: Sheet, codes: list[int], vary: Callable[[ConstitutiveLaw, float], ConstitutiveLaw]
+    sheet: Sheet, codes: list[int], vary: Vary
 ) -> tuple[NDArray[np.void], NDArray[np.void]]:
     """The kernel's records of these laws with a parameter raised and lowered; 0 for the others."""
     tables = []
@@ -342,14 +343,9 @@ def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
     )
 
 
-def _sheared(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """The law for a step of the logarithm of the shear modulus."""
-    return replace(law, shear_modulus=law.shear_modulus * math.exp(step))
-
-
-def _stiffer_in_shear(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """The law for a step of the logarithm of the growth of the shear stiffness."""
-    return replace(law, shear_stiffening=law.shear_stiffening * math.exp(step))
+def _scaled(constant: str, law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """The law for a step of the logarithm of a constant."""
+    return replace(law, **{constant: getattr(law, constant) * math.exp(step)})
 
 
 def _coupling_sd(measured: ConstitutiveLaw, rule: Symmetrisation, spread: LawUncertainty) -> float:

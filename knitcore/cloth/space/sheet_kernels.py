@@ -309,19 +309,6 @@ def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
 
 
 @compiled
-def _first_not_below(values: Ints, value: int) -> int:
-    """Index of the first of rising values that is not below a value; their number if all are."""
-    low, high = 0, values.shape[0]
-    while low < high:
-        middle = (low + high) // 2
-        if values[middle] < value:
-            low = middle + 1
-        else:
-            high = middle
-    return low
-
-
-@compiled
 def _listed(
     at: Array,
     home: Array,
@@ -350,8 +337,8 @@ def _listed(
         for ax in range(max(0, bx - 1), min(count[0], bx + 2)):
             for ay in range(max(0, by - 1), min(count[1], by + 2)):
                 first = (ax * count[1] + ay) * count[2]
-                start = _first_not_below(ordered, first + max(0, bz - 1))
-                stop = _first_not_below(ordered, first + min(count[2], bz + 2))
+                start = np.searchsorted(ordered, first + max(0, bz - 1))
+                stop = np.searchsorted(ordered, first + min(count[2], bz + 2))
                 for other in range(start, stop):
                     j = order[other]
                     if j <= i:
