@@ -14,6 +14,16 @@ from knitcore.cloth.flat.grid_sheet import Sheet, State
 from knitcore.cloth.flat.sheet_models import EnergyModel
 from knitcore.law.stiffening import CoupledStiffening, StiffeningForm, shear_response
 
+_DIFFERENCES = np.array(
+    [
+        [[-1, 1, 0, 0, 0], [0, 1, 1, 0, -2], [0, 0, 1, -1, 0], [-1, 0, 0, -1, 2]],
+        [[-1, -1, 0, 0, 2], [0, -1, 1, 0, 0], [0, 0, 1, 1, -2], [-1, 0, 0, 1, 0]],
+    ],
+    dtype=float,
+)
+"""Sums of a cell's corners and its centre that span it from side to side in each of its four
+triangles, course-wise and wale-wise."""
+
 
 @dataclass(frozen=True, eq=False)
 class Fields:
@@ -90,17 +100,6 @@ def strain_slopes(sheet: Sheet, state: State) -> csr_array:
     ends = np.arange(0, 2 * unknowns.size + 1, 10)
     columns = np.concatenate([unknowns, unknowns]).ravel()
     return csr_array((np.concatenate(slopes).ravel(), columns, ends))
-
-
-_DIFFERENCES = np.array(
-    [
-        [[-1, 1, 0, 0, 0], [0, 1, 1, 0, -2], [0, 0, 1, -1, 0], [-1, 0, 0, -1, 2]],
-        [[-1, -1, 0, 0, 2], [0, -1, 1, 0, 0], [0, 0, 1, 1, -2], [-1, 0, 0, 1, 0]],
-    ],
-    dtype=float,
-)
-"""What spans a cell from side to side in each of its four triangles, course-wise and wale-wise: a
-sum of its corners and its centre."""
 
 
 def _triangle_fibres(grid: QuarterGrid, state: State) -> tuple[Array, Array]:
