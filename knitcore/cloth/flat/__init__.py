@@ -1,7 +1,7 @@
 """The finite swatch: a chart of any stitches as a nonlinear sheet, pulled, sheared or relaxed."""
 
 from knitcore.cloth.flat.fields import Fields
-from knitcore.cloth.flat.force_control import pull_with_force, strain_at_force
+from knitcore.cloth.flat.force_control import strain_at_force
 from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet, State
 from knitcore.cloth.flat.misfit import Misfit, misfit, relaxed_shape
@@ -24,7 +24,6 @@ __all__ = [
     "chart_sheet",
     "misfit",
     "pull",
-    "pull_with_force",
     "relaxed_shape",
     "strain_at_force",
     "strip_test",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from knitcore.base.errors import CancelledError
+from knitcore.base.errors import CancelledError, InputError
 from knitcore.chart.fabric import Direction
 from knitcore.cloth.flat import (
     Clamps,
@@ -14,7 +14,6 @@ from knitcore.cloth.flat import (
     Sheet,
     SheetModel,
     pull,
-    pull_with_force,
     strain_at_force,
 )
 from knitcore.cloth.flat import equilibrium_path as solver
@@ -111,9 +110,8 @@ def test_sliding_clamps_give_the_uniaxial_response() -> None:
 def test_force_control_finds_the_strains_of_strain_control() -> None:
     sheet = homogeneous_sheet()
     by_strain = pull(sheet, Direction.COURSE, load_levels(0.5, 3))
-    by_force = pull_with_force(sheet, Direction.COURSE, by_strain.force_n)
-    assert by_force.converged
-    assert by_force.strain == pytest.approx(by_strain.strain, rel=1e-5)
+    strains = [strain_at_force(sheet, Direction.COURSE, force) for force in by_strain.force_n]
+    assert strains == pytest.approx(by_strain.strain, rel=1e-5)
 
 
 def test_a_force_short_of_the_largest_strain_is_found() -> None:
@@ -125,13 +123,13 @@ def test_a_force_short_of_the_largest_strain_is_found() -> None:
     assert found == pytest.approx(0.999 * limit, rel=1e-5)
 
 
-def test_a_force_that_cannot_be_reached_leaves_the_part_before_it() -> None:
+def test_a_force_that_cannot_be_reached_is_refused_with_the_largest() -> None:
     sheet = homogeneous_sheet(cells=(4, 4))
-    test = pull_with_force(sheet, Direction.WALE, [1.0, 1e6])
-    assert not test.converged
-    assert test.steps == 1
-    assert test.problem is not None
-    assert "lock-up" in test.problem
+    with pytest.raises(InputError, match="lock-up") as refused:
+        strain_at_force(sheet, Direction.WALE, 1e6)
+    most = refused.value.most
+    assert most is not None
+    assert strain_at_force(sheet, Direction.WALE, most) > 0.0
 
 
 @pytest.mark.parametrize("direction", list(Direction))
