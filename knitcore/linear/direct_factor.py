@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from knitcore.base.arrays import Array
 
@@ -24,6 +23,8 @@ def positive_definite_factor(matrix: Any) -> Callable[[Array], Array]:
     IndefiniteTangentError
         If the matrix is not positive definite.
     """
+    from scipy.sparse.linalg import splu  # slow to import
+
     # pivots stay on the diagonal, so that their signs are those of the eigenvalues
     options = {"SymmetricMode": True}
     try:

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
@@ -66,6 +65,8 @@ def force_log_sd(
 
 def _at_all_steps(test: PieceTest, at: Callable[[int], Array], shape: tuple[int, ...]) -> Array:
     """Values (steps, …) of every step, computed at a few and interpolated between them."""
+    from scipy.interpolate import make_interp_spline  # slow to import
+
     count = len(test.equilibria)
     steps = sampled_steps(count)
     if not steps:
