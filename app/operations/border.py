@@ -8,7 +8,7 @@ from pydantic import Field
 
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.cloth.space.border import RULE_ROWS, RULE_STITCHES, advice
+from knitcore.cloth.space.weighing import RULE_ROWS, RULE_STITCHES, advice
 
 from ..context import Context
 from ..models.base import ResultModel

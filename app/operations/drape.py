@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from knitcore.cloth.space.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
-from knitcore.cloth.space.drape import drape as drape_cloth
+from knitcore.cloth.space.weighing import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
+from knitcore.cloth.space.weighing import drape as drape_cloth
 from knitcore.draw.body import Body
 
 from ..context import Context

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from knitcore.chart.fabric import Direction
-from knitcore.cloth.space.overhang import overhang as hang_over
+from knitcore.cloth.space.weighing import overhang as hang_over
 from knitcore.draw.body import Body
 
 from ..context import Context

@@ -10,7 +10,7 @@ import click
 from pydantic import Field, ValidationError
 
 from knitcore.base.errors import InputError
-from knitcore.cloth.cut import PieceTest, cloth_under, solve, write_piece_test
+from knitcore.cloth.cut import PieceTest, cloth_under, solve
 from knitcore.cloth.cut.cut_results import SUFFIXES
 from knitcore.cloth.cut.cut_uncertainty import piece_spreads
 from knitcore.materials import Material
@@ -145,7 +145,7 @@ def _command(request: PieceRequest, context: Context, out: Path | None) -> Piece
     material = context.material(request.material)
     test = _test(request, material, context)
     if out is not None:
-        write_piece_test(test, out)
+        test.write(out)
     return _result(request, test, material)
 
 

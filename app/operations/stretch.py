@@ -310,9 +310,7 @@ def _command(request: StretchRequest, context: Context, out: Path | None) -> Str
     chart = to_chart(request.chart)
     test, margins = _test(chart, request, context)
     if out is not None:
-        from knitcore.cloth.flat.field_files import write_fields
-
-        write_fields(test, out)
+        test.write(out)
     return _curve(request, test, margins)
 
 

@@ -8,9 +8,9 @@ from scipy.interpolate import RegularGridInterpolator
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction
+from knitcore.cloth.flat.equilibrium_path import Path, run_path
 from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet
-from knitcore.cloth.flat.load_path import Path, run_path
 from knitcore.cloth.flat.sheet_models import SheetModel
 from knitcore.cloth.flat.strip import Clamps, clamp_edges, clamp_mask
 from knitcore.fit.measured_field import Frame, MeasuredField

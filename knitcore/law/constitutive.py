@@ -36,12 +36,12 @@ class Symmetrisation(StrEnum):
     """Rule that makes one of the two measured couplings (an energy needs C_xxyy = C_yyxx).
 
     ``geometric`` keeps both Young's moduli and the product of the Poisson ratios exactly;
-    ``arithmetic`` is the paper's text (Note 9); ``none`` keeps the measured asymmetry.
+    ``arithmetic`` is the paper's text (Note 9); ``script``, C_xxyy alone, is the authors' script.
     """
 
     GEOMETRIC = "geometric"
     ARITHMETIC = "arithmetic"
-    NONE = "none"
+    SCRIPT = "script"
 
 
 class Transverse(StrEnum):
@@ -100,16 +100,9 @@ class ConstitutiveLaw:
         for name in ("stiffness_xxxx", "stiffness_yyyy", "shear_modulus"):
             if getattr(self, name) <= 0:
                 raise InputError(name, "must be above 0 N/mm.", "Give a positive stiffness.")
-        for name in (
-            "alpha_xx",
-            "alpha_yy",
-            "beta_xx",
-            "beta_yy",
-            "kappa_xx",
-            "kappa_yy",
-            "shear_stiffening",
-        ):
-            if getattr(self, name) < 0:
+        for name in vars(self):
+            may_be_negative = name in ("stiffness_xxyy", "stiffness_yyxx")
+            if getattr(self, name) < 0 and not may_be_negative:
                 raise InputError(name, "must not be negative.", "Give 0 or a positive number.")
         if (self.stiffness_xxyy < 0) != (self.stiffness_yyxx < 0):
             raise InputError(
@@ -211,12 +204,7 @@ class ConstitutiveLaw:
     def stiffening(self) -> CoupledStiffening:
         """The nonlinear part."""
         return CoupledStiffening(
-            self.alpha_xx,
-            self.alpha_yy,
-            self.beta_xx,
-            self.beta_yy,
-            self.kappa_xx,
-            self.kappa_yy,
+            self.alpha_xx, self.alpha_yy, self.beta_xx, self.beta_yy, self.kappa_xx, self.kappa_yy
         )
 
     @property
@@ -232,27 +220,23 @@ class ConstitutiveLaw:
         InputError
             If the rule makes the stiffness indefinite (``arithmetic`` on lace bamboo stockinette).
         """
-        if rule is Symmetrisation.NONE:
-            return self
         a, b = self.stiffness_xxyy, self.stiffness_yyxx
-        if rule is Symmetrisation.ARITHMETIC:
-            coupling = (a + b) / 2
-        else:
-            coupling = math.copysign(math.sqrt(a * b), a)
+        match rule:
+            case Symmetrisation.GEOMETRIC:
+                coupling = math.copysign(math.sqrt(a * b), a)
+            case Symmetrisation.ARITHMETIC:
+                coupling = (a + b) / 2
+            case Symmetrisation.SCRIPT:
+                coupling = a
         return replace(self, stiffness_xxyy=coupling, stiffness_yyxx=coupling)
 
     # -- response ---------------------------------------------------------------------------
 
     def stress(
-        self,
-        strain_xx: ArrayLike,
-        strain_yy: ArrayLike,
-        form: StiffeningForm = StiffeningForm.FULL,
+        self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
     ) -> tuple[Array, Array]:
         """(sigma_xx, sigma_yy) in N/mm at the given strains (arrays that broadcast)."""
-        ex, ey = np.broadcast_arrays(
-            np.asarray(strain_xx, dtype=float), np.asarray(strain_yy, dtype=float)
-        )
+        ex, ey = _strains(strain_xx, strain_yy)
         stiff = self.stiffening.response(ex, ey, form)
         return (
             self.stiffness_xxxx * ex + self.stiffness_xxyy * ey + stiff.stress_xx,
@@ -294,15 +278,10 @@ class ConstitutiveLaw:
         return total
 
     def tangent(
-        self,
-        strain_xx: ArrayLike,
-        strain_yy: ArrayLike,
-        form: StiffeningForm = StiffeningForm.FULL,
+        self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
     ) -> Array:
         """d stress / d strain in N/mm, shape (..., 3, 3) in the order xx, yy, xy (engineering)."""
-        ex, ey = np.broadcast_arrays(
-            np.asarray(strain_xx, dtype=float), np.asarray(strain_yy, dtype=float)
-        )
+        ex, ey = _strains(strain_xx, strain_yy)
         stiff = self.stiffening.response(ex, ey, form)
         tangent = np.broadcast_to(self.stiffness, (*ex.shape, 3, 3)).copy()
         tangent[..., 0, 0] += stiff.tangent_xx
@@ -310,3 +289,9 @@ class ConstitutiveLaw:
         tangent[..., 0, 1] += stiff.tangent_xy
         tangent[..., 1, 0] += stiff.tangent_xy
         return tangent
+
+
+def _strains(xx: ArrayLike, yy: ArrayLike) -> tuple[Array, Array]:
+    """Strains as arrays of one shape."""
+    ex, ey = np.broadcast_arrays(np.asarray(xx, dtype=float), np.asarray(yy, dtype=float))
+    return ex, ey

@@ -83,11 +83,7 @@ def stiffening_stress(s: Array) -> Array:
 
 
 def fit_direction(
-    strain_along: Array,
-    strain_across: Array,
-    stress: Array,
-    weight: Array,
-    poisson_coupling: float,
+    strain_along: Array, strain_across: Array, stress: Array, weight: Array, poisson_coupling: float
 ) -> DirectionFit:
     """Fit C, alpha and beta to points of one direction.
 

@@ -25,9 +25,9 @@ from knitcore.base.compiled import compiled
 Floats = NDArray[np.floating]
 
 _BYTES = 64
-"""Of a column of a tile: a vector of the widest processors, several of the others."""
+"""Height of a tile's columns: a vector of the widest processors, several of the others."""
 _COLUMNS = 6
-"""Of a tile, also eliminated together: its sums fit into sixteen registers of 32 bytes."""
+"""Columns of a tile, also eliminated together: its sums fit into sixteen registers of 32 bytes."""
 
 
 def _tile(columns: int) -> Callable[..., None]:
@@ -76,10 +76,10 @@ def _tile(columns: int) -> Callable[..., None]:
             column = loaded(at(a, builder.mul(k, a_stride), vector))
             for j, total in enumerate(sums):
                 place = builder.add(builder.mul(k, b_stride), constant(j))
-                one = builder.insert_element(
+                single = builder.insert_element(
                     ir.Constant(vector, ir.Undefined), loaded(at(b, place, kind)), constant(0)
                 )
-                factor = builder.shuffle_vector(one, ir.Constant(vector, ir.Undefined), every)
+                factor = builder.shuffle_vector(single, ir.Constant(vector, ir.Undefined), every)
                 first[j] = builder.fsub(total, builder.fmul(column, factor))
                 total.add_incoming(first[j], loop)
             following = builder.add(k, constant(1))
@@ -97,7 +97,7 @@ def _tile(columns: int) -> Callable[..., None]:
     return compiled
 
 
-def _lane_sum(_context: Any, one: Any, other: Any, count: Any, number: Any) -> Any:
+def _lane_sum(_context: Any, first: Any, second: Any, count: Any, number: Any) -> Any:
     """A compiled function that adds the products of two vectors of whole columns, 64 bytes at a
     time: each lane by itself, then halves of the lanes to each other.
 
@@ -123,8 +123,8 @@ def _lane_sum(_context: Any, one: Any, other: Any, count: Any, number: Any) -> A
             parts[-1].align = size
         more = builder.fadd(total, builder.fmul(*parts))
         following = builder.add(k, integer(1))
-        for value, first, later in ((k, integer(0), following), (total, nothing, more)):
-            value.add_incoming(first, before)
+        for value, initial, later in ((k, integer(0), following), (total, nothing, more)):
+            value.add_incoming(initial, before)
             value.add_incoming(later, loop)
         builder.cbranch(builder.icmp_signed("<", following, terms), loop, after)
         builder.position_at_end(after)
@@ -141,7 +141,7 @@ def _lane_sum(_context: Any, one: Any, other: Any, count: Any, number: Any) -> A
             left = builder.fadd(*halves)
         return builder.extract_element(left, ir.IntType(32)(0))
 
-    return number(one, other, count, number), code
+    return number(first, second, count, number), code
 
 
 _wide, _narrow = _tile(_COLUMNS), _tile(1)
@@ -234,13 +234,13 @@ def eliminate(a: Floats) -> bool:
 
 
 @compiled
-def _dot(one: Floats, other: Floats) -> float:
+def _dot(a: Floats, b: Floats) -> float:
     """Sum of products of two contiguous vectors."""
-    lanes = _BYTES // one.itemsize
-    whole = one.shape[0] // lanes
-    total = _products(one.ctypes.data, other.ctypes.data, whole, one.dtype.type(0.0))
-    for i in range(whole * lanes, one.shape[0]):
-        total += one[i] * other[i]
+    lanes = _BYTES // a.itemsize
+    whole = a.shape[0] // lanes
+    total = _products(a.ctypes.data, b.ctypes.data, whole, a.dtype.type(0.0))
+    for i in range(whole * lanes, a.shape[0]):
+        total += a[i] * b[i]
     return total  # type: ignore[no-any-return] # compiled
 
 
@@ -337,18 +337,18 @@ def _row_products(matrix: Array, vector: Array) -> Array:
 
 
 @compiled
-def _matrix_products(one: Array, other: Array) -> Array:
-    out = np.zeros((one.shape[0], other.shape[1]))
-    for i in range(one.shape[0]):
-        for k in range(one.shape[1]):
-            for j in range(other.shape[1]):
-                out[i, j] += one[i, k] * other[k, j]
+def _matrix_products(a: Array, b: Array) -> Array:
+    out = np.zeros((a.shape[0], b.shape[1]))
+    for i in range(a.shape[0]):
+        for k in range(a.shape[1]):
+            for j in range(b.shape[1]):
+                out[i, j] += a[i, k] * b[k, j]
     return out
 
 
-def dot(one: Array, other: Array) -> float:
+def dot(a: Array, b: Array) -> float:
     """Sum of the products of two vectors (n,)."""
-    return float(_dot(np.ascontiguousarray(one), np.ascontiguousarray(other)))
+    return float(_dot(np.ascontiguousarray(a), np.ascontiguousarray(b)))
 
 
 def norm(vector: Array) -> float:
@@ -362,7 +362,7 @@ def times(matrix: Array, vector: Array) -> Array:
     return product
 
 
-def product(one: Array, other: Array) -> Array:
+def product(a: Array, b: Array) -> Array:
     """Product of two matrices (m, n) and (n, k), ``[row, column]``."""
-    found: Array = _matrix_products(np.ascontiguousarray(one), np.ascontiguousarray(other))
-    return found
+    products: Array = _matrix_products(np.ascontiguousarray(a), np.ascontiguousarray(b))
+    return products

@@ -34,18 +34,18 @@ def _parts(touching: Bools, of: Ints) -> list[Ints]:
         return [of]
     sub = touching[np.ix_(of, of)]
     halves = [_halved(sub, begin) for begin in (np.arange(len(of), dtype=float), _steps(sub))]
-    one, two, cut = min(halves, key=lambda parts: len(parts[2]))
-    if not (len(one) and len(two)):
+    first, second, cut = min(halves, key=lambda parts: len(parts[2]))
+    if not (len(first) and len(second)):
         return [of]
-    return [*_parts(touching, of[one]), *_parts(touching, of[two]), of[cut]]
+    return [*_parts(touching, of[first]), *_parts(touching, of[second]), of[cut]]
 
 
 def _halved(touching: Bools, begin: Array) -> tuple[Ints, Ints, Ints]:
     """Two parts of a pattern (n, n) that do not touch, and the cut between them."""
     order = np.argsort(_slowest_wave(touching, begin, _SWEEPS), kind="stable")
-    one, two = np.sort(order[: len(order) // 2]), np.sort(order[len(order) // 2 :])
-    rows, columns = vertex_cover(touching[np.ix_(one, two)])
-    return one[~rows], two[~columns], np.concatenate([one[rows], two[columns]])
+    first, second = np.sort(order[: len(order) // 2]), np.sort(order[len(order) // 2 :])
+    rows, columns = vertex_cover(touching[np.ix_(first, second)])
+    return first[~rows], second[~columns], np.concatenate([first[rows], second[columns]])
 
 
 def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:

@@ -16,14 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
+from knitcore.base.compiled import compiled
 from knitcore.linear.direct_factor import IndefiniteTangentError
-from knitcore.linear.elimination import add_cells
-from knitcore.linear.front_tree import Block, BlockRows, CornerFront, FrontTree
+from knitcore.linear.front_tree import Block, BlockRows, CornerFront, FrontTree, Indices
 
 LEAF_CELLS = 8
 """Boxes are not halved below this many cells a side (a flat optimum from 6 to 10)."""
-
-
 SIDE_BY_SIDE = 500
 """Fewest boxes for which two threads pay off, one for each branch of the tree."""
 
@@ -39,9 +37,8 @@ class GridFactor:
 
     Examples
     --------
-    >>> from knitcore.linear.direct_factor import lower_triangle
     >>> solver = GridFactor(2, 1, np.zeros(12, dtype=bool))
-    >>> solver.factorise(np.tile(lower_triangle(np.eye(8)), (2, 1)))
+    >>> solver.factorise(np.tile(np.eye(8)[np.tril_indices(8)], (2, 1)))
     >>> solver.solve(np.ones(12)).round(2).tolist()[:4]
     [1.0, 1.0, 0.5, 0.5]
     """
@@ -58,9 +55,7 @@ class GridFactor:
         self._work: Block = np.empty(0)
 
     def factorise(self, cell_matrices: Array) -> None:
-        """Factorise the sum of symmetric cell matrices.
-
-        They are given as for :class:`~knitcore.linear.direct_factor.Factor`.
+        """Factorise the sum of symmetric cell matrices, (cells, 36) lower triangles by rows.
 
         Raises
         ------
@@ -68,7 +63,7 @@ class GridFactor:
             If the sum is not positive definite.
         """
         near, blocks = self._matrix.columns, self._matrix.blocks
-        add_cells(cell_matrices, self._columns, self._places, self._fixed, near, blocks)
+        _add_cells(cell_matrices, self._columns, self._places, self._fixed, near, blocks)
         if self._is_definite(self._precision):
             return
         if self._precision == np.float64 or not self._is_definite(np.float64):
@@ -87,13 +82,54 @@ class GridFactor:
 
 
 def _places(columns: int) -> NDArray[np.int64]:
-    """Where the entries of a cell's matrix go, see :func:`add_cells`."""
+    """Where the entries of a cell's matrix go, see :func:`_add_cells`."""
     x, y = np.array([0, 1, 1, 0]), np.array([0, 0, 1, 1])
     i, j = np.tril_indices(8)
     p, q, m, n = i // 2, j // 2, i % 2, j % 2
     first = 9 * (y * (columns + 1) + x) + 4
     step = 3 * (y[q] - y[p]) + x[q] - x[p]
     return np.stack([4 * (first[p] + step) + 2 * m + n, 4 * (first[q] - step) + 2 * n + m])
+
+
+@compiled
+def _add_cells(
+    cells: Array,
+    columns: int,
+    places: Indices,
+    fixed: NDArray[np.bool_],
+    near: NDArray[np.int32],
+    blocks: Array,
+) -> None:
+    """Sum cell matrices into blocks (9 a corner, from that below and left of it to that above and
+    right), with rows and columns of the identity for fixed unknowns.
+
+    Parameters
+    ----------
+    cells : (cells, 36) lower triangles by rows.
+    columns : cells in a row.
+    places : (2, 36) where each entry and its mirror image go, from the blocks of the first corner.
+    fixed : by unknown.
+    near : (9 * corners,) the corner of each block's column; beyond the grid the row's own.
+    blocks : (9 * corners, 2, 2)
+    """
+    blocks[:] = 0.0
+    flat = blocks.reshape(-1)
+    for cell in range(cells.shape[0]):
+        first = 36 * (cell // columns * (columns + 1) + cell % columns)
+        for k in range(36):
+            value, own, mirrored = cells[cell, k], places[0, k], places[1, k]
+            flat[first + own] += value
+            if own != mirrored:
+                flat[first + mirrored] += value
+    for unknown in range(fixed.size):
+        if fixed[unknown]:
+            corner, m = divmod(unknown, 2)
+            for side in range(9):
+                other = near[9 * corner + side]
+                if other != corner or side == 4:
+                    blocks[9 * corner + side, m, :] = 0.0
+                    blocks[9 * other + 8 - side, :, m] = 0.0
+            blocks[9 * corner + 4, m, m] = 1.0
 
 
 def _nine_point(columns: int, rows: int) -> BlockRows:

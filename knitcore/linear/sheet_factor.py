@@ -73,8 +73,8 @@ def _tree(indptr: bytes, indices: bytes, columns: int) -> FrontTree:
         halves = _halved(touching, part, at) if len(part) > _LEAF else None
         if halves is None:
             return add(part, ())
-        one, two, cut = halves
-        return add(cut, (divide(one), divide(two)))
+        first_half, second_half, cut = halves
+        return add(cut, (divide(first_half), divide(second_half)))
 
     divide(np.arange(count))
     return FrontTree(fronts, 3)
@@ -83,15 +83,15 @@ def _tree(indptr: bytes, indices: bytes, columns: int) -> FrontTree:
 def _halved(touching: csr_matrix, part: Ints, at: Ints) -> tuple[Ints, Ints, Ints] | None:
     """Two parts that do not touch, and the cut between them, along the axis where it is shorter."""
     inside = touching[part][:, part]
-    found = []
+    divisions = []
     for place in at[:, part]:
-        first = place < np.median(place)
-        one, two = np.flatnonzero(first), np.flatnonzero(~first)
-        crossing = inside[one][:, two]
+        below = place < np.median(place)
+        first, second = np.flatnonzero(below), np.flatnonzero(~below)
+        crossing = inside[first][:, second]
         rows, others = np.flatnonzero(np.diff(crossing.indptr)), np.unique(crossing.indices)
         left, right = vertex_cover(crossing[rows][:, others].toarray())
-        cut = one[rows[left]], two[others[right]]
-        if len(one) > len(cut[0]) and len(two) > len(cut[1]):
-            rest = np.setdiff1d(one, cut[0]), np.setdiff1d(two, cut[1])
-            found.append((part[rest[0]], part[rest[1]], part[np.concatenate(cut)]))
-    return min(found, key=lambda parts: len(parts[2]), default=None)
+        cut = first[rows[left]], second[others[right]]
+        if len(first) > len(cut[0]) and len(second) > len(cut[1]):
+            rest = np.setdiff1d(first, cut[0]), np.setdiff1d(second, cut[1])
+            divisions.append((part[rest[0]], part[rest[1]], part[np.concatenate(cut)]))
+    return min(divisions, key=lambda parts: len(parts[2]), default=None)

@@ -92,10 +92,7 @@ def _series(n: int, tension: float) -> tuple[float, float, float]:
 
 
 def tension_parameter(
-    parity: Parity,
-    slope: float,
-    excess: float,
-    form: EnergyForm = EnergyForm.EXACT,
+    parity: Parity, slope: float, excess: float, form: EnergyForm = EnergyForm.EXACT
 ) -> float:
     """Q = q² that holds a segment at its length.
 

@@ -10,14 +10,13 @@ modulus exactly, and any other one lies between the moduli of its phases.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
-from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.phases import QUARTERS_OF_CODE, surroundings
 from knitcore.chart.result import Result
@@ -158,38 +157,6 @@ class LocalModuli(Result):
     def anisotropy(self) -> Array:
         """(rows, columns) Y_course / Y_wale."""
         return self.table.anisotropy[self.codes]
-
-    def updated(self, chart: StitchChart, rows: slice, columns: slice) -> LocalModuli:
-        """The maps after a stroke that changed stitches only inside rows x columns.
-
-        Parameters
-        ----------
-        chart : the chart after the stroke, of the same size.
-        rows, columns : the touched window (steps of 1).
-
-        Raises
-        ------
-        InputError
-            If the chart has another size.
-        """
-        if self.codes.shape != chart.purl.shape:
-            raise InputError(
-                "chart",
-                f"has {chart.columns}x{chart.rows} stitches, the maps have "
-                f"{self.codes.shape[1]}x{self.codes.shape[0]}.",
-                "Compute the maps again after a change of size.",
-            )
-        (row, row_grown), (column, column_grown) = (
-            windows_of(rows, chart.rows),
-            windows_of(columns, chart.columns),
-        )
-        codes = self.codes.copy()
-        fresh = surroundings(chart.region(row_grown, column_grown))
-        codes[row, column] = fresh[
-            row.start - row_grown.start : row.stop - row_grown.start,
-            column.start - column_grown.start : column.stop - column_grown.start,
-        ]
-        return replace(self, codes=codes)
 
 
 def local_moduli(

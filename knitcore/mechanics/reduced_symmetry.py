@@ -198,10 +198,7 @@ class RSFabric:
 
 
 def rs_fabric(
-    fabric: Fabric,
-    course: SegmentGeometry,
-    wale: SegmentGeometry,
-    bending_modulus_n_mm2: float,
+    fabric: Fabric, course: SegmentGeometry, wale: SegmentGeometry, bending_modulus_n_mm2: float
 ) -> RSFabric:
     """A pure fabric from the geometry of its segments.
 

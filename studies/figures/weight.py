@@ -7,11 +7,9 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.cloth.space.border import advice
-from knitcore.cloth.space.drape import drape
 from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of
 from knitcore.cloth.space.hang import HungBy, hang
-from knitcore.cloth.space.overhang import overhang
+from knitcore.cloth.space.weighing import advice, drape, overhang
 from knitcore.materials import material
 from studies.figures.curl import FONT, IMAGES, SIDE, drawn, save
 

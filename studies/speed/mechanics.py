@@ -77,10 +77,8 @@ def print_times() -> None:
         return StitchChart(random.random((size, size)) < 0.5)
 
     small, repeat, medium, large = noise(4), noise(16), noise(100), noise(400)
-    maps = local_moduli(large, acrylic)
     jobs: dict[str, Callable[[], object]] = {
         "local moduli, 400 x 400": lambda: _all_maps(local_moduli(large, acrylic)),
-        "their update, 3 x 5 stitches": lambda: maps.updated(large, slice(9, 12), slice(5, 10)),
         "homogenise 4 x 4": lambda: homogenise(small, acrylic),
         "homogenise 16 x 16": lambda: homogenise(repeat, acrylic),
         "predict 2x2 rib, 31 x 31": lambda: predict(

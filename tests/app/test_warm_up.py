@@ -121,7 +121,7 @@ print(*compiled)
         (
             "shape",
             "knitcore.cloth.space.sheet_kernels",
-            {f"linear.elimination.{name}" for name in ("eliminate", "forward", "backward")},
+            {f"linear.front_tree.{name}" for name in ("_eliminate", "_forward", "_backward")},
         ),
     ],
 )  # fmt: skip

@@ -3,7 +3,7 @@
 from knitcore.cloth.cut.conditions import Condition, Framed, Held, Pulled, Sewn, Traction
 from knitcore.cloth.cut.cut_cloth import Cloth, cloth_under
 from knitcore.cloth.cut.cut_piece import solve
-from knitcore.cloth.cut.cut_results import ElementFields, PieceTest, write_piece_test
+from knitcore.cloth.cut.cut_results import ElementFields, PieceTest
 from knitcore.cloth.cut.outline import CutPiece
 
 __all__ = [
@@ -19,5 +19,4 @@ __all__ = [
     "Traction",
     "cloth_under",
     "solve",
-    "write_piece_test",
 ]

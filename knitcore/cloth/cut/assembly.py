@@ -8,14 +8,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import (
-    Basis,
-    BilinearForm,
-    ElementQuad2,
-    ElementTriP2,
-    LinearForm,
-    MeshQuad,
-)
+from skfem import Basis, BilinearForm, ElementQuad2, ElementTriP2, LinearForm, MeshQuad
 
 from knitcore.base.arrays import Array
 from knitcore.cloth.cut.cut_cloth import Cloth

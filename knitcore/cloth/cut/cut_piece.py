@@ -9,15 +9,14 @@ import numpy as np
 
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, Progress
-from knitcore.base.threads import one_blas_thread
 from knitcore.cloth.cut.assembly import PieceEnergy
 from knitcore.cloth.cut.conditions import Condition, Constraints
 from knitcore.cloth.cut.cut_cloth import Cloth
 from knitcore.cloth.cut.cut_mesh import mesh_of
 from knitcore.cloth.cut.cut_results import PieceTest
-from knitcore.cloth.cut.equilibrium import Balance, PieceEquilibrium
+from knitcore.cloth.cut.equilibrium import Balance
 from knitcore.cloth.cut.outline import CutPiece
-from knitcore.cloth.flat.equilibrium_path import StepError
+from knitcore.cloth.flat.equilibrium_path import as_far_as_it_converges
 
 MAX_STEPS = 1000
 
@@ -72,17 +71,6 @@ def solve(
     begin = time.perf_counter()
     energy = PieceEnergy(mesh_of(piece, mesh_mm), cloth, piece.turn)
     constraints = Constraints(energy.basis, piece, conditions)
-    equilibria: list[PieceEquilibrium] = []
-    problem = None
-    try:
-        with one_blas_thread():
-            shares = np.arange(1, steps + 1) / steps
-            for equilibrium in Balance(energy, constraints, cancelled).follow(shares):
-                equilibria.append(equilibrium)
-                if progress is not None:
-                    progress(len(equilibria), steps)
-    except StepError as error:
-        problem = f"Step {len(equilibria) + 1} of {steps} did not converge. {error}"
-    return PieceTest(
-        piece, energy, constraints, tuple(equilibria), problem, time.perf_counter() - begin
-    )
+    path = Balance(energy, constraints, cancelled).follow(np.arange(1, steps + 1) / steps)
+    equilibria, problem = as_far_as_it_converges(path, steps, progress)
+    return PieceTest(piece, energy, constraints, equilibria, problem, time.perf_counter() - begin)

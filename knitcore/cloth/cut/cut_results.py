@@ -71,10 +71,26 @@ class PieceTest(Result):
     also_listed: ClassVar = ("converged", "share", "energy_n_mm", "force_n", "moved_mm")
 
     def write(self, path: Path | str) -> None:
-        """Write all steps (``.npz``), forces (``.csv``) or the last step (``.vtu``), as
-        :func:`write_piece_test`.
+        """Write by the file's suffix: ``.npz`` all steps, ``.csv`` forces per step, ``.vtu`` the
+        last step for ParaView.
+
+        Raises
+        ------
+        InputError
+            If the suffix is none of these, or there is no step to write.
         """
-        write_piece_test(self, path)
+        target = Path(path)
+        writers = dict(zip(SUFFIXES, (_write_npz, _write_csv, _write_vtu), strict=True))
+        suffix = target.suffix.lower()
+        if suffix not in writers:
+            raise InputError(
+                "out", f"{target.name} has an unknown suffix.", "Use .npz, .csv or .vtu."
+            )
+        if not self.equilibria:
+            raise InputError(
+                "out", "no step converged, so there is nothing to write.", "Use a smaller load."
+            )
+        writers[suffix](self, target)
 
     @property
     def converged(self) -> bool:
@@ -177,31 +193,6 @@ class PieceTest(Result):
         xx, yy, xy = fibre_strains(model, fibres[..., :2], fibres[..., 2:])
         form = StiffeningForm(model.value)
         return (xx, yy, xy), np.stack(stiffening_of(sheet, codes).arguments(xx, yy, form))
-
-
-def write_piece_test(test: PieceTest, path: Path | str) -> None:
-    """Write by the file's suffix: ``.npz`` all steps, ``.csv`` forces per step, ``.vtu`` the last
-    step for ParaView.
-
-    Raises
-    ------
-    InputError
-        If the suffix is none of these, or there is no step to write.
-    """
-    target = Path(path)
-    suffix = target.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise InputError("out", f"{target.name} has an unknown suffix.", "Use .npz, .csv or .vtu.")
-    if not test.equilibria:
-        raise InputError(
-            "out", "no step converged, so there is nothing to write.", "Use a smaller load."
-        )
-    if suffix == ".csv":
-        _write_csv(test, target)
-    elif suffix == ".npz":
-        _write_npz(test, target)
-    else:
-        _write_vtu(test, target)
 
 
 def _write_csv(test: PieceTest, path: Path) -> None:

@@ -8,10 +8,8 @@ du/dp. Variances of independent parameters add up.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
@@ -23,22 +21,9 @@ from knitcore.materials.material import Material
 from knitcore.prediction.quarter_laws import SPREAD_AT
 
 
-@dataclass(frozen=True, eq=False)
-class PieceSpread:
-    """Standard deviations at one load step, (conditions, 2) each: of x and y.
-
-    Attributes
-    ----------
-    force_n : of the forces on the edges.
-    moved_mm : of the mean displacements of the edges.
-    """
-
-    force_n: Array
-    moved_mm: Array
-
-
-def piece_spread(test: PieceTest, material: Material, step: int = -1) -> PieceSpread:
-    """Standard deviations of a test at a load step (the last one by default).
+def piece_spreads(test: PieceTest, material: Material) -> Array:
+    """Standard deviations at every step, (2, steps, conditions, 2): of the forces on the edges in N
+    and of the edges' mean displacements in mm, along x and y.
 
     Raises
     ------
@@ -46,33 +31,17 @@ def piece_spread(test: PieceTest, material: Material, step: int = -1) -> PieceSp
         If the cloth may wrinkle (``tension_field``): its forces are not linear in the laws.
     """
     constraints = test.constraints
-    force, moved = np.zeros((2, len(test.conditions), 2))
-    for change, motion in _changes(test, material, step):
-        force += constraints.forces(change, 0.0) ** 2
-        moved += np.array([motion[:, nodes].mean(axis=1) for nodes in constraints.nodes]) ** 2
-    own = _model_log_sd(test, step)
-    force += (own * constraints.forces(test.equilibria[step].internal, 0.0)) ** 2
-    return PieceSpread(np.sqrt(force), np.sqrt(moved))
 
+    def at(step: int) -> Array:
+        variances = np.zeros((2, len(test.conditions), 2))
+        for change, motion in _changes(test, material, step):
+            moved = np.array([motion[:, nodes].mean(axis=1) for nodes in constraints.nodes])
+            variances += np.square([constraints.forces(change, 0.0), moved])
+        force = constraints.forces(test.equilibria[step].internal, 0.0)
+        variances[0] += (_model_log_sd(test, step) * force) ** 2
+        return np.sqrt(variances)
 
-def piece_spreads(test: PieceTest, material: Material) -> Array:
-    """Standard deviations at every step, (2, steps, conditions, 2): of the forces in N and of the
-    mean displacements in mm, along x and y.
-
-    They are computed at a few steps, and interpolated between them.
-
-    Raises
-    ------
-    InputError
-        As :func:`piece_spread`.
-    """
-    steps = sampled_steps(len(test.equilibria))
-    if not steps:
-        return np.empty((2, 0, len(test.conditions), 2))
-    spreads = [piece_spread(test, material, step) for step in steps]
-    known = np.array([[at.force_n for at in spreads], [at.moved_mm for at in spreads]])
-    between = make_interp_spline(steps, known, k=min(1, len(steps) - 1), axis=1)
-    return np.asarray(between(np.arange(len(test.equilibria))))
+    return np.moveaxis(_at_all_steps(test, at, (2, len(test.conditions), 2)), 1, 0)
 
 
 def force_log_sd(
@@ -82,17 +51,29 @@ def force_log_sd(
 
     Parameters
     ----------
-    test, material : as for :func:`piece_spread`, which raises the same errors.
-    force : of the internal forces (2, nodes) at a step (from 0), and linear in them. It is
-        computed at a few steps, and interpolated between them.
+    test, material : as for :func:`piece_spreads`, which raises the same errors.
+    force : of the internal forces (2, nodes) at a step (from 0), and linear in them.
     """
-    steps = sampled_steps(len(test.equilibria))
-    deviations = []
-    for step in steps:
+
+    def at(step: int) -> Array:
         value = force(test.equilibria[step].internal, step)
         parts = [force(change, step) / value for change, _ in _changes(test, material, step)]
-        deviations.append(np.linalg.norm([*parts, _model_log_sd(test, step)]))
-    return np.interp(np.arange(len(test.equilibria)), steps, deviations) if steps else np.empty(0)
+        return np.asarray(np.linalg.norm([*parts, _model_log_sd(test, step)]))
+
+    return _at_all_steps(test, at, ())
+
+
+def _at_all_steps(test: PieceTest, at: Callable[[int], Array], shape: tuple[int, ...]) -> Array:
+    """Values (steps, …) of every step, computed at a few and interpolated between them."""
+    from scipy.interpolate import make_interp_spline  # slow to import
+
+    count = len(test.equilibria)
+    steps = sampled_steps(count)
+    if not steps:
+        return np.empty((0, *shape))
+    known = np.array([at(step) for step in steps])
+    between = make_interp_spline(steps, known, k=min(1, len(steps) - 1))
+    return np.asarray(between(np.arange(count)))
 
 
 def _changes(test: PieceTest, material: Material, step: int) -> Iterator[tuple[Array, Array]]:

@@ -61,10 +61,7 @@ class Balance:
     """
 
     def __init__(
-        self,
-        energy: PieceEnergy,
-        constraints: Constraints,
-        cancelled: Cancelled | None = None,
+        self, energy: PieceEnergy, constraints: Constraints, cancelled: Cancelled | None = None
     ) -> None:
         self.energy = energy
         self.constraints = constraints

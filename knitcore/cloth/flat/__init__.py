@@ -1,17 +1,16 @@
 """The finite swatch: a chart of any stitches as a nonlinear sheet, pulled, sheared or relaxed."""
 
 from knitcore.cloth.flat.fields import Fields
-from knitcore.cloth.flat.force_control import pull_with_force, strain_at_force
+from knitcore.cloth.flat.force_control import strain_at_force
 from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet, State
 from knitcore.cloth.flat.misfit import Misfit, misfit, relaxed_shape
-from knitcore.cloth.flat.sheet_models import Coupling, EnergyModel, SheetModel
-from knitcore.cloth.flat.strip import Clamps, chart_sheet, homogeneous_sheet, pull, strip_test
+from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel
+from knitcore.cloth.flat.strip import Clamps, chart_sheet, pull, strip_test
 from knitcore.cloth.flat.strip_results import LockUp, StripTest, SwatchTest
 
 __all__ = [
     "Clamps",
-    "Coupling",
     "EnergyModel",
     "Fields",
     "LockUp",
@@ -23,10 +22,8 @@ __all__ = [
     "StripTest",
     "SwatchTest",
     "chart_sheet",
-    "homogeneous_sheet",
     "misfit",
     "pull",
-    "pull_with_force",
     "relaxed_shape",
     "strain_at_force",
     "strip_test",

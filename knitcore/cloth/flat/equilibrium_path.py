@@ -10,17 +10,22 @@ failure is reported with the part of the path that was reached.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
-from knitcore.base.errors import Cancelled, check_cancelled
+from knitcore.base.errors import Cancelled, Progress, check_cancelled
+from knitcore.base.threads import one_blas_thread
 from knitcore.cloth.flat.grid_sheet import Linearisation, Sheet, State
-from knitcore.linear.direct_factor import Factor, IndefiniteTangentError
+from knitcore.linear.direct_factor import IndefiniteTangentError
 from knitcore.linear.grid_factor import GridFactor
+
+Balanced = TypeVar("Balanced")
 
 MAX_NEWTON_STEPS = 30
 MAX_HALVINGS = 7
@@ -69,6 +74,34 @@ class Equilibrium:
     iterations: int
 
 
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Equilibria found, the reason if the path stopped early, and the time taken."""
+
+    equilibria: tuple[Equilibrium, ...]
+    problem: str | None
+    seconds: float
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """Positions per step."""
+        return tuple(e.state for e in self.equilibria)
+
+    @property
+    def energies(self) -> Array:
+        """N·mm per step."""
+        return np.array([e.energy for e in self.equilibria])
+
+    @property
+    def iterations(self) -> tuple[int, ...]:
+        """Linear systems solved per step."""
+        return tuple(e.iterations for e in self.equilibria)
+
+    def forces(self, nodes: NDArray[np.int64], axis: int) -> Array:
+        """Force (N) on prescribed nodes along an axis, per step."""
+        return np.array([e.reaction[nodes, axis].sum() for e in self.equilibria])
+
+
 class StepError(Exception):
     """A load step found no equilibrium; the message says why."""
 
@@ -84,7 +117,6 @@ class PathSolver:
         without fabric are prescribed in any case.
     tolerance : when a state counts as balanced.
     cancelled : called between linear solves; True stops with :class:`CancelledError`.
-    factor : makes the factorisation for a grid's columns, rows and prescribed unknowns.
     """
 
     def __init__(
@@ -94,14 +126,13 @@ class PathSolver:
         *,
         tolerance: Tolerance | None = None,
         cancelled: Cancelled | None = None,
-        factor: Callable[[int, int, NDArray[np.bool_]], Factor] = GridFactor,
     ) -> None:
         self.sheet = sheet
         self.fixed = fixed | ~sheet.grid.used_corners[:, None]
         self.free = (~self.fixed).astype(float)
         self.tolerance = tolerance or Tolerance()
         self.cancelled = cancelled or (lambda: False)
-        self.factor: Factor = factor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
+        self.factor = GridFactor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
         self._has_factor = False
         self._factor_is_current = False
         self._accepted: Linearisation | None = None  # of the last balanced state
@@ -225,17 +256,14 @@ class PathSolver:
             float(np.prod((level - np.delete(levels, i)) / (levels[i] - np.delete(levels, i))))
             for i in range(len(levels))
         ]
-        states = [state for _, state in self._history]
-        corners = sum(
-            (w * s.corners for w, s in zip(weights, states, strict=True)),
-            start=np.zeros_like(prescribed),
+        guess = State(
+            *(
+                sum((w * at for w, at in zip(weights, places, strict=True)), np.zeros(()))
+                for places in zip(*(state for _, state in self._history), strict=True)
+            )
         )
-        centres = sum(
-            (w * s.centres for w, s in zip(weights, states, strict=True)),
-            start=np.zeros_like(states[0].centres),
-        )
-        corners[self.fixed] = prescribed[self.fixed]
-        return State(corners, centres)
+        guess.corners[self.fixed] = prescribed[self.fixed]
+        return guess
 
     def _residual(self, lin: Linearisation) -> tuple[float, float]:
         """Norm of the unbalanced force, and the largest norm that is tolerated, N."""
@@ -328,3 +356,43 @@ class PathSolver:
             p = z if renewed else z + (new / rz) * p
             rz = new
         return x
+
+
+def as_far_as_it_converges(
+    path: Iterator[Balanced], steps: int, progress: Progress | None
+) -> tuple[tuple[Balanced, ...], str | None]:
+    """Follow a path of so many steps; also say why it stopped early, if it did."""
+    reached: list[Balanced] = []
+    try:
+        with one_blas_thread():
+            for equilibrium in path:
+                reached.append(equilibrium)
+                if progress is not None:
+                    progress(len(reached), steps)
+    except StepError as error:
+        return tuple(reached), f"Step {len(reached) + 1} of {steps} did not converge. {error}"
+    return tuple(reached), None
+
+
+def run_path(
+    sheet: Sheet,
+    fixed: NDArray[np.bool_],
+    targets: list[Array],
+    *,
+    start: State | None = None,
+    tolerance: Tolerance | None = None,
+    progress: Progress | None = None,
+    cancelled: Cancelled | None = None,
+) -> Path:
+    """Follow the targets as far as they converge.
+
+    Raises
+    ------
+    CancelledError
+        If ``cancelled`` returned True.
+    """
+    begin = time.perf_counter()
+    solver = PathSolver(sheet, fixed, tolerance=tolerance, cancelled=cancelled)
+    path = solver.follow(start or sheet.reference, targets)
+    equilibria, problem = as_far_as_it_converges(path, len(targets), progress)
+    return Path(equilibria, problem, time.perf_counter() - begin)

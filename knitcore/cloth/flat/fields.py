@@ -6,12 +6,23 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from knitcore.base.arrays import Array
 from knitcore.cloth.flat.grid import QuarterGrid, sums_at_corners
 from knitcore.cloth.flat.grid_sheet import Sheet, State
 from knitcore.cloth.flat.sheet_models import EnergyModel
 from knitcore.law.stiffening import CoupledStiffening, StiffeningForm, shear_response
+
+_DIFFERENCES = np.array(
+    [
+        [[-1, 1, 0, 0, 0], [0, 1, 1, 0, -2], [0, 0, 1, -1, 0], [-1, 0, 0, -1, 2]],
+        [[-1, -1, 0, 0, 2], [0, -1, 1, 0, 0], [0, 0, 1, 1, -2], [-1, 0, 0, 1, 0]],
+    ],
+    dtype=float,
+)
+"""Sums of a cell's corners and its centre that span it from side to side in each of its four
+triangles, course-wise and wale-wise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,17 +76,46 @@ class CellStrains:
 def cell_strains(sheet: Sheet, state: State) -> CellStrains:
     """Strains of the sheet's model in every triangle."""
     grid = sheet.grid
-    x = state.corners[grid.cell_corners]  # (cells, 4, 2)
-    width, height = grid.natural_width.ravel()[:, None], grid.natural_height.ravel()[:, None]
-    south, east = x[:, 1] - x[:, 0], x[:, 2] - x[:, 1]
-    north, west = x[:, 2] - x[:, 3], x[:, 3] - x[:, 0]
-    twice = 2 * state.centres
-    up, down = twice - x[:, 0] - x[:, 1], x[:, 2] + x[:, 3] - twice
-    right, left = twice - x[:, 0] - x[:, 3], x[:, 1] + x[:, 2] - twice
-    a = np.stack([south / width, left / width, north / width, right / width], axis=1)
-    b = np.stack([up / height, east / height, down / height, west / height], axis=1)
-    strains = fibre_strains(sheet.model.energy, a, b)
+    strains = fibre_strains(sheet.model.energy, *_triangle_fibres(grid, state))
     return CellStrains(*(s.reshape(grid.rows, grid.columns, 4) for s in strains))
+
+
+def strain_slopes(sheet: Sheet, state: State) -> csr_array:
+    """Derivatives of the cells' mean strains, course-wise and then wale-wise, by the positions of
+    all nodes, the corners first: (2 * cells, 2 * nodes).
+    """
+    grid = sheet.grid
+    fibres = _triangle_fibres(grid, state)
+    if sheet.model.energy is EnergyModel.PUBLISHED:
+        units = [np.broadcast_to(unit, fibres[0].shape) for unit in np.eye(2)]
+    else:
+        units = [fibre / np.linalg.norm(fibre, axis=2, keepdims=True) for fibre in fibres]
+    slopes = [
+        (differences.T @ unit) / (4 * size.reshape(-1, 1, 1))
+        for differences, unit, size in zip(
+            _DIFFERENCES, units, (grid.natural_width, grid.natural_height), strict=True
+        )
+    ]
+    unknowns = (2 * _cell_nodes(grid)[:, :, None] + np.arange(2)).reshape(-1, 10)
+    ends = np.arange(0, 2 * unknowns.size + 1, 10)
+    columns = np.concatenate([unknowns, unknowns]).ravel()
+    return csr_array((np.concatenate(slopes).ravel(), columns, ends))
+
+
+def _triangle_fibres(grid: QuarterGrid, state: State) -> tuple[Array, Array]:
+    """Images (cells, 4, 2) of the unit vectors along course and wale in every triangle."""
+    nodes = np.concatenate(state)[_cell_nodes(grid)]
+    course, wale = (differences @ nodes for differences in _DIFFERENCES)
+    return (
+        course / grid.natural_width.reshape(-1, 1, 1),
+        wale / grid.natural_height.reshape(-1, 1, 1),
+    )
+
+
+def _cell_nodes(grid: QuarterGrid) -> NDArray[np.int64]:
+    """Numbers (cells, 5) of each cell's corners and centre; centres follow all corners."""
+    centres = len(grid.corners) + np.arange(len(grid.centres))
+    return np.column_stack([grid.cell_corners, centres])
 
 
 def fibre_strains(energy: EnergyModel, a: Array, b: Array) -> tuple[Array, Array, Array]:

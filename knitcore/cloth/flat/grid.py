@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +17,9 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Fabric
 from knitcore.chart.phases import quarter_phases
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.linear.corner_numbering import cell_corners
 
 Indices = NDArray[np.int64]
+Cells = TypeVar("Cells", int, Indices)
 
 MAX_CELLS = 1_500_000
 """Largest number of cells of a mesh; the factorised tangent of more would not fit in 8 GB."""
@@ -212,7 +213,8 @@ class QuarterGrid:
     @cached_property
     def cell_corners(self) -> Indices:
         """Corner numbers of each cell, counter-clockwise from the lower left, (cells, 4)."""
-        return cell_corners(self.columns, self.rows)
+        cells = np.arange(self.rows * self.columns, dtype=np.int64)
+        return np.column_stack(corners_of(cells, self.columns))
 
     @cached_property
     def used_corners(self) -> NDArray[np.bool_]:
@@ -241,6 +243,21 @@ class QuarterGrid:
         along: Indices = numbers.take(line, axis=1 - axis)
         chosen: Indices = along[used.take(line, axis=1 - axis)]
         return chosen
+
+
+def corners_of(cell: Cells, columns: int) -> tuple[Cells, Cells, Cells, Cells]:
+    """Corners of a cell of a grid (or of many), counter-clockwise from the lower left.
+
+    Corners are numbered row by row from the lower left.
+
+    Examples
+    --------
+    >>> corners_of(1, 2)
+    (1, 2, 5, 4)
+    """
+    first = cell // columns * (columns + 1) + cell % columns
+    above = first + columns + 1
+    return first, first + 1, above + 1, above
 
 
 def sums_at_corners(cells: Array) -> Array:

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
+from knitcore.cloth.flat.grid import corners_of
 from knitcore.law import stiffening
-from knitcore.linear.corner_numbering import corners_of
 
 WRINKLED_SHARE = 0.05
 """Share of the compressive energy that a wrinkled sheet keeps, so that its tangent has a bound."""
@@ -277,60 +277,10 @@ def respond(
 
 
 @compiled
-def _gather(vectors: Array, nodes: tuple[int, int, int, int], out: Array) -> None:
-    """Write a cell's corners' share (4, 2) of vectors (corners, 2)."""
-    for i in range(4):
-        out[i, 0], out[i, 1] = vectors[nodes[i], 0], vectors[nodes[i], 1]
-
-
-@compiled
 def _zero(matrix: Array) -> None:
     for i in range(matrix.shape[0]):
         for j in range(matrix.shape[1]):
             matrix[i, j] = 0.0
-
-
-@compiled
-def strain_change(cells: Cells, state: Nodes, step: Nodes) -> Array:
-    """Change of the mean strains along course and wale of every cell, (2, cells), to first order
-    in a step.
-    """
-    out = np.zeros((2, cells.law.size))
-    x, d = np.empty((4, 2)), np.empty((4, 2))
-    for cell in range(cells.law.size):
-        if not cells.cloth[cell]:
-            continue
-        nodes = _corners_of(cell, cells.columns)
-        _gather(state.corners, nodes, x)
-        _gather(step.corners, nodes, d)
-        centre, centre_step = state.centres[cell], step.centres[cell]
-        size = cells.width[cell], cells.height[cell]
-        for t in range(4):
-            i, j = _FIRST[t], _SECOND[t]
-            along = 0 if _COURSEWISE[t] else 1  # of the edge; the inward derivative is across
-            sign = _ALONG[t]
-            for axis, f0, f1, s0, s1 in (
-                (
-                    along,
-                    sign * (x[j, 0] - x[i, 0]),
-                    sign * (x[j, 1] - x[i, 1]),
-                    sign * (d[j, 0] - d[i, 0]),
-                    sign * (d[j, 1] - d[i, 1]),
-                ),
-                (
-                    1 - along,
-                    _INWARD[t] * (2.0 * centre[0] - x[i, 0] - x[j, 0]),
-                    _INWARD[t] * (2.0 * centre[1] - x[i, 1] - x[j, 1]),
-                    _INWARD[t] * (2.0 * centre_step[0] - d[i, 0] - d[j, 0]),
-                    _INWARD[t] * (2.0 * centre_step[1] - d[i, 1] - d[j, 1]),
-                ),
-            ):
-                if cells.published:
-                    change = s0 if axis == 0 else s1
-                else:
-                    change = (f0 * s0 + f1 * s1) / math.sqrt(f0 * f0 + f1 * f1)
-                out[axis, cell] += 0.25 * change / size[axis]
-    return out
 
 
 @compiled
@@ -458,7 +408,8 @@ def assemble(
                 _clear(tangent, cell)
             continue
         node = _corners_of(cell, cells.columns)
-        _gather(corners, node, x)
+        for i in range(4):
+            x[i, 0], x[i, 1] = corners[node[i], 0], corners[node[i], 1]
         centre0, centre1 = centres[cell, 0], centres[cell, 1]
         hx, hy = width[cell], height[cell]
         area = 0.25 * hx * hy

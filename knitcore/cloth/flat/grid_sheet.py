@@ -148,13 +148,6 @@ class Sheet:
         self._assemble(laws, state, force, None)
         return force
 
-    def strain_change(self, state: State, step: Nodes) -> Array:
-        """Change of the cells' mean strains (2, rows, columns), course and wale, to first order in
-        a step of the nodes.
-        """
-        change = kernel.strain_change(self._cells, state, step)
-        return np.asarray(change.reshape(2, self.grid.rows, self.grid.columns))
-
     def linearise(self, state: State, reuse: Linearisation | None = None) -> Linearisation:
         """Energy, forces and tangent; the arrays of ``reuse`` are overwritten."""
         if reuse is None:

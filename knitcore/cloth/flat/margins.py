@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
@@ -61,6 +60,8 @@ def stretch_margins(
     CancelledError
         If ``cancelled`` returned True.
     """
+    from scipy.interpolate import PchipInterpolator  # slow to import
+
     spread = StripSpread(test, material, clamps)
     picked = sampled_steps(test.steps)
     samples: list[tuple[Array, Array, Array, Array]] = []

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled
 from knitcore.chart.fabric import PHASES, Fabric
-from knitcore.cloth.flat.equilibrium_path import Equilibrium, Tolerance
+from knitcore.cloth.flat.equilibrium_path import Equilibrium, Path, Tolerance, run_path
 from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet
-from knitcore.cloth.flat.load_path import Path, run_path
 from knitcore.cloth.flat.strip_results import SwatchTest
 
 RELAXATION_STAGES = 10

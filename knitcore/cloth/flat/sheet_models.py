@@ -35,18 +35,6 @@ class EnergyModel(StrEnum):
     FULL = "full"
 
 
-class Coupling(StrEnum):
-    """The rule that makes C_xxyy and C_yyxx the one coupling that an energy needs.
-
-    ``geometric`` keeps both Young's moduli and nu_xy nu_yx; ``arithmetic`` follows the paper's text
-    and ``script`` (C_xxyy alone) the authors' script.
-    """
-
-    GEOMETRIC = "geometric"
-    ARITHMETIC = "arithmetic"
-    SCRIPT = "script"
-
-
 def energy_model(name: str) -> EnergyModel:
     """The energy of a name.
 
@@ -82,7 +70,7 @@ class SheetModel:
     """
 
     energy: EnergyModel = EnergyModel.FULL
-    coupling: Coupling | None = None
+    coupling: Symmetrisation | None = None
     shear_modulus: float | None = None
     tension_field: bool = False
 
@@ -96,11 +84,12 @@ class SheetModel:
             )
 
     @property
-    def rule(self) -> Coupling:
+    def rule(self) -> Symmetrisation:
         """The symmetrisation rule in force."""
         if self.coupling is not None:
             return self.coupling
-        return Coupling.SCRIPT if self.energy is EnergyModel.PUBLISHED else Coupling.GEOMETRIC
+        published = self.energy is EnergyModel.PUBLISHED
+        return Symmetrisation.SCRIPT if published else Symmetrisation.GEOMETRIC
 
     def prepare(self, law: ConstitutiveLaw) -> ConstitutiveLaw:
         """The symmetric law, with this model's shear modulus.
@@ -113,13 +102,7 @@ class SheetModel:
         if self.shear_modulus is not None:
             law = replace(law, shear_modulus=self.shear_modulus)
         try:
-            match self.rule:
-                case Coupling.GEOMETRIC:
-                    return law.symmetrised(Symmetrisation.GEOMETRIC)
-                case Coupling.ARITHMETIC:
-                    return law.symmetrised(Symmetrisation.ARITHMETIC)
-                case Coupling.SCRIPT:
-                    return replace(law, stiffness_yyxx=law.stiffness_xxyy)
+            return law.symmetrised(self.rule)
         except InputError:
             raise InputError(
                 "coupling",

@@ -14,13 +14,12 @@ from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, InputError, Progress
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.stitch_chart import StitchChart, as_chart
+from knitcore.cloth.flat.equilibrium_path import Path, run_path
 from knitcore.cloth.flat.grid import QuarterGrid, check_cloth
 from knitcore.cloth.flat.grid_sheet import Sheet
-from knitcore.cloth.flat.load_path import Path, run_path
 from knitcore.cloth.flat.misfit import draw_in as draw_in_path
 from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel, energy_model
 from knitcore.cloth.flat.strip_results import StripTest
-from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Material, as_material
 from knitcore.prediction.quarter_laws import QuarterLaws, quarter_laws
 from knitcore.prediction.size import RelaxedSize
@@ -357,20 +356,6 @@ def stretched(grid: QuarterGrid, direction: Direction, strain: float) -> Array:
     corners = grid.corners.copy()
     corners[:, direction.axis] *= 1 + strain
     return corners
-
-
-def homogeneous_sheet(
-    law: ConstitutiveLaw,
-    width_mm: float,
-    length_mm: float,
-    *,
-    columns: int = 60,
-    rows: int = 40,
-    model: SheetModel | None = None,
-) -> Sheet:
-    """A sheet of one law, ``width_mm`` course-wise and ``length_mm`` wale-wise."""
-    grid = QuarterGrid.uniform(columns, rows, width_mm, length_mm)
-    return Sheet(grid, [law], model or SheetModel())
 
 
 def _length(grid: QuarterGrid, direction: Direction) -> float:

@@ -94,11 +94,7 @@ def strain_crosses_figure(test: SwatchTest, step: int = -1, crosses: int = 400) 
     x, y = fields.x_mm + fields.ux_mm, fields.y_mm + fields.uy_mm
     figure.add_trace(
         go.Scatter(
-            x=_rim(x),
-            y=_rim(y),
-            mode="lines",
-            line={"color": "#777", "width": 1},
-            name="edge",
+            x=_rim(x), y=_rim(y), mode="lines", line={"color": "#777", "width": 1}, name="edge"
         )
     )
     return _laid_out(figure, "Principal strains")

@@ -33,13 +33,22 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction
-from knitcore.cloth.flat.fields import cell_strains, corner_means, stiffening_of, utilisation
+from knitcore.cloth.flat.fields import (
+    cell_strains,
+    corner_means,
+    stiffening_of,
+    strain_slopes,
+    utilisation,
+)
 from knitcore.cloth.flat.grid_kernel import Nodes
 from knitcore.cloth.flat.grid_sheet import Sheet
-from knitcore.cloth.flat.sheet_models import Coupling
 from knitcore.cloth.flat.strip import Clamps, clamp_edges, clamp_mask, waist_strain
 from knitcore.cloth.flat.strip_results import StripTest
-from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
+from knitcore.law.constitutive import (
+    DEFAULT_SHEAR_MODULUS_N_PER_MM,
+    ConstitutiveLaw,
+    Symmetrisation,
+)
 from knitcore.law.stiffening import StiffeningForm
 from knitcore.linear.grid_factor import GridFactor
 from knitcore.materials.law_uncertainty import (
@@ -52,6 +61,8 @@ from knitcore.materials.law_uncertainty import (
 from knitcore.materials.material import FabricRecord, Material
 from knitcore.prediction.quarter_laws import SPREAD_AT
 
+Vary = Callable[[ConstitutiveLaw, float], ConstitutiveLaw]
+"""A law after a step of one of its parameters."""
 LOG_SHEAR_PRIOR = (float(np.log(0.02)), 1.0)
 """Mean and standard deviation of ln(C_xyxy / (N/mm)). In acrylic garter, for which it was chosen,
 0.02 N/mm is 0.2 sqrt(Y_x Y_y), the mean of a strip fit's prior; other fabrics may be far from it.
@@ -158,6 +169,7 @@ class StripSpread:
         self._factor.factorise(lin.tangent.matrix)
         pulled = grid.edge(clamp_edges(test.direction)[1])
         slope = self._utilisation_slope(step)
+        strain_by_position = strain_slopes(sheet, state)
         force_variance = waist_variance = 0.0
         variances = np.zeros((3, grid.rows + 1, grid.columns + 1))
         for parameter in law_parameters(
@@ -176,7 +188,8 @@ class StripSpread:
             waist = waist_strain(grid, state.corners + corner_step, test.direction)
             full_sd = math.hypot(parameter.sd, parameter.model_sd)
             waist_variance += (full_sd * (waist - test.waist_strain[step])) ** 2
-            strains = sheet.strain_change(state, change.newton_step(corner_step))
+            moved = np.concatenate([part.ravel() for part in change.newton_step(corner_step)])
+            strains = (strain_by_position @ moved).reshape(slope.shape)
             used = (slope * strains).sum(axis=0)
             for name, cells in enumerate((*strains, used)):
                 variances[name] += (full_sd * corner_means(grid, cells)) ** 2
@@ -240,24 +253,23 @@ def law_parameters(
     ``stress_n_per_mm`` is the approximate stress of the cloth.
     """
     parameters = []
+
+    def add(codes: list[int], vary: Vary, sd: float, of_model: float = 0.0) -> None:
+        parameters.append(LawParameter(*_varied(sheet, codes, vary), sd, of_model))
+
     for code in _codes(sheet):
         record = _record(material, code)
-        law, spread = record.law, record.uncertainty
+        spread = record.uncertainty
         for direction in Direction:
-            step = _varied(sheet, [code], partial(_stress_scaled, direction))
             sd = float(spread.log_stress(direction, stress_n_per_mm))
-            parameters.append(LawParameter(*step, sd, model_sd))
-        sd = _coupling_sd(law, sheet.model.rule, spread)
-        parameters.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
+            add([code], partial(_stress_scaled, direction), sd, model_sd)
+        add([code], _coupled, _coupling_sd(record.law, sheet.model.rule, spread))
         if sheet.model.shear_modulus is None and spread.log_shear is not None:
-            parameters.append(
-                LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0)
-            )
-            growth = _varied(sheet, [code], _stiffer_in_shear)
-            parameters.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
+            add([code], partial(_scaled, "shear_modulus"), spread.log_shear)
+            add([code], partial(_scaled, "shear_stiffening"), LOG_SHEAR_STIFFENING)
     assumed = _of_assumed_shear(sheet, material)
     if assumed:
-        parameters.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
+        add(assumed, partial(_scaled, "shear_modulus"), LOG_SHEAR_PRIOR[1])
     return parameters
 
 
@@ -292,7 +304,7 @@ def _of_assumed_shear(sheet: Sheet, material: Material) -> list[int]:
 
 
 def _varied(
-    sheet: Sheet, codes: list[int], vary: Callable[[ConstitutiveLaw, float], ConstitutiveLaw]
+    sheet: Sheet, codes: list[int], vary: Vary
 ) -> tuple[NDArray[np.void], NDArray[np.void]]:
     """The kernel's records of these laws with a parameter raised and lowered; 0 for the others."""
     tables = []
@@ -331,23 +343,18 @@ def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
     )
 
 
-def _sheared(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """The law for a step of the logarithm of the shear modulus."""
-    return replace(law, shear_modulus=law.shear_modulus * math.exp(step))
+def _scaled(constant: str, law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """The law for a step of the logarithm of a constant."""
+    return replace(law, **{constant: getattr(law, constant) * math.exp(step)})
 
 
-def _stiffer_in_shear(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """The law for a step of the logarithm of the growth of the shear stiffness."""
-    return replace(law, shear_stiffening=law.shear_stiffening * math.exp(step))
-
-
-def _coupling_sd(measured: ConstitutiveLaw, rule: Coupling, spread: LawUncertainty) -> float:
+def _coupling_sd(measured: ConstitutiveLaw, rule: Symmetrisation, spread: LawUncertainty) -> float:
     """Standard deviation of r, from those of the Poisson ratios that the model's rule uses."""
     nu_yx, nu_xy = measured.poisson_yx, measured.poisson_xy
-    if rule is Coupling.GEOMETRIC and nu_yx * nu_xy > 0:  # r = sqrt(nu_yx nu_xy)
+    if rule is Symmetrisation.GEOMETRIC and nu_yx * nu_xy > 0:  # r = sqrt(nu_yx nu_xy)
         aspect = math.sqrt(nu_yx / nu_xy)
     else:
         aspect = math.sqrt(measured.stiffness_xxxx / measured.stiffness_yyyy)
-    if rule is Coupling.SCRIPT:  # r = nu_xy aspect
+    if rule is Symmetrisation.SCRIPT:  # r = nu_xy aspect
         return spread.poisson_xy * aspect
     return math.hypot(spread.poisson_yx / aspect, spread.poisson_xy * aspect) / 2

@@ -166,40 +166,6 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     )
 
 
-def stitch_corners(
-    corners_mm: Array, rectangle_mm: tuple[float, float], stitch_mm: tuple[float, float]
-) -> tuple[Array, NDArray[np.bool_]]:
-    """The stitches on a sheet of rectangles.
-
-    Parameters
-    ----------
-    corners_mm : (lines, points, 3) corners of the rectangles, NaN outside the piece.
-    rectangle_mm, stitch_mm : sizes at rest, along the points of a line and from line to line.
-
-    Returns
-    -------
-    corners, stitches : (rows + 1, columns + 1, 3) mm, and a mask (rows, columns) of the piece.
-    """
-    at = []
-    for rectangle, stitch, lines in zip(
-        rectangle_mm, stitch_mm, corners_mm.shape[1::-1], strict=True
-    ):
-        wide = rectangle * (lines - 1)
-        count = max(1, int(wide / stitch))
-        at.append((0.5 * (wide - count * stitch) + stitch * np.arange(count + 1)) / rectangle)
-    grid = np.meshgrid(at[1], at[0], indexing="ij")
-    corners = np.stack(
-        [
-            map_coordinates(part, grid, order=1, cval=np.nan)
-            for part in np.moveaxis(corners_mm, 2, 0)
-        ],
-        axis=-1,
-    )
-    known = np.isfinite(corners[..., 0])
-    stitches = known[1:, 1:] & known[1:, :-1] & known[:-1, 1:] & known[:-1, :-1]
-    return corners, stitches
-
-
 @dataclass(frozen=True, eq=False)
 class StitchedCloth:
     """The stitches of a sheet of even cloth in a test, lines following the columns.
@@ -223,14 +189,33 @@ def stitched(
     stitch_mm: tuple[float, float],
     repeat: StitchChart,
 ) -> StitchedCloth:
-    """Lay the stitches of a repeat on a sheet of rectangles; parameters as of `stitch_corners`."""
-    corners, stitches = stitch_corners(corners_mm, rectangle_mm, stitch_mm)
+    """Lay the stitches of a repeat on a sheet of rectangles.
+
+    Parameters
+    ----------
+    corners_mm : (lines, points, 3) corners of the rectangles, NaN outside the piece.
+    rectangle_mm, stitch_mm : sizes at rest, along the points of a line and from line to line.
+    """
+    at = []
+    for rectangle, stitch, lines in zip(
+        rectangle_mm, stitch_mm, corners_mm.shape[1::-1], strict=True
+    ):
+        wide = rectangle * (lines - 1)
+        count = max(1, int(wide / stitch))
+        at.append((0.5 * (wide - count * stitch) + stitch * np.arange(count + 1)) / rectangle)
+    grid = np.meshgrid(at[1], at[0], indexing="ij")
+    parts = np.moveaxis(corners_mm, 2, 0)
+    corners = np.stack(
+        [map_coordinates(part, grid, order=1, cval=np.nan) for part in parts], axis=-1
+    )
+    known = np.isfinite(corners)
+    stitches = known[1:, 1:, 0] & known[1:, :-1, 0] & known[:-1, 1:, 0] & known[:-1, :-1, 0]
     rows, columns = stitches.shape
     small = repeat.repeat()
     tiled = small.tile(-(-rows // small.rows), -(-columns // small.columns))
     row, column = np.indices(corners.shape[:2])
     hidden = 0.01 * np.stack([column, row, 0 * row], axis=-1)
-    shown = np.where(np.isfinite(corners), corners, hidden).astype(np.float32)
+    shown = np.where(known, corners, hidden).astype(np.float32)
     return StitchedCloth(StitchChart(tiled.purl[:rows, :columns]), stitches, shown)
 
 

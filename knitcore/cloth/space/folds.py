@@ -46,10 +46,7 @@ class Folds:
 
 
 def folds_of(
-    chart: StitchChart,
-    material: Material,
-    free: Array,
-    stitches: NDArray[np.bool_] | None = None,
+    chart: StitchChart, material: Material, free: Array, stitches: NDArray[np.bool_] | None = None
 ) -> Folds:
     """Folds of a piece.
 

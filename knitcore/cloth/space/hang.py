@@ -95,8 +95,7 @@ def hang(
     chart = continued(chart, there)
     weights = stitch_weights_n(chart, material, linear_density_g_per_m, stitches=there)
     sheet = sheet_of(chart, material, there).cut(there)
-    load = np.zeros_like(sheet.flat_mm)
-    load[:, 1] = -sheet.shared(weights[there])
+    load = sheet.load_n(weights[there], axis=1)
     used = corners_of(there)
     held = np.zeros_like(used)
     top = np.flatnonzero(used.any(axis=1))[-1]

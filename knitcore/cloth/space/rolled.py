@@ -79,21 +79,17 @@ def strip_of(sheet: StitchSheet, axis: int) -> StitchSheet:
     membrane = sheet.membrane.reshape(*shape, -1).mean(axis=across).reshape(-1, 6)
     twisting = sheet.twisting.reshape(shape).mean(axis=across)
     along_count = shape[0] * (shape[1] - 1)
-    if axis == 0:
-        lines = sheet.turning[along_count:].reshape(shape[1], shape[0] - 1, 4)
-    else:
-        lines = sheet.turning[:along_count].reshape(shape[0], shape[1] - 1, 4)
+    along, up = np.split(sheet.turning, [along_count])
+    lines = (along if axis else up).reshape(shape[across], shape[axis] - 1, 4)
     weight = lines[..., :1]
     turning = lines.mean(axis=0)
     turning[:, 1] = (weight * lines).mean(axis=0)[:, 1] / weight.mean(axis=0)[:, 0]
     corners = sheet.flat_mm.reshape(shape[0] + 1, shape[1] + 1, 3)
-    middle = corners.shape[1] // 2 if axis == 0 else corners.shape[0] // 2
-    flat = (
-        corners[:, middle - 1 : middle + 1] if axis == 0 else corners[middle - 1 : middle + 1]
-    ).reshape(-1, 3)
+    middle = corners.shape[across] // 2
+    flat = corners.take([middle - 1, middle], axis=across).reshape(-1, 3)
     net = Net.of(rows, columns)
     return replace(
-        sheet, rows=rows, columns=columns, flat_mm=flat.copy(), quarters=net.quarters,
+        sheet, rows=rows, columns=columns, flat_mm=flat, quarters=net.quarters,
         membrane=membrane, hinges=net.hinges, turning=turning, quads=net.quads, twisting=twisting,
     )  # fmt: skip
 

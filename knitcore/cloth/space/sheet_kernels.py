@@ -163,7 +163,8 @@ def width_slope(points: RealOrComplex, side: int, slope: RealOrComplex) -> Any:
 
 
 @compiled
-def _hinge_points(x: Array, nodes: Ints, points: Array) -> None:
+def hinge_points(x: Array, nodes: Ints, points: Array) -> None:
+    """Write the points (4, 3) of a hinge, as :func:`turn_slope` takes them."""
     p, q, a, b, c, d = nodes
     for m in range(3):
         points[0, m] = x[p, m]
@@ -198,7 +199,7 @@ def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
     width = np.empty((4, 3))
     for k in range(nodes.shape[0]):
         p, q, a, b, c, d = nodes[k]
-        _hinge_points(x, nodes[k], points)
+        hinge_points(x, nodes[k], points)
         sine, cosine, left, right = turn_slope(points, slope)
         energy, moment, _ = bent(arctan2(sine, cosine), parameters[k])
         total += energy
@@ -308,19 +309,6 @@ def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
 
 
 @compiled
-def _first_not_below(values: Ints, value: int) -> int:
-    """Index of the first of rising values that is not below a value; their number if all are."""
-    low, high = 0, values.shape[0]
-    while low < high:
-        middle = (low + high) // 2
-        if values[middle] < value:
-            low = middle + 1
-        else:
-            high = middle
-    return low
-
-
-@compiled
 def _listed(
     at: Array,
     home: Array,
@@ -349,8 +337,8 @@ def _listed(
         for ax in range(max(0, bx - 1), min(count[0], bx + 2)):
             for ay in range(max(0, by - 1), min(count[1], by + 2)):
                 first = (ax * count[1] + ay) * count[2]
-                start = _first_not_below(ordered, first + max(0, bz - 1))
-                stop = _first_not_below(ordered, first + min(count[2], bz + 2))
+                start = np.searchsorted(ordered, first + max(0, bz - 1))
+                stop = np.searchsorted(ordered, first + min(count[2], bz + 2))
                 for other in range(start, stop):
                     j = order[other]
                     if j <= i:

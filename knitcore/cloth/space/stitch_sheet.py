@@ -166,6 +166,18 @@ class StitchSheet:
             np.bincount(self.quads.ravel(), parts, minlength=len(self.flat_mm)), dtype=float
         )
 
+    def load_n(self, of_stitches: Array | float, axis: int = 2) -> Array:
+        """Weights of stitches as forces (corners, 3) against an axis.
+
+        Parameters
+        ----------
+        of_stitches : N, of each, (stitches,) in the order of ``quads``, or of all alike.
+        axis : up.
+        """
+        load = np.zeros_like(self.flat_mm)
+        load[:, axis] = -self.shared(np.broadcast_to(of_stitches, len(self.quads)))
+        return load
+
     @cached_property
     def home_mm(self) -> Array:
         """Places (k, 2) of these points in the flat sheet."""

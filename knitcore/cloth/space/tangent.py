@@ -14,6 +14,7 @@ from knitcore.base.elementary import arctan2, log
 from knitcore.cloth.space.sheet_kernels import (
     NAP,
     bent,
+    hinge_points,
     metric_energy,
     points_on,
     pressed,
@@ -208,11 +209,7 @@ def _hinges(
     complex_slope = np.empty((4, 3), np.complex128)
     matrix = np.empty((12, 12))
     for k in range(nodes.shape[0]):
-        for m in range(3):
-            points[0, m] = x[nodes[k, 0], m]
-            points[1, m] = x[nodes[k, 1], m]
-            points[2, m] = 0.5 * (x[nodes[k, 2], m] + x[nodes[k, 3], m])
-            points[3, m] = 0.5 * (x[nodes[k, 4], m] + x[nodes[k, 5], m])
+        hinge_points(x, nodes[k], points)
         sine, cosine, left, right = turn_slope(points, slope)
         _, moment, stiffness = bent(arctan2(sine, cosine), parameters[k])
         matrix[:] = 0.0

@@ -1,39 +1,41 @@
 """Pulls of a law along one direction."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import Transverse
 from knitcore.law.stiffening import StiffeningForm
-from knitcore.law.uniaxial import uniaxial_response
+from knitcore.law.uniaxial import held_strains_at_stress, strain_at_stress, uniaxial_response
 from knitcore.materials import material
+from tests.knitcore.law.laws import laws
 
 LAW = material("acrylic:published").law(Fabric.STOCKINETTE)
 
 
-@pytest.mark.parametrize("form", StiffeningForm)
-@pytest.mark.parametrize("direction", Direction)
-def test_a_curve_has_the_strains_given_and_the_stress_of_its_form(
-    form: StiffeningForm, direction: Direction
-) -> None:
-    strain = np.array([0.0, 0.1, 0.3])
-    found = uniaxial_response(LAW, direction, strain, transverse=Transverse.FREE, form=form)
-    assert found.strain == pytest.approx(strain)
-    along, across = found.strain, found.transverse_strain
-    pair = (along, across) if direction is Direction.COURSE else (across, along)
-    stress = LAW.stress(*pair, form)
-    assert found.stress == pytest.approx(stress[direction.axis])
-    assert stress[1 - direction.axis] == pytest.approx(np.zeros(3), abs=1e-9)
-    held = uniaxial_response(LAW, direction, strain, transverse=Transverse.FIXED, form=form)
-    assert not held.transverse_strain.any()
-    assert np.all(held.stress[1:] > found.stress[1:])
+@given(laws, st.sampled_from(Direction), st.sampled_from(StiffeningForm))
+def test_a_curve_is_in_equilibrium_and_stiffer_where_the_width_is_held(law, direction, form):
+    most = 0.8 if form is StiffeningForm.FULL else 1.5
+    strain = np.linspace(0.0, most * law.lock_up_strain(direction), 9)
+    free = uniaxial_response(law, direction, strain, form=form)
+    fixed = uniaxial_response(law, direction, strain, transverse=Transverse.FIXED, form=form)
+    for curve in (free, fixed):
+        np.testing.assert_array_equal(curve.strain, strain)
+        pair = direction.of((strain, curve.transverse_strain), (curve.transverse_strain, strain))
+        stress = law.stress(*pair, form)
+        np.testing.assert_allclose(curve.stress, stress[direction.axis], rtol=1e-12)
+        if curve is free:
+            np.testing.assert_allclose(stress[direction.other.axis], 0, atol=1e-9)
+    np.testing.assert_array_equal(fixed.transverse_strain, 0)
+    assert np.all(fixed.stress[1:] > free.stress[1:])
+    if form is StiffeningForm.FULL:
+        assert np.all(np.diff(free.stress) > 0)
 
 
-def test_the_forms_differ_where_it_stiffens() -> None:
+def test_the_forms_differ_where_it_stiffens():
     full, published = (
         uniaxial_response(LAW, Direction.COURSE, [0.5], form=form).stress[0]
         for form in (StiffeningForm.FULL, StiffeningForm.PUBLISHED)
@@ -41,10 +43,54 @@ def test_the_forms_differ_where_it_stiffens() -> None:
     assert abs(full / published - 1) > 0.01
 
 
-def test_the_lock_up_itself_is_refused_and_no_strains_are_none() -> None:
+@pytest.mark.parametrize("fabric", Fabric)
+@pytest.mark.parametrize("direction", Direction)
+def test_a_sheet_pulled_to_the_lock_up_keeps_some_width(fabric, direction):
+    law = material("acrylic").law(fabric)
+    assert max(law.kappa_xx, law.kappa_yy) > 0
+    strain = np.linspace(0.1, 0.999, 50) * law.lock_up_strain(direction)
+    pulled = uniaxial_response(law, direction, strain)
+    assert np.all(np.diff(pulled.transverse_strain) < 0)
+    assert pulled.transverse_strain[-1] > -1
+    assert np.all(np.diff(pulled.stress) > 0)
+
+
+@given(laws, st.sampled_from(Direction))
+def test_a_small_pull_shows_modulus_and_poisson_ratio(law, direction):
+    curve = uniaxial_response(law, direction, [1e-7])
+    assert curve.stress[0] / 1e-7 == pytest.approx(law.modulus(direction), rel=1e-3)
+    ratio = law.poisson_yx if direction is Direction.COURSE else law.poisson_xy
+    assert -curve.transverse_strain[0] / 1e-7 == pytest.approx(ratio, rel=1e-4)
+
+
+@given(laws, st.sampled_from(Direction), st.sampled_from(Transverse), st.floats(1e-4, 2.0))
+def test_the_strain_at_a_stress_carries_it(law, direction, transverse, stress):
+    strain = strain_at_stress(law, direction, stress, transverse=transverse)
+    curve = uniaxial_response(law, direction, strain, transverse=transverse)
+    assert curve.stress[0] == pytest.approx(stress, rel=1e-6)
+    assert strain < law.lock_up_strain(direction)
+
+
+@given(laws, st.sampled_from(Direction))
+def test_many_strains_at_a_held_width_are_those_of_single_stresses(law, direction):
+    stresses = [0.0, 1e-3, 0.1, 1.0]
+    single = [strain_at_stress(law, direction, s, transverse=Transverse.FIXED) for s in stresses]
+    np.testing.assert_allclose(
+        held_strains_at_stress(law, direction, stresses), single, rtol=1e-6, atol=1e-11
+    )
+
+
+def test_the_lock_up_is_refused_with_the_limit_and_so_is_what_is_no_number():
+    with pytest.raises(InputError, match=r"below 0\.900"):
+        uniaxial_response(LAW, Direction.COURSE, [0.1, 0.95])
     lock = LAW.lock_up_strain(Direction.WALE)
     with pytest.raises(InputError, match="strain"):
         uniaxial_response(LAW, Direction.WALE, [lock])
     assert uniaxial_response(LAW, Direction.WALE, [0.999 * lock]).stress[0] > 0
     assert uniaxial_response(LAW, Direction.WALE, []).stress.shape == (0,)
-    assert uniaxial_response(LAW, Direction.WALE, [0]).stress == pytest.approx([0.0])
+    with pytest.raises(InputError, match="finite"):
+        uniaxial_response(LAW, Direction.COURSE, [float("nan")])
+    for bad in (-0.1, float("inf")):
+        with pytest.raises(InputError, match="0 N/mm or more"):
+            strain_at_stress(LAW, Direction.WALE, bad)
+    assert strain_at_stress(LAW, Direction.WALE, 0.0) == 0.0

@@ -1,4 +1,4 @@
-"""Local moduli: pure fabrics, bounds, symmetry, patches and incremental updates."""
+"""Local moduli: pure fabrics, bounds, symmetry, patches and windows."""
 
 import numpy as np
 import pytest
@@ -8,10 +8,10 @@ from hypothesis.extra import numpy as hnp
 
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction, Fabric
-from knitcore.chart.phases import QUARTERS_OF_CODE
+from knitcore.chart.phases import QUARTERS_OF_CODE, surroundings
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Laws, load_library, material
-from knitcore.mechanics.local_moduli import local_moduli, stitch_table
+from knitcore.mechanics.local_moduli import local_moduli, stitch_table, windows_of
 
 grids = hnp.arrays(bool, hnp.array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=8))
 
@@ -74,25 +74,21 @@ def test_turning_over_mirrors_the_maps(grid):
 
 
 @given(grids, st.data())
-def test_a_stroke_updates_like_a_fresh_start(grid, data):
-    before = local_moduli(StitchChart(grid), material("acrylic:published"))
-    rows, columns = (
+def test_a_window_holds_what_a_stroke_changes_and_its_surroundings_determine_it(grid, data):
+    touched = tuple(
         slice(*sorted(data.draw(st.tuples(st.integers(0, n), st.integers(0, n)))))
         for n in grid.shape
     )
     painted = grid.copy()
-    painted[rows, columns] ^= data.draw(hnp.arrays(bool, painted[rows, columns].shape))
-    chart = StitchChart(painted)
-    np.testing.assert_array_equal(
-        before.updated(chart, rows, columns).codes,
-        local_moduli(chart, material("acrylic:published")).codes,
+    painted[touched] ^= data.draw(hnp.arrays(bool, painted[touched].shape))
+    windows = [windows_of(each, n) for each, n in zip(touched, grid.shape, strict=True)]
+    changed, around = zip(*windows, strict=True)
+    inside = tuple(
+        slice(c.start - a.start, c.stop - a.start) for c, a in zip(changed, around, strict=True)
     )
-
-
-def test_an_update_needs_the_same_size():
-    maps = local_moduli(StitchChart.of_fabric("rib", 4, 4), material("acrylic:published"))
-    with pytest.raises(InputError, match="5x4"):
-        maps.updated(StitchChart.of_fabric("rib", 4, 5), slice(0, 1), slice(0, 1))
+    codes = surroundings(StitchChart(grid))
+    codes[changed] = surroundings(StitchChart(painted[around]))[inside]
+    np.testing.assert_array_equal(codes, surroundings(StitchChart(painted)))
 
 
 def test_two_regions_have_their_own_moduli_inside():

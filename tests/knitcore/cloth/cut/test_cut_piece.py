@@ -26,15 +26,13 @@ from knitcore.cloth.cut import (
     Traction,
     cloth_under,
     solve,
-    write_piece_test,
 )
 from knitcore.cloth.cut.assembly import PieceEnergy
 from knitcore.cloth.cut.conditions import Constraints
 from knitcore.cloth.cut.cut_mesh import mesh_of
 from knitcore.cloth.cut.equilibrium import Balance
-from knitcore.cloth.flat import Clamps, EnergyModel, QuarterGrid, Sheet, SheetModel, State
-from knitcore.cloth.flat.equilibrium_path import Tolerance
-from knitcore.cloth.flat.load_path import run_path
+from knitcore.cloth.flat import Clamps, EnergyModel, QuarterGrid, Sheet, SheetModel
+from knitcore.cloth.flat.equilibrium_path import Tolerance, run_path
 from knitcore.cloth.flat.strip import chart_sheet, clamp_mask, stretched
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress, uniaxial_response
@@ -50,6 +48,7 @@ KITE = CutPiece(
     grain_deg=35.0,
     edges={"all": (1, 2, 3, 4), "hole": (5, 6, 7), "low": (1,), "high": (3,)},
 )
+STRIP = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
 
 
 def cloth_of(law: ConstitutiveLaw = LAW, model: SheetModel | None = None) -> Cloth:
@@ -58,27 +57,16 @@ def cloth_of(law: ConstitutiveLaw = LAW, model: SheetModel | None = None) -> Clo
     return Cloth(sheet, (0.0, 0.0))
 
 
+def stretched_by(piece: CutPiece, y_mm: float, mesh_mm: float = 10.0, steps: int = 1) -> PieceTest:
+    """A piece held at the bottom whose top is pulled upwards."""
+    conditions = [Held("bottom"), Held("top", y_mm=y_mm)]
+    return solve(piece, cloth_of(), conditions, steps=steps, mesh_mm=mesh_mm)
+
+
 def strip_cloth(test: PieceTest) -> tuple[float, float]:
     """Force across and along the pull."""
     x, y = test.force_n[-1, 1]
     return float(x), float(y)
-
-
-@pytest.mark.parametrize("energy", list(EnergyModel))
-def test_the_grid_and_scikit_fem_have_the_same_energy_and_forces(energy: EnergyModel) -> None:
-    rng = np.random.default_rng(5)
-    chart = StitchChart(rng.random((6, 7)) < 0.5)
-    sheet = chart_sheet(chart, ACRYLIC, energy)
-    grid = sheet.grid
-    cloth = Cloth(sheet, (float(grid.column_lines[0]), float(grid.row_lines[0])))
-    piece = PieceEnergy(crossed_mesh(grid), cloth, np.eye(2), element=ElementTriP1(), order=1)
-    rest = np.vstack([grid.corners, grid.centres])
-    moved = rest @ np.array([[1.1, 0.03], [-0.02, 1.2]]) + rng.uniform(-0.05, 0.05, rest.shape)
-    corners, centres = np.split(moved, [len(grid.corners)])
-    lin = sheet.linearise(State(corners, centres))
-    found = piece.at((moved - rest).T, [])
-    assert found.energy == pytest.approx(lin.energy, rel=1e-12)
-    assert np.abs(found.force.T - np.vstack(lin.force)).max() < 1e-12 * np.abs(found.force).max()
 
 
 def test_the_equilibrium_on_the_grids_mesh_is_the_grids() -> None:
@@ -167,7 +155,7 @@ def test_turning_the_whole_test_turns_the_answer() -> None:
     lying = CutPiece(
         [(y, -x) for x, y in upright.outline], grain_deg=-60.0, edges=dict(upright.edges)
     )
-    a = solve(upright, cloth_of(), [Held("bottom"), Held("top", y_mm=15.0)], steps=2, mesh_mm=10.0)
+    a = stretched_by(upright, 15.0, steps=2)
     b = solve(lying, cloth_of(), [Held("bottom"), Held("top", x_mm=15.0)], steps=2, mesh_mm=10.0)
     (ax, ay), (bx, by) = strip_cloth(a), strip_cloth(b)
     assert (bx, by) == pytest.approx((ay, -ax), rel=1e-9)
@@ -175,46 +163,29 @@ def test_turning_the_whole_test_turns_the_answer() -> None:
 
 
 def test_a_finer_mesh_changes_little_and_from_above() -> None:
-    piece = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
-    conditions = [Held("bottom"), Held("top", y_mm=15.0)]
-    energies = [
-        solve(piece, cloth_of(), conditions, steps=1, mesh_mm=size).energy_n_mm[-1]
-        for size in (15.0, 7.5, 3.75)
-    ]
+    energies = [stretched_by(STRIP, 15.0, size).energy_n_mm[-1] for size in (15.0, 7.5, 3.75)]
     assert energies[0] > energies[1] > energies[2]
     assert energies[1] - energies[2] < 0.7 * (energies[0] - energies[1])
     assert energies[1] == pytest.approx(energies[2], rel=0.02)
 
 
 def test_triangles_and_quadrilaterals_agree() -> None:
-    upright = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
-    (a, b, c, d) = upright.outline
+    (a, b, c, d) = STRIP.outline
     five = CutPiece([a, b, (15.0, 0.0), c, d], grain_deg=45.0, edges={"bottom": (1,), "top": (4,)})
-    energies = [
-        solve(piece, cloth_of(), [Held("bottom"), Held("top", y_mm=12.0)], steps=1, mesh_mm=5.0)
-        for piece in (upright, five)
-    ]
     assert five.is_upright_rectangle is False
-    first, second = (test.energy_n_mm[-1] for test in energies)
+    first, second = (stretched_by(piece, 12.0, 5.0).energy_n_mm[-1] for piece in (STRIP, five))
     assert first == pytest.approx(second, rel=0.02)
 
 
 def test_the_work_of_the_edges_is_the_energy() -> None:
-    piece = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
-    test = solve(
-        piece, cloth_of(), [Held("bottom"), Held("top", y_mm=12.0)], steps=10, mesh_mm=15.0
-    )
+    test = stretched_by(STRIP, 12.0, 15.0, steps=10)
     force = np.concatenate([[0.0], test.force_n[:, 1, 1]])
     assert np.trapezoid(force, dx=12.0 / 10) == pytest.approx(test.energy_n_mm[-1], rel=5e-3)
 
 
 def test_a_force_that_was_measured_gives_the_stretch_again() -> None:
-    piece = CutPiece.rectangle(30.0, 60.0, grain_deg=45.0)
-    moved = solve(
-        piece, cloth_of(), [Held("bottom"), Held("top", y_mm=12.0)], steps=2, mesh_mm=10.0
-    )
-    x, y = strip_cloth(moved)
-    pulled = solve(piece, cloth_of(), [Held("bottom"), Pulled("top", x, y)], steps=3, mesh_mm=10.0)
+    x, y = strip_cloth(stretched_by(STRIP, 12.0, steps=2))
+    pulled = solve(STRIP, cloth_of(), [Held("bottom"), Pulled("top", x, y)], steps=3, mesh_mm=10.0)
     assert pulled.converged
     assert pulled.moved_mm[-1, 1] == pytest.approx((0.0, 12.0), abs=1e-6)
     assert pulled.force_n[-1, 0] == pytest.approx((-x, -y), rel=1e-7)
@@ -282,7 +253,7 @@ def test_a_patch_of_mixed_stitches_has_one_law_with_the_strains_of_its_answer() 
 def test_results_are_written(tmp_path: Path) -> None:
     test = solve(KITE, cloth_of(), [Held("low"), Pulled("high", y_n=1.0)], steps=2, mesh_mm=12.0)
     for suffix in (".csv", ".npz", ".vtu"):
-        write_piece_test(test, tmp_path / f"out{suffix}")
+        test.write(tmp_path / f"out{suffix}")
     table = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
     assert table["high_y_n"] == pytest.approx([0.5, 1.0])
     stored = np.load(tmp_path / "out.npz")
@@ -290,7 +261,7 @@ def test_results_are_written(tmp_path: Path) -> None:
     assert stored["strain_wale"].shape == (2, test.mesh.nelements)
     assert "utilisation" in (tmp_path / "out.vtu").read_text(errors="ignore")
     with pytest.raises(InputError):
-        write_piece_test(test, tmp_path / "out.xlsx")
+        test.write(tmp_path / "out.xlsx")
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from knitcore.materials import material
 ACRYLIC = material("acrylic")
 LAW = ACRYLIC.law(Fabric.STOCKINETTE)
 KNIT = StitchChart.parse("K")
+framed = partial(trellis_test, KNIT, ACRYLIC, side_mm=60.0, steps=1, mesh_mm=20.0)
 
 
 def test_a_strip_along_the_columns_is_the_strip_test() -> None:
@@ -46,7 +48,7 @@ def test_biaxial_stresses_are_those_of_the_law() -> None:
 
 
 def test_a_frame_along_the_rows_shears_without_stretching_yarn() -> None:
-    frame = trellis_test(KNIT, ACRYLIC, 0.5, side_mm=60.0, steps=2, mesh_mm=20.0)
+    frame = framed(0.5, steps=2)
     grown = 1 + LAW.shear_stiffening * frame.shear_angle**2
     shear = LAW.shear_modulus * frame.shear_angle * grown
     assert frame.shear_stress_n_per_mm == pytest.approx(shear, rel=1e-6)
@@ -54,29 +56,21 @@ def test_a_frame_along_the_rows_shears_without_stretching_yarn() -> None:
 
 
 def test_a_frame_measures_the_shear_modulus() -> None:
-    frame = trellis_test(KNIT, ACRYLIC, 0.01, side_mm=60.0, steps=1, mesh_mm=20.0)
+    frame = framed(0.01)
     stress = frame.shear_stress_n_per_mm[-1]
     assert LAW.shear_stiffening == 4.0
     assert stress / 0.01 == pytest.approx(LAW.shear_modulus * (1 + 4.0 * 0.01**2), rel=1e-4)
     # pulled at the corners of a square frame, force = shear stress * side * sqrt(2)
     assert frame.force_n[-1] == pytest.approx(math.sqrt(2) * 60.0 * stress, rel=1e-2)
-    double = trellis_test(
-        KNIT,
-        ACRYLIC,
-        0.01,
-        side_mm=60.0,
-        steps=1,
-        mesh_mm=20.0,
-        shear_modulus=2 * LAW.shear_modulus,
-    )
+    double = framed(0.01, shear_modulus=2 * LAW.shear_modulus)
     assert double.force_n[-1] == pytest.approx(2 * frame.force_n[-1], rel=1e-6)
     log_sd = ACRYLIC.record(Fabric.STOCKINETTE).uncertainty.log_shear
     assert frame.force_log_sd[-1] == pytest.approx(log_sd, rel=1e-3)
 
 
 def test_a_frame_at_45_degrees_stretches_the_yarn_instead() -> None:
-    across = trellis_test(KNIT, ACRYLIC, 0.2, side_mm=60.0, grain_deg=45.0, steps=1, mesh_mm=20.0)
-    along = trellis_test(KNIT, ACRYLIC, 0.2, side_mm=60.0, steps=1, mesh_mm=20.0)
+    across = framed(0.2, grain_deg=45.0)
+    along = framed(0.2)
     assert across.force_n[-1] != pytest.approx(along.force_n[-1], rel=0.05)
     assert np.abs(across.test.fields().strain_course).max() > 0.09
 

@@ -2,23 +2,39 @@
 
 from __future__ import annotations
 
+import io
+from collections.abc import Callable
+
 import numpy as np
 import pytest
+import trimesh
+from numpy.typing import NDArray
 
+from knitcore.base.arrays import Array
 from knitcore.base.errors import CancelledError, InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.curl import UNBALANCED_NOTE, CurledPiece, Pull, curl
 from knitcore.cloth.space.sheet_shape import settle
 from knitcore.cloth.space.stitch_sheet import sheet_of
+from knitcore.formats.write.yarn_mesh import write_curled_glb
+from knitcore.garment.shaped import outline_marks
 from knitcore.materials import material
 from knitcore.prediction.predict import predict
+from tests.knitcore.cloth.space.outlines import OUTLINES
 
 ACRYLIC = material("acrylic")
+Ints = NDArray[np.int64]
 
 
 def _piece(repeat: str, across: int, up: int) -> CurledPiece:
-    piece = curl(StitchChart.parse(repeat).tile(up, across), ACRYLIC)
+    return _at_rest(StitchChart.parse(repeat).tile(up, across))
+
+
+def _at_rest(
+    chart: StitchChart, *, pull: Pull | None = None, stitches: NDArray[np.bool_] | None = None
+) -> CurledPiece:
+    piece = curl(chart, ACRYLIC, pull=pull, stitches=stitches)
     assert piece.converged
     return piece
 
@@ -38,9 +54,8 @@ def test_reverse_stockinette_rolls_the_other_way() -> None:
 
 @pytest.mark.parametrize("fabric", [Fabric.GARTER, Fabric.RIB, Fabric.SEED])
 def test_balanced_fabrics_lie_flat_at_their_size(fabric: Fabric) -> None:
-    piece = curl(StitchChart.of_fabric(fabric, rows=16, columns=16), ACRYLIC)
+    piece = _at_rest(StitchChart.of_fabric(fabric, rows=16, columns=16))
     record = ACRYLIC.record(fabric)
-    assert piece.converged
     assert piece.depth_mm < 0.1
     assert piece.width_mm == pytest.approx(16 * record.stitch_course_mm, rel=1e-3)
     assert piece.height_mm == pytest.approx(16 * record.stitch_wale_mm, rel=1e-3)
@@ -77,8 +92,7 @@ def test_folds_are_as_wide_and_high_as_the_relaxed_fabric(
 ) -> None:
     """Extent of the inner repeats, over that of the answer."""
     chart = StitchChart.parse(repeat)
-    piece = curl(chart.tile(up, across), ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(chart.tile(up, across))
     answer = predict(chart, ACRYLIC)
     for axis, along in ((1, answer.course), (0, answer.wale)):
         line = piece.corners_mm.mean(axis=1 - axis)
@@ -103,8 +117,7 @@ def test_ribs_that_do_not_balance_are_as_wide_as_predicted_when_laid_flat(repeat
     width = (line[3 * wide] - line[wide]) / (2 * wide)
     predicted = predict(StitchChart.parse(repeat), ACRYLIC).course.relaxed_mm
     assert width == pytest.approx(predicted, rel=0.1)
-    piece = curl(chart, ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(chart)
     assert piece.curl_course_mm < 0.0
     assert UNBALANCED_NOTE in piece.notes
 
@@ -125,8 +138,7 @@ def test_shifted_stripes_fold_into_ridges_of_knits_and_valleys_of_purls() -> Non
     """As the Miura chart of Niu, Dion and Kamien does along its rows."""
     shifts = [*range(7), *range(5, 0, -1)]
     stripes = "/".join("K" * at + "P" * 6 + "K" * (6 - at) for at in shifts for _ in range(2))
-    piece = curl(StitchChart.parse(stripes).tile(1, 2), ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(StitchChart.parse(stripes).tile(1, 2))
     along = np.diff(piece.corners_mm[..., [0, 2]], axis=1)
     along = along[1:] + along[:-1]
     turn = np.linalg.det(np.stack([along[:, :-1], along[:, 1:]], axis=-1))
@@ -137,8 +149,7 @@ def test_shifted_stripes_fold_into_ridges_of_knits_and_valleys_of_purls() -> Non
 
 
 def test_a_single_stitch_is_flat() -> None:
-    piece = curl(StitchChart.parse("K"), ACRYLIC)
-    assert piece.converged
+    piece = _at_rest(StitchChart.parse("K"))
     assert piece.curl_course_mm == pytest.approx(0.0, abs=1e-6)
 
 
@@ -174,8 +185,7 @@ def test_pulled_between_clamps_the_free_sides_curl_and_the_more_so_the_less_it_i
 
 def test_pulled_along_the_rows_top_and_bottom_curl_to_the_front() -> None:
     chart = StitchChart.parse("K").tile(16, 12)
-    piece = curl(chart, ACRYLIC, pull=Pull(Direction.COURSE, 0.2))
-    assert piece.converged
+    piece = _at_rest(chart, pull=Pull(Direction.COURSE, 0.2))
     assert piece.curl_wale_mm > 0.5 * piece.thickness_mm
 
 
@@ -185,8 +195,7 @@ def test_a_shaped_piece_is_the_rectangle_without_what_lies_outside() -> None:
     every = curl(chart, ACRYLIC, stitches=np.ones((10, 10), dtype=bool))
     np.testing.assert_allclose(every.corners_mm, curl(chart, ACRYLIC).corners_mm, atol=1e-9)
     inside = np.tri(10, dtype=bool)[:, ::-1]
-    piece = curl(chart, ACRYLIC, stitches=inside)
-    assert piece.converged
+    piece = _at_rest(chart, stitches=inside)
     assert np.isnan(piece.curl_course_mm)
     assert np.count_nonzero(piece.used) == 55 + 21
     steps = np.linalg.norm(np.diff(piece.corners_mm[:, -1], axis=0), axis=1)
@@ -234,3 +243,119 @@ def test_the_first_shape_after_a_change_moves_only_what_is_near_it() -> None:
 def test_a_shape_of_another_size_is_nothing_to_begin_with() -> None:
     with pytest.raises(InputError, match="another size"):
         curl(StitchChart.parse("K").tile(4, 4), ACRYLIC, begin=np.zeros((4, 5, 3)))
+
+
+@pytest.mark.parametrize("outline", OUTLINES.values(), ids=OUTLINES)
+def test_every_outline_comes_to_rest(outline: str) -> None:
+    stitches = outline_marks(outline).repeat(2, axis=0).repeat(2, axis=1)
+    piece = _at_rest(StitchChart.parse("K").tile(*stitches.shape), stitches=stitches)
+    assert piece.depth_mm > piece.thickness_mm
+
+
+@pytest.mark.parametrize("fabric", [Fabric.GARTER, Fabric.RIB, Fabric.SEED])
+def test_what_lies_flat_lies_flat_around_a_hole(fabric: Fabric) -> None:
+    """At its own size: the edge of the hole takes its parity from within the cloth."""
+    stitches = np.ones((16, 16), dtype=bool)
+    stitches[5:10, 6:11] = False  # odd, so that the chart's parity differs at its sides
+    chart = StitchChart.of_fabric(fabric, rows=16, columns=16)
+    purl = chart.purl ^ ~stitches & (np.random.default_rng(0).random((16, 16)) < 0.5)
+    piece = _at_rest(StitchChart(purl), stitches=stitches)
+    record = ACRYLIC.record(fabric)
+    assert piece.depth_mm < 0.1
+    assert piece.width_mm == pytest.approx(16 * record.stitch_course_mm, rel=1e-3)
+
+
+def test_parts_that_nothing_holds_together_are_refused_by_name() -> None:
+    stitches = outline_marks("xxxx.x\nxxxx.x\nxxxx..")
+    with pytest.raises(InputError, match="2 parts") as refused:
+        curl(StitchChart.parse("K").tile(3, 6), ACRYLIC, stitches=stitches)
+    assert refused.value.field == "outline"
+    assert "stitch 6 of row 2" in refused.value.problem
+    assert "Join them" in refused.value.remedy
+
+
+def test_a_hole_is_a_hole_in_the_file() -> None:
+    stitches = np.ones((10, 12), dtype=bool)
+    stitches[3:7, 4:8] = False
+    piece = curl(
+        StitchChart.of_fabric(Fabric.SEED, rows=10, columns=12), ACRYLIC, stitches=stitches
+    )
+    solid = write_curled_glb(piece.chart, piece.corners_mm, ACRYLIC, piece.stitches)
+    mesh = trimesh.load_mesh(io.BytesIO(solid), file_type="glb")
+    middle = 500.0 * (mesh.bounds[0] + mesh.bounds[1])
+    size = ACRYLIC.record(Fabric.SEED).stitch_mm
+    within = np.abs(1000.0 * mesh.vertices[:, :2] - middle[:2]) < np.array(size)
+    assert not within.all(axis=1).any()
+
+
+SIDE = 48
+
+
+def _zigzag(at: Ints, period: int) -> Ints:
+    """Distance from the nearest multiple of a period."""
+    return np.abs((at + period // 2) % period - period // 2)
+
+
+PURL: dict[str, Callable[[Ints, Ints], NDArray[np.generic]]] = {
+    "miura": lambda r, c: (c + _zigzag(r // 2, 12)) // 6 % 2,
+    "chains": lambda r, c: (r % 6 < 2) | (c // 4 % 2 == 0),
+    "columns": lambda r, c: np.where(
+        _zigzag(c, 24) > 4 + _zigzag(r, 24) // 2, r // 6 % 2, c // 6 % 2
+    ),
+    "peaks": lambda r, c: np.where(_zigzag(c, 48) > _zigzag(r, 48), r // 4 % 2, c // 4 % 2),
+    "squiggles": lambda r, c: ((c + 2 * (r // 5 % 2)) // 12 + r // 5) % 2,
+    "bars": lambda r, c: _zigzag(c, 16) < 8 - r % 9,
+    "weave": lambda r, c: np.where(r % 12 < 2, 0, (c // 12 + r // 12) % 2),
+}
+"""Where a stitch of a row and column is a purl in charts that fold themselves, of the seven kinds
+that Niu, Dion and Kamien knitted (arXiv 2408.08409), each by a rule of its own."""
+
+
+def _turns(corners_mm: Array) -> Array:
+    """Turn between neighbours along the rows, (rows, columns - 1), rad, positive over a ridge."""
+    diagonals = corners_mm[1:, 1:] - corners_mm[:-1, :-1], corners_mm[1:, :-1] - corners_mm[:-1, 1:]
+    normal = np.cross(*diagonals)
+    normal /= np.linalg.norm(normal, axis=2)[..., None]
+    line = corners_mm[1:, 1:-1] - corners_mm[:-1, 1:-1]
+    line /= np.linalg.norm(line, axis=2)[..., None]
+    across = np.cross(normal[:, :-1], normal[:, 1:])
+    sine = np.einsum("ijm,ijm->ij", across, line)
+    return np.asarray(np.arctan2(sine, np.einsum("ijm,ijm->ij", normal[:, :-1], normal[:, 1:])))
+
+
+def _folds(piece: CurledPiece) -> tuple[float, list[float]]:
+    """Share of the folding that goes as the natural curvature does, and the mean fold of a panel.
+
+    Folds are in degrees: knits and purls along the rows, then along the columns.
+    """
+    mean_folds, right, total = [], 0.0, 0.0
+    for purl, corners, sign in (
+        (piece.chart.purl, piece.corners_mm, 1.0),
+        (piece.chart.purl.T, piece.corners_mm.transpose(1, 0, 2), -1.0),
+    ):
+        turn = sign * _turns(corners)
+        inside = purl[:, 1:] == purl[:, :-1]
+        for kind in (False, True):
+            alike = inside & (purl[:, 1:] == kind)
+            begins = alike & ~np.pad(alike, ((0, 0), (1, 0)))[:, :-1]
+            panels = max(np.count_nonzero(begins), 1)
+            mean_folds.append(float(np.degrees(turn[alike].sum() / panels)))
+            natural = -sign if kind else sign
+            right += float(np.maximum(natural * turn[alike], 0.0).sum())
+            total += float(np.abs(turn[alike]).sum())
+    return right / total, mean_folds
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", PURL)
+def test_panels_fold_as_their_natural_curvature_says(kind: str) -> None:
+    """Knits into ridges along the wales and valleys along the courses, purls the other way, so
+    that the sheet bends over where knits meet purls; half of the folding would be chance."""
+    purl = np.asarray(PURL[kind](*np.indices((SIDE, SIDE))), dtype=bool)
+    piece = _at_rest(StitchChart(purl))
+    assert piece.depth_mm > 4.0 * piece.thickness_mm
+    share, (knits_across, purls_across, knits_up, purls_up) = _folds(piece)
+    assert share > 0.75
+    across, up = knits_across - purls_across, purls_up - knits_up
+    assert max(across, up) > 30.0
+    assert min(across, up) > -10.0

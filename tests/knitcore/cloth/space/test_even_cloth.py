@@ -9,7 +9,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.bending_constants import bends_of
-from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of, stitch_corners, stitch_weights_n
+from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of, stitch_weights_n, stitched
 from knitcore.cloth.space.stitch_sheet import sheet_of
 from knitcore.materials import material
 from knitcore.prediction.predict import predict
@@ -96,7 +96,9 @@ def test_stitches_lie_evenly_on_the_rectangles_of_a_sheet() -> None:
     x, y = np.meshgrid(np.arange(0.0, 21.0, 2.0), np.arange(0.0, 13.0, 3.0))
     sheet = np.stack([x, y, x * 0.0], axis=-1)
     sheet[0, 0] = np.nan
-    corners, stitches = stitch_corners(sheet, (2.0, 3.0), (2.5, 1.5))
+    laid = stitched(sheet, (2.0, 3.0), (2.5, 1.5), GARTER)
+    corners, stitches = laid.corners_mm, laid.stitches
+    assert laid.chart == GARTER.tile(4, 8)
     assert stitches.shape == (8, 8)
     assert not stitches[0, 0]
     assert stitches[2:, 1:].all()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from knitcore.chart.fabric import Fabric
+from knitcore.chart.phases import continued
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.folds import balances, folds_of, opposed, rest_turns, turning
 from knitcore.materials import material
@@ -72,3 +73,16 @@ def test_what_does_not_balance_rolls_up_evenly() -> None:
 def test_ribs_of_as_many_knits_as_purls_balance(row: str, balanced: bool) -> None:
     chart = StitchChart.parse(row).tile(6, 4)
     assert balances(chart) is balanced
+
+
+def test_runs_end_at_a_hole() -> None:
+    """Two panels of a rib beside a hole are at an edge, and no longer between others."""
+    chart = StitchChart.parse("KKKPPPKKKPPPKKK").tile(6, 1)
+    stitches = np.ones(chart.purl.shape, dtype=bool)
+    stitches[2:4, 6:9] = False
+    side = turning(continued(chart, stitches), stitches)
+    assert opposed(side)[0].tolist() == [3] * 15
+    assert opposed(side)[2, [1, 4, 10, 13]].tolist() == [3, 3, 3, 3]
+    lone = np.ones(chart.purl.shape, dtype=bool)
+    lone[:, [2, 6]] = False  # the purls have nothing beside them
+    assert opposed(turning(continued(chart, lone), lone))[2, 4] == 0

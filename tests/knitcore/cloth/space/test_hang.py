@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from knitcore.base.errors import CancelledError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.hang import HungBy, hang
+from knitcore.cloth.space.surface import corners_of
+from knitcore.garment.shaped import outline_marks
 from knitcore.materials import material
 
 ACRYLIC = material("acrylic")
@@ -49,3 +52,17 @@ def test_the_bottom_of_stockinette_rolls_to_the_front_against_its_weight() -> No
 def test_it_can_be_cancelled() -> None:
     with pytest.raises(CancelledError):
         hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5, cancelled=lambda: True)
+
+
+def test_a_piece_with_a_hole_hangs_by_its_highest_edge() -> None:
+    stitches = outline_marks("..xxxx..\nxxxxxxxx\nxxx..xxx\nxxx..xxx\nxxxxxxxx\n........")
+    chart = StitchChart.of_fabric(Fabric.GARTER, rows=6, columns=8)
+    found = hang(chart, ACRYLIC, linear_density_g_per_m=0.5, stitches=stitches)
+    whole = hang(chart, ACRYLIC, linear_density_g_per_m=0.5)
+    assert found.converged
+    assert found.weight_n == pytest.approx(whole.weight_n * stitches.mean(), rel=0.01)
+    held = found.corners_mm[-1, 2:7]
+    assert not np.ptp(held[:, 1:], axis=0).any()
+    height = ACRYLIC.record(Fabric.GARTER).stitch_wale_mm
+    assert found.drop_mm == pytest.approx(5 * height, rel=0.1)
+    assert np.array_equal(found.used, corners_of(stitches))

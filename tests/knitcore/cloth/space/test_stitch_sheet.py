@@ -14,17 +14,23 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ellipe, ellipk
 
 from knitcore.chart.fabric import Fabric
+from knitcore.chart.phases import continued
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space import sheet_kernels as kernels
 from knitcore.cloth.space.bending_constants import bends_of, computed
-from knitcore.cloth.space.sheet_shape import settle
+from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import StitchSheet, sheet_of
 from knitcore.cloth.space.tangent import Tangent
+from knitcore.garment.shaped import outline_marks
 from knitcore.materials import material
+from tests.knitcore.cloth.space.outlines import OUTLINES
 
 Array = NDArray[np.float64]
 MIXED = StitchChart.parse("KKPK\nKPPK\nPPKK\nKPKP\nKKKK")
 ACRYLIC = material("acrylic")
+SHEETS = pytest.mark.parametrize(
+    "outline", [*OUTLINES.values(), "xxxxxx\n" * 4], ids=[*OUTLINES, "whole"]
+)
 
 
 def _crumpled(sheet: StitchSheet, size_mm: float = 0.7) -> tuple[Array, NDArray[np.int64]]:
@@ -35,18 +41,30 @@ def _crumpled(sheet: StitchSheet, size_mm: float = 0.7) -> tuple[Array, NDArray[
     return x, np.array([[0, 20], [1, 25], [31, 3]])
 
 
-def test_gradient_is_the_derivative_of_the_energy() -> None:
-    sheet = sheet_of(MIXED, ACRYLIC)
-    x, pairs = _crumpled(sheet)
+def _cut(outline: str, size_mm: float) -> tuple[StitchSheet, Array, NDArray[np.int64]]:
+    """A mixed sheet of an outline in a rough shape, with points that touch."""
+    stitches = outline_marks(outline)
+    chart = continued(StitchChart.parse("KKPKPP\nKPPKKP\nPPKKPK\nKPKPKK"), stitches)
+    sheet = sheet_of(chart, ACRYLIC, stitches).cut(stitches)
+    x = sheet.flat_mm + size_mm * np.random.default_rng(0).standard_normal(sheet.flat_mm.shape)
+    x[29] = x[3] + 1.1
+    return sheet, x, np.array([[0, 18]])
+
+
+@SHEETS
+def test_gradient_is_the_derivative_of_the_energy(outline: str) -> None:
+    sheet, x, pairs = _cut(outline, 0.5)
     way, h = np.random.default_rng(1).standard_normal(x.shape), 1e-6
     rise = sheet.energy(x + h * way, pairs)[0] - sheet.energy(x - h * way, pairs)[0]
-    assert rise / (2 * h) == pytest.approx((sheet.energy(x, pairs)[1] * way).sum(), rel=1e-7)
+    gradient = sheet.energy(x, pairs)[1]
+    assert rise / (2 * h) == pytest.approx((gradient * way).sum(), rel=1e-7)
+    assert not gradient[~sheet.used].any()
 
 
+@SHEETS
 @pytest.mark.parametrize("rough_mm", [0.3, 1.2], ids=["rough", "crumpled"])
-def test_hessian_is_the_derivative_of_the_gradient(rough_mm: float) -> None:
-    sheet = sheet_of(MIXED, ACRYLIC)
-    x, pairs = _crumpled(sheet, rough_mm)
+def test_hessian_is_the_derivative_of_the_gradient(rough_mm: float, outline: str) -> None:
+    sheet, x, pairs = _cut(outline, rough_mm)
     matrix = Tangent(sheet).matrix(x, pairs, np.ones(x.shape, bool), convex=False)
     way, h = np.random.default_rng(1).standard_normal(x.shape), 1e-6
     change = sheet.energy(x + h * way, pairs)[1] - sheet.energy(x - h * way, pairs)[1]
@@ -93,11 +111,11 @@ def test_held_corners_have_rows_of_the_unit_matrix() -> None:
     assert np.array_equal(matrix.toarray()[:15], np.eye(15, 3 * len(free)))
 
 
+@SHEETS
 @settings(max_examples=10, deadline=None)
-@given(st.integers(0, 2**32 - 1))
-def test_motion_of_the_whole_costs_nothing(seed: int) -> None:
-    sheet = sheet_of(MIXED, ACRYLIC)
-    x, pairs = _crumpled(sheet, 0.3)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_motion_of_the_whole_costs_nothing(outline: str, seed: int) -> None:
+    sheet, x, pairs = _cut(outline, 0.3)
     rng = np.random.default_rng(seed)
     moved = x @ Rotation.random(rng=rng).as_matrix().T + rng.standard_normal(3)
     assert sheet.energy(moved, pairs)[0] == pytest.approx(sheet.energy(x, pairs)[0], rel=1e-10)
@@ -191,3 +209,36 @@ def test_the_stored_table_is_that_of_the_yarn_level() -> None:
     fresh = computed(Fabric.STOCKINETTE, lace)
     assert stored.curvature_course_per_mm == pytest.approx(fresh.curvature_course_per_mm, rel=0.02)
     assert stored.rigidity_wale_n_mm == pytest.approx(fresh.rigidity_wale_n_mm, rel=0.02)
+
+
+def _held_at(sheet: StitchSheet, held: NDArray[np.bool_]) -> Array:
+    x = sheet.flat_mm + shake_mm(sheet.flat_mm.shape)
+    x[held.ravel()] = sheet.flat_mm[held.ravel()]
+    shape = settle(sheet.clamped(held.ravel()), x, held=held.ravel())
+    assert shape.converged
+    return shape.x.reshape(*held.shape, 3)
+
+
+@pytest.mark.parametrize("axis", [0, 1], ids=["sides", "ends"])
+def test_the_edge_of_a_hole_curls_like_a_free_edge(axis: int) -> None:
+    """Stockinette three stitches wide beside a clamp, beyond it a free edge or a long hole."""
+    beside, hole, length = 3, 6, 48
+    whole = np.ones((length, 2 * (2 + beside) + hole), dtype=bool)
+    holed = whole.copy()
+    holed[2:-2, 2 + beside : -2 - beside] = False
+    strip = whole[:, : 2 + beside]
+    heights = []
+    for stitches in (strip, holed):
+        there = stitches.T if axis else stitches
+        sheet = sheet_of(StitchChart.parse("K").tile(*there.shape), ACRYLIC, there).cut(there)
+        held = np.zeros((stitches.shape[0] + 1, stitches.shape[1] + 1), dtype=bool)
+        held[:, :3] = True
+        if stitches is holed:
+            held[:, -3:] = held[:3] = held[-3:] = True
+        corners = _held_at(sheet, held.T if axis else held)
+        line = corners[:, length // 2] if axis else corners[length // 2]
+        heights.append(line[: 3 + beside, 2])
+    free, edge = heights
+    towards = 1.0 if axis else -1.0
+    assert towards * edge[-1] > 0.5
+    np.testing.assert_allclose(edge, free, atol=0.2)

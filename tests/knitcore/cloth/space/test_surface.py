@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from knitcore.cloth.space.surface import Surface
+from knitcore.cloth.space.surface import Surface, corners_of, filled
+from knitcore.garment.shaped import outline_marks
 
 
 def test_a_cylinder_is_a_cylinder() -> None:
@@ -29,3 +30,17 @@ def test_a_piece_one_stitch_wide_has_a_surface() -> None:
     surface = Surface(np.stack([2.0 * x, 3.0 * y, 0.0 * x], axis=-1))
     found = surface.at(np.array([0.5]), np.array([2.5]), np.array([0.4]))
     assert np.allclose(found, [[1.0, 7.5, 0.4]])
+
+
+def test_corners_without_a_stitch_go_on_as_those_beside_them() -> None:
+    """A plane stays a plane, and a hole in a bowl is filled like the bowl."""
+    there = corners_of(outline_marks("..xxxxxx\nxxx...xx\nxxx...xx\nxxxxxxxx"))
+    row, column = np.indices(there.shape).astype(float)
+    plane = np.stack([2.0 * column, 3.0 * row, column - row], axis=-1)
+    bowl = np.stack([column, row, 0.1 * (row**2 + column**2)], axis=-1)
+    hidden = np.where(there[..., None], 0.0, 50.0)
+    np.testing.assert_allclose(filled(plane + hidden, there), plane, atol=1e-9)
+    inner = (slice(1, -1), slice(3, 6))
+    off = np.abs(filled(bowl + hidden, there) - bowl)
+    assert off[inner].max() < 0.3
+    np.testing.assert_array_equal(off[there], 0.0)
