@@ -1,6 +1,6 @@
 """Take the screenshots in docs/images: the page and each of its panels, light and dark.
 
-Needs Chromium and Node. Names of pictures as arguments make only these.
+``python -m scripts.screenshots [NAME …]`` needs Chromium and Node; names make only these pictures.
 """
 
 from __future__ import annotations
@@ -17,19 +17,13 @@ import numpy as np
 from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from tests.app.running import Service
-from tests.browser.conftest import CHROMIUM, FLAGS
-from tests.browser.page import wait_for_colour
+from scripts.serving import CHROMIUM, FLAGS, FORCED, serving
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 MAX_BYTES = 200_000
 SCREEN: ViewportSize = {"width": 1440, "height": 900}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
-LOOPS_PX = 5000
-"""Coloured pixels of a drawn fabric."""
-
 ALIKE = 10
 """Difference, of 255, below which colours are one to a palette."""
 
@@ -39,7 +33,7 @@ Scene = Callable[[Page], str | None]
 
 def drawn(page: Page) -> None:
     """Wait for the 3D view, which takes long without a GPU, and for its last frames."""
-    wait_for_colour(page, "#fabric", LOOPS_PX)
+    page.locator(".fabric[data-live]").wait_for(timeout=120_000)
     page.wait_for_timeout(10_000)  # the words of its scale come last
 
 
@@ -49,16 +43,15 @@ def page(page: Page) -> str | None:
     return None
 
 
-def fabrics(page: Page) -> str | None:
-    page.click("#overlay-fabrics")
-    page.wait_for_timeout(800)
-    return ".chart-pane"
+def clicked(button: str, part: str, wait_ms: int) -> Scene:
+    """A part of the page, some time after a button was clicked."""
 
+    def scene(page: Page) -> str | None:
+        page.click(button)
+        page.wait_for_timeout(wait_ms)
+        return part
 
-def segments(page: Page) -> str | None:
-    page.click("#overlay-segments")
-    page.wait_for_timeout(800)
-    return ".chart-pane"
+    return scene
 
 
 def stiffness(page: Page) -> str | None:
@@ -72,18 +65,6 @@ def stiffness(page: Page) -> str | None:
 def fabric(page: Page) -> str | None:
     drawn(page)
     return "#fabric"
-
-
-def inspector(page: Page) -> str | None:
-    page.click("#tab-rigidity")
-    page.wait_for_timeout(1500)
-    return "#inspector"
-
-
-def curve(page: Page) -> str | None:
-    page.click("#tab-curve")
-    page.wait_for_timeout(1500)
-    return "#inspector"
 
 
 def stretch(page: Page) -> str | None:
@@ -248,11 +229,11 @@ WHOLE: dict[str, Scene] = {
 
 PARTS: dict[str, Scene] = {
     "stretch": stretch,
-    "curve": curve,
-    "inspector": inspector,
+    "curve": clicked("#tab-curve", "#inspector", 1500),
+    "inspector": clicked("#tab-rigidity", "#inspector", 1500),
     "tour": tour,
-    "fabrics": fabrics,
-    "segments": segments,
+    "fabrics": clicked("#overlay-fabrics", ".chart-pane", 800),
+    "segments": clicked("#overlay-segments", ".chart-pane", 800),
     "stiffness": stiffness,
     "gallery": opened("New design", "#gallery-dialog", "#gallery-glove canvas"),
     "versions": versions,
@@ -354,15 +335,13 @@ def main(names: list[str]) -> None:
     subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True)
     IMAGES.mkdir(exist_ok=True)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*FLAGS, FORCED])
         for theme in THEMES:
-            with tempfile.TemporaryDirectory() as folder:
-                service = Service(Path(folder))  # one that has no designs yet
-                service.start().close()
-                try:
-                    pictures(browser, service.url, theme, names)
-                finally:
-                    service.stop()
+            with (
+                tempfile.TemporaryDirectory() as folder,
+                serving(Path(folder), workers="1") as service,  # one that has no designs yet
+            ):
+                pictures(browser, service.url, theme, names)
         browser.close()
 
 

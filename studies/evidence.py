@@ -17,7 +17,6 @@ from pathlib import Path
 
 import numpy as np
 
-from knitcore import predict
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel
@@ -31,7 +30,7 @@ from knitcore.measure.compression import average_compression, fit_compression
 from knitcore.measure.compression_files import read_compression
 from knitcore.measure.uniaxial_files import read_stretch_test
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure
-from scripts.refit_laws import carried
+from scripts.refit_laws import STRESSES, carried
 from studies.against_knitted import errors, rms
 from studies.figures import evidence as figures
 from studies.graded_jersey import (
@@ -43,9 +42,8 @@ from studies.graded_jersey import (
     band,
     graded,
 )
-from studies.knitdb import STOCKINETTE, factor, ranks, read
+from studies.knitdb import compared, factor, ranks
 from studies.true_to_tests import (
-    STRESSES,
     Summary,
     left_out,
     of_library,
@@ -267,15 +265,8 @@ def yarn_models() -> list[str]:
 
 def relaxed_sizes(folder: Path) -> list[str]:
     """Relaxed sizes of swatches knitted by others."""
-    names, measured, charts = read(folder)
-    of = material("lace-acrylic")
-    first = next(i for i, name in enumerate(names) if name.endswith(STOCKINETTE))
+    names, _, first, true, logs, spread = compared(folder, material("lace-acrylic"))
     others = np.arange(len(names)) != first
-    true = np.log(measured / measured[first])
-    answers = [predict(chart, of) for chart in charts]
-    logs = np.log([(a.relaxed_course_mm, a.relaxed_wale_mm) for a in answers])
-    logs -= logs[first]
-    spread = np.array([(a.course.relaxed_log_sd, a.wale.relaxed_log_sd) for a in answers])
     inside = (np.abs(logs - true) <= Z_SCORE * spread)[others]
     figures.relaxed_sizes(true[others], logs[others], spread[others])
     return [
