@@ -10,6 +10,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.kernels.structures import ContactLaw
 from knitcore.yarn.model.conventions import REGULARISATION_N_MM4, Convention
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.paper import bezier_contact as contact
@@ -133,18 +134,16 @@ class Stitch:
             length_gradient,
         )
         cell_gradient = np.zeros(2)
+        law = ContactLaw(
+            convention.unordered_pair_factor, yarn.contact_stiffness_n_per_mm3,
+            yarn.contact_exponent, yarn.radius_mm, yarn.core_radius_mm,
+        )  # fmt: skip
         touch, closest = contact.curve_contact_energy(
             controls,
-            parameters[shape.CELL_COURSE],
-            parameters[shape.CELL_WALE],
-            course_odd,
-            wale_odd,
+            (parameters[shape.CELL_COURSE], parameters[shape.CELL_WALE]),
+            (course_odd, wale_odd),
             contact.course_images(self.fabric),
-            convention.ordered_pair_factor,
-            yarn.contact_stiffness_n_per_mm3,
-            yarn.contact_exponent,
-            yarn.radius_mm,
-            yarn.core_radius_mm,
+            law,
             *contact.midpoint_tables(),
             gradient,
             cell_gradient,

@@ -103,7 +103,7 @@ class Options:
 
 
 TIGHT = Options(tolerance=1e-10, slack=1e-9)
-"""Of a final shape: soft sizes are then known to some 1e-6, energies better."""
+"""Settings for a final shape: soft sizes are then known to some 1e-6, energies better."""
 
 
 @dataclass(frozen=True, eq=False)

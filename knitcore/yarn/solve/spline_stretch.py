@@ -12,17 +12,17 @@ from knitcore.chart.fabric import Direction
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
 from knitcore.yarn.model.slides import slides_at
 from knitcore.yarn.solve.newton import COURSE, WALE, Options, minimise
-from knitcore.yarn.solve.search import RELAXED, UNSETTLED, outcome
+from knitcore.yarn.solve.search import check_reached
 from knitcore.yarn.solve.splines import MAX_STITCHES_RULED, RelaxedRepeat, relaxed_repeat
-from knitcore.yarn.solve.topology import Clearance
+from knitcore.yarn.solve.topology import clearance_at
 
 STRAIGHT = 0.97
 """A stitch is pulled straight when its size nears this part of its loop length."""
 _HALVINGS = 3
 _TOLERANCE = 4e-6
-"""Of the energy, in cells of more than four stitches: stresses differ from those of 1e-7 by .03 %
-of the largest in the median and 1 % at most (with 1e-6 by .01 and .6 %), in two thirds of the
-time."""
+"""Tolerance of the energy in cells of more than four stitches: stresses differ from those of 1e-7
+by 0.03 % of the largest in the median and 1 % at most (with 1e-6 by 0.01 and 0.6 %), in two thirds
+of the time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,22 +84,19 @@ class SplineStretch:
         if size_mm > STRAIGHT * float(last.loop_lengths_mm.max()):
             raise ConvergenceError("the yarn is pulled straight.")
         small = last.cell.stitches <= 4
-        found = minimise(
+        minimum = minimise(
             last.energy, last.state, tension=last.tension_n,
             fixed=(COURSE if self.along is Direction.COURSE else WALE,),
             target=np.array([size_mm, size_mm]), cancelled=self.cancelled,
             options=Options(tolerance=1e-8 if small else _TOLERANCE, iterations=80),
         )  # fmt: skip
-        became = outcome(last.energy, found)
-        if became == "unravelled":
-            raise UnravelledError("the stitches come undone.")
-        if became not in (RELAXED, UNSETTLED, "pulled straight"):
-            raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
-        if abs(found.state[self.along.axis - 2] - size_mm) > 1e-9:
+        check_reached(last.energy, minimum)
+        if abs(minimum.state[self.along.axis - 2] - size_mm) > 1e-9:
             raise ConvergenceError("the yarn locks before it gets there.")
         return relaxed_repeat(
-            last.chart, last.energy, last.branch, found, seconds=0.0, evaluations=found.evaluations
-        )
+            last.chart, last.energy, last.branch, minimum, seconds=0.0,
+            evaluations=minimum.evaluations,
+        )  # fmt: skip
 
 
 def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
@@ -117,12 +114,9 @@ def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
             f"Use a repeat of at most {MAX_STITCHES_RULED} stitches.",
         )
     energy = replace(cell.energy, slides=())
-    curve = energy.curve(cell.state)
-    touch = 2.0 * cell.yarn.radius_mm
-    pairs, _ = energy.pairs(curve, cell.state, touch)
-    clearance = Clearance(cell.cell, cell.state, curve, pairs, touch, touch)
+    near = clearance_at(energy, cell.state)
     slides = slides_at(
-        cell.cell, cell.state, pairs, clearance.distances_mm, touch, energy.mean_loop_mm
+        cell.cell, cell.state, near.pairs, near.distances_mm, near.touch_mm, energy.mean_loop_mm
     )
     tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(slides))])
     return replace(cell, slides=slides, tension_n=tension)

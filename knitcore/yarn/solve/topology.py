@@ -20,7 +20,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.threads import on_halves
 from knitcore.yarn.kernels.structures import Pairs
 from knitcore.yarn.model.cell import YarnCell
-from knitcore.yarn.model.energy import PAIRS_TO_SHARE
+from knitcore.yarn.model.energy import PAIRS_TO_SHARE, CellEnergy
 from knitcore.yarn.model.neighbours import extremes, pair_distances, part_apart
 
 CROSSING = 0.75
@@ -58,11 +58,11 @@ class Clearance:
 
     @property
     def distances_mm(self) -> Array:
-        """Of the listed pairs."""
+        """Distances of the listed pairs."""
         course, wale = self.state[-2:]
         shape = self.cell.rows, self.cell.wales
-        found = pair_distances(self.curve, (course, wale), self.cell.place, shape, self.pairs)
-        return np.asarray(found)
+        distances = pair_distances(self.curve, (course, wale), self.cell.place, shape, self.pairs)
+        return np.asarray(distances)
 
     def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> tuple[float, float]:
         """Fraction (at most 1) of the way to another state that is certified, and the most by
@@ -124,3 +124,10 @@ class Clearance:
         )
         largest = max(here, (1.0 - fraction) * here + fraction * there)
         return 1.05 * largest / self.cell.grid.samples
+
+
+def clearance_at(energy: CellEnergy, state: Array, reach_radii: float = 2.0) -> Clearance:
+    """The clearance at a state of a cell, its pairs listed up to so many radii."""
+    curve, reach = energy.curve(state), reach_radii * energy.yarn.radius_mm
+    pairs, _ = energy.pairs(curve, state, reach)
+    return Clearance(energy.cell, state, curve, pairs, reach, 2.0 * energy.yarn.radius_mm)

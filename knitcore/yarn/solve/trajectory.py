@@ -90,8 +90,8 @@ class Trajectory:
             moved = here.state + straight * step
             excess = self._energy.excess(moved, self._energy.curve(moved))
             mended = mending(excess - (1.0 - straight) * here.terms.excess_mm)
-            found = self.certified(straight * step + mended)
-            return replace(found, fraction=straight * found.fraction)
+            mended_step = self.certified(straight * step + mended)
+            return replace(mended_step, fraction=straight * mended_step.fraction)
         state = here.state + step
         fraction, approach, curve = self._allowed(state)
         if fraction < 1.0:

@@ -17,12 +17,7 @@ from typing import Protocol
 import numpy as np
 
 from knitcore.base.arrays import Array, sum_in_order
-from knitcore.base.errors import (
-    Cancelled,
-    ConvergenceError,
-    UnravelledError,
-    check_cancelled,
-)
+from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
 from knitcore.chart.fabric import Direction
 from knitcore.yarn.model.input_checks import check_at_rest, check_stretch
 from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
@@ -153,8 +148,8 @@ def follow(
 
 def _timed(stretch: Stretch, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:
     began = time.process_time()
-    found = stretch.reach(known, size_mm)
-    return replace(found, seconds=time.process_time() - began)
+    reached = stretch.reach(known, size_mm)
+    return replace(reached, seconds=time.process_time() - began)
 
 
 def _abrupt(cells: list[RelaxedCell], along: Direction) -> set[int]:
@@ -164,8 +159,7 @@ def _abrupt(cells: list[RelaxedCell], along: Direction) -> set[int]:
     coarse the work is missed, but the shape changes steadily.
     """
     changed = find_jumps(
-        [c.centre_lines for c in cells],
-        float(np.mean(cells[0].loop_lengths_mm)) if cells else 0.0,
+        [c.centre_lines for c in cells], float(np.mean(cells[0].loop_lengths_mm)) if cells else 0.0
     )
     force = [c.force_n[along.axis] for c in cells]
     falls = {i for i in range(1, len(cells)) if force[i] < force[i - 1]}
