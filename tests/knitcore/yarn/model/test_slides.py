@@ -5,8 +5,7 @@ import pytest
 
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.yarn.model.paper_samples import sample
-from knitcore.yarn.solve.spline_stretch import with_slides_held
-from knitcore.yarn.study.sweep import sweep
+from knitcore.yarn.study.sweep import sweep, with_slides_held
 from tests.knitcore.yarn.relaxed import relaxed
 
 
