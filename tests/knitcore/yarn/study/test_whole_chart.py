@@ -20,7 +20,7 @@ from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.start_shape import start_state
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.growth import FIRST_OPENING, core_that_fits
-from knitcore.yarn.solve.topology import Clearance
+from knitcore.yarn.solve.topology import clearance_at
 from knitcore.yarn.solve.windows import each, row_lengths, touch, window_energy, windows
 from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.whole_chart import WholeShape, relax_whole
@@ -41,10 +41,7 @@ def sheet() -> tuple[CellEnergy, np.ndarray]:
     lengths = np.full(ROWS, SAMPLE.loop_length_mm)
     energy = CellEnergy(cell, SAMPLE.yarn, lengths, Convention.PUBLISHED)
     state = start_state(cell, SAMPLE.loop_length_mm, 0.8 * SAMPLE.yarn.radius_mm)
-    curve = energy.curve(state)
-    touch = 2.0 * SAMPLE.yarn.radius_mm
-    pairs, _ = energy.pairs(curve, state, touch)
-    nearest = Clearance(cell, state, curve, pairs, touch, touch).min_distance_mm
+    nearest = clearance_at(energy, state).min_distance_mm
     core = core_that_fits(SAMPLE.yarn, nearest, FIRST_OPENING)
     return replace(energy, yarn=replace(SAMPLE.yarn, core_radius_mm=core)), state
 
