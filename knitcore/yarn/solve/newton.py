@@ -30,7 +30,7 @@ from knitcore.base.threads import in_one_blas_thread
 from knitcore.yarn.model.energy import CellEnergy, Slope, Terms
 from knitcore.yarn.solve.fronts import Dissection, Room
 from knitcore.yarn.solve.systems import DenseSystem, SparseSystem, System
-from knitcore.yarn.solve.trajectory import Trajectory
+from knitcore.yarn.solve.topology import Trajectory
 
 COURSE, WALE = -2, -1
 """Places of the two cell sizes among the unknowns."""

@@ -29,7 +29,7 @@ from knitcore.yarn.model.energy import CellEnergy, Slope
 from knitcore.yarn.solve.fronts import Room, elimination
 from knitcore.yarn.solve.newton import Minimum
 from knitcore.yarn.solve.systems import SparseSystem
-from knitcore.yarn.solve.trajectory import Trajectory
+from knitcore.yarn.solve.topology import Trajectory
 from knitcore.yarn.solve.windows import Window, each, window_energy
 
 PAIR_CAP = 0.3

@@ -65,8 +65,7 @@ from knitcore.yarn.solve.splines import (
     relax_splines,
     relaxed_repeat,
 )  # fmt: skip
-from knitcore.yarn.solve.topology import clearance_at
-from knitcore.yarn.solve.trajectory import SKIN, Trajectory
+from knitcore.yarn.solve.topology import SKIN, Trajectory, clearance_at
 from knitcore.yarn.solve.windows import Window, each, row_lengths, touch, window_energy, windows
 from knitcore.yarn.study.lowest import MAX_STITCHES, without_mirrors
 
