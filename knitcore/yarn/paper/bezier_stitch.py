@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -92,6 +93,15 @@ class Stitch:
         """Number of unknowns; the last two are the cell's sizes, mm."""
         return int(self.ties.shape[1])
 
+    @cached_property
+    def contact_law(self) -> ContactLaw:
+        """Constants of the contact for its kernel."""
+        yarn = self.yarn
+        return ContactLaw(
+            self.convention.unordered_pair_factor, yarn.contact_stiffness_n_per_mm3,
+            yarn.contact_exponent, yarn.radius_mm, yarn.core_radius_mm,
+        )  # fmt: skip
+
     def controls(self, unknowns: Array) -> Array:
         """Control points, mm, shape (8, 6, 3), in yarn order."""
         p = (self.ties @ unknowns).astype(np.complex128)
@@ -134,16 +144,12 @@ class Stitch:
             length_gradient,
         )
         cell_gradient = np.zeros(2)
-        law = ContactLaw(
-            convention.unordered_pair_factor, yarn.contact_stiffness_n_per_mm3,
-            yarn.contact_exponent, yarn.radius_mm, yarn.core_radius_mm,
-        )  # fmt: skip
         touch, closest = contact.curve_contact_energy(
             controls,
             (parameters[shape.CELL_COURSE], parameters[shape.CELL_WALE]),
             (course_odd, wale_odd),
             contact.course_images(self.fabric),
-            law,
+            self.contact_law,
             *contact.midpoint_tables(),
             gradient,
             cell_gradient,
