@@ -145,8 +145,7 @@ examples: $(VENV)/.installed ## Ask the service for the answers that the referen
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
 	$(BIN)/python -m scripts.stored_stitches $(OPTIONS)
-	$(BIN)/python -m scripts.lowest_stitches
-	$(BIN)/python -m scripts.bending_stitches
+	$(BIN)/python -m scripts.from_store lowest bending
 
 # --- upkeep -----------------------------------------------------------------------------------
 lock: $(VENV)/.installed-tests ## Pin the dependencies again

@@ -16,7 +16,9 @@ from knitcore import StitchChart, curve, material, relax, strip_test
 from knitcore.cloth.space.curl import curl
 from knitcore.linear.dense import eliminate, product, solved, substitute, times
 from knitcore.linear.sheet_factor import SheetFactor
-from knitcore.yarn import kernels
+from knitcore.yarn.kernels.rod import rod_hessian
+from knitcore.yarn.kernels.scatter import scatter_local
+from knitcore.yarn.kernels.tiles import one_tile
 from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.model.cell import plain_cell
 from knitcore.yarn.model.conventions import Convention
@@ -85,11 +87,11 @@ def _last_of_yarn() -> None:
     curve = energy.curve(state)
     still, tension = np.zeros(len(curve)), np.zeros(len(lengths))
     along = curve, energy.rod_law, energy.speeds, tension[energy.stretch_of], still
-    slopes, local = kernels.rod_hessian(*along)
+    slopes, local = rod_hessian(*along)
     energy.gathered(np.zeros((len(curve), 3)), slopes)
-    matrix, sizes = kernels.one_tile(cell.unknowns), np.zeros((2, cell.unknowns))
+    matrix, sizes = one_tile(cell.unknowns), np.zeros((2, cell.unknowns))
     nothing = np.zeros((len(curve), 3, 3))
-    kernels.scatter_local(local, nothing, nothing, cell.layout, matrix.tiles, matrix.where, sizes)
+    scatter_local(local, nothing, nothing, cell.layout, matrix.tiles, matrix.where, sizes)
     factor = np.eye(2)
     eliminate(factor)
     substitute(factor, np.eye(2))

@@ -22,13 +22,7 @@ from scripts.page_types import ANSWERED, ASKED, Schema, shapes
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ROOT / "client"
 HEAD = '"""{} (made by scripts/client_code.py)."""\n\nfrom __future__ import annotations\n\n'
-SIMPLE = {
-    "integer": "int",
-    "number": "float",
-    "string": "str",
-    "boolean": "bool",
-    "null": "None",
-}
+SIMPLE = {"integer": "int", "number": "float", "string": "str", "boolean": "bool", "null": "None"}
 FILE = "UploadedFile"
 TO_SYNC = {
     "AsyncIterator": "Iterator",

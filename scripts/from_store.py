@@ -1,4 +1,11 @@
-"""Computations of scripts on every stored repeat, beginning with its relaxed shape."""
+"""Compute from every stored repeat: ``python -m scripts.from_store lowest bending``.
+
+``lowest`` lays every repeat of the store out over its free cell, without its mirrors, follows it
+along its instability if it has one, and writes what this leads to into the library's
+``data/lowest.json``. ``bending`` writes the linear response to bending and shear of every repeat,
+and of the minimum that its instability leads to if it has one, into ``data/bending.json``. Finished
+repeats are kept in a folder, so an interrupted run can be resumed.
+"""
 
 from __future__ import annotations
 
@@ -12,16 +19,28 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.batch import run_batch
+from knitcore.base.errors import ConvergenceError, UnravelledError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.yarn.library.characterise import Document
 from knitcore.yarn.library.fingerprint import content_key
-from knitcore.yarn.library.store import MATERIALS, StoredStitch, stored_charts, stored_stitch
-from knitcore.yarn.model.cell import YarnCell
+from knitcore.yarn.library.store import (
+    MATERIALS,
+    StoredStitch,
+    document_of,
+    stored_charts,
+    stored_stitch,
+)
+from knitcore.yarn.model.cell import YarnCell, free_cell, mirrored_cell
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import CellEnergy
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.yarn_model import YarnModel
-from knitcore.yarn.solve.splines import COARSE, FINE
+from knitcore.yarn.solve.newton import TIGHT, minimise
+from knitcore.yarn.solve.search import SAME_ENERGY
+from knitcore.yarn.solve.splines import COARSE, FINE, relaxed_repeat
+from knitcore.yarn.study.bending import repeat_bending
+from knitcore.yarn.study.lowest import followed
+from knitcore.yarn.study.relax import Branch
 from scripts.stored_stitches import DATA, tell
 
 
@@ -75,13 +94,11 @@ class FromStore:
 
     Parameters
     ----------
-    name : of the script, and of the folder of finished results.
     file : in the library's data folder.
     compute : a task's result.
     code : the module that decides it.
     """
 
-    name: str
     file: str
     compute: Callable[[StoredTask], Document]
     code: str
@@ -114,12 +131,67 @@ class FromStore:
         )
         path.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
 
-    def main(self) -> None:
-        """Read the options and compute."""
-        parser = argparse.ArgumentParser(prog=f"python -m scripts.{self.name}_stitches")
-        parser.add_argument("--path", type=Path, default=DATA / self.file)
-        parser.add_argument("--keep", type=Path, default=Path("build") / self.name)
-        parser.add_argument("--workers", type=int, help="processes; all cores if left out")
-        chosen = parser.parse_args()
-        charts = {material: stored_charts(material) for material in MATERIALS}
-        self.write(chosen.path, charts, chosen.keep, chosen.workers)
+
+def follow(task: StoredTask) -> Document:
+    """Drop the mirrors of a repeat and follow its instability.
+
+    Returns
+    -------
+    A JSON document: ``failure`` alone where the descent finds no state of the fabric; otherwise
+    ``minimum``, whether the mirrored state is one without its mirrors, and size (mm) and energy
+    (N·mm) of a stitch of the minimum that it is or leads to.
+    """
+    energy, state = task.begun(free_cell)
+    try:
+        minimum, _ = followed(energy, state)
+    except (ConvergenceError, UnravelledError) as error:
+        return {"failure": str(error)}
+    reached = minimum.terms.energy / energy.cell.stitches
+    lower = 1.0 - reached / task.energy_n_mm
+    return {
+        "minimum": bool(minimum.stable and lower < SAME_ENERGY),
+        "cell_course_mm": float(f"{minimum.state[-2]:.7g}"),
+        "cell_wale_mm": float(f"{minimum.state[-1]:.7g}"),
+        "energy_n_mm": float(f"{reached:.7g}"),
+        "converged": minimum.converged,
+    }
+
+
+def bend(task: StoredTask) -> Document:
+    """Bending of a repeat (:func:`knitcore.yarn.library.store.document_of`).
+
+    A few steps from the stored shape recover the tension of the yarn and the digits that the store
+    leaves out.
+    """
+    energy, state = task.begun(mirrored_cell)
+    minimum = minimise(energy, state, options=TIGHT)
+    relaxed = relaxed_repeat(
+        StitchChart.parse(task.chart), energy, Branch.MIRRORED, minimum, seconds=0.0,
+        evaluations=minimum.evaluations,
+    )  # fmt: skip
+    return document_of(repeat_bending(relaxed))
+
+
+FILES = {
+    "lowest": FromStore("lowest.json", follow, "knitcore.yarn.study.lowest"),
+    "bending": FromStore("bending.json", bend, "knitcore.yarn.study.bending"),
+}
+"""Files that are made from the store."""
+
+
+def main() -> None:
+    """Read the options and compute."""
+    parser = argparse.ArgumentParser(prog="python -m scripts.from_store")
+    parser.add_argument("names", nargs="+", choices=FILES)
+    parser.add_argument("--folder", type=Path, default=DATA)
+    parser.add_argument("--keep", type=Path, default=Path("build"))
+    parser.add_argument("--workers", type=int, help="processes; all cores if left out")
+    chosen = parser.parse_args()
+    charts = {material: stored_charts(material) for material in MATERIALS}
+    for name in chosen.names:
+        made = FILES[name]
+        made.write(chosen.folder / made.file, charts, chosen.keep / name, chosen.workers)
+
+
+if __name__ == "__main__":
+    main()

@@ -113,22 +113,19 @@ def section(design: Design, answer: Prediction, files: dict[ExportKind, str]) ->
             f"| {along.relaxed_mm:.2f} ({size.low:.2f} to {size.high:.2f}) |"
         )
     links = ", ".join(f"[{KINDS[kind]}](gallery/{name})" for kind, name in files.items())
-    return "\n".join(
-        [
-            f"## {design.name}",
-            "",
-            f"{design.note} In {design.material}; {answer.provenance}.",
-            "",
-            f"![{design.name}: chart, extensibility and curves](gallery/{design.identifier}.svg)",
-            "",
-            "| along | Young's modulus, N/mm | stretch at 0.1 N/mm | stitch at rest, mm |",
-            "|---|---|---|---|",
-            *rows,
-            "",
-            f"Files: {links}.",
-            "",
-        ]
-    )
+    return f"""\
+## {design.name}
+
+{design.note} In {design.material}; {answer.provenance}.
+
+![{design.name}: chart, extensibility and curves](gallery/{design.identifier}.svg)
+
+| along | Young's modulus, N/mm | stretch at 0.1 N/mm | stitch at rest, mm |
+|---|---|---|---|
+{chr(10).join(rows)}
+
+Files: {links}.
+"""
 
 
 def gallery() -> dict[str, str | bytes]:

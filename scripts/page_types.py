@@ -85,14 +85,8 @@ def _addresses() -> str:
         for operation in operations().values()
         if operation.method == "POST" and operation.path is not None
     ]
-    return "\n".join(
-        [
-            "/** Operations by their address. */",
-            "export interface Operations {",
-            *sorted(lines),
-            "}",
-        ]
-    )
+    head = "/** Operations by their address. */\nexport interface Operations {"
+    return "\n".join([head, *sorted(lines), "}"])
 
 
 def shapes(

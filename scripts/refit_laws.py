@@ -148,26 +148,23 @@ class LeftOutFabrics:
 
 def carried(folder: Path) -> LeftOutFabrics:
     """Each of acrylic's fabrics from its published law and the other fabrics' correction."""
-    tests = {(f, d): read(folder, f, d, Marks.CLAMPS) for f in Fabric for d in Direction}
+    published, _, strips, corrections = raw(folder)
+    return left_out(published.fabrics, strips, corrections, {})
+
+
+def raw(
+    folder: Path,
+) -> tuple[Material, dict[Key, StretchTest], dict[Key, MeasuredStrip], dict[Key, ClampCorrection]]:
+    """Acrylic as published, its raw tests and their strips, and the corrections that turn each
+    published law into one of clamp-to-clamp strain."""
     published = load_library(Laws.PUBLISHED)["acrylic"]
-    return left_out(
-        published.fabrics,
-        {key: MeasuredStrip.of(test, key[1]) for key, test in tests.items()},
-        corrections_of(folder, tests, published),
-        {},
-    )
-
-
-def corrections_of(
-    folder: Path, tests: dict[Key, StretchTest], published: Material
-) -> dict[Key, ClampCorrection]:
-    """Corrections that turn each published law into one of clamp-to-clamp strain."""
-    return {
-        (f, d): ClampCorrection.of(
-            read(folder, f, d, Marks.CENTRE), tests[f, d], published.law(f), d
-        )
-        for f, d in tests
+    tests = {(f, d): read(folder, f, d, Marks.CLAMPS) for f in Fabric for d in Direction}
+    corrections = {
+        (f, d): ClampCorrection.of(read(folder, f, d, Marks.CENTRE), test, published.law(f), d)
+        for (f, d), test in tests.items()
     }
+    strips = {key: MeasuredStrip.of(test, key[1]) for key, test in tests.items()}
+    return published, tests, strips, corrections
 
 
 def read(folder: Path, fabric: Fabric, direction: Direction, marks: Marks) -> StretchTest:
@@ -183,10 +180,7 @@ def main() -> None:
     options.add_argument("--tests", type=Path, required=True)
     options.add_argument("--check", action="store_true")
     given = options.parse_args()
-    published = load_library(Laws.PUBLISHED)["acrylic"]
-    tests = {(f, d): read(given.tests, f, d, Marks.CLAMPS) for f in Fabric for d in Direction}
-    strips = {key: MeasuredStrip.of(test, key[1]) for key, test in tests.items()}
-    corrections = corrections_of(given.tests, tests, published)
+    published, tests, strips, corrections = raw(given.tests)
     print("published over clamp-to-clamp strain, waist over published")
     for (f, d), c in corrections.items():
         print(f"  {f:12} {d:7} {c.strain_ratio:.3f} {c.waist_ratio:.2f}")
@@ -198,18 +192,11 @@ def main() -> None:
     )
 
     own = {f: fit_strips([strips[f, d] for d in Direction]) for f in Fabric}
-    rows = [
-        row(
-            "acrylic",
-            "",
-            f,
-            fit.law,
-            fit.uncertainty,
-            "refitted from the authors' raw tests, "
-            "clamp to clamp: force and waist of the simulated tests, course and wale together",
-        )
-        for f, fit in own.items()
-    ]
+    source = (
+        "refitted from the authors' raw tests, clamp to clamp: force and waist of the simulated "
+        "tests, course and wale together"
+    )
+    rows = [row("acrylic", "", f, fit.law, fit.uncertainty, source) for f, fit in own.items()]
     even = pulled_evenly(tests, strips)
     left = left_out(published.fabrics, strips, corrections, own).log_error
     for record in measured():
@@ -229,9 +216,7 @@ def main() -> None:
             source = "the paper's law, whose strain the testing machine measured clamp to clamp"
         share = like.law.shear_modulus / mean_modulus(like.law)
         law = replace(
-            law,
-            shear_modulus=share * mean_modulus(law),
-            shear_stiffening=like.law.shear_stiffening,
+            law, shear_modulus=share * mean_modulus(law), shear_stiffening=like.law.shear_stiffening
         )
         spread = carried_uncertainty(record, like.uncertainty, error)
         rows.append(row(figure.material, figure.variant, record.fabric, law, spread, source))
@@ -351,13 +336,9 @@ def carried_uncertainty(record: FabricRecord, like: LawUncertainty, error: float
 
 
 def row(
-    material: str,
-    variant: str,
-    fabric: Fabric,
-    law: ConstitutiveLaw,
-    uncertainty: LawUncertainty,
-    source: str,
-) -> dict[str, str]:
+    material: str, variant: str, fabric: Fabric, law: ConstitutiveLaw,
+    uncertainty: LawUncertainty, source: str,
+) -> dict[str, str]:  # fmt: skip
     """One line of the file."""
     curves = {d: uncertainty.curve(d) for d in Direction}
     return {

@@ -1,6 +1,6 @@
 """Take the screenshots in docs/images: the page and each of its panels, light and dark.
 
-Needs Chromium and Node. Names of pictures as arguments make only these.
+``python -m scripts.screenshots [NAME …]`` needs Chromium and Node; names make only these pictures.
 """
 
 from __future__ import annotations
@@ -11,115 +11,84 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from tests.app.running import Service
-from tests.browser.conftest import CHROMIUM, FLAGS
-from tests.browser.page import wait_for_colour
+from scripts.serving import CHROMIUM, FLAGS, FORCED, serving
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 MAX_BYTES = 200_000
 SCREEN: ViewportSize = {"width": 1440, "height": 900}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
-LOOPS_PX = 5000
-"""Coloured pixels of a drawn fabric."""
-
 ALIKE = 10
 """Difference, of 255, below which colours are one to a palette."""
 
-Scene = Callable[[Page], str | None]
-"""Brings the page into a state and names the part to picture; all of it if None."""
+Step = Callable[[Page], object]
+"""Brings the page a step further."""
+
+
+class Scene(NamedTuple):
+    """The part of the page to picture, all of it if None, and the steps that lead there."""
+
+    part: str | None
+    steps: tuple[Step, ...]
+
+
+def scene(part: str | None, *steps: Step) -> Scene:
+    return Scene(part, steps)
 
 
 def drawn(page: Page) -> None:
     """Wait for the 3D view, which takes long without a GPU, and for its last frames."""
-    wait_for_colour(page, "#fabric", LOOPS_PX)
+    page.locator(".fabric[data-live]").wait_for(timeout=120_000)
     page.wait_for_timeout(10_000)  # the words of its scale come last
 
 
-def page(page: Page) -> str | None:
-    """The first visit: the example is stretched."""
-    drawn(page)
-    return None
+def press(keys: str) -> Step:
+    return lambda page: page.keyboard.press(keys)
 
 
-def fabrics(page: Page) -> str | None:
-    page.click("#overlay-fabrics")
-    page.wait_for_timeout(800)
-    return ".chart-pane"
+def click(selector: str) -> Step:
+    return lambda page: page.click(selector)
 
 
-def segments(page: Page) -> str | None:
-    page.click("#overlay-segments")
-    page.wait_for_timeout(800)
-    return ".chart-pane"
+def choose(selector: str, value: str) -> Step:
+    return lambda page: page.select_option(selector, value)
 
 
-def stiffness(page: Page) -> str | None:
-    page.click("#overlay-modulus-course")
-    page.click("#overlay-rectangles")
-    page.wait_for_timeout(800)
+def there(selector: str, timeout_ms: float = 60_000) -> Step:
+    return lambda page: page.locator(selector).first.wait_for(timeout=timeout_ms)
+
+
+def pause(wait_ms: int) -> Step:
+    return lambda page: page.wait_for_timeout(wait_ms)
+
+
+def overlay(*names: str) -> Scene:
+    """The chart with maps on it."""
+    return scene(".chart-pane", *(click(f"#overlay-{name}") for name in names), pause(800))
+
+
+def blur(page: Page) -> None:
     page.evaluate("document.activeElement.blur()")
-    return ".chart-pane"
-
-
-def fabric(page: Page) -> str | None:
-    drawn(page)
-    return "#fabric"
-
-
-def inspector(page: Page) -> str | None:
-    page.click("#tab-rigidity")
-    page.wait_for_timeout(1500)
-    return "#inspector"
-
-
-def curve(page: Page) -> str | None:
-    page.click("#tab-curve")
-    page.wait_for_timeout(1500)
-    return "#inspector"
-
-
-def stretch(page: Page) -> str | None:
-    page.locator("#stretch-slider").wait_for()
-    return "#stretch"
 
 
 def opened(action: str, panel: str, settled: str | None = None) -> Scene:
     """A panel that an action opens."""
 
-    def scene(page: Page) -> str | None:
-        page.keyboard.press("Control+k")
+    def search(page: Page) -> None:
         page.fill("#command-search", action)
-        page.keyboard.press("Enter")
-        page.locator(panel).wait_for()
-        if settled:
-            page.locator(settled).first.wait_for()
-        page.wait_for_timeout(1200)
-        return panel
 
-    return scene
+    steps = press("Control+k"), search, press("Enter"), there(panel)
+    return scene(panel, *steps, *((there(settled),) if settled else ()), pause(1200))
 
 
-def regions(page: Page) -> str | None:
-    page.keyboard.press("Shift+N")
-    page.click("#gallery-glove")
-    page.keyboard.press("Shift+A")
-    page.locator("#panel-regions").wait_for()
-    page.click("#overlay-fabrics")
-    page.wait_for_timeout(1000)
-    return ".chart-pane"
-
-
-def repeats(page: Page) -> str | None:
-    page.keyboard.press("Shift+N")
-    page.click("#gallery-diamonds")
+def marked(page: Page) -> None:
+    """Mark a rectangle from the middle of the chart."""
     page.keyboard.press("m")
     box = page.locator("#chart").bounding_box()
     assert box
@@ -128,102 +97,33 @@ def repeats(page: Page) -> str | None:
     page.mouse.down()
     page.mouse.move(x + 130, y + 90, steps=5)
     page.mouse.up()
-    page.keyboard.press("Shift+L")
-    page.click("#repeat-from-selection")
-    page.wait_for_timeout(1000)
-    return ".chart-pane"
 
 
-def commands(page: Page) -> str | None:
-    page.keyboard.press("Control+k")
-    page.locator("#palette-dialog").wait_for()
-    return "#palette-dialog"
+def kept(name: str) -> tuple[Step, ...]:
+    """Begin a design of the gallery and keep a version of it at the service."""
+    begin = press("Shift+N"), click(f"#gallery-{name}"), pause(600), press("Control+s")
+    return *begin, click("#version-keep"), there("#versions-list .row"), press("Escape")
 
 
-def designs(page: Page) -> str | None:
-    for name in ("seed", "diamonds", "basket", "wrist-brace"):
-        page.keyboard.press("Shift+N")
-        page.click(f"#gallery-{name}")
-        page.wait_for_timeout(600)
-        page.keyboard.press("Control+s")  # the versions need it at the service
-        page.locator("#version-keep").click()
-        page.locator("#versions-list .row").wait_for()
-        page.keyboard.press("Escape")
-    page.keyboard.press("Control+o")
-    page.locator("#designs-list .card canvas").nth(3).wait_for()
-    page.wait_for_timeout(600)
-    return "#designs-dialog"
+def named(version: str) -> Step:
+    """Keep a version by a name."""
 
-
-def versions(page: Page) -> str | None:
-    page.keyboard.press("Control+s")
-    for name in ("All knit so far", "With a rib cuff", "Softer panel"):
-        page.fill("#version-name", name)
+    def step(page: Page) -> None:
+        page.fill("#version-name", version)
         page.click("#version-keep")
-        page.locator("#versions-list", has_text=name).wait_for()
-    page.wait_for_timeout(800)
-    return "#versions-dialog"
+        page.locator("#versions-list", has_text=version).wait_for()
+
+    return step
 
 
-def share(page: Page) -> str | None:
-    page.click("#action-share")
-    page.click("#share-make")
-    page.locator("#share-list .row").wait_for()
-    return "#share-dialog"
+def cut_off(page: Page) -> None:
+    """Let nothing reach the service."""
+    for address in ("**/api/**", "**/healthz"):
+        page.route(address, lambda route: route.abort())
 
 
-def tour(page: Page) -> str | None:
-    page.click("#designs-button")
-    page.click("#menu-tour")
-    for _ in range(3):
-        page.keyboard.press("ArrowRight")
-    page.wait_for_timeout(500)
-    return None
-
-
-def offline(page: Page) -> str | None:
-    drawn(page)
-    page.route("**/api/**", lambda route: route.abort())
-    page.route("**/healthz", lambda route: route.abort())
-    page.keyboard.press("x")
-    page.locator("#offline").wait_for()
-    page.wait_for_timeout(2500)
-    return None
-
-
-def glove(page: Page) -> str | None:
-    page.keyboard.press("Shift+N")
-    page.click("#gallery-glove")
-    page.click("#overlay-fabrics")
-    drawn(page)
-    return None
-
-
-def fill(page: Page) -> str | None:
-    """A part that was made softer, on the chart, with the fabric in sight."""
-    page.keyboard.press("Shift+W")
-    page.click("#part-add")
-    page.wait_for_timeout(800)
-    page.select_option("#part-0-like", "seed")
-    page.click("#fill-run")
-    page.locator("#fill-keep").wait_for(timeout=120_000)
-    drawn(page)
-    return None
-
-
-def compare(page: Page) -> str | None:
-    page.keyboard.press("Shift+C")
-    page.locator("#compare-numbers tbody tr").first.wait_for()
-    page.select_option("#compare-b", "now")
-    page.select_option("#compare-b-yarn", "cotton")
-    page.locator("#compare-dialog:not(.busy) #compare-plot .main-svg").first.wait_for()
-    page.wait_for_timeout(1000)
-    return "#compare-dialog"
-
-
-def pattern(page: Page) -> str | None:
+def exported(page: Page) -> None:
     """The first page of the pattern that the page exports."""
-    drawn(page)
     page.keyboard.press("Control+e")
     page.check("input[value='pattern-svg']")
     with page.expect_download() as download:
@@ -232,43 +132,67 @@ def pattern(page: Page) -> str | None:
     page.goto("about:blank")
     sheet = "<style>body { margin: 0 } #sheet { width: 800px; height: 1131px; overflow: hidden }"
     page.set_content(f"{sheet} svg {{ width: 800px; height: auto }}</style><div id=sheet>{drawing}")
-    return "#sheet"
 
 
 ATLAS = ".inverse-plot[data-count]:not([data-count='0'])"
+COMPARED = "#compare-dialog:not(.busy) #compare-plot .main-svg"
+NEW = press("Shift+N")
 WHOLE: dict[str, Scene] = {
-    "page": page,
-    "glove": glove,
-    "fabric": fabric,
-    "fill": fill,
-    "pattern": pattern,
-    "offline": offline,
-}
+    "page": scene(None, drawn),
+    "glove": scene(None, NEW, click("#gallery-glove"), click("#overlay-fabrics"), drawn),
+    "fabric": scene("#fabric", drawn),
+    "fill": scene(
+        None, press("Shift+W"), click("#part-add"), pause(800), choose("#part-0-like", "seed"),
+        click("#fill-run"), there("#fill-keep", 120_000), drawn,
+    ),
+    "pattern": scene("#sheet", drawn, exported),
+    "offline": scene(None, drawn, cut_off, press("x"), there("#offline"), pause(2500)),
+}  # fmt: skip
 """Pictures with the fabric in 3D, each from its own visit."""
 
 PARTS: dict[str, Scene] = {
-    "stretch": stretch,
-    "curve": curve,
-    "inspector": inspector,
-    "tour": tour,
-    "fabrics": fabrics,
-    "segments": segments,
-    "stiffness": stiffness,
+    "stretch": scene("#stretch", there("#stretch-slider")),
+    "curve": scene("#inspector", click("#tab-curve"), pause(1500)),
+    "inspector": scene("#inspector", click("#tab-rigidity"), pause(1500)),
+    "tour": scene(
+        None, click("#designs-button"), click("#menu-tour"), *[press("ArrowRight")] * 3, pause(500),
+    ),
+    "fabrics": overlay("fabrics"),
+    "segments": overlay("segments"),
+    "stiffness": scene(".chart-pane", *overlay("modulus-course", "rectangles").steps, blur),
     "gallery": opened("New design", "#gallery-dialog", "#gallery-glove canvas"),
-    "versions": versions,
-    "share": share,
+    "versions": scene(
+        "#versions-dialog", press("Control+s"), named("All knit so far"), named("With a rib cuff"),
+        named("Softer panel"), pause(800),
+    ),
+    "share": scene(
+        "#share-dialog", click("#action-share"), click("#share-make"), there("#share-list .row"),
+    ),
     "help": opened("Keys and tools", "#help-dialog"),
-    "commands": commands,
+    "commands": scene("#palette-dialog", press("Control+k"), there("#palette-dialog")),
     "resize": opened("Size and new chart", "#resize-dialog"),
     "import": opened("Import a chart", "#import-dialog"),
     "exports": opened("Export, all formats", "#export-dialog"),
     "garments": opened("Plan a garment", "#planner-dialog", "#planner-facts:not(.busy) table"),
     "atlas": opened("Atlas of all repeats", "#inverse", ATLAS),
-    "compare": compare,
-    "designs": designs,
-    "regions": regions,
-    "repeats": repeats,
-}
+    "compare": scene(
+        "#compare-dialog", press("Shift+C"), there("#compare-numbers tbody tr"),
+        choose("#compare-b", "now"), choose("#compare-b-yarn", "cotton"), there(COMPARED),
+        pause(1000),
+    ),
+    "designs": scene(
+        "#designs-dialog", *kept("seed"), *kept("diamonds"), *kept("basket"), *kept("wrist-brace"),
+        press("Control+o"), there("#designs-list .card canvas >> nth=3"), pause(600),
+    ),
+    "regions": scene(
+        ".chart-pane", NEW, click("#gallery-glove"), press("Shift+A"), there("#panel-regions"),
+        click("#overlay-fabrics"), pause(1000),
+    ),
+    "repeats": scene(
+        ".chart-pane", NEW, click("#gallery-diamonds"), marked, press("Shift+L"),
+        click("#repeat-from-selection"), pause(1000),
+    ),
+}  # fmt: skip
 """Pictures from one visit, without the fabric in 3D, which takes most of the time."""
 
 
@@ -286,10 +210,12 @@ def visit(browser: Browser, url: str, theme: Literal["light", "dark"], *, flat: 
     return page
 
 
-def picture(page: Page, scene: Scene, name: str) -> None:
+def picture(page: Page, shown: Scene, name: str) -> None:
     """Bring the page into the state of a scene and keep a picture of its part."""
-    part = scene(page)
-    keep(name, page.locator(part).first.screenshot() if part else page.screenshot())
+    for step in shown.steps:
+        step(page)
+    part = page.locator(shown.part).first if shown.part else page
+    keep(name, part.screenshot())
 
 
 def leave(page: Page) -> None:
@@ -354,15 +280,13 @@ def main(names: list[str]) -> None:
     subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True)
     IMAGES.mkdir(exist_ok=True)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*FLAGS, FORCED])
         for theme in THEMES:
-            with tempfile.TemporaryDirectory() as folder:
-                service = Service(Path(folder))  # one that has no designs yet
-                service.start().close()
-                try:
-                    pictures(browser, service.url, theme, names)
-                finally:
-                    service.stop()
+            with (
+                tempfile.TemporaryDirectory() as folder,
+                serving(Path(folder), workers="1") as service,  # one that has no designs yet
+            ):
+                pictures(browser, service.url, theme, names)
         browser.close()
 
 

@@ -71,11 +71,8 @@ def commands_page() -> str:
 
     from app.cli.main import main
 
-    parts = [
-        "# Commands",
-        "",
-        "Every command takes `--help`. Made from the command line's own parsers.",
-    ]
+    head = "Every command takes `--help`. Made from the command line's own parsers."
+    parts = ["# Commands", "", head]
     for words, command in _commands(main, click.Context(main, info_name="knitcore"), "knitcore"):
         parts += ["", f"## {words}", "", (command.help or "").strip(), ""]
         context = click.Context(command, info_name=words)
@@ -129,23 +126,21 @@ def library_pages() -> tuple[str, dict[str, str]]:
     """A page for each room of the library, which mkdocstrings fills, and their list."""
     import knitcore
 
-    lines = [
-        "# Library",
-        "",
-        "`from knitcore import …` gives these names; the pages below have everything, by package.",
-        "Units are part of the names.",
-        "",
-        "| name | what it is |",
-        "|---|---|",
-        *(
-            f"| {_public(name)} | {_cell(_summary(name))} |"
-            for name in sorted(vars(knitcore)["__all__"])
-        ),
-        "",
-        "## Packages",
-        "",
-    ]
-    pages = {}
+    names = sorted(vars(knitcore)["__all__"])
+    listed = "\n".join(f"| {_public(name)} | {_cell(_summary(name))} |" for name in names)
+    head = f"""\
+# Library
+
+`from knitcore import …` gives these names; the pages below have everything, by package.
+Units are part of the names.
+
+| name | what it is |
+|---|---|
+{listed}
+
+## Packages
+"""
+    lines, pages = [head], {}
     rooms: dict[str, list[str]] = {}
     for module in pkgutil.walk_packages(knitcore.__path__, "knitcore."):
         if not any(part.startswith("_") for part in module.name.split(".")):

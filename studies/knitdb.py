@@ -19,18 +19,18 @@ import csv
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import spearmanr
 
 from knitcore import StitchChart, material, predict
 from knitcore.base.arrays import Array
+from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import packaged_model
 from knitcore.prediction.mixture import Mixture
-
-STOCKINETTE = "Stockinette"
 
 
 def main() -> None:
@@ -39,14 +39,8 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--material", default="lace-acrylic", help="whose pure fabrics are used")
     arguments = parser.parse_args()
-    names, measured, charts = read(arguments.folder)
     of, model = material(arguments.material), packaged_model()
-    first = next(i for i, name in enumerate(names) if name.endswith(STOCKINETTE))
-    true = np.log(measured / measured[first])
-    answers = [predict(chart, of) for chart in charts]
-    ratio = np.log([(a.relaxed_course_mm, a.relaxed_wale_mm) for a in answers])
-    ratio -= ratio[first]
-    spread = np.array([(a.course.relaxed_log_sd, a.wale.relaxed_log_sd) for a in answers])
+    names, charts, first, true, ratio, spread = compared(arguments.folder, of)
     for row in zip(names, np.exp(true), np.exp(ratio), np.exp(Z_SCORE * spread), strict=True):
         print(f"{row[0]:28}", *(np.round(part, 2) for part in row[1:]))
     print("swatch, measured width and height over stockinette's, predicted, interval factor")
@@ -68,6 +62,36 @@ def main() -> None:
     print(
         f"most_folded {model.most_folded:g}, here best {best:.2f}; left out one by one {left_out}"
     )
+
+
+class Compared(NamedTuple):
+    """Swatches against their predictions.
+
+    Attributes
+    ----------
+    names, charts : of the swatches.
+    first : index of stockinette.
+    true, predicted : (swatches, 2) logarithms of widths and heights over those of stockinette.
+    log_sd : (swatches, 2) standard deviations of the predicted ones.
+    """
+
+    names: list[str]
+    charts: list[StitchChart]
+    first: int
+    true: Array
+    predicted: Array
+    log_sd: Array
+
+
+def compared(folder: Path, of: Material) -> Compared:
+    """The swatches of a folder, and what a material's pure fabrics predict of their charts."""
+    names, measured, charts = read(folder)
+    first = next(i for i, name in enumerate(names) if name.endswith("Stockinette"))
+    answers = [predict(chart, of) for chart in charts]
+    logs = np.log([(a.relaxed_course_mm, a.relaxed_wale_mm) for a in answers])
+    spread = np.array([(a.course.relaxed_log_sd, a.wale.relaxed_log_sd) for a in answers])
+    true = np.log(measured / measured[first])
+    return Compared(names, charts, first, true, logs - logs[first], spread)
 
 
 def read(folder: Path) -> tuple[list[str], np.ndarray, list[StitchChart]]:

@@ -24,11 +24,9 @@ from knitcore.fit.strip_fit import fit_strips
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Laws, material
 from knitcore.materials.law_uncertainty import Z_SCORE, LawUncertainty
-from knitcore.measure.uniaxial_files import read_stretch_test
+from knitcore.measure.uniaxial_files import Marks
+from scripts.refit_laws import STRESSES, read
 
-STRESSES = (0.05, 0.1, 0.2)
-GARTER_WIDTH_MM = 59.5
-"""The file has the clamp's size in place of acrylic garter's width course-wise."""
 Row = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -43,13 +41,8 @@ class LeftOut(NamedTuple):
 
 def strips(folder: Path, fabric: Fabric) -> list[MeasuredStrip]:
     """The two tests of a fabric."""
-    measured = []
-    for direction, axis in zip(Direction, "XY", strict=True):
-        test = read_stretch_test(folder / f"outputData_Acrylic Yarn {fabric.title()} {axis}.h5")
-        if fabric is Fabric.GARTER and direction is Direction.COURSE:
-            test = test.with_width(GARTER_WIDTH_MM)
-        measured.append(MeasuredStrip.of(test, direction))
-    return measured
+    tests = {direction: read(folder, fabric, direction, Marks.CLAMPS) for direction in Direction}
+    return [MeasuredStrip.of(test, direction) for direction, test in tests.items()]
 
 
 def compared(

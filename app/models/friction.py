@@ -10,9 +10,9 @@ from pydantic import Field
 
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import check_stitches
-from knitcore.yarn.library.yarn_friction import yarn_friction
-from knitcore.yarn.model.friction import MAX_COEFFICIENT, MAX_STITCHES
+from knitcore.yarn.library.yarns import yarn_friction
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.solve.friction import MAX_COEFFICIENT, MAX_STITCHES
 from knitcore.yarn.study.hysteresis import TAKE_DOWN_N_PER_MM, WORN_N_PER_MM, History
 from knitcore.yarn.study.relax import Branch, RelaxedRepeat
 

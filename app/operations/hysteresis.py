@@ -8,8 +8,8 @@ from typing import Literal
 from pydantic import Field
 
 from knitcore.chart.fabric import Direction
-from knitcore.yarn.library.yarn_friction import yarn_friction
-from knitcore.yarn.model.friction import MAX_COEFFICIENT, MAX_STITCHES
+from knitcore.yarn.library.yarns import yarn_friction
+from knitcore.yarn.solve.friction import MAX_COEFFICIENT, MAX_STITCHES
 from knitcore.yarn.study import hysteresis as loops
 from knitcore.yarn.study.hysteresis import DEFAULT_POINTS, MAX_CYCLES
 from knitcore.yarn.study.relax import relax

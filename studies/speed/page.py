@@ -23,25 +23,11 @@ from typing import Any
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from studies.speed.serving import serving
+from scripts.serving import CHROMIUM, FLAGS, FORCED, serving
 
 ROOT = Path(__file__).resolve().parents[2]
-CHROMIUM = Path("/usr/bin/chromium")
-FLAGS = [
-    "--no-sandbox",
-    "--enable-unsafe-swiftshader",
-    "--disable-gpu-compositing",  # the imitated GPU is slow: for WebGL only
-    "--disable-gpu-rasterization",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-dev-shm-usage",
-]
 RUNS = int(os.environ.get("RUNS", "5"))
 STROKES = int(os.environ.get("STROKES", "20"))
-FORCED = "--use-angle=swiftshader"
 MIN_MS = 8.0
 FIRST_MS = 10_000
 

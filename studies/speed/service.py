@@ -35,7 +35,7 @@ import viser
 import websockets
 
 from app.service.limits.budgets import BUDGETS
-from studies.speed.serving import Served, serving
+from scripts.serving import Served, serving
 
 USERS = int(os.environ.get("USERS", "50"))
 STROKES_PER_S = 5.0

@@ -1,7 +1,6 @@
-"""Yarn-level figures with their targets: CPU seconds, energies, the authors' figures.
+"""CPU seconds of relaxations and sweeps at the yarn level, with their targets.
 
-    python -m studies.speed.yarnlevel [--sides 1 2 4 8 16] [--charts 3]
-        [--cells-only] [--skip-published]
+    python -m studies.speed.yarnlevel [--sides 1 2 4 8 16] [--charts 3] [--cells-only]
 
 Run with OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1: idle threads of the linear algebra would count
 as CPU time. The authors' public code, unmodified, needs about 250 CPU seconds for one point of one
@@ -12,20 +11,14 @@ from __future__ import annotations
 
 import argparse
 import time
-from dataclasses import replace
 
 import numpy as np
 
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.yarn.model.cell import mirrored_cell, plain_cell
-from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.paper_samples import load_samples, sample
-from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.yarn_model import YarnModel
-from knitcore.yarn.paper.bezier_relax import relax_published
-from knitcore.yarn.solve.growth import Start, grow
-from knitcore.yarn.solve.newton import Options
+from knitcore.yarn.solve.growth import Start
 from knitcore.yarn.solve.splines import ROUGH_FROM
 from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.sweep import sweep
@@ -41,7 +34,6 @@ YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 LOOP_MM = 11.28
 LIMITS_S = {1: 0.04, 2: 0.2, 4: 1.0, 8: 8.0, 16: 60.0}
 STITCH_LIMIT_S, SWEEP_LIMIT_S, SWEEPS_LIMIT_S = 0.15, 4.0, 90.0
-AUTHORS_COURSE_MM, AUTHORS_SPLINE_N_MM = 2.80, 0.3957
 
 
 def against(value: float, limit: float, unit: str = "s") -> str:
@@ -108,66 +100,12 @@ def cells(sides: list[int], charts: int) -> None:
         print(f"{side} x {side}: median", against(float(np.median(times)), limit))
 
 
-def authors_sample() -> None:
-    """The authors' stockinette sample on splines, by grid; and single against general solver."""
-    configured, loop_mm = sample("acrylic", "stockinette").as_configured()
-    yarn = replace(configured, core_radius_mm=0.30)
-    stitch = StitchChart.parse("K")
-    print(f"authors' stockinette sample, l_x {AUTHORS_COURSE_MM} mm, splines by control points")
-    energies_n_mm = []
-    for grid in (SplineGrid(16, 3), SplineGrid(20, 4), SplineGrid(24, 5), SplineGrid(32, 5)):
-        held = relax(
-            stitch, yarn, loop_mm, convention=Convention.AUTHORS_CODE, grid=grid,
-            cell_course_mm=AUTHORS_COURSE_MM, branch="mirrored",
-        )  # fmt: skip
-        energies_n_mm.append(held.energy_n_mm)
-        print(f"  {grid.controls}: {held.energy_n_mm:.6f} N·mm")
-    print("  relaxed energy:", against(energies_n_mm[-1], AUTHORS_SPLINE_N_MM, "N·mm"))
-    print(
-        "  grid (20 to 32):",
-        against(abs(energies_n_mm[1] / energies_n_mm[-1] - 1.0), 1e-4, "relative"),
-    )
-    energies = []
-    for cell in (
-        mirrored_cell(stitch, SplineGrid(16, 3)),
-        plain_cell(stitch.tile(2, 2), SplineGrid(16, 3)),
-    ):
-        state = grow(
-            cell, yarn, np.full(cell.rows, loop_mm), Convention.AUTHORS_CODE, Start("usual"),
-            options=Options(tolerance=1e-9),
-        )  # fmt: skip
-        energies.append(state.terms.energy / cell.stitches)
-    print(
-        "  single and general solver:",
-        against(abs(energies[1] / energies[0] - 1.0), 1e-5, "relative"),
-    )
-
-
-def published() -> None:
-    """Zero-force energies of the published branch."""
-    print("published branch: energies and contact shares of Supplementary Table 8")
-    energy = share = 0.0
-    for entry in load_samples():
-        cell = relax_published(entry.fabric, entry.yarn, entry.loop_length_mm)
-        energy = max(energy, abs(cell.energy_n_mm / entry.energy_n_mm - 1.0))
-        share = max(share, abs(cell.contact_share - entry.contact_share))
-    print("  energies off by at most", against(energy, 0.03, "relative"))
-    print("  contact shares off by at most", against(share, 0.015, "absolute"))
-    configured, loop_mm = sample("acrylic", "stockinette").as_configured()
-    cell = relax_published(
-        "stockinette", replace(configured, core_radius_mm=0.30), loop_mm,
-        cell_course_mm=AUTHORS_COURSE_MM, convention=Convention.AUTHORS_CODE,
-    )  # fmt: skip
-    print(f"  authors' sample: {cell.energy_n_mm:.5f} N·mm (.4045 within 1e-3)")
-
-
 def main() -> None:
     """Print everything."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sides", type=int, nargs="*", default=[1, 2, 4, 8])
     parser.add_argument("--charts", type=int, default=3, help="random charts of each size")
     parser.add_argument("--cells-only", action="store_true")
-    parser.add_argument("--skip-published", action="store_true")
     options = parser.parse_args()
     relax(StitchChart.parse("K"), YARN, LOOP_MM, branch="mirrored")  # compiles
     relax(StitchChart.parse("KP/KK"), YARN, LOOP_MM, branch="mirrored")
@@ -175,9 +113,6 @@ def main() -> None:
     if options.cells_only:
         return
     stitches()
-    authors_sample()
-    if not options.skip_published:
-        published()
 
 
 if __name__ == "__main__":

@@ -7,8 +7,8 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.yarn.kernels.curve_samples import control_of, laid_out
+from knitcore.yarn.kernels.potential import potential, potential_and_derivatives
 from knitcore.yarn.kernels.structures import ContactLaw, Ints, Layout, Pairs
-from knitcore.yarn.model.potential import potential, potential_and_derivatives
 
 
 @compiled

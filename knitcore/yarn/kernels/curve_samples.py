@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
-
-Ints = NDArray[np.int64]
 
 
 @compiled
@@ -34,14 +31,7 @@ def sample_curve(controls: Array, course_mm: float, mirror: int, basis: Array) -
             for o in range(per_span):
                 s = span * per_span + o
                 for a in range(6):
-                    c = span - 2 + a
-                    sign = 1.0
-                    if c < 0:
-                        c += count
-                        sign = mirror
-                    elif c >= count:
-                        c -= count
-                        sign = mirror
+                    c, sign = control_of(span, a, count, mirror)
                     x = controls[j, c, 0]
                     y = controls[j, c, 1]
                     z = sign * controls[j, c, 2]

@@ -17,8 +17,8 @@ from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.yarn.kernels.contact import apart
 from knitcore.yarn.kernels.curve_samples import control_of, laid_out
+from knitcore.yarn.kernels.potential import potential_and_derivatives
 from knitcore.yarn.kernels.structures import ContactLaw, Layout, Pairs
-from knitcore.yarn.model.potential import potential_and_derivatives
 
 
 class Sliding(NamedTuple):

@@ -147,7 +147,7 @@ def rod_slopes(curve: Array, law: RodLaw, lengths: Array, tension: Array, by_spe
 def rod_hessian(
     curve: Array, law: RodLaw, lengths: Array, tension: Array, by_speed: Array
 ) -> tuple[Array, Array]:
-    """What :func:`rod_slopes` gives, and the second derivatives by d1, d2, d3, (n, 9, 9)."""
+    """Return the :func:`rod_slopes`, and the second derivatives by d1, d2, d3, (n, 9, 9)."""
     slope, curvature = np.empty(6), np.zeros((6, 6))
     lift, bent = np.zeros((6, 9)), np.empty((6, 9))
     bend, regular = law.step * law.bend, law.step * law.regular

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
+from knitcore.yarn.kernels.contact import apart
 from knitcore.yarn.kernels.curve_samples import control_of
 from knitcore.yarn.kernels.structures import Layout, Pairs
 
@@ -46,7 +47,7 @@ def touching_blocks(  # noqa: PLR0912 - compiled: spans, then pairs
     blocks = (local + size - 1) // size
     most = 18
     spans = np.full((layout.rows * count, most), -1, np.int64)
-    found = np.zeros(layout.rows * count, np.int64)
+    counts = np.zeros(layout.rows * count, np.int64)
     for row in range(layout.rows):
         for span in range(count):
             s = row * count + span
@@ -57,27 +58,24 @@ def touching_blocks(  # noqa: PLR0912 - compiled: spans, then pairs
                         continue
                     b = layout.dof[row, c, m] // size
                     new = True
-                    for q in range(found[s]):
+                    for q in range(counts[s]):
                         new = new and spans[s, q] != b
                     if new:
-                        spans[s, found[s]] = b
-                        found[s] += 1
+                        spans[s, counts[s]] = b
+                        counts[s] += 1
     out = np.zeros((blocks, blocks), np.bool_)
     for s in range(spans.shape[0]):
-        for p in range(found[s]):
-            for q in range(found[s]):
+        for p in range(counts[s]):
+            for q in range(counts[s]):
                 out[spans[s, p], spans[s, q]] = True
     square = reach * reach
     for k in range(pairs.shape[0]):
-        i, j = pairs[k, 0], pairs[k, 1]
-        dx = at[j, 0] - at[i, 0] + layout.wales * pairs[k, 2] * course_mm
-        dy = at[j, 1] - at[i, 1] + layout.rows * pairs[k, 3] * wale_mm
-        dz = pairs[k, 4] * at[j, 2] - at[i, 2]
+        dx, dy, dz = apart(at, pairs, k, layout, course_mm, wale_mm)
         if dx * dx + dy * dy + dz * dz >= square:
             continue
-        s, t = i // per_span, j // per_span
-        for p in range(found[s]):
-            for q in range(found[t]):
+        s, t = pairs[k, 0] // per_span, pairs[k, 1] // per_span
+        for p in range(counts[s]):
+            for q in range(counts[t]):
                 out[spans[s, p], spans[t, q]] = True
                 out[spans[t, q], spans[s, p]] = True
     return out

@@ -87,10 +87,10 @@ def characterise_repeat(task: RepeatTask) -> Document:
     try:
         for direction in Direction:
             stretches[direction] = _stretch(rest, direction, task.max_stress_n_per_mm)
-        found = fit_sweeps(
+        fit = fit_sweeps(
             stretches[Direction.COURSE], stretches[Direction.WALE], task.max_stress_n_per_mm
         )
-        fields = asdict(found)
+        fields = asdict(fit)
         law = {name: _round(value) for name, value in fields.pop("law").items()}
         law_range = {name: _round(value) for name, value in fields.items()}
     except KnitcoreError as error:

@@ -66,7 +66,7 @@ def content_key(content: Mapping[str, Any], modules: tuple[str, ...] = SOLVERS) 
 
 @dataclass(frozen=True)
 class ModuleCode:
-    """What decides in a module: its imports, the file names in it, a digest of its code."""
+    """The parts of a module that decide: its imports, file names in it, a digest of its code."""
 
     imports: frozenset[str]
     files: frozenset[str]
@@ -77,18 +77,18 @@ def reached(modules: tuple[str, ...]) -> dict[str, ModuleCode]:
     """Modules and all that they import from these packages, by name."""
     packages = {name.partition(".")[0] for name in modules}
     packages.add("knitcore")
-    found: dict[str, ModuleCode] = {}
+    code_of: dict[str, ModuleCode] = {}
     waiting = list(modules)
     while waiting:
         name = waiting.pop()
         file = _file(name)
-        if name in found or file is None:
+        if name in code_of or file is None:
             continue
-        found[name] = _read(file.read_text(encoding="utf-8"))
+        code_of[name] = _read(file.read_text(encoding="utf-8"))
         package = name if file.stem == "__init__" else name.rpartition(".")[0]
-        imported = (resolve_name(n, package) for n in found[name].imports)
+        imported = (resolve_name(n, package) for n in code_of[name].imports)
         waiting += [n for n in imported if n.partition(".")[0] in packages]
-    return found
+    return code_of
 
 
 @cache

@@ -98,9 +98,9 @@ def _slope(along: Array, across: Array) -> float:
 
 def _fit(direction: Direction, points: tuple[Array, Array, Array], coupling: float) -> DirectionFit:
     along, across, stress = points
-    found = fit_direction(along, across, stress, np.ones_like(stress), coupling)
-    floor = LINEAR_FLOOR * float(stress.max()) / found.largest_strain
-    if found.stiffness <= floor * (1.0 + 1e-6):
+    fit = fit_direction(along, across, stress, np.ones_like(stress), coupling)
+    floor = LINEAR_FLOOR * float(stress.max()) / fit.largest_strain
+    if fit.stiffness <= floor * (1.0 + 1e-6):
         # at its bound it is not a property of the fabric, nor would the modulus from it be
         raise InputError(
             "max_stress_n_per_mm",
@@ -108,4 +108,4 @@ def _fit(direction: Direction, points: tuple[Array, Array, Array], coupling: flo
             "can, and leaves no positive initial stiffness.",
             "Fit a smaller range of stress.",
         )
-    return found
+    return fit

@@ -2,14 +2,15 @@
 
 ``data/stitches.json`` holds sizes, energies and laws, ``data/stitches.npz`` control points;
 ``scripts/stored_stitches.py`` makes both. ``data/lowest.json`` records which of them are minima
-without their mirrors (``scripts/lowest_stitches.py``), ``data/bending.json`` how they bend
-(:mod:`knitcore.yarn.library.bending_table`).
+without their mirrors, ``data/bending.json`` how they bend; ``scripts/from_store.py`` makes these. A
+response to bending is four numbers there: moment (N), rigidity with the size across free and held
+(N·mm), and strain across per curvature (mm).
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, fields
 from functools import cache
 from importlib.resources import files
 from io import BytesIO
@@ -22,17 +23,21 @@ from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.yarn.kernels import sample_curve
-from knitcore.yarn.library.bending_table import stored_bending
-from knitcore.yarn.library.catalogue import placement
+from knitcore.yarn.kernels.curve_samples import sample_curve
 from knitcore.yarn.library.yarns import ChartYarn
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.yarn_model import YarnModel
-from knitcore.yarn.study.bending import RepeatBending
+from knitcore.yarn.solve.images import placement
+from knitcore.yarn.study.bending import FabricBending, RepeatBending
+from knitcore.yarn.study.bent_cell import BendingResponse
 from knitcore.yarn.study.relax import Branch
 
 MATERIALS = ("acrylic", "cotton")
+DIGITS = 6
+"""Significant digits of the numbers of bending in the file."""
+_NOTHING = 1e-9
+"""Below this, in N or mm, a moment or a strain per curvature is rounding."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +53,7 @@ class FreeStitch:
 
 @dataclass(frozen=True)
 class Unmirrored:
-    """What becomes of a mirrored repeat when its symmetries are dropped.
+    """The fate of a mirrored repeat whose symmetries are dropped.
 
     Attributes
     ----------
@@ -113,7 +118,7 @@ class StoredStitch:
     @property
     def lowest_energy_n_mm(self) -> float:
         """Energy of a stitch of the lowest state found, with or without symmetries, N·mm."""
-        others = [found.energy_n_mm for found in (self.free, self.unmirrored) if found is not None]
+        others = [state.energy_n_mm for state in (self.free, self.unmirrored) if state is not None]
         return min([self.energy_n_mm, *others])
 
     def centre_lines(self, per_span: int = 2) -> Array:
@@ -146,25 +151,21 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
     """
     repeat = chart.repeat()
     representative = repeat.canonical()
-    entry = _entries().get(f"{material_id}/{representative.key}")
+    key = f"{material_id}/{representative.key}"
+    entry = _entries().get(key)
     if entry is None or "failure" in entry:
         return None
     placed = placement(repeat, representative)
     if placed is None:
         return None
-    points = np.asarray(_controls()[f"{material_id}/{representative.key}"], dtype=float)
-    bending = stored_bending(f"{material_id}/{representative.key}")
-    per_stitch = points.shape[1] // repeat.columns
+    points = np.asarray(_controls()[key], dtype=float)
+    bending = stored_bending(key)
     if placed.mirror:
-        # t -> columns - t turns control c into control -c, and stitch i into columns - 1 - i
-        points = np.roll(points[:, ::-1], 1, axis=1) * (-1.0, 1.0, 1.0)
         bending = bending and bending.mirror_image()
     if placed.swap:
-        points = points * (1.0, 1.0, -1.0)
         bending = bending and bending.swapped()
-    points = np.roll(points, (placed.up, placed.right * per_stitch), axis=(0, 1))
     free = entry.get("free", {"failure": "not relaxed freely"})
-    unmirrored = _unmirrored().get(f"{material_id}/{representative.key}", {"failure": "not tried"})
+    unmirrored = _table("lowest.json").get(key, {"failure": "not tried"})
     return StoredStitch(
         chart=repeat,
         material=material_id,
@@ -174,7 +175,7 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
         law=_law(entry),
         **{name: entry[name] for name in _AS_THEY_ARE},
         law_jumps=(entry["law_jumps"][0], entry["law_jumps"][1]),
-        controls=points,
+        controls=placed.points(points, repeat.columns),
         free=None if "failure" in free else FreeStitch(**{**free, "law": _law(free)}),
         unmirrored=None if "failure" in unmirrored else Unmirrored(**unmirrored),
         bending=bending,
@@ -184,21 +185,21 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
 def stored_for(chart: StitchChart, used: ChartYarn) -> StoredStitch | None:
     """The packaged relaxation of a chart's repeat in this yarn, at this loop length; None if there
     is none."""
-    wanted = (*astuple(used.yarn), used.loop_length_mm)
+    parameters = (*astuple(used.yarn), used.loop_length_mm)
     for material_id in MATERIALS:
-        found = stored_stitch(chart, material_id)
-        if found is not None and np.allclose(
-            (*astuple(found.yarn), found.loop_length_mm), wanted, rtol=1e-9, atol=0.0
+        stored = stored_stitch(chart, material_id)
+        if stored is not None and np.allclose(
+            (*astuple(stored.yarn), stored.loop_length_mm), parameters, rtol=1e-9, atol=0.0
         ):
-            return found
+            return stored
     return None
 
 
 def stored_fabric(fabric: Fabric, material_id: str) -> StoredStitch:
     """The packaged relaxation of a pure fabric; the store has all four of each material."""
-    found = stored_stitch(StitchChart.of_fabric(fabric), material_id)
-    assert found is not None  # noqa: S101 - packaged, and tested
-    return found
+    stored = stored_stitch(StitchChart.of_fabric(fabric), material_id)
+    assert stored is not None  # noqa: S101 - packaged, and tested
+    return stored
 
 
 def stored_failure(chart: StitchChart, material_id: str) -> str | None:
@@ -218,26 +219,86 @@ def stored_charts(material_id: str) -> list[StitchChart]:
     ]
 
 
+def stored_bending(key: str) -> RepeatBending | None:
+    """Bending of a representative of the store, by its material and chart (``acrylic/K``)."""
+    entry = _table("bending.json").get(key)
+    return None if entry is None else of_document(entry)
+
+
+def document_of(bending: RepeatBending) -> dict[str, Any]:
+    """Bending of a repeat as the entry of the file."""
+    parts = {
+        "mirrored": _state(bending.mirrored),
+        "unmirrored": _state(bending.unmirrored),
+        "failure": bending.failure,
+        "unmirrored_failure": bending.unmirrored_failure,
+    }
+    return {name: part for name, part in parts.items() if part}
+
+
+def of_document(entry: dict[str, Any]) -> RepeatBending:
+    """Bending of a repeat from an entry of the file."""
+    return RepeatBending(
+        mirrored=_read(entry.get("mirrored")),
+        unmirrored=_read(entry.get("unmirrored")),
+        failure=entry.get("failure", ""),
+        unmirrored_failure=entry.get("unmirrored_failure", ""),
+    )
+
+
+def _state(bending: FabricBending | None) -> dict[str, Any] | None:
+    if bending is None:
+        return None
+    return {field.name: _written(getattr(bending, field.name)) for field in fields(bending)}
+
+
+def _written(value: Any) -> Any:
+    """A value as the file has it: numbers short, a response as its four numbers."""
+    if isinstance(value, BendingResponse):
+        value = astuple(value)
+    if isinstance(value, tuple):
+        return [_written(part) for part in value]
+    return _short(value) if isinstance(value, float) else value
+
+
+def _read(state: dict[str, Any] | None) -> FabricBending | None:
+    if state is None:
+        return None
+    course, wale, *oblique = (
+        BendingResponse(*numbers)
+        for numbers in (state["course"], state["wale"], *(state["oblique"] or ()))
+    )
+    known = {
+        "course": course,
+        "wale": wale,
+        "oblique": (oblique[0], oblique[1]) if oblique else None,
+    }
+    return FabricBending(**(state | known))
+
+
+def _short(value: float) -> float:
+    return 0.0 if abs(value) < _NOTHING else float(f"{value:.{DIGITS}g}")
+
+
 def _law(entry: dict[str, Any]) -> ConstitutiveLaw | None:
     return None if entry["law"] is None else ConstitutiveLaw(**entry["law"])
 
 
-@cache
 def _entries() -> dict[str, Any]:
-    entries: dict[str, Any] = json.loads(_data("stitches.json"))["stitches"]
+    entries: dict[str, Any] = _table("stitches.json")["stitches"]
     return entries
 
 
 @cache
-def _unmirrored() -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(_data("lowest.json"))
-    return found
+def _table(name: str) -> dict[str, Any]:
+    table: dict[str, Any] = json.loads(_data(name))
+    return table
 
 
 @cache
 def _controls() -> dict[str, NDArray[np.float32]]:
-    with np.load(BytesIO(_data("stitches.npz"))) as found:
-        return {name: found[name] for name in found.files}
+    with np.load(BytesIO(_data("stitches.npz"))) as archive:
+        return {name: archive[name] for name in archive.files}
 
 
 def _data(name: str) -> bytes:

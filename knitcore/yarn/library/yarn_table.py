@@ -176,6 +176,12 @@ _LAW = {
     "beta_xx_n_per_mm": "beta_xx",
     "beta_yy_n_per_mm": "beta_yy",
 }
+_ENERGY = ("energy_n_mm", "bending_share", "contact_share")
+_RANGE = (
+    "max_stress_n_per_mm",
+    *("largest_strain_course", "largest_strain_wale"),
+    *("rms_course_n_per_mm", "rms_wale_n_per_mm"),
+)
 
 
 @dataclass(frozen=True)
@@ -214,35 +220,27 @@ class YarnRow:
 
     def flat(self) -> dict[str, str | float | bool | None]:
         """One row of the table: sizes (mm), energy (N·mm), law (N/mm) with its range."""
-        found, law = self.document, self.law
-        span = found.get("law_range") or {}
-        curves = found.get("curves", {})
+        document, law = self.document, self.law
+        span, curves = document.get("law_range") or {}, document.get("curves", {})
         row: dict[str, str | float | bool | None] = {
             "fabric": str(self.fabric),
             "setting": self.setting,
             "loop_length_mm": self.loop_length_mm,
-            "stitch_course_mm": found.get("cell_course_mm"),
-            "stitch_wale_mm": found.get("cell_wale_mm"),
+            "stitch_course_mm": document.get("cell_course_mm"),
+            "stitch_wale_mm": document.get("cell_wale_mm"),
             "stitches_per_cm2": self.stitches_per_cm2,
-            "energy_n_mm": found.get("energy_n_mm"),
-            "bending_share": found.get("bending_share"),
-            "contact_share": found.get("contact_share"),
+            **{name: document.get(name) for name in _ENERGY},
         }
         for direction in Direction:
             curve = curves.get(str(direction), {})
-            row[f"contact_overtakes_at_strain_{direction}"] = curve.get(
-                "contact_overtakes_at_strain"
-            )
+            overtakes = "contact_overtakes_at_strain"
+            row[f"{overtakes}_{direction}"] = curve.get(overtakes)
             row[f"jumps_{direction}"] = len(curve["jumps"]) if curve else None
         row |= {
             **{name: getattr(law, field, None) for name, field in _LAW.items()},
-            "max_stress_n_per_mm": span.get("max_stress_n_per_mm"),
-            "largest_strain_course": span.get("largest_strain_course"),
-            "largest_strain_wale": span.get("largest_strain_wale"),
-            "rms_course_n_per_mm": span.get("rms_course_n_per_mm"),
-            "rms_wale_n_per_mm": span.get("rms_wale_n_per_mm"),
-            "converged": found.get("converged"),
-            "remark": self.failure or found.get("law_failure") or " ".join(found["notes"]),
+            **{name: span.get(name) for name in _RANGE},
+            "converged": document.get("converged"),
+            "remark": self.failure or document.get("law_failure") or " ".join(document["notes"]),
         }
         return row
 
@@ -301,12 +299,12 @@ def characterise_yarns(
     True
     """
     tasks = {key: task for plan in plans for key, _, _, task in plan.tasks()}
-    found = run_batch(
+    batch = run_batch(
         characterise_repeat, tasks, scheduler=scheduler, workers=workers, keep=keep,
         progress=progress, cancelled=cancelled,
     )  # fmt: skip
-    lost = {key: {"failure": reason} for key, reason in found.failures.items()}
-    documents = {**found.results, **lost}
+    lost = {key: {"failure": reason} for key, reason in batch.failures.items()}
+    documents = {**batch.results, **lost}
     return tuple(
         YarnTable(
             plan,
@@ -343,5 +341,5 @@ def _increasing(field: str, values: Sequence[float]) -> list[float]:
     return sorted(set(values))
 
 
-def _nearest(values: Sequence[float], wanted: float) -> int:
-    return min(range(len(values)), key=lambda i: abs(values[i] - wanted))
+def _nearest(values: Sequence[float], target: float) -> int:
+    return min(range(len(values)), key=lambda i: abs(values[i] - target))

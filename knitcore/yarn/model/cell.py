@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.base.arrays import Array
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.yarn.kernels.structures import Layout
 from knitcore.yarn.model.spline import SplineGrid
@@ -67,7 +68,7 @@ class YarnCell:
 
     @property
     def symmetric(self) -> bool:
-        """Whether a symmetry is imposed."""
+        """Tell whether a symmetry is imposed."""
         return self.mirror_course or self.mirror_wale or self.axis is not None
 
     @property
@@ -76,7 +77,7 @@ class YarnCell:
         return self.wales * self.grid.controls
 
     @cached_property
-    def place(self) -> NDArray[np.float64]:
+    def place(self) -> Array:
         """Parameter t of the samples of a course, in stitches."""
         samples = self.wales * self.grid.samples
         return (np.arange(samples) + 0.5) / self.grid.samples
@@ -87,7 +88,7 @@ class YarnCell:
         return bool(self.purl[row % self.rows, wale % self.wales]) ^ bool(swaps % 2)
 
     @cached_property
-    def _ties(self) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
+    def _ties(self) -> tuple[NDArray[np.int64], Array, int]:
         """Index and sign of the unknown behind every control coordinate."""
         count = self.controls_per_course
         dof = np.zeros((self.rows, count, 3), np.int64)
@@ -117,7 +118,7 @@ class YarnCell:
         return self._ties[0]
 
     @property
-    def sign(self) -> NDArray[np.float64]:
+    def sign(self) -> Array:
         """(rows, controls, 3) sign of that unknown in it; 0 where symmetry makes it zero."""
         return self._ties[1]
 
@@ -134,13 +135,11 @@ class YarnCell:
             self.sign, self.unknowns,
         )  # fmt: skip
 
-    def controls(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
+    def controls(self, state: Array) -> Array:
         """Control points (rows, controls, 3), mm, without the drift of the cell."""
         return state[self.dof] * self.sign
 
-    def state(
-        self, controls: NDArray[np.float64], course_mm: float, wale_mm: float
-    ) -> NDArray[np.float64]:
+    def state(self, controls: Array, course_mm: float, wale_mm: float) -> Array:
         """Unknowns of the given control points, averaged over tied ones."""
         total = np.zeros(self.unknowns)
         weight = np.zeros(self.unknowns)

@@ -66,7 +66,7 @@ def foot_weights(grid: SplineGrid) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """What is around the stitches of a cell, up to two stitches each way.
+    """The surroundings of the stitches of a cell, up to two stitches each way.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class Surroundings:
 
     @classmethod
     def of(cls, cell: YarnCell) -> Surroundings:
-        """Of every stitch of a cell."""
+        """The surroundings of every stitch of a cell."""
         purl = np.array([
             [cell.purl_at(row, wale) for wale in range(-_AROUND, cell.wales + _AROUND)]
             for row in range(-_AROUND, cell.rows + _AROUND)
@@ -98,7 +98,7 @@ class Surroundings:
         return cls(np.minimum(code, mirrored), side, np.sign(code - mirrored).astype(float))
 
     def at(self, rows: NDArray[np.int64], wales: NDArray[np.int64]) -> Surroundings:
-        """Of the stitches at the crossings of some rows and wales."""
+        """The surroundings of the stitches at the crossings of some rows and wales."""
         place = np.ix_(rows, wales)
         return Surroundings(self.kind[place], self.side[place], self.hand[place])
 
@@ -108,8 +108,8 @@ class Surroundings:
         kind, side, hand = self.kind.ravel(), self.side.ravel(), self.hand.ravel()
         tips, leans = side[:, None] * tips, side[:, None] * leans
         rows = [leans[hand == 0.0]]
-        for one in np.unique(kind):
-            like, handed = kind == one, (kind == one) & (hand != 0.0)
+        for shared in np.unique(kind):
+            like, handed = kind == shared, (kind == shared) & (hand != 0.0)
             rows.append(tips[like][1:] - tips[like][:1])
             turned = hand[handed][:, None] * leans[handed]
             rows.append(turned[1:] - turned[:1])

@@ -1,7 +1,7 @@
 """Factors of the terms in the yarn's energy: three conventions, by name.
 
 The energy of one stitch is, with ordered pairs of contact points and ``V`` of
-:mod:`knitcore.yarn.model.potential`,
+:mod:`knitcore.yarn.kernels.potential`,
 
     bending_factor * B ∮ κ² ds  +  regularisation_factor * C ∮ |∂_ss t|² ds
     +  ordered_pair_factor * Σ_(i,j) V(R_ij) w_i w_j

@@ -11,16 +11,30 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array, sum_in_order
 from knitcore.base.threads import on_halves
 from knitcore.linear.dense import dot, times
-from knitcore.yarn import kernels
-from knitcore.yarn.kernels.structures import Pairs
+from knitcore.yarn.kernels.contact import contact_energy, contact_hessian, contact_slopes
+from knitcore.yarn.kernels.curve_samples import laid_out, sample_curve
+from knitcore.yarn.kernels.friction_kernels import (
+    Sliding,
+    friction_energy,
+    friction_hessian,
+    friction_slopes,
+)
+from knitcore.yarn.kernels.rod import rod_energy, rod_hessian, rod_slopes
+from knitcore.yarn.kernels.scatter import scatter_gradient, scatter_local
+from knitcore.yarn.kernels.structures import ContactLaw, Ints, Pairs, RodLaw
+from knitcore.yarn.kernels.tiles import (
+    TiledMatrix,
+    empty_tiles,
+    one_tile,
+    tiled_product,
+    touching_blocks,
+)
 from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.constraints import foot_rows, plane_rows, posture_rows
 from knitcore.yarn.model.conventions import REGULARISATION_N_MM4, Convention
 from knitcore.yarn.model.neighbours import EXCLUSION_RADII, neighbour_pairs
 from knitcore.yarn.model.slides import SlideConstraint
 from knitcore.yarn.model.yarn_model import YarnModel
-
-Ints = NDArray[np.int64]
 
 SPACING_PER_BENDING = 100.0
 """Stiffness of the spacing penalty in units of B / L: keeps the samples evenly spread."""
@@ -88,13 +102,13 @@ class SparseHessian:
     """
 
     touching: NDArray[np.bool_]
-    matrix: kernels.TiledMatrix
+    matrix: TiledMatrix
     sizes: Array
 
     def times(self, vector: Array) -> Array:
         """The product with a vector (unknowns,)."""
         out = np.empty(len(vector))
-        out[:-2] = kernels.tiled_product(self.matrix.tiles, self.matrix.where, vector[:-2])
+        out[:-2] = tiled_product(self.matrix.tiles, self.matrix.where, vector[:-2])
         out[:-2] += vector[-2] * self.sizes[0, :-2] + vector[-1] * self.sizes[1, :-2]
         out[-2:] = times(self.sizes, vector)
         return out
@@ -125,7 +139,7 @@ class CellEnergy:
     flat: bool = False
     slides: tuple[SlideConstraint, ...] = ()
     spacing_per_bending: float = SPACING_PER_BENDING
-    sliding: kernels.Sliding | None = None
+    sliding: Sliding | None = None
 
     @cached_property
     def mean_loop_mm(self) -> float:
@@ -145,7 +159,7 @@ class CellEnergy:
 
     @property
     def per_stitch(self) -> bool:
-        """Whether every stitch has a length of its own."""
+        """Tell whether every stitch has a length of its own."""
         return self.loop_length_mm.ndim == 2
 
     @cached_property
@@ -157,7 +171,7 @@ class CellEnergy:
 
     @cached_property
     def stretch_of(self) -> Ints:
-        """Which of the prescribed lengths each sample belongs to."""
+        """Index of the prescribed length that each sample belongs to."""
         course: Ints = np.repeat(np.arange(self.cell.rows), len(self.cell.place))
         if not self.per_stitch:
             return course
@@ -185,9 +199,9 @@ class CellEnergy:
         return PENALTY_PER_BENDING * self.unit / self.mean_loop_mm**2 / self.cell.wales
 
     @cached_property
-    def contact_law(self) -> kernels.ContactLaw:
+    def contact_law(self) -> ContactLaw:
         """The contact's parameters for the kernels."""
-        return kernels.ContactLaw(
+        return ContactLaw(
             weight=self.convention.unordered_pair_factor / self.cell.grid.samples**2,
             stiffness=self.yarn.contact_stiffness_n_per_mm3,
             exponent=self.yarn.contact_exponent,
@@ -196,9 +210,9 @@ class CellEnergy:
         )
 
     @cached_property
-    def rod_law(self) -> kernels.RodLaw:
+    def rod_law(self) -> RodLaw:
         """Parameters of bending, regularisation and spacing penalty for the kernels."""
-        return kernels.RodLaw(
+        return RodLaw(
             bend=self.convention.bending_factor * self.yarn.bending_modulus_n_mm2,
             regular=self.convention.regularisation_factor * self.regularisation_n_mm4,
             spacing=self.spacing_per_bending * self.unit,
@@ -208,9 +222,7 @@ class CellEnergy:
     def curve(self, state: Array) -> Array:
         """(rows * S, 4, 3): samples of all courses with three derivatives (see kernels)."""
         cell = self.cell
-        sampled = kernels.sample_curve(
-            cell.controls(state), state[-2], cell.mirror[0], cell.grid.basis
-        )
+        sampled = sample_curve(cell.controls(state), state[-2], cell.mirror[0], cell.grid.basis)
         return sampled.reshape(-1, 4, 3)
 
     def pairs(self, curve: Array, state: Array, reach: float) -> tuple[Pairs, Ints]:
@@ -248,14 +260,14 @@ class CellEnergy:
         layout, law = self.cell.layout, self.contact_law
         contact = sum_in_order(
             on_halves(
-                lambda of: kernels.contact_energy(curve, state[-2], state[-1], of, layout, law),
+                lambda of: contact_energy(curve, state[-2], state[-1], of, layout, law),
                 pairs, PAIRS_TO_SHARE,
             )
         )  # fmt: skip
-        rod, spacing = kernels.rod_energy(curve, self.rod_law, self.speeds)
+        rod, spacing = rod_energy(curve, self.rod_law, self.speeds)
         friction = 0.0
         if self.sliding is not None:
-            friction = kernels.friction_energy(
+            friction = friction_energy(
                 curve, state[-2], state[-1], self.sliding, self.cell.layout, self.speeds
             )
         return Terms(rod, contact, spacing, self.excess(state, curve), friction)
@@ -282,21 +294,21 @@ class CellEnergy:
         """
         layout, law = self.cell.layout, self.contact_law
         pressed = on_halves(
-            lambda of: kernels.contact_slopes(curve, state[-2], state[-1], of, layout, law),
+            lambda of: contact_slopes(curve, state[-2], state[-1], of, layout, law),
             pairs, PAIRS_TO_SHARE,
         )  # fmt: skip
         force, by_speed = (sum_in_order(parts) for parts in zip(*pressed, strict=True))
         along = curve, self.rod_law, self.speeds, tension[self.stretch_of], by_speed
         if hessian:
-            slopes, local = kernels.rod_hessian(*along)
+            slopes, local = rod_hessian(*along)
         else:
-            slopes = kernels.rod_slopes(*along)
+            slopes = rod_slopes(*along)
         if self.sliding is not None:
             rubbing = curve, state[-2], state[-1], self.sliding, layout, self.speeds
-            rubbed, by_d1 = kernels.friction_slopes(*rubbing)
+            rubbed, by_d1 = friction_slopes(*rubbing)
             force += rubbed
             slopes[:, 0] += by_d1
-        gradient = kernels.scatter_gradient(force, slopes, layout)
+        gradient = scatter_gradient(force, slopes, layout)
         gradient[-2:] += force[-1, :2]
         slides = np.array([slide.gradient(state) for slide in self.slides])
         rules = np.concatenate([self.held, slides.reshape(-1, len(gradient))])
@@ -307,19 +319,17 @@ class CellEnergy:
             return Slope(gradient, rows)
         size = self.cell.unknowns
         if sparse:
-            at = kernels.laid_out(curve, layout.place, state[-2], state[-1])
-            touching = kernels.touching_blocks(
+            at = laid_out(curve, layout.place, state[-2], state[-1])
+            touching = touching_blocks(
                 at, state[-2], state[-1], pairs, layout, BLOCK, 2.0 * law.radius
             )
-            matrix = kernels.empty_tiles(touching, BLOCK, size - 2)
+            matrix = empty_tiles(touching, BLOCK, size - 2)
         else:
-            matrix = kernels.one_tile(size)
-        sizes, position, position_speed = kernels.contact_hessian(
+            matrix = one_tile(size)
+        sizes, position, position_speed = contact_hessian(
             curve, state[-2], state[-1], pairs, start, layout, law, matrix.tiles, matrix.where
         )
-        kernels.scatter_local(
-            local, position, position_speed, layout, matrix.tiles, matrix.where, sizes
-        )
+        scatter_local(local, position, position_speed, layout, matrix.tiles, matrix.where, sizes)
         sizes[:, -2:] = 0.5 * (sizes[:, -2:] + sizes[:, -2:].T)
         if sparse:
             return Slope(gradient, rows, sparse=SparseHessian(touching, matrix, sizes))
@@ -329,7 +339,7 @@ class CellEnergy:
         for pull, slide in zip(tension[beside + len(self.held) :], self.slides, strict=True):
             whole += pull * slide.hessian()
         if self.sliding is not None:
-            kernels.friction_hessian(*rubbing, whole)
+            friction_hessian(*rubbing, whole)
         return Slope(gradient, rows, whole)
 
     def along_yarn(
@@ -340,12 +350,12 @@ class CellEnergy:
         The slopes include the tensions and ``by_speed``, the slope of the contact by |d1|.
         """
         along = curve, self.rod_law, self.speeds
-        rod, spacing = kernels.rod_energy(*along)
-        return rod, spacing, kernels.rod_slopes(*along, tension[self.stretch_of], by_speed)
+        rod, spacing = rod_energy(*along)
+        return rod, spacing, rod_slopes(*along, tension[self.stretch_of], by_speed)
 
     def gathered(self, force: Array, slopes: Array) -> Array:
         """(unknowns,) gradient from slopes (n, 3) by the positions and (n, 3, 3) by d1, d2, d3."""
-        return np.asarray(kernels.scatter_gradient(force, slopes, self.cell.layout))
+        return np.asarray(scatter_gradient(force, slopes, self.cell.layout))
 
     def length_gradients(self, curve: Array) -> Array:
         """(m, unknowns): gradient of each prescribed length."""

@@ -81,7 +81,7 @@ def check_stretch(max_strain: float, points: int, max_stress_n_per_mm: float | N
 
 
 def is_at_rest(relaxed: RelaxedCell) -> bool:
-    """Whether no force holds its size."""
+    """Tell whether no force holds its size."""
     sizes = relaxed.cell_course_mm, relaxed.cell_wale_mm
     work = max(abs(f) * size for f, size in zip(relaxed.force_n, sizes, strict=True))
     return work <= _AT_REST * relaxed.energy_n_mm

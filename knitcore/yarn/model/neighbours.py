@@ -1,4 +1,4 @@
-"""Which samples of the yarn may touch: a cell list over the periodic (mirrored) sheet.
+"""Samples of the yarn that may touch: a cell list over the periodic (mirrored) sheet.
 
 A pair (i, j, across, up) means sample i of the cell and the image of sample j that lies ``across``
 cells further along the course and ``up`` cells higher. Every pair is listed once, whatever the
@@ -10,11 +10,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.base.threads import on_halves
 from knitcore.yarn.kernels.curve_samples import laid_out
 from knitcore.yarn.kernels.structures import Ints, Pairs
 
+Sizes = tuple[float, float]
+"""Size of a stitch, course-wise and wale-wise, mm."""
+Shape = tuple[int, int]
+"""Rows and wales of a cell."""
 EXCLUSION_RADII = 2.1
 """Samples of one yarn nearer than this many radii along it do not touch (authors' code)."""
 _BINS = 3
@@ -24,20 +29,13 @@ _ROOM = 128
 _SAMPLES_TO_SHARE = 20_000
 """From this many samples on a second thread pays."""
 _LEAST_CHANGE = 1e-300
-"""So that nothing is divided by zero, mm."""
+"""Smallest change that is divided by, mm."""
 
 
 def neighbour_pairs(
-    curve: NDArray[np.float64],
-    place: NDArray[np.float64],
-    cell: tuple[float, float],
-    shape: tuple[int, int],
-    mirror: tuple[int, int],
-    reach: float,
-    exclusion: float,
-    moving: NDArray[np.bool_],
-    cut: tuple[bool, bool],
-) -> tuple[Pairs, Ints]:
+    curve: Array, place: Array, cell: Sizes, shape: Shape, mirror: tuple[int, int], reach: float,
+    exclusion: float, moving: NDArray[np.bool_], cut: tuple[bool, bool],
+) -> tuple[Pairs, Ints]:  # fmt: skip
     """All pairs of samples nearer than ``reach`` of which at least one moves.
 
     Parameters
@@ -60,11 +58,11 @@ def neighbour_pairs(
     room = _ROOM
 
     def listed(of: Ints) -> Ints:
-        found: Ints = _listed(
+        begins: Ints = _listed(
             curve, place, cell, shape, mirror, reach, exclusion, of, moving, cut,
             pairs[room * of[0] : room * (of[-1] + 1)],
         )  # fmt: skip
-        return found
+        return begins
 
     while True:
         # every thread writes into its part, of which only the pages that it fills take memory
@@ -90,18 +88,9 @@ def _move(pairs: Pairs, begin: int, to: int, count: int) -> None:
 
 @compiled
 def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
-    curve: NDArray[np.float64],
-    place: NDArray[np.float64],
-    cell: tuple[float, float],
-    shape: tuple[int, int],
-    mirror: tuple[int, int],
-    reach: float,
-    exclusion: float,
-    of: Ints,
-    moving: NDArray[np.bool_],
-    cut: tuple[bool, bool],
-    pairs: Pairs,
-) -> Ints:
+    curve: Array, place: Array, cell: Sizes, shape: Shape, mirror: tuple[int, int], reach: float,
+    exclusion: float, of: Ints, moving: NDArray[np.bool_], cut: tuple[bool, bool], pairs: Pairs,
+) -> Ints:  # fmt: skip
     """Fill ``pairs`` with those of the samples ``of``, and tell where each sample's begin.
 
     Those for which there is no room are only counted.
@@ -205,13 +194,7 @@ def _listed(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
 
 
 @compiled
-def pair_distances(
-    curve: NDArray[np.float64],
-    cell: tuple[float, float],
-    place: NDArray[np.float64],
-    shape: tuple[int, int],
-    pairs: Pairs,
-) -> NDArray[np.float64]:
+def pair_distances(curve: Array, cell: Sizes, place: Array, shape: Shape, pairs: Pairs) -> Array:
     """Length of the vector of each pair, mm.
 
     The vectors are linear in curve and cell: differences of both give how far the vectors change.
@@ -225,11 +208,7 @@ def pair_distances(
 
 @compiled
 def extremes(
-    curve: NDArray[np.float64],
-    cell: tuple[float, float],
-    place: NDArray[np.float64],
-    shape: tuple[int, int],
-    pairs: Pairs,
+    curve: Array, cell: Sizes, place: Array, shape: Shape, pairs: Pairs
 ) -> tuple[float, float]:
     """Least and greatest of the :func:`pair_distances`; infinite and zero without pairs."""
     at = laid_out(curve, place, *cell)
@@ -242,15 +221,9 @@ def extremes(
 
 @compiled
 def part_apart(
-    curves: tuple[NDArray[np.float64], NDArray[np.float64]],
-    cells: tuple[tuple[float, float], tuple[float, float]],
-    place: NDArray[np.float64],
-    shape: tuple[int, int],
-    pairs: Pairs,
-    used: tuple[float, float],
-    longest: float,
-    most: float,
-) -> float:
+    curves: tuple[Array, Array], cells: tuple[Sizes, Sizes], place: Array, shape: Shape,
+    pairs: Pairs, used: tuple[float, float], longest: float, most: float,
+) -> float:  # fmt: skip
     """Part of a step, at most ``most``, on which no pair uses up its distance.
 
     Parameters
@@ -272,13 +245,7 @@ def part_apart(
 
 
 @compiled
-def _square(
-    at: NDArray[np.float64],
-    cell: tuple[float, float],
-    shape: tuple[int, int],
-    pairs: Pairs,
-    q: int,
-) -> float:
+def _square(at: Array, cell: Sizes, shape: Shape, pairs: Pairs, q: int) -> float:
     """Square of the length of the vector of a pair, mm²."""
     i, j = pairs[q, 0], pairs[q, 1]
     x = at[j, 0] - at[i, 0] + shape[1] * pairs[q, 2] * cell[0]
@@ -296,10 +263,10 @@ def reaches(pairs: Pairs, samples: int, shape: tuple[int, int]) -> NDArray[np.in
     rows, wales = shape
     out = np.ones((2, rows, wales), np.int64)
     for q in range(pairs.shape[0]):
-        one, other = pairs[q, 0] // samples, pairs[q, 1] // samples
-        up = abs(other // wales + rows * pairs[q, 3] - one // wales)
-        across = abs(other % wales + wales * pairs[q, 2] - one % wales)
-        for stitch in (one, other):
+        first, second = pairs[q, 0] // samples, pairs[q, 1] // samples
+        up = abs(second // wales + rows * pairs[q, 3] - first // wales)
+        across = abs(second % wales + wales * pairs[q, 2] - first % wales)
+        for stitch in (first, second):
             row, wale = stitch // wales, stitch % wales
             out[0, row, wale] = max(out[0, row, wale], up)
             out[1, row, wale] = max(out[1, row, wale], across)

@@ -89,31 +89,22 @@ def load_samples() -> tuple[Sample, ...]:
     """The eight samples, acrylic first, in the order of the paper's table."""
     parameters: dict[tuple[str, str], list[Parameter]] = {}
     for row in _rows("samples.csv"):
+        printed, used = float(row["printed"]), float(row["used"])
         configured = float(row["configured"]) if row["configured"] else None
-        parameters.setdefault((row["yarn"], row["fabric"]), []).append(
-            Parameter(
-                row["quantity"],
-                float(row["printed"]),
-                float(row["used"]),
-                configured,
-                row["reason"],
-            )
-        )
+        entry = Parameter(row["quantity"], printed, used, configured, row["reason"])
+        parameters.setdefault((row["yarn"], row["fabric"]), []).append(entry)
     samples = []
     for row in _rows("energies.csv"):
-        entry = parameters[row["yarn"], row["fabric"]]
-        values = {p.name: p.used for p in entry}
+        entries = parameters[row["yarn"], row["fabric"]]
+        values = {p.name: p.used for p in entries}
         loop_length_mm = values.pop("loop_length_mm")
+        energy, contact, bending = (
+            float(row[name]) for name in ("energy_n_mm", "contact_share", "bending_share")
+        )
+        yarn, fabric = YarnModel(**values), Fabric(row["fabric"])
         samples.append(
             Sample(
-                row["yarn"],
-                Fabric(row["fabric"]),
-                YarnModel(**values),
-                loop_length_mm,
-                float(row["energy_n_mm"]),
-                float(row["contact_share"]),
-                float(row["bending_share"]),
-                tuple(entry),
+                row["yarn"], fabric, yarn, loop_length_mm, energy, contact, bending, tuple(entries)
             )
         )
     return tuple(samples)
@@ -132,9 +123,9 @@ def sample(yarn_id: str, fabric: Fabric | str) -> Sample:
     >>> sample("cotton", "rib").loop_length_mm
     17.94
     """
-    wanted = Fabric.parse(fabric)
+    kind = Fabric.parse(fabric)
     for entry in load_samples():
-        if (entry.yarn_id, entry.fabric) == (yarn_id, wanted):
+        if (entry.yarn_id, entry.fabric) == (yarn_id, kind):
             return entry
     raise InputError(
         "yarn",

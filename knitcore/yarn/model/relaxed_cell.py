@@ -204,14 +204,14 @@ class Sweep(Result):
 
     @property
     def converged(self) -> bool:
-        """Whether every cell converged."""
+        """Tell whether every cell converged."""
         return all(cell.converged for cell in self.cells)
 
     def _repr_html_(self) -> str:
         drawn = [(f"pulled {self.direction}-wise", self.strain, self.stress_n_per_mm, None)]
-        told = f"{len(self.cells)} relaxed cells; {len(self.jumps)} jumps"
+        caption = f"{len(self.cells)} relaxed cells; {len(self.jumps)} jumps"
         picture = showing.curves(drawn, "strain", "stress, N/mm")
-        return showing.captioned(picture, told, *self.notes)
+        return showing.captioned(picture, caption, *self.notes)
 
     def _strain(self, direction: Direction) -> Array:
         rest = self.zero.cell_mm(direction)

@@ -16,16 +16,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.linear.dense import dot, product, times
-from knitcore.yarn.kernels import control_of
+from knitcore.yarn.kernels.curve_samples import control_of
 from knitcore.yarn.kernels.structures import Pairs
 from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.constraints import beyond
-
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +88,7 @@ def slides_at(
 
 
 def _is_crossover(cell: YarnCell, pair: list[int]) -> bool:
-    """Whether two samples belong to courses next to each other."""
+    """Tell whether two samples belong to courses next to each other."""
     i, j, _, up = pair[:4]
     samples = len(cell.place)
     return abs(j // samples + up * cell.rows - i // samples) == 1
@@ -100,7 +97,7 @@ def _is_crossover(cell: YarnCell, pair: list[int]) -> bool:
 def _is_nearest(
     pair: list[int], distance: float, near: dict[tuple[int, ...], float], samples: int
 ) -> bool:
-    """Whether no neighbouring pair of samples is nearer; the ends of a course are left out."""
+    """Tell whether no neighbouring pair of samples is nearer; the ends of a course are left out."""
     i, j, across, up = pair[:4]
     if min(i % samples, j % samples) == 0 or max(i % samples, j % samples) == samples - 1:
         return False

@@ -12,7 +12,8 @@ from functools import cached_property
 from math import factorial
 
 import numpy as np
-from numpy.typing import NDArray
+
+from knitcore.base.arrays import Array
 
 DEGREE = 5
 SUPPORT = DEGREE + 1
@@ -20,7 +21,7 @@ DERIVATIVES = 4
 """Value and three derivatives are tabulated."""
 
 
-def quintic_basis(offset: NDArray[np.float64], derivative: int) -> NDArray[np.float64]:
+def quintic_basis(offset: Array, derivative: int) -> Array:
     """Basis functions of the six control points around a span.
 
     Parameters
@@ -43,13 +44,13 @@ def quintic_basis(offset: NDArray[np.float64], derivative: int) -> NDArray[np.fl
     shifted = distance[..., None] + 3.0 - powers
     degree = DEGREE - derivative
     truncated = np.where(shifted > 0.0, _power(shifted, degree), 0.0)
-    basis: NDArray[np.float64] = (truncated * coefficient).sum(axis=-1) / factorial(degree)
+    basis: Array = (truncated * coefficient).sum(axis=-1) / factorial(degree)
     return basis
 
 
-def _power(base: NDArray[np.float64], exponent: int) -> NDArray[np.float64]:
+def _power(base: Array, exponent: int) -> Array:
     """A power by products, whose last digits are the same on every processor."""
-    power: NDArray[np.float64] = np.prod(np.broadcast_to(base, (exponent, *base.shape)), axis=0)
+    power: Array = np.prod(np.broadcast_to(base, (exponent, *base.shape)), axis=0)
     return power
 
 
@@ -72,16 +73,14 @@ class SplineGrid:
         return self.controls * self.per_span
 
     @cached_property
-    def basis(self) -> NDArray[np.float64]:
+    def basis(self) -> Array:
         """Array (4, per_span, 6): derivatives with respect to t at the mid-point samples."""
         offset = (np.arange(self.per_span) + 0.5) / self.per_span
         return np.stack(
             [quintic_basis(offset, d) * float(self.controls) ** d for d in range(DERIVATIVES)]
         )
 
-    def interpolate(
-        self, values: NDArray[np.float64], *, antiperiodic: bool = False
-    ) -> NDArray[np.float64]:
+    def interpolate(self, values: Array, *, antiperiodic: bool = False) -> Array:
         """Control values whose spline passes through ``values`` at the knots t = c / N.
 
         Parameters
@@ -98,7 +97,7 @@ class SplineGrid:
         spectrum = np.fft.rfft(data) / np.fft.rfft(kernel)
         return np.fft.irfft(spectrum, len(data))[:n]
 
-    def refine(self, finer: SplineGrid, controls: NDArray[np.float64]) -> NDArray[np.float64]:
+    def refine(self, finer: SplineGrid, controls: Array) -> Array:
         """Control points (n, 3) of the same periodic curve on a finer grid (interpolated)."""
         ratio = finer.controls / self.controls
         n_fine = round(len(controls) * ratio)

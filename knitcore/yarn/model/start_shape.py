@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from knitcore.base.arrays import Array
 from knitcore.yarn.model.cell import FACE_LEGS, YarnCell
 
 _KNOTS = np.array([0.0, 0.08, 0.21, 0.29, 0.42, 0.5, 0.58, 0.71, 0.79, 0.92, 1.0])
@@ -23,7 +23,7 @@ def start_state(
     *,
     course_per_loop: float = COURSE_PER_LOOP,
     wale_per_loop: float = WALE_PER_LOOP,
-) -> NDArray[np.float64]:
+) -> Array:
     """Unknowns of a smooth omega loop with every crossing on its right side.
 
     The stitch (row j, wale i) is drawn through the loop of row j - 1, forward or backward; a leg
@@ -55,7 +55,7 @@ def start_state(
     return cell.state(points, *size)
 
 
-def _height(cell: YarnCell, row: int, wale: int, u: NDArray[np.float64]) -> NDArray[np.float64]:
+def _height(cell: YarnCell, row: int, wale: int, u: Array) -> Array:
     """z of one stitch in units of the height of a crossing."""
 
     def legs(j: int, i: int) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from knitcore.base.arrays import Array
-from knitcore.yarn import kernels
+from knitcore.yarn.kernels.curve_samples import sample_curve
 from knitcore.yarn.model.cell import YarnCell
 
 
@@ -50,9 +50,7 @@ def centre_lines(cell: YarnCell, state: Array, rows: int, wales: int) -> Array:
     """
     points = tiled_controls(cell, state, rows, wales)
     whole_swaps = cell.mirror_course and (wales // cell.wales) % 2 == 1
-    curve = kernels.sample_curve(
-        points, float(state[-2]), -1 if whole_swaps else 1, cell.grid.basis
-    )
+    curve = sample_curve(points, float(state[-2]), -1 if whole_swaps else 1, cell.grid.basis)
     lines = np.array(curve[:, :, 0])
     samples = lines.shape[1]
     lines[:, :, 0] += state[-2] * (np.arange(samples) + 0.5) / cell.grid.samples

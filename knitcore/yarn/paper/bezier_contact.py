@@ -15,7 +15,8 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled_as_numpy
 from knitcore.chart.fabric import Fabric
-from knitcore.yarn.model.potential import potential_and_derivatives
+from knitcore.yarn.kernels.potential import potential_and_derivatives
+from knitcore.yarn.kernels.structures import ContactLaw
 from knitcore.yarn.paper.elastic import bernstein
 
 POINTS_A_CURVE = 10
@@ -79,7 +80,7 @@ def _boxes(points: Array, curves: int) -> Array:
 
 @compiled_as_numpy
 def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
-    """Whether a box and another one, shifted by (x, y), are farther apart than the reach."""
+    """Tell whether a box and another one, shifted by (x, y), are farther apart than the reach."""
     return bool(
         other[0, 0] + x - box[1, 0] > reach
         or box[0, 0] - other[1, 0] - x > reach
@@ -91,16 +92,10 @@ def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
 @compiled_as_numpy
 def curve_contact_energy(
     controls: Array,
-    cell_course: float,
-    cell_wale: float,
-    course_odd: bool,
-    wale_odd: bool,
+    cell: tuple[float, float],
+    odd: tuple[bool, bool],
     images: int,
-    factor: float,
-    k: float,
-    p: float,
-    radius: float,
-    core: float,
+    law: ContactLaw,
     places: Array,
     slopes: Array,
     gradient: Array,
@@ -108,15 +103,24 @@ def curve_contact_energy(
 ) -> tuple[float, float]:
     """Contact energy, N·mm, and the smallest distance (mm) of two points that interact.
 
-    ``factor`` is that of an ordered pair. Adds the derivatives to ``gradient`` (curves, 6, 3) and
-    ``cell_gradient`` (2,), the latter at fixed control points.
+    Adds the derivatives to ``gradient`` (curves, 6, 3) and ``cell_gradient`` (2,), the latter at
+    fixed control points.
+
+    Parameters
+    ----------
+    controls : (curves, 6, 3), mm.
+    cell : size of the stitch, course-wise and wale-wise, mm.
+    odd : whether the next cell that way is mirrored in z.
+    images : neighbours along the course that count, each way.
+    law : of the contact; its weight is the factor of an unordered pair.
+    places, slopes : (points, 6) weights of position and derivative.
     """
     points, tangents, lengths, arclengths = contact_points(controls, places, slopes)
     per = places.shape[0]
     count = points.shape[0]
     total_length = lengths.sum()
     forces, weights_bar = np.zeros((count, 3)), np.zeros(count)
-    reach, limit = 2.0 * radius, EXCLUSION * radius
+    reach, limit = 2.0 * law.radius, EXCLUSION * law.radius
     reach2 = reach * reach
     energy, closest = 0.0, 1e300
     curves = controls.shape[0]
@@ -124,9 +128,9 @@ def curve_contact_energy(
     # Images (m, n) and (-m, -n) hold the same pairs, so half of them are enough.
     for n in range(WALE_IMAGES + 1):
         for m in range(-images if n > 0 else 0, images + 1):
-            mirror = -1.0 if (m * course_odd + n * wale_odd) % 2 == 1 else 1.0
+            mirror = -1.0 if (m * odd[0] + n * odd[1]) % 2 == 1 else 1.0
             own = n == 0 and m == 0
-            shift_x, shift_y = m * cell_course, n * cell_wale
+            shift_x, shift_y = m * cell[0], n * cell[1]
             for c in range(curves):
                 for e in range(c if own else 0, curves):
                     if _apart(boxes[c], boxes[e], shift_x, shift_y, reach):
@@ -145,13 +149,13 @@ def curve_contact_energy(
                             distance = max(np.sqrt(square), 1e-12)
                             closest = min(closest, distance)
                             value, slope, _ = potential_and_derivatives(
-                                distance, k, p, radius, core
+                                distance, law.stiffness, law.exponent, law.radius, law.core
                             )
-                            value *= 2.0 * factor
+                            value *= law.weight
                             energy += value * lengths[i] * lengths[j]
                             weights_bar[i] += value * lengths[j]
                             weights_bar[j] += value * lengths[i]
-                            pull = 2.0 * factor * slope * lengths[i] * lengths[j] / distance
+                            pull = law.weight * slope * lengths[i] * lengths[j] / distance
                             forces[i, 0] -= pull * dx
                             forces[i, 1] -= pull * dy
                             forces[i, 2] -= pull * dz

@@ -1,10 +1,17 @@
-"""Relax one stitch in the published description."""
+"""Relax one stitch in the published description.
+
+``data/published_starts.csv`` holds one shape of least energy for each of the paper's eight samples,
+divided by its loop length; this solver found them and a test shows that they are stationary.
+"""
 
 from __future__ import annotations
 
+import csv
 import math
 import time
 from dataclasses import replace
+from functools import cache
+from importlib.resources import files
 
 import numpy as np
 
@@ -21,19 +28,16 @@ from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.input_checks import check_loop, check_stitch_size
 from knitcore.yarn.model.relaxed_cell import Branch, RelaxedCell, StartReport
 from knitcore.yarn.model.yarn_model import YarnModel
+from knitcore.yarn.paper.bezier_shape import unknown_names
 from knitcore.yarn.paper.bezier_stitch import Stitch, shown_chart
 from knitcore.yarn.paper.certificate import is_clasped
-from knitcore.yarn.paper.continuation import (
-    Continuation,
-    free_constraints,
-    has_room,
-    is_admissible,
-)
-from knitcore.yarn.paper.minimise import BezierMinimum, HeldLengths, minimise_bezier
-from knitcore.yarn.paper.starts import first_shapes
+from knitcore.yarn.paper.continuation import Continuation, free_constraints, has_room, is_admissible
+from knitcore.yarn.paper.minimise import BezierMinimum, HeldLengths, length_powers, minimise_bezier
 
 STARTS = 4
 """Number of starts; the authors used four."""
+_SPREAD = 0.03
+"""Relative spread of the random starts."""
 _CLEAR = 1.02
 """A start with cores nearer than this (in 2 r_core) is first relaxed with thinner cores."""
 
@@ -82,12 +86,12 @@ def relax_published(
     shapes = first_shapes(stitch, loop_length_mm, starts)
     stitch.evaluate(shapes[0])  # compiles; not part of the time
     began = time.process_time()
-    found = []
+    minima = []
     for shape in shapes:
         check_cancelled(cancelled)
-        found.append(_settle(stitch, shape, loop_length_mm, constraints))
-    best = lowest(stitch, found)
-    evaluations = sum(m.evaluations for m in found)
+        minima.append(_settle(stitch, shape, loop_length_mm, constraints))
+    best = lowest(stitch, minima)
+    evaluations = sum(m.evaluations for m in minima)
     if cell_course_mm is not None or cell_wale_mm is not None:
         path = Continuation(stitch, loop_length_mm)
         held = path.go([best.unknowns], cell_course_mm, cell_wale_mm)
@@ -100,16 +104,54 @@ def relax_published(
         best, more = held
         evaluations += more
     seconds = time.process_time() - began
-    least = min(m.energy_n_mm for m in found if m.converged and is_admissible(stitch, m))
+    least = min(m.energy_n_mm for m in minima if m.converged and is_admissible(stitch, m))
     others = sum(
-        m.converged and m.energy_n_mm > least * 1.001 and is_admissible(stitch, m) for m in found
+        m.converged and m.energy_n_mm > least * 1.001 and is_admissible(stitch, m) for m in minima
     )
     notes = (f"{others} of {starts} starts ended in a higher minimum.",) if others else ()
     cell = relaxed_cell(stitch, loop_length_mm, best, evaluations, seconds, notes)
-    return replace(cell, starts=tuple(_report(stitch, n, m) for n, m in enumerate(found, start=1)))
+    return replace(cell, starts=tuple(_report(stitch, n, m) for n, m in enumerate(minima, start=1)))
 
 
-def lowest(stitch: Stitch, found: list[BezierMinimum]) -> BezierMinimum:
+@cache
+def _packaged() -> dict[Fabric, tuple[Array, ...]]:
+    shapes: dict[tuple[Fabric, str], dict[str, float]] = {}
+    path = files("knitcore.yarn.model") / "data" / "published_starts.csv"
+    with path.open(encoding="utf-8") as stream:
+        for row in csv.DictReader(stream):
+            key = Fabric(row["fabric"]), row["yarn"]
+            shapes.setdefault(key, {})[row["unknown"]] = float(row["value_per_loop_length"])
+    return {
+        fabric: tuple(
+            np.array([values[name] for name in unknown_names(fabric)])
+            for (owner, _), values in shapes.items()
+            if owner is fabric
+        )
+        for fabric in Fabric
+    }
+
+
+def first_shapes(stitch: Stitch, loop_length_mm: float, count: int) -> list[Array]:
+    """Starts for a minimisation: the packaged shape, then random ones near it.
+
+    Parameters
+    ----------
+    stitch : whose unknowns are meant.
+    loop_length_mm : length of yarn the shapes are scaled to, mm.
+    count : how many; the same count gives the same shapes.
+    """
+    scale = loop_length_mm ** length_powers(stitch)
+    packaged = _packaged()[stitch.fabric]
+    shapes = [shape * scale for shape in packaged[:count]]
+    generator = np.random.default_rng(20240226)
+    while len(shapes) < count:
+        base = packaged[len(shapes) % len(packaged)]
+        noise = 1.0 + _SPREAD * generator.standard_normal(base.size)
+        shapes.append(base * noise * scale)
+    return shapes
+
+
+def lowest(stitch: Stitch, minima: list[BezierMinimum]) -> BezierMinimum:
     """The lowest converged and knitted minimum.
 
     Raises
@@ -117,10 +159,10 @@ def lowest(stitch: Stitch, found: list[BezierMinimum]) -> BezierMinimum:
     ConvergenceError, UnravelledError
         If there is none.
     """
-    converged = [m for m in found if m.converged]
+    converged = [m for m in minima if m.converged]
     if not converged:
         raise ConvergenceError(
-            f"None of {len(found)} starts of {stitch.fabric} converged; give the stitch more yarn "
+            f"None of {len(minima)} starts of {stitch.fabric} converged; give the stitch more yarn "
             "or a size nearer to its natural one."
         )
     clasped = [m for m in converged if m.certified and is_clasped(stitch, m.unknowns)]
@@ -203,5 +245,5 @@ def _settle(
             )
             certified = certified and grown.certified
             start = grown.unknowns
-    found = minimise_bezier(stitch, start, loop_length_mm, constraints)
-    return replace(found, certified=certified and found.certified)
+    settled = minimise_bezier(stitch, start, loop_length_mm, constraints)
+    return replace(settled, certified=certified and settled.certified)

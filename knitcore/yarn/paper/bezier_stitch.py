@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.kernels.structures import ContactLaw
 from knitcore.yarn.model.conventions import REGULARISATION_N_MM4, Convention
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.paper import bezier_contact as contact
@@ -91,6 +93,15 @@ class Stitch:
         """Number of unknowns; the last two are the cell's sizes, mm."""
         return int(self.ties.shape[1])
 
+    @cached_property
+    def contact_law(self) -> ContactLaw:
+        """Constants of the contact for its kernel."""
+        yarn = self.yarn
+        return ContactLaw(
+            self.convention.unordered_pair_factor, yarn.contact_stiffness_n_per_mm3,
+            yarn.contact_exponent, yarn.radius_mm, yarn.core_radius_mm,
+        )  # fmt: skip
+
     def controls(self, unknowns: Array) -> Array:
         """Control points, mm, shape (8, 6, 3), in yarn order."""
         p = (self.ties @ unknowns).astype(np.complex128)
@@ -135,16 +146,10 @@ class Stitch:
         cell_gradient = np.zeros(2)
         touch, closest = contact.curve_contact_energy(
             controls,
-            parameters[shape.CELL_COURSE],
-            parameters[shape.CELL_WALE],
-            course_odd,
-            wale_odd,
+            (parameters[shape.CELL_COURSE], parameters[shape.CELL_WALE]),
+            (course_odd, wale_odd),
             contact.course_images(self.fabric),
-            convention.ordered_pair_factor,
-            yarn.contact_stiffness_n_per_mm3,
-            yarn.contact_exponent,
-            yarn.radius_mm,
-            yarn.core_radius_mm,
+            self.contact_law,
             *contact.midpoint_tables(),
             gradient,
             cell_gradient,

@@ -22,12 +22,12 @@ _HALVINGS = 7
 
 
 def is_certified(stitch: Stitch, start: Array, end: Array) -> bool:
-    """Whether the yarn can go from one shape to another without meeting itself."""
+    """Tell whether the yarn can go from one shape to another without meeting itself."""
     return _certified(stitch, start, end, _HALVINGS)
 
 
 def is_clasped(stitch: Stitch, unknowns: Array) -> bool:
-    """Whether the yarn of the repeat is knotted as its fabric is."""
+    """Tell whether the yarn of the repeat is knotted as its fabric is."""
     fabric = stitch.fabric
     chart = shown_chart(fabric)
     line = stitch.centre_line(unknowns, _POINTS)[:-1]

@@ -14,9 +14,9 @@ from knitcore.yarn.paper.certificate import is_certified, is_clasped
 from knitcore.yarn.paper.minimise import BezierMinimum, HeldLengths, minimise_bezier
 
 SEGMENT_FLOOR = 0.014
-"""Shortest curve, in loop lengths: .15 mm in the paper's acrylic garter; others stay longer."""
+"""Shortest curve, in loop lengths: 0.15 mm in the paper's acrylic garter; others stay longer."""
 STEP = 0.012
-"""Longest step, in loop lengths (the authors' are .003 to .016)."""
+"""Longest step, in loop lengths (the authors' are 0.003 to 0.016)."""
 _SHORTER = (1.0, 0.25)
 """Shares of a step that are tried before giving up."""
 
@@ -29,13 +29,13 @@ def free_constraints(
 
 
 def is_admissible(stitch: Stitch, minimum: BezierMinimum) -> bool:
-    """Whether the yarn is knotted as it should be, has not passed through yarn, and no core
+    """Tell whether the yarn is knotted as it should be, has not passed through yarn, and no core
     overlaps another."""
     return minimum.certified and has_room(stitch, minimum) and is_clasped(stitch, minimum.unknowns)
 
 
 def has_room(stitch: Stitch, minimum: BezierMinimum) -> bool:
-    """Whether every core is outside every other."""
+    """Tell whether every core is outside every other."""
     return minimum.evaluation.closest_mm > 2.0 * stitch.yarn.core_radius_mm
 
 
@@ -116,13 +116,13 @@ class Continuation:
                 ratio = float(goal[held] @ moved / (moved @ moved))
                 starts.insert(0, last + np.clip(ratio, -2.0, 2.0) * change)
         for start in starts:
-            found = self.minimise_at(course_mm, wale_mm, start)
+            minimum = self.minimise_at(course_mm, wale_mm, start)
             if (
-                found.converged
-                and is_admissible(self.stitch, found)
+                minimum.converged
+                and is_admissible(self.stitch, minimum)
                 and is_certified(self.stitch, last, _resized(start, course_mm, wale_mm))
             ):
-                return found
+                return minimum
         return None
 
 

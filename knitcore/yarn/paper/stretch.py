@@ -1,17 +1,57 @@
-"""Stretching one stitch in the published description."""
+"""Stretching one stitch in the published description.
+
+Slide quenching keeps yarn from sliding through its contacts (paper, Simulation method): the length
+of yarn between the middles of neighbouring crossovers stays as it is at rest, for seed stretched
+along the course only. The paper's equations and the authors' code hold different lengths of yarn.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 
+import numpy as np
+
+from knitcore.base.arrays import Array
 from knitcore.base.errors import ConvergenceError
-from knitcore.chart.fabric import Direction
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
 from knitcore.yarn.paper.bezier_relax import relaxed_cell
 from knitcore.yarn.paper.bezier_stitch import Stitch, published_fabric
 from knitcore.yarn.paper.continuation import Continuation
-from knitcore.yarn.paper.slide import SlideQuenching
+
+
+class SlideQuenching(StrEnum):
+    """Pieces of yarn that keep their length."""
+
+    NONE = "none"
+    PAPER = "paper"
+    AS_CODED = "as-coded"
+
+    @property
+    def weights(self) -> Array:
+        """Weights of the eight curves (yarn order) in the lengths held, shape (rows, 8)."""
+        return _WEIGHTS[self]
+
+    @classmethod
+    def default(cls, fabric: Fabric, direction: Direction) -> SlideQuenching:
+        """The paper's rule: quenched for seed along the course, free otherwise."""
+        quenched = fabric is Fabric.SEED and direction is Direction.COURSE
+        return cls.PAPER if quenched else cls.NONE
+
+
+_WEIGHTS = {
+    SlideQuenching.NONE: np.empty((0, 8)),
+    # ½ B1 + c11 + ½ A1 and ½ A1 + c12 + ½ A2
+    SlideQuenching.PAPER: np.array(
+        [[0.5, 1.0, 0.5, 0, 0, 0, 0, 0], [0, 0, 0.5, 1.0, 0.5, 0, 0, 0]]
+    ),
+    # c21 + ½ B1 and c21 + B1 + c11 + ½ A1
+    SlideQuenching.AS_CODED: np.array(
+        [[0.5, 0, 0, 0, 0, 0, 0, 1.0], [1.0, 1.0, 0.5, 0, 0, 0, 0, 1.0]]
+    ),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +79,7 @@ class PublishedStretch:
 
     @property
     def note(self) -> str:
-        """Which slides are held."""
+        """Name of the slides that are held; empty if none is."""
         none = self.quenching is SlideQuenching.NONE
         return "" if none else f"Slide quenching: {self.quenching}."
 
@@ -51,7 +91,7 @@ class PublishedStretch:
         loop_mm = float(zero.loop_lengths_mm.mean())
         path = Continuation(stitch, loop_mm, held, held @ stitch.evaluate(zero.state).lengths_mm)
         sizes = (size_mm, None) if self.along is Direction.COURSE else (None, size_mm)
-        found = path.go([cell.state for cell in known or [zero]], *sizes)
-        if found is None:
+        reached = path.go([cell.state for cell in known or [zero]], *sizes)
+        if reached is None:
             raise ConvergenceError("the yarn locks before it gets there.")
-        return relaxed_cell(stitch, loop_mm, *found)
+        return relaxed_cell(stitch, loop_mm, *reached)

@@ -28,12 +28,11 @@ from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.base.threads import in_one_blas_thread
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.yarn.kernels.structures import Ints
 from knitcore.yarn.model.cell import YarnCell, plain_cell
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.start_shape import start_state
 from knitcore.yarn.model.tiling import centre_lines
-
-Ints = NDArray[np.int64]
 
 _TILT = np.array([0.0137, 0.0071])
 """Direction of view: a little off the normal, so that symmetric shapes show no double crossings."""
@@ -57,13 +56,13 @@ def clasp_code(lines: Array, width_mm: float, height_mm: float) -> Array:
     closed = np.concatenate([lines, ahead], axis=1)
     flat = closed.copy()
     flat[..., :2] -= closed[..., 2:] * _TILT
-    found = crossings(flat, width_mm, height_mm)
-    return _determinants(found, courses, points)
+    crossed = crossings(flat, width_mm, height_mm)
+    return _determinants(crossed, courses, points)
 
 
-def same_clasps(one: Array, other: Array) -> bool:
-    """Whether two codes are those of the same link."""
-    return bool(np.allclose(one, other, rtol=_SAME, atol=_SAME))
+def same_clasps(code: Array, other: Array) -> bool:
+    """Tell whether two codes are those of the same link."""
+    return bool(np.allclose(code, other, rtol=_SAME, atol=_SAME))
 
 
 @lru_cache(maxsize=256)
@@ -79,7 +78,7 @@ def knitted_code(chart: StitchChart) -> tuple[float, ...]:
 
 
 def is_knitted(chart: StitchChart, lines: Array, course_mm: float, wale_mm: float) -> bool:
-    """Whether centre lines of a repeat are knotted as its chart says.
+    """Tell whether centre lines of a repeat are knotted as its chart says.
 
     Parameters
     ----------
@@ -92,7 +91,7 @@ def is_knitted(chart: StitchChart, lines: Array, course_mm: float, wale_mm: floa
 
 
 def cell_is_knitted(cell: YarnCell, state: Array) -> bool:
-    """Whether a state of a cell is knotted as the cell's stitches say."""
+    """Tell whether a state of a cell is knotted as the cell's stitches say."""
     rows = cell.rows * (2 if cell.mirror_wale else 1)
     wales = cell.wales * (2 if cell.mirror_course else 1)
     purl = [[cell.purl_at(row, wale) for wale in range(wales)] for row in range(rows)]
@@ -117,9 +116,9 @@ def crossings(lines: Array, width: float, height: float) -> Array:
     far = np.ceil((high.max(axis=0) - low.min(axis=0)) / period).astype(np.int64)
     boxes = np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1)
     out = np.empty((64 * lines.shape[0] * lines.shape[1], 7))
-    while (found := _crossings(lines, width, height, far, boxes, out)) > len(out):
-        out = np.empty((found, 7))
-    return out[:found]
+    while (count := _crossings(lines, width, height, far, boxes, out)) > len(out):
+        out = np.empty((count, 7))
+    return out[:count]
 
 
 @compiled
@@ -180,27 +179,27 @@ def _crossings(  # noqa: PLR0912 - compiled: loops over boxes, then segments
     return n
 
 
-def _determinants(found: Array, courses: int, points: int) -> Array:
-    order = np.lexsort((found[:, 1], found[:, 0]))
-    found = found[order]
-    lower = found[:, 0].astype(int)
+def _determinants(crossed: Array, courses: int, points: int) -> Array:
+    order = np.lexsort((crossed[:, 1], crossed[:, 0]))
+    crossed = crossed[order]
+    lower = crossed[:, 0].astype(int)
     counts = np.bincount(lower, minlength=courses)
     loose = np.flatnonzero(counts == 0)
     first = np.concatenate([[0], np.cumsum(counts)])
-    size = len(found) + len(loose)
-    arc, wrapped = _arcs(found, first, loose, points)
-    before = np.arange(len(found)) - 1
-    starts = first[lower] == np.arange(len(found))
+    size = len(crossed) + len(loose)
+    arc, wrapped = _arcs(crossed, first, loose, points)
+    before = np.arange(len(crossed)) - 1
+    starts = first[lower] == np.arange(len(crossed))
     before[starts] = first[lower[starts] + 1] - 1
-    rows = np.arange(len(found))
+    rows = np.arange(len(crossed))
     codes = []
     for t, x, y in _PLACES:
-        sign = t ** found[:, 6]
-        moved = x ** (found[:, 4] - wrapped) * y ** found[:, 5]
-        alone = np.arange(len(found), size)
+        sign = t ** crossed[:, 6]
+        moved = x ** (crossed[:, 4] - wrapped) * y ** crossed[:, 5]
+        alone = np.arange(len(crossed), size)
         entries = np.concatenate([
             sign * np.where(starts, 1.0 / x, 1.0), (1.0 - sign) * moved,
-            np.full(len(found), -1.0), np.full(len(loose), 1.0 - x),
+            np.full(len(crossed), -1.0), np.full(len(loose), 1.0 - x),
         ])  # fmt: skip
         places = (
             np.concatenate([rows, rows, rows, alone]),
@@ -219,19 +218,19 @@ def _log_modulus(matrix: sparse.coo_array) -> float:
 
 
 def _arcs(
-    found: Array, first: NDArray[np.intp], loose: NDArray[np.intp], points: int
+    crossed: Array, first: NDArray[np.intp], loose: NDArray[np.intp], points: int
 ) -> tuple[Ints, Ints]:
     """Arc that each crossing's upper strand belongs to, and 1 where it began a period earlier."""
-    arc = np.empty(len(found), np.int64)
-    wrapped = np.zeros(len(found), np.int64)
-    upper = found[:, 2].astype(int)
+    arc = np.empty(len(crossed), np.int64)
+    wrapped = np.zeros(len(crossed), np.int64)
+    upper = crossed[:, 2].astype(int)
     for course in np.unique(upper):
         own = np.flatnonzero(upper == course)
         begin, end = first[course], first[course + 1]
         if begin == end:
-            arc[own] = len(found) + int(np.searchsorted(loose, course))
+            arc[own] = len(crossed) + int(np.searchsorted(loose, course))
             continue
-        place = np.searchsorted(found[begin:end, 1], found[own, 3], side="right") - 1
+        place = np.searchsorted(crossed[begin:end, 1], crossed[own, 3], side="right") - 1
         wrapped[own] = place < 0
         arc[own] = np.where(place < 0, end - 1, begin + place)
     return arc, wrapped

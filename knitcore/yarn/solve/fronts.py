@@ -18,6 +18,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.linear.dense import backward, eliminate, forward, subtract_product
 from knitcore.linear.elimination_order import dissected
+from knitcore.yarn.kernels.structures import Ints
 from knitcore.yarn.kernels.tiles import TiledMatrix
 
 _PASSING_ON = 3.0
@@ -26,7 +27,6 @@ _PASSING_ON = 3.0
 _STALE = 1.1
 """An order is found again where its work has grown by this factor."""
 
-Ints = NDArray[np.int64]
 Floats = NDArray[np.floating]
 Precision = type[np.float32] | type[np.float64]
 
@@ -48,13 +48,13 @@ class Front:
     children: tuple[tuple[int, Ints], ...]
 
 
-def elimination(touching: NDArray[np.bool_], wanted: Ints) -> tuple[Front, ...]:
-    """The fronts of a symmetric pattern (blocks, blocks) in about the order wanted.
+def elimination(touching: NDArray[np.bool_], preferred: Ints) -> tuple[Front, ...]:
+    """The fronts of a symmetric pattern (blocks, blocks) in about the preferred order.
 
     Blocks that touch the same others are eliminated together, and so are those that touch nearly
     all that the next ones touch: fewer remainders are passed on, at the price of some zeros.
     """
-    order, first, border, border_first = _eliminated(touching.copy(), wanted)
+    order, first, border, border_first = _eliminated(touching.copy(), preferred)
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
     own, edge = [], []
@@ -88,7 +88,7 @@ def elimination(touching: NDArray[np.bool_], wanted: Ints) -> tuple[Front, ...]:
 
 
 def work(fronts: tuple[Front, ...]) -> float:
-    """What a factor takes, in products of tiles."""
+    """Arithmetic that a factor takes, in products of tiles."""
     return sum(_cost(len(front.own), len(front.border)) for front in fronts)
 
 
@@ -249,7 +249,7 @@ def _substituted(columns: Floats, places: Ints, x: Floats, back: bool) -> None:
 
 @compiled
 def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
-    touching: NDArray[np.bool_], wanted: Ints
+    touching: NDArray[np.bool_], preferred: Ints
 ) -> tuple[Ints, Ints, Ints, Ints]:
     """Order of elimination, first of each front in it, border blocks of all fronts, their firsts.
 
@@ -268,7 +268,7 @@ def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
     border = np.empty(16 * n, np.int64)
     around = np.empty(n, np.int64)
     done = fronts = stored = 0
-    for k in wanted:
+    for k in preferred:
         if not alive[k]:
             continue
         count = 0

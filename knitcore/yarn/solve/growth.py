@@ -19,7 +19,7 @@ from knitcore.yarn.model.energy import SPACING_PER_BENDING, CellEnergy
 from knitcore.yarn.model.start_shape import COURSE_PER_LOOP, WALE_PER_LOOP, start_state
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.newton import COURSE, SPARSE_FROM, WALE, Minimum, Options, minimise
-from knitcore.yarn.solve.topology import Clearance
+from knitcore.yarn.solve.topology import clearance_at
 
 FIRST_OPENING = 0.2
 """Opening of the nearest contact (in shells) with the first core: enough room for smooth steps."""
@@ -85,12 +85,12 @@ def grow(
     )
     state = shaken(cell, state, start.noise * radius, start.seed)
     energy = CellEnergy(cell, yarn, loop_length_mm, convention, flat, (), spacing_per_bending)
-    core = core_that_fits(yarn, _min_distance(energy, state), FIRST_OPENING)
+    core = core_that_fits(yarn, clearance_at(energy, state).min_distance_mm, FIRST_OPENING)
     tension: Array | None = None
     settings = STAGE if cell.stitches < SPARSE_FROM else _SHORT_STAGE
     steps = evaluations = 0
     for stage in range(_STAGES):
-        found = minimise(
+        minimum = minimise(
             replace(energy, yarn=with_stiff_shell(replace(yarn, core_radius_mm=core))),
             state,
             tension=tension,
@@ -98,24 +98,25 @@ def grow(
             options=settings,
             cancelled=cancelled,
         )
-        state, tension = found.state, found.tension
-        steps += found.steps
-        evaluations += found.evaluations
-        grown = core_that_fits(yarn, found.min_distance_mm, OPENING)
-        stuck = grown <= core and found.converged and stage > 0
+        state, tension = minimum.state, minimum.tension
+        steps += minimum.steps
+        evaluations += minimum.evaluations
+        grown = core_that_fits(yarn, minimum.min_distance_mm, OPENING)
+        stuck = grown <= core and minimum.converged and stage > 0
         if stuck or grown >= yarn.core_radius_mm:
             break
         core = max(core, grown)
     # where bending presses weak shells together there is no more room around a grown core
     short = grown < yarn.core_radius_mm
-    if short and (core < yarn.core_radius_mm or found.min_distance_mm <= 2.0 * core):
+    if short and (core < yarn.core_radius_mm or minimum.min_distance_mm <= 2.0 * core):
         raise ConvergenceError(does_not_fit(yarn, core))
-    found = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
-    return replace(found, steps=found.steps + steps, evaluations=found.evaluations + evaluations)
+    minimum = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
+    steps, evaluations = steps + minimum.steps, evaluations + minimum.evaluations
+    return replace(minimum, steps=steps, evaluations=evaluations)
 
 
 def does_not_fit(yarn: YarnModel, core_mm: float) -> str:
-    """What to say where only a part of the core fits."""
+    """The message for yarn of which only a part of the core fits."""
     return (
         f"The yarn does not fit into its loop: of a core radius of {yarn.core_radius_mm:g} mm "
         f"only {core_mm:.3g} mm fits. Give a longer loop or a thinner core."
@@ -138,10 +139,3 @@ def core_that_fits(yarn: YarnModel, distance_mm: float, opening: float) -> float
     """Core radius at which the nearest strands are open by a part of the shell."""
     core = (distance_mm - 2.0 * opening * yarn.radius_mm) / (2.0 - 2.0 * opening)
     return float(min(max(core, 0.0), yarn.core_radius_mm))
-
-
-def _min_distance(energy: CellEnergy, state: Array) -> float:
-    touch = 2.0 * energy.yarn.radius_mm
-    curve = energy.curve(state)
-    pairs, _ = energy.pairs(curve, state, touch)
-    return Clearance(energy.cell, state, curve, pairs, touch, touch).min_distance_mm

@@ -1,4 +1,4 @@
-"""A relaxed repeat as another image of its fabric: shifted, mirrored, or seen from the back.
+"""Repeats as other images of their fabrics: shifted, mirrored, or seen from the back.
 
 Images of one fabric have the same states, but a search that begins with each of them may end in
 different ones. So one image is relaxed (:meth:`StitchChart.canonical`) for all, and turned.
@@ -6,9 +6,9 @@ different ones. So one image is relaxed (:meth:`StitchChart.canonical`) for all,
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -25,12 +25,53 @@ from knitcore.yarn.solve.newton import TIGHT, minimise
 from knitcore.yarn.solve.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
 from knitcore.yarn.solve.splines import RelaxedRepeat, relaxed_repeat
 
+Grid = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Symmetry:
+    """How a chart follows from another image of its fabric.
+
+    ``chart = shift(swap(mirror(image)))``: mirrored left to right, K and P swapped (the back of the
+    fabric seen through it), then moved up and to the right by whole stitches.
+    """
+
+    up: int
+    right: int
+    mirror: bool
+    swap: bool
+
+    def points(self, points: Array, wales: int) -> Array:
+        """Control points (rows, controls, 3) of an image of so many wales as those of the chart."""
+        if self.mirror:  # the yarn runs the other way, from the same foot
+            points = np.roll(points[:, ::-1], 1, axis=1) * (-1.0, 1.0, 1.0)
+        if self.swap:
+            points = points * (1.0, 1.0, -1.0)
+        per_stitch = points.shape[1] // wales
+        return np.roll(points, (self.up, self.right * per_stitch), axis=(0, 1))
+
+
+def placements(purl: Grid) -> Iterator[tuple[Symmetry, Grid]]:
+    """All charts of the same size that are the same fabric, with their placements."""
+    rows, columns = purl.shape
+    for mirror, swap in product((False, True), repeat=2):
+        image = purl[:, ::-1] if mirror else purl
+        image = ~image if swap else image
+        for up, right in product(range(rows), range(columns)):
+            yield Symmetry(up, right, mirror, swap), np.roll(image, (up, right), axis=(0, 1))
+
+
+def placement(chart: StitchChart, image: StitchChart) -> Symmetry | None:
+    """How a repeat follows from another image of its fabric; None if it does not."""
+    purl = chart.repeat().purl
+    return next((p for p, grid in placements(image.purl) if np.array_equal(grid, purl)), None)
+
 
 def same_for_images(
     search: Callable[[StitchChart], RelaxedRepeat], repeat: StitchChart, *,
     fixed: tuple[int, ...] = (), cancelled: Cancelled | None = None,
 ) -> RelaxedRepeat:  # fmt: skip
-    """What a search finds for a repeat, the same for every image of its fabric.
+    """Relax a repeat by a search, to the same shape for every image of its fabric.
 
     Parameters
     ----------
@@ -41,11 +82,11 @@ def same_for_images(
     ------
     What the search raises, and CancelledError.
     """
-    one = repeat.canonical()
-    if one != repeat:
-        found = search(one)
+    canonical = repeat.canonical()
+    if canonical != repeat:
+        relaxed = search(canonical)
         with suppress(ConvergenceError, UnravelledError):  # then from the image itself
-            return turned(found, repeat, fixed=fixed, cancelled=cancelled)
+            return turned(relaxed, repeat, fixed=fixed, cancelled=cancelled)
     return search(repeat)
 
 
@@ -75,9 +116,12 @@ def turned(
     cell = mirrored_cell(image, grid) if relaxed.branch is Branch.MIRRORED else free
     points = tiled_controls(relaxed.cell, relaxed.state, free.rows, free.wales)
     tension = np.resize(relaxed.tension_n[: relaxed.cell.rows], free.rows)
-    points, tension = _turned(
-        relaxed.chart.resized(free.rows, free.wales).purl, free.purl, points, tension
-    )
+    charts = placements(relaxed.chart.resized(free.rows, free.wales).purl)
+    same = [placed for placed, purl in charts if np.array_equal(purl, free.purl)]
+    if not same:
+        raise ValueError("It is no image of the same fabric.")
+    placed = min(same, key=lambda symmetry: symmetry.swap)  # from the same side if possible
+    points, tension = placed.points(points, free.wales), np.roll(tension, placed.up)
     energy = CellEnergy(
         cell, relaxed.yarn, np.resize(relaxed.loop_lengths_mm, cell.rows), relaxed.convention,
         relaxed.flat,
@@ -86,17 +130,17 @@ def turned(
         points[: cell.rows, : cell.controls_per_course],
         relaxed.cell_course_mm, relaxed.cell_wale_mm,
     )  # fmt: skip
-    found = minimise(
+    minimum = minimise(
         energy, state, tension=np.append(tension[: cell.rows], np.zeros(len(energy.held))),
         fixed=fixed, options=TIGHT, cancelled=cancelled,
     )  # fmt: skip
-    part = found.terms.energy / cell.stitches / relaxed.energy_n_mm
-    if outcome(energy, found) not in (RELAXED, UNSETTLED) or abs(part - 1.0) > SAME_ENERGY:
+    part = minimum.terms.energy / cell.stitches / relaxed.energy_n_mm
+    if outcome(energy, minimum) not in (RELAXED, UNSETTLED) or abs(part - 1.0) > SAME_ENERGY:
         raise ConvergenceError("Another image of the fabric has another shape.")
     shown = relaxed_repeat(
         StitchChart(free.purl) if relaxed.branch is Branch.FREE else image,
-        energy, relaxed.branch, found, seconds=relaxed.seconds,
-        evaluations=relaxed.evaluations + found.evaluations,
+        energy, relaxed.branch, minimum, seconds=relaxed.seconds,
+        evaluations=relaxed.evaluations + minimum.evaluations,
         starts=relaxed.starts, notes=relaxed.notes,
     )  # fmt: skip
     mirrored = relaxed.mirrored and turned(relaxed.mirrored, image, cancelled=cancelled)
@@ -104,21 +148,3 @@ def turned(
         shown, converged=relaxed.converged, minimum=relaxed.minimum, mirrored=mirrored,
         other_minima_mm=relaxed.other_minima_mm,
     )  # fmt: skip
-
-
-def _turned(
-    purl: NDArray[np.bool_], image: NDArray[np.bool_], points: Array, tension: Array
-) -> tuple[Array, Array]:
-    """Control points (rows, controls, 3) and tensions (rows,) of a chart as those of an image."""
-    rows, wales = purl.shape
-    count = points.shape[1] // wales
-    for back, mirrored in product((False, True), repeat=2):
-        seen = purl ^ back
-        seen = seen[:, ::-1] if mirrored else seen
-        for up, right in np.ndindex(rows, wales):
-            if np.array_equal(np.roll(seen, (up, right), axis=(0, 1)), image):
-                found = points * (1.0, 1.0, -1.0 if back else 1.0)
-                if mirrored:  # the yarn runs the other way, from the same foot
-                    found = np.roll(found[:, ::-1], 1, axis=1) * (-1.0, 1.0, 1.0)
-                return np.roll(found, (up, count * right), axis=(0, 1)), np.roll(tension, up)
-    raise ValueError("It is no image of the same fabric.")

@@ -30,7 +30,7 @@ from knitcore.base.threads import in_one_blas_thread
 from knitcore.yarn.model.energy import CellEnergy, Slope, Terms
 from knitcore.yarn.solve.fronts import Dissection, Room
 from knitcore.yarn.solve.systems import DenseSystem, SparseSystem, System
-from knitcore.yarn.solve.trajectory import Trajectory
+from knitcore.yarn.solve.topology import Trajectory
 
 COURSE, WALE = -2, -1
 """Places of the two cell sizes among the unknowns."""
@@ -103,7 +103,7 @@ class Options:
 
 
 TIGHT = Options(tolerance=1e-10, slack=1e-9)
-"""Of a final shape: soft sizes are then known to some 1e-6, energies better."""
+"""Settings for a final shape: soft sizes are then known to some 1e-6, energies better."""
 
 
 @dataclass(frozen=True, eq=False)

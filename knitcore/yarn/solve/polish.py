@@ -24,12 +24,13 @@ from knitcore.base.errors import Cancelled, check_cancelled
 from knitcore.base.threads import on_halves
 from knitcore.linear.dense import dot, product, solved, times
 from knitcore.linear.elimination_order import dissected
+from knitcore.yarn.kernels.structures import Ints
 from knitcore.yarn.model.energy import CellEnergy, Slope
 from knitcore.yarn.solve.fronts import Room, elimination
 from knitcore.yarn.solve.newton import Minimum
 from knitcore.yarn.solve.systems import SparseSystem
-from knitcore.yarn.solve.trajectory import Trajectory
-from knitcore.yarn.solve.windows import Ints, Window, each, window_energy
+from knitcore.yarn.solve.topology import Trajectory
+from knitcore.yarn.solve.windows import Window, each, window_energy
 
 PAIR_CAP = 0.3
 """Longest change of the vector between near samples in a step of a sheet, in radii."""
@@ -96,8 +97,8 @@ class _Inverse:
 
     def times(self, gradient: Array, excess: Array) -> Array:
         """The inverse times a gradient (unknowns,), less a step that mends the lengths."""
-        found, _ = self.relaxed(gradient, excess)
-        return self.resized(gradient) - found
+        step, _ = self.relaxed(gradient, excess)
+        return self.resized(gradient) - step
 
     def resized(self, gradient: Array) -> Array:
         """The inverse times a gradient, among changes of the two sizes that the windows follow."""
@@ -160,9 +161,9 @@ def polished(
         downhill = min(dot(gradient + pull, step), 0.0)
         share = 1.0
         for _ in range(_TRIALS):
-            found = path.certified(share * step)
-            share *= found.fraction
-            if sheet.merit(found.to.terms, tension) < before + _ENOUGH * share * downhill:
+            trial = path.certified(share * step)
+            share *= trial.fraction
+            if sheet.merit(trial.to.terms, tension) < before + _ENOUGH * share * downhill:
                 break
             share *= _SHORTER
         else:
@@ -170,8 +171,8 @@ def polished(
                 break
             past.clear()  # what was learned of the curvature holds no more
             continue
-        moved = found.to.state - path.here.state
-        path.advance(found)
+        moved = trial.to.state - path.here.state
+        path.advance(trial)
         slope = path.slope(tension, hessian=False, lengths=False)
         if dot(moved, slope.gradient - gradient) > 0.0:
             past.append((moved, slope.gradient - gradient))
@@ -190,11 +191,11 @@ def _resized(sheet: CellEnergy, path: Trajectory, inverse: _Inverse, tension: Ar
         slope, here = path.slope(tension, hessian=False, lengths=False), path.here
         step = -inverse.resized(slope.gradient)
         strain = float(np.abs(step[-2:] / here.state[-2:]).max())
-        found = path.certified(_LARGEST_STRAIN / max(strain, _LARGEST_STRAIN) * step)
-        if sheet.merit(found.to.terms, tension) >= sheet.merit(here.terms, tension):
+        trial = path.certified(_LARGEST_STRAIN / max(strain, _LARGEST_STRAIN) * step)
+        if sheet.merit(trial.to.terms, tension) >= sheet.merit(here.terms, tension):
             return slope
-        path.advance(found)
-        if found.fraction * strain < _LEAST_STRAIN:
+        path.advance(trial)
+        if trial.fraction * strain < _LEAST_STRAIN:
             break
     return path.slope(tension, hessian=False, lengths=False)
 
@@ -252,7 +253,7 @@ def _definite(matrix: Array) -> Array:
 
 
 def _gradient(sheet: CellEnergy, state: Array, tension: Array) -> Array:
-    """Of the Lagrangian, at any state."""
+    """Gradient of the Lagrangian at any state."""
     curve = sheet.curve(state)
     pairs, start = sheet.pairs(curve, state, 2.0 * sheet.yarn.radius_mm)
     slope = sheet.derivatives(
@@ -265,12 +266,12 @@ def _two_loops(
     inverse: _Inverse, past: deque[tuple[Array, Array]], gradient: Array, excess: Array
 ) -> Array:
     """The inverse times a gradient, with what the last steps tell of it (Nocedal 1980)."""
-    found = gradient.copy()
+    direction = gradient.copy()
     weights = []
     for moved, turned in reversed(past):
-        weights.append(dot(moved, found) / dot(moved, turned))
-        found -= weights[-1] * turned
-    found = inverse.times(found, excess)
+        weights.append(dot(moved, direction) / dot(moved, turned))
+        direction -= weights[-1] * turned
+    direction = inverse.times(direction, excess)
     for (moved, turned), weight in zip(past, reversed(weights), strict=True):
-        found += moved * (weight - dot(turned, found) / dot(moved, turned))
-    return found
+        direction += moved * (weight - dot(turned, direction) / dot(moved, turned))
+    return direction

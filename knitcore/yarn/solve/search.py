@@ -16,7 +16,7 @@ from knitcore.yarn.model.tiling import refined_state, tiled_state
 from knitcore.yarn.solve.clasps import cell_is_knitted
 from knitcore.yarn.solve.growth import STAGE, Start, grow, shaken, with_stiff_shell
 from knitcore.yarn.solve.newton import Minimum, Options, minimise
-from knitcore.yarn.solve.topology import Clearance
+from knitcore.yarn.solve.topology import clearance_at
 
 SAME_ENERGY = 1e-3
 """Starts whose energies agree within this part of them are the same minimum."""
@@ -36,38 +36,53 @@ RELAXED = "relaxed"
 UNSETTLED = "not converged"
 
 
-def lowest_of(found: Sequence[Minimum]) -> tuple[Minimum, list[Minimum]]:
+def lowest_of(minima: Sequence[Minimum]) -> tuple[Minimum, list[Minimum]]:
     """The lowest of some states, by a rule that rounding cannot turn, and the others that are as
     low.
 
     States whose energies agree within ``SAME_ENERGY`` count as equally low: the first of them is
     taken. Those of the others that differ in size are returned, too.
     """
-    least = min(m.terms.energy for m in found)
-    level = [m for m in found if m.terms.energy <= least * (1.0 + SAME_ENERGY)]
+    least = min(m.terms.energy for m in minima)
+    level = [m for m in minima if m.terms.energy <= least * (1.0 + SAME_ENERGY)]
     size = level[0].state[-2:]
     return level[0], [m for m in level[1:] if np.abs(m.state[-2:] / size - 1.0).max() > SAME_SIZE]
 
 
-def overlong(energy: CellEnergy, found: Minimum) -> bool:
-    """Whether a prescribed length is missed: jammed or locked, not a state of the fabric."""
-    lengths = found.terms.excess_mm[: len(energy.prescribed_mm)]
+def overlong(energy: CellEnergy, minimum: Minimum) -> bool:
+    """Tell whether a prescribed length is missed: jammed or locked, not a state of the fabric."""
+    lengths = minimum.terms.excess_mm[: len(energy.prescribed_mm)]
     return bool(np.any(np.abs(lengths) > OVERLONG * energy.prescribed_mm))
 
 
-def outcome(energy: CellEnergy, found: Minimum) -> str:
+def outcome(energy: CellEnergy, minimum: Minimum) -> str:
     """``relaxed``, ``not converged``, or why the state is not one of the fabric."""
-    if not np.all(np.isfinite(found.state)) or not np.isfinite(found.terms.energy):
+    if not np.all(np.isfinite(minimum.state)) or not np.isfinite(minimum.terms.energy):
         return "not finite"
-    if overlong(energy, found):
+    if overlong(energy, minimum):
         return "too little yarn"
-    if found.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
+    if minimum.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
         return "cores overlap"
-    if found.state[-2] > _STRAIGHT * energy.mean_loop_mm:
+    if minimum.state[-2] > _STRAIGHT * energy.mean_loop_mm:
         return "pulled straight"
-    if not cell_is_knitted(energy.cell, found.state):
+    if not cell_is_knitted(energy.cell, minimum.state):
         return "unravelled"
-    return RELAXED if found.converged else UNSETTLED
+    return RELAXED if minimum.converged else UNSETTLED
+
+
+def check_reached(energy: CellEnergy, minimum: Minimum) -> None:
+    """Refuse a state on the way of a stretch that is not one of the fabric.
+
+    Raises
+    ------
+    ConvergenceError, UnravelledError
+        If the yarn locks or unravels.
+    """
+    became = outcome(energy, minimum)
+    if became == "unravelled":
+        raise UnravelledError("the stitches come undone.")
+    if became not in (RELAXED, UNSETTLED, "pulled straight"):
+        raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
 
 
 class Search:
@@ -118,21 +133,21 @@ class Search:
         """Run one start and report it."""
         nan = float("nan")
         try:
-            found = solve()
+            minimum = solve()
         except (UnravelledError, ConvergenceError) as error:
             self._errors.append(error)
             self.reports.append(StartReport(name, str(error), nan, nan, nan))
             return
-        self.evaluations += found.evaluations
-        became = outcome(self.energy, found)
+        self.evaluations += minimum.evaluations
+        became = outcome(self.energy, minimum)
         self.reports.append(
             StartReport(
-                name, became, found.terms.energy / self.energy.cell.stitches,
-                float(found.state[-2]), float(found.state[-1]),
+                name, became, minimum.terms.energy / self.energy.cell.stitches,
+                float(minimum.state[-2]), float(minimum.state[-1]),
             )
         )  # fmt: skip
         if became in (RELAXED, UNSETTLED):
-            self.found.append(found)
+            self.found.append(minimum)
 
     def best(self) -> tuple[Minimum, list[Minimum]]:
         """The lowest state of the fabric, and others that are as low (:func:`lowest_of`).
@@ -164,24 +179,26 @@ class Search:
         """
         state = refined_state(self.energy.cell, best.state, energy.cell)
         tension = None if energy.held.size else best.tension
-        found = self._minimised(energy, state, tension, options)
-        if outcome(energy, found) not in (RELAXED, UNSETTLED):
+        finer = self._minimised(energy, state, tension, options)
+        if outcome(energy, finer) not in (RELAXED, UNSETTLED):
             # between the old samples the cores may overlap: push them apart first
             apart = self._minimised(
                 replace(energy, yarn=with_stiff_shell(energy.yarn)), state, tension, STAGE
             )
-            found = self._minimised(energy, apart.state, apart.tension, options)
-        became = outcome(energy, found)
+            finer = self._minimised(energy, apart.state, apart.tension, options)
+        became = outcome(energy, finer)
         if became not in (RELAXED, UNSETTLED):
             raise ConvergenceError(f"The relaxed shape does not hold on a finer grid: {became}.")
-        return found
+        return finer
 
     def _minimised(
         self, energy: CellEnergy, state: Array, tension: Array | None, options: Options
     ) -> Minimum:
-        found = minimise(energy, state, tension=tension, options=options, cancelled=self.cancelled)
-        self.evaluations += found.evaluations
-        return found
+        minimum = minimise(
+            energy, state, tension=tension, options=options, cancelled=self.cancelled
+        )  # fmt: skip
+        self.evaluations += minimum.evaluations
+        return minimum
 
     def notes(self, best: Minimum) -> tuple[str, ...]:
         """Notes for the user: higher minima, and how much the mirrored state differs."""
@@ -212,13 +229,13 @@ class Search:
         self.evaluations += best.evaluations
         for start in starts[1:]:
             try:
-                found = self._grow(energy, start)
+                minimum = self._grow(energy, start)
             except (UnravelledError, ConvergenceError):
                 continue
-            self.evaluations += found.evaluations
-            lower = found.terms.energy < best.terms.energy * (1.0 - SAME_ENERGY)
-            if lower and outcome(energy, found) == RELAXED:
-                best = found
+            self.evaluations += minimum.evaluations
+            lower = minimum.terms.energy < best.terms.energy * (1.0 - SAME_ENERGY)
+            if lower and outcome(energy, minimum) == RELAXED:
+                best = minimum
         return best
 
     def _grow(self, energy: CellEnergy, start: Start) -> Minimum:
@@ -232,10 +249,7 @@ class Search:
 def _shaken_safely(energy: CellEnergy, state: Array, seed: int) -> Array:
     """The state displaced at random by 0.02 r or as much less as keeps the yarn apart."""
     radius = energy.yarn.radius_mm
-    curve = energy.curve(state)
-    reach = 3.0 * radius
-    pairs, _ = energy.pairs(curve, state, reach)
-    clearance = Clearance(energy.cell, state, curve, pairs, reach, 2.0 * radius)
+    clearance = clearance_at(energy, state, 3.0)
     # half of the way to the hard cores at most
     room = 0.25 * max(clearance.min_distance_mm - 2.0 * energy.yarn.core_radius_mm, 0.0)
     moved = shaken(energy.cell, state, min(0.02 * radius, 0.3 * room), seed=seed)

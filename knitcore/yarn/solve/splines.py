@@ -37,12 +37,7 @@ from knitcore.yarn.model.tiling import centre_lines, refined_state
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.growth import Start, grow
 from knitcore.yarn.solve.newton import COURSE, TIGHT, WALE, Minimum, Options, minimise
-from knitcore.yarn.solve.search import (
-    RELAXED,
-    UNSETTLED,
-    Search,
-    outcome,
-)
+from knitcore.yarn.solve.search import RELAXED, UNSETTLED, Search, outcome
 
 MAX_STITCHES = 400
 """Largest cell that is solved."""
@@ -66,10 +61,7 @@ SECONDS_PER_START = 0.08
 _STRIDE = 0.03
 """Longest step to a prescribed size, as a part of the loop length."""
 
-MIRRORED_STARTS = (
-    Start("usual"),
-    Start("wide", course=1.15, wale=0.85),
-)
+MIRRORED_STARTS = (Start("usual"), Start("wide", course=1.15, wale=0.85))
 FREE_STARTS = (
     Start("asymmetric", noise=0.01, seed=1),
     Start("asymmetric, narrow", course=0.85, wale=1.1, noise=0.02, seed=2),
@@ -105,7 +97,7 @@ class RelaxedRepeat(RelaxedCell):
 
     @property
     def held(self) -> bool:
-        """Whether more than symmetries and the yarn of each course holds it."""
+        """Tell whether more than symmetries and the yarn of each course holds it."""
         per_stitch = self.loop_lengths_mm.ndim > 1
         return bool(self.flat or self.slides or per_stitch) or not is_at_rest(self)
 
@@ -236,13 +228,13 @@ def refined(relaxed: RelaxedRepeat, grid: SplineGrid) -> RelaxedRepeat:
     energy = replace(relaxed.energy, cell=replace(relaxed.cell, grid=grid))
     state = refined_state(relaxed.cell, relaxed.state, energy.cell)
     clock = time.process_time()
-    found = minimise(energy, state, tension=relaxed.tension_n, options=TIGHT)
-    became = outcome(energy, found)
+    minimum = minimise(energy, state, tension=relaxed.tension_n, options=TIGHT)
+    became = outcome(energy, minimum)
     if became != RELAXED:
         raise ConvergenceError(f"On a finer grid it does not settle: {became}.")
     return relaxed_repeat(
-        relaxed.chart, energy, relaxed.branch, found, seconds=time.process_time() - clock,
-        evaluations=found.evaluations, notes=relaxed.notes,
+        relaxed.chart, energy, relaxed.branch, minimum, seconds=time.process_time() - clock,
+        evaluations=minimum.evaluations, notes=relaxed.notes,
     )  # fmt: skip
 
 
@@ -264,7 +256,7 @@ def check_unheld(relaxed: RelaxedRepeat) -> None:
 
 
 def relaxed_repeat(
-    chart: StitchChart, energy: CellEnergy, branch: Branch, found: Minimum, *,
+    chart: StitchChart, energy: CellEnergy, branch: Branch, minimum: Minimum, *,
     seconds: float, evaluations: int,
     starts: tuple[StartReport, ...] = (), notes: tuple[str, ...] = (),
     others: Sequence[Minimum] = (),
@@ -277,30 +269,30 @@ def relaxed_repeat(
             *notes,
             f"Other shapes have the same energy within 0.1 %, with stitches of {shown}.",
         )
-    terms, cell = found.terms, energy.cell
+    terms, cell = minimum.terms, energy.cell
     excess = terms.excess_mm[: len(energy.prescribed_mm)].sum()
     return RelaxedRepeat(
         branch=branch,
         convention=energy.convention,
-        cell_course_mm=float(found.state[-2]),
-        cell_wale_mm=float(found.state[-1]),
+        cell_course_mm=float(minimum.state[-2]),
+        cell_wale_mm=float(minimum.state[-1]),
         energy_n_mm=terms.energy / cell.stitches,
         bending_share=terms.rod / terms.energy,
         contact_share=terms.contact / terms.energy,
         yarn_length_mm=energy.mean_loop_mm + float(excess) / cell.stitches,
         seconds=seconds,
         evaluations=evaluations,
-        converged=found.converged,
-        centre_lines=centre_lines(cell, found.state, chart.rows, chart.columns),
-        state=found.state,
+        converged=minimum.converged,
+        centre_lines=centre_lines(cell, minimum.state, chart.rows, chart.columns),
+        state=minimum.state,
         notes=notes,
         chart=chart,
         yarn=energy.yarn,
         loop_lengths_mm=energy.loop_length_mm,
         cell=cell,
-        tension_n=found.tension,
-        force_n=(float(found.force[0] / cell.stitches), float(found.force[1] / cell.stitches)),
-        min_distance_mm=found.min_distance_mm,
+        tension_n=minimum.tension,
+        force_n=(float(minimum.force[0] / cell.stitches), float(minimum.force[1] / cell.stitches)),
+        min_distance_mm=minimum.min_distance_mm,
         starts=starts,
         flat=energy.flat,
         slides=energy.slides,
@@ -309,7 +301,7 @@ def relaxed_repeat(
 
 
 def has_mirrors(repeat: StitchChart) -> bool:
-    """Whether the mirrored branch imposes symmetries on a repeat."""
+    """Tell whether the mirrored branch imposes symmetries on a repeat."""
     cell = mirrored_cell(repeat, COARSE)
     return cell.symmetric or cell.stitches < free_cell(repeat, COARSE).stitches
 
@@ -323,35 +315,35 @@ def _starts(branch: Branch, cell: YarnCell, starts: Sequence[Start] | None) -> S
 
 
 def _held_at(
-    energy: CellEnergy, found: Minimum, sizes: tuple[float | None, float | None],
+    energy: CellEnergy, minimum: Minimum, sizes: tuple[float | None, float | None],
     cancelled: Cancelled | None,
 ) -> Minimum:  # fmt: skip
     """Go from the force-free state to prescribed sizes in steps."""
     places = [place for place, size in zip((COURSE, WALE), sizes, strict=True) if size is not None]
     goal = np.array([0.0 if size is None else size for size in sizes])
-    begin = found.state[-2:].copy()
+    begin = minimum.state[-2:].copy()
     natural = f"{begin[0]:.2f} x {begin[1]:.2f} mm"
     way = np.where([size is not None for size in sizes], goal - begin, 0.0)
     count = max(1, math.ceil(float(np.abs(way).max()) / (_STRIDE * energy.mean_loop_mm)))
     for k in range(1, count + 1):
-        reached = found.state[-2:]
+        reached = minimum.state[-2:]
         nearer = (
             f"Give one nearer to the natural {natural}; {reached[0]:.2f} x {reached[1]:.2f} mm "
             "was reached."
         )
         try:
-            found = minimise(
-                energy, found.state, tension=found.tension, fixed=tuple(places),
+            minimum = minimise(
+                energy, minimum.state, tension=minimum.tension, fixed=tuple(places),
                 target=begin + way * k / count, options=TIGHT, cancelled=cancelled,
             )  # fmt: skip
         except (ConvergenceError, UnravelledError) as error:
             raise type(error)(f"No equilibrium at this size: {error} {nearer}") from error
-        became = outcome(energy, found)
+        became = outcome(energy, minimum)
         if became == "unravelled":
             raise UnravelledError(f"The stitches come undone on the way to this size. {nearer}")
         if became not in (RELAXED, UNSETTLED):
             raise ConvergenceError(f"No equilibrium at this size: {became}. {nearer}")
-    return found
+    return minimum
 
 
 def loop_lengths(
@@ -402,11 +394,11 @@ def _compile() -> None:
     """Compile (or load) the kernels once, so that the times of solves do not include it."""
     yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.1)
     cell = mirrored_cell(StitchChart.parse("K"), SplineGrid(8, 4))
-    found = grow(
+    minimum = grow(
         cell, yarn, np.array([12.0]), Convention.PUBLISHED, MIRRORED_STARTS[0],
         options=Options(iterations=2),
     )  # fmt: skip
-    outcome(CellEnergy(cell, yarn, np.array([12.0]), Convention.PUBLISHED), found)
+    outcome(CellEnergy(cell, yarn, np.array([12.0]), Convention.PUBLISHED), minimum)
 
 
 def _size_log_sd(cell: RelaxedCell) -> float:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.linear.dense import dot, eliminate, norm, product, solved, substitute, times
-from knitcore.yarn.kernels import one_tile
+from knitcore.yarn.kernels.tiles import one_tile
 from knitcore.yarn.model.energy import Slope
 from knitcore.yarn.solve.fronts import Front, FrontalFactor, Precision, Room
 
@@ -198,12 +198,12 @@ class SparseSystem(System):
 
     def _through_factor(self, right: Array) -> Array:
         local = self._hessian.sizes.shape[1] - 2
-        found = self._factor.solve(right[:local])
+        local_part = self._factor.solve(right[:local])
         if not len(self._sizes):
-            return found
+            return local_part
         sizes = right[local:] - product(self._through.T, right[:local])
         sizes = np.stack([solved(self._rest, column) for column in sizes.T], axis=1)
-        return np.concatenate([found - product(self._through, sizes), sizes])
+        return np.concatenate([local_part - product(self._through, sizes), sizes])
 
     def keep(self) -> None:
         """Leave the room to others, and free what only another factor, or a predicted decrease,

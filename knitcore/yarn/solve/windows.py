@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.linear.dense import times
-from knitcore.yarn import kernels
-from knitcore.yarn.kernels.structures import Pairs
+from knitcore.yarn.kernels.curve_samples import sample_curve
+from knitcore.yarn.kernels.structures import Ints, Pairs
 from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.constraints import (
     FOOT,
@@ -32,7 +32,6 @@ from knitcore.yarn.model.constraints import (
 from knitcore.yarn.model.energy import CellEnergy
 from knitcore.yarn.model.spline import SUPPORT
 
-Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
@@ -53,7 +52,7 @@ class Extent:
 
     @property
     def own(self) -> Ints:
-        """Those that move."""
+        """The rows or wales that move."""
         return self.stitches[self.free]
 
 
@@ -75,20 +74,20 @@ def windows(around: Ints, size: int, first: tuple[int, int]) -> list[Window]:
         _spans(count, size, int(reach.max()), begin)
         for count, reach, begin in zip(counts, around, first, strict=True)
     )
-    found = []
+    covering = []
     for row, wale in product(rows, wales):
         beside = around[:, (row % counts[0])[:, None], wale % counts[1]].max(axis=(1, 2))
-        found.append(
+        covering.append(
             (_extent(row, counts[0], int(beside[0])), _extent(wale, counts[1], int(beside[1])))
         )
-    return found
+    return covering
 
 
-def touch(one: Window, other: Window) -> bool:
-    """Whether a window holds stitches that move in another, which may then not move meanwhile."""
+def touch(window: Window, other: Window) -> bool:
+    """Tell whether a window holds stitches that move in another, so that only one may move."""
     return any(
         all(np.isin(a.own, b.stitches).any() for a, b in zip(*both, strict=True))
-        for both in ((one, other), (other, one))
+        for both in ((window, other), (other, window))
     )
 
 
@@ -165,7 +164,7 @@ class WindowEnergy(CellEnergy):
 
     @cached_property
     def stretch_of(self) -> Ints:
-        """Which of the prescribed lengths each sample belongs to; 0 where nothing moves."""
+        """Index of the prescribed length that each sample belongs to; 0 where nothing moves."""
         of_row = np.zeros(self.cell.rows, np.int64)
         of_row[self.own_rows] = np.arange(len(self.own_rows))
         return np.repeat(of_row, len(self.cell.place))
@@ -254,7 +253,7 @@ def window_energy(
         mirror_course=False, mirror_wale=False, axis=None, grid=grid,
         resting=np.where(free[..., None], 0.0, here), free=free,
     )  # fmt: skip
-    across = kernels.sample_curve(controls[rows.stitches], sizes[0], 1, grid.basis)
+    across = sample_curve(controls[rows.stitches], sizes[0], 1, grid.basis)
     curve = across[:, each(wales.stitches, grid.samples)].reshape(-1, 4, 3)
     touched = np.zeros_like(free)
     for shift in range(SUPPORT):  # a span depends on the control points from 2 before to 3 after it

@@ -7,6 +7,7 @@ not been shaken out is stiffer.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -131,19 +132,15 @@ class RepeatBending:
 
     def mirror_image(self) -> RepeatBending:
         """The same with left and right exchanged."""
-        return replace(
-            self,
-            mirrored=self.mirrored and self.mirrored.mirror_image(),
-            unmirrored=self.unmirrored and self.unmirrored.mirror_image(),
-        )
+        return self._changed(FabricBending.mirror_image)
 
     def swapped(self) -> RepeatBending:
         """The same with knits for purls: front and back exchanged."""
-        return replace(
-            self,
-            mirrored=self.mirrored and self.mirrored.swapped(),
-            unmirrored=self.unmirrored and self.unmirrored.swapped(),
-        )
+        return self._changed(FabricBending.swapped)
+
+    def _changed(self, change: Callable[[FabricBending], FabricBending]) -> RepeatBending:
+        states = [state and change(state) for state in (self.mirrored, self.unmirrored)]
+        return replace(self, mirrored=states[0], unmirrored=states[1])
 
     @property
     def shown(self) -> FabricBending:
@@ -154,10 +151,10 @@ class RepeatBending:
         ConvergenceError
             If no state has positive rigidities.
         """
-        found = self.mirrored or self.unmirrored
-        if found is None:
+        bending = self.mirrored or self.unmirrored
+        if bending is None:
             raise ConvergenceError(" ".join(filter(None, (self.failure, self.unmirrored_failure))))
-        return found
+        return bending
 
     @property
     def stable(self) -> FabricBending:

@@ -46,11 +46,12 @@ from scipy.linalg import LinAlgError, cho_factor, lu_factor, lu_solve
 from knitcore.base.arrays import Array
 from knitcore.base.errors import ConvergenceError
 from knitcore.base.threads import one_blas_thread
-from knitcore.yarn import kernels
+from knitcore.yarn.kernels.bent import bent_contact
 from knitcore.yarn.model.cell import plain_cell
 from knitcore.yarn.model.energy import CellEnergy
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.tiling import refined_state, tiled_state
+from knitcore.yarn.solve.newton import COURSE, WALE
 from knitcore.yarn.solve.splines import RelaxedRepeat, check_unheld, refined
 
 _STEP = 2e-3
@@ -68,8 +69,6 @@ _STRIDE = 0.5
 """Longest of these steps, in radii: a longer one leads elsewhere."""
 _SETTLED = 1e-7
 """Step, in radii, after which the state counts as settled."""
-_COURSE, _WALE = -2, -1
-"""Places of the sizes of a stitch among the unknowns."""
 
 
 @dataclass(frozen=True)
@@ -135,12 +134,12 @@ def settled(relaxed: RelaxedRepeat) -> BentCell:
         If it has no equilibrium nearby, not even relaxed again on a finer grid.
     """
     check_unheld(relaxed)
-    found = _by_newton(relaxed)
-    if found is None and relaxed.cell.grid.samples < GRID.samples:
-        found = _by_newton(refined(relaxed, GRID))
-    if found is None:
+    cell = _by_newton(relaxed)
+    if cell is None and relaxed.cell.grid.samples < GRID.samples:
+        cell = _by_newton(refined(relaxed, GRID))
+    if cell is None:
         raise ConvergenceError("Its shape changes when its symmetries are dropped.")
-    return found
+    return cell
 
 
 def _by_newton(relaxed: RelaxedRepeat) -> BentCell | None:
@@ -195,7 +194,7 @@ class BentCell:
         return lower_upper, pivots
 
     def is_minimum(self) -> bool:
-        """Whether no small motion lowers the energy."""
+        """Tell whether no small motion lowers the energy."""
         stiff = self._hessian + self.energy.penalty * self.rows.T @ self.rows
         with one_blas_thread():
             try:
@@ -207,7 +206,7 @@ class BentCell:
     @property
     def area_mm2(self) -> float:
         """Area of the cell."""
-        return float(self.energy.cell.stitches * self.state[_COURSE] * self.state[_WALE])
+        return float(self.energy.cell.stitches * self.state[COURSE] * self.state[WALE])
 
     def newton(self) -> tuple[Array, Array]:
         """Step to equilibrium at mean height zero, and change of the tensions."""
@@ -220,17 +219,17 @@ class BentCell:
 
     def bent(self, angle: float) -> BendingResponse:
         """Bending with the direction ``angle`` from the course, rad."""
-        course, wale = float(self.state[_COURSE]), float(self.state[_WALE])
+        course, wale = float(self.state[COURSE]), float(self.state[WALE])
         cos, sin = np.cos(angle), np.sin(angle)
         stitch = np.hypot(cos * course, sin * wale)  # the angle κ · stitch is prescribed
         first, second, by_state, by_length = self._differences(
             lambda q: Deformation.cylinder(angle, q), _STEP / self.energy.mean_loop_mm
         )
-        by_state[_COURSE] -= first * cos**2 * course / stitch**2
-        by_state[_WALE] -= first * sin**2 * wale / stitch**2
+        by_state[COURSE] -= first * cos**2 * course / stitch**2
+        by_state[WALE] -= first * sin**2 * wale / stitch**2
         free, moved = self._stiffness(second, by_state, by_length, None)
-        held, _ = self._stiffness(second, by_state, by_length, _WALE if cos > abs(sin) else _COURSE)
-        strains = np.array([moved[_COURSE] / course, moved[_WALE] / wale])
+        held, _ = self._stiffness(second, by_state, by_length, WALE if cos > abs(sin) else COURSE)
+        strains = np.array([moved[COURSE] / course, moved[WALE] / wale])
         area = self.area_mm2
         across = float(strains @ (sin**2, cos**2))
         return BendingResponse(
@@ -280,10 +279,10 @@ class BentCell:
         if held is not None:
             right[held % len(by_state), 1] = 1.0
         with one_blas_thread():
-            found, push = lu_solve(self._factor, right).T
+            moved, push = lu_solve(self._factor, right).T
         if held is not None:
-            found = found - push * (found[: len(by_state)][held] / push[: len(by_state)][held])
-        return -found[: len(by_state)], -found[len(by_state) :]
+            moved = moved - push * (moved[: len(by_state)][held] / push[: len(by_state)][held])
+        return -moved[: len(by_state)], -moved[len(by_state) :]
 
     def _stiffness(
         self, second: float, by_state: Array, by_length: Array, held: int | None
@@ -312,8 +311,8 @@ class BentCell:
         energy, cell = self.energy, self.energy.cell
         frame = Curved(self.curve, d.curvature_per_mm)
         speeds = np.linalg.norm(frame.bent[:, 1], axis=1)
-        value, force, by_speed = kernels.bent_contact(
-            self.curve, self.state[_COURSE], self.state[_WALE], self._pairs, cell.layout,
+        value, force, by_speed = bent_contact(
+            self.curve, self.state[COURSE], self.state[WALE], self._pairs, cell.layout,
             energy.contact_law, speeds, d.curvature_per_mm, d.skew,
         )  # fmt: skip
         rod, spacing, slopes = energy.along_yarn(frame.bent, self.tension, by_speed)
@@ -386,5 +385,5 @@ class Curved:
         return by_height[:, 0], out
 
 
-def _dot(one: Array, other: Array) -> Array:
-    return np.asarray((one * other).sum(axis=-1, keepdims=True))
+def _dot(first: Array, second: Array) -> Array:
+    return np.asarray((first * second).sum(axis=-1, keepdims=True))

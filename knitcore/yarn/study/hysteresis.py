@@ -13,9 +13,9 @@ from knitcore.base.bounds import check_count
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, ConvergenceError, check_cancelled
 from knitcore.chart.fabric import Direction
-from knitcore.yarn.model.friction import RubbedCell, agitated, check_coefficient, rubbed
 from knitcore.yarn.model.input_checks import check_stretch
 from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
+from knitcore.yarn.solve.friction import RubbedCell, agitated, check_coefficient, rubbed
 from knitcore.yarn.solve.newton import COURSE, WALE
 from knitcore.yarn.solve.splines import RelaxedRepeat
 from knitcore.yarn.study.sweep import follow
@@ -41,7 +41,7 @@ _SLIGHT = 1e-3
 
 
 class History(Choice):
-    """What happened to the fabric before it was laid down."""
+    """The treatment of the fabric before it was laid down."""
 
     AGITATED = "agitated"
     KNITTED = "as-knitted"
@@ -111,18 +111,18 @@ class Hysteresis:
     @property
     def notes(self) -> tuple[str, ...]:
         """Remarks for the user, in sentences."""
-        found = dict.fromkeys(note for leg in self.legs for note in leg.notes)
+        notes = dict.fromkeys(note for leg in self.legs for note in leg.notes)
         area, work = self.zero.cell_course_mm * self.zero.cell_wale_mm, self.lost_n_mm[-2:].sum()
         # of a loop that does not close, the yarn keeps a part
         kept = self.legs[-1].energy_n_mm[-1] - self.legs[-2].energy_n_mm[0]
         loop = area * self.lost_per_cycle_n_per_mm - kept
         missed, larger = abs(loop - work), max(abs(loop), abs(work))
         if missed > max(_UNBALANCED * larger, _SLIGHT * area * self.legs[-2].work_n_per_mm):
-            found[
+            notes[
                 "The loop's area and the work against friction differ by "
                 f"{100 * missed / larger:.0f} %: take more points, unless the shape jumps."
             ] = None
-        return tuple(found)
+        return tuple(notes)
 
     @property
     def lost_per_cycle_n_per_mm(self) -> float:
@@ -378,11 +378,11 @@ def _pulled(
     along = stretch.along
     here = stretch.state.cell.cell_mm(along) / zero.cell_mm(along) - 1.0
     ahead = np.concatenate([[here], strain[strain > here + _THERE]])
-    found = follow(
+    curve = follow(
         stretch, zero, along, ahead, max_stress_n_per_mm=max_stress, back=False,
         cancelled=stretch.cancelled,
     )  # fmt: skip
-    return Leg(along, zero, found.cells, found.stress_n_per_mm, found.jumps, found.notes)
+    return Leg(along, zero, curve.cells, curve.stress_n_per_mm, curve.jumps, curve.notes)
 
 
 def _released(stretch: RubbedStretch, zero: RelaxedRepeat, stride: float) -> Leg:

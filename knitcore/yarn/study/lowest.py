@@ -1,4 +1,4 @@
-"""Whether a mirrored state is a minimum without its mirrors, and where it goes if it is not.
+"""Minima among mirrored states, and the way from the others once their mirrors are dropped.
 
 The state is laid out over the free cell (at least two stitches each way). Where the Hessian there
 has a negative curvature, the solver leaves along its lowest eigenvector, to either side, and
@@ -71,7 +71,7 @@ def followed(
         If the descent finds no state of the fabric.
     """
     options = replace(TIGHT, damping=_LITTLE) if energy.cell.stitches <= 4 else TIGHT
-    found: list[Minimum] = []
+    minima: list[Minimum] = []
     errors: list[KnitcoreError] = []
     for side in (1.0, -1.0):
         try:
@@ -84,19 +84,19 @@ def followed(
             continue
         became = outcome(energy, end)
         if became in (RELAXED, UNSETTLED):
-            found.append(end)
+            minima.append(end)
         else:
             how = f"Without its symmetries the repeat does not settle: {became}."
             errors.append(ConvergenceError(how))
         if not end.saddles:
             break
-    if not found:
+    if not minima:
         raise errors[0]
-    return lowest_of(found)
+    return lowest_of(minima)
 
 
 def can_be_followed(relaxed: RelaxedRepeat, most_stitches: int = FOLLOWED_UP_TO) -> bool:
-    """Whether a repeat of the mirrored branch is not held, and its free cell has at most
+    """Tell whether a repeat of the mirrored branch is not held, and its free cell has at most
     ``most_stitches``."""
     stitches = free_cell(relaxed.chart, relaxed.cell.grid).stitches
     return relaxed.branch is Branch.MIRRORED and not relaxed.held and stitches <= most_stitches
@@ -130,17 +130,17 @@ def without_mirrors(
     lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
     energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
     clock = time.process_time()
-    found, others = followed(
+    minimum, others = followed(
         energy, tiled_state(relaxed.cell, relaxed.state, cell),
         tension=np.resize(relaxed.tension_n, cell.rows), cancelled=cancelled,
     )  # fmt: skip
     shown = relaxed_repeat(
-        StitchChart(cell.purl), energy, Branch.FREE, found,
-        seconds=time.process_time() - clock, evaluations=found.evaluations, others=others,
+        StitchChart(cell.purl), energy, Branch.FREE, minimum,
+        seconds=time.process_time() - clock, evaluations=minimum.evaluations, others=others,
     )  # fmt: skip
     lower = 1.0 - shown.energy_n_mm / relaxed.energy_n_mm
-    state = replace(shown, minimum=found.stable, notes=(*relaxed.notes, *shown.notes))
-    return Followed(lower < SAME_ENERGY and found.stable, state, lower)
+    state = replace(shown, minimum=minimum.stable, notes=(*relaxed.notes, *shown.notes))
+    return Followed(lower < SAME_ENERGY and minimum.stable, state, lower)
 
 
 def lowest(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> RelaxedRepeat:
@@ -152,14 +152,14 @@ def lowest(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> Rel
     if relaxed.minimum or not can_be_followed(relaxed):
         return relaxed
     try:
-        found = without_mirrors(relaxed, cancelled=cancelled)
+        followed_state = without_mirrors(relaxed, cancelled=cancelled)
     except (ConvergenceError, UnravelledError):
         lost = "Without its mirror symmetries no shape was found."
         return replace(relaxed, notes=(*relaxed.notes, lost))
-    seconds = relaxed.seconds + found.state.seconds
-    if found.lower < SAME_ENERGY:
-        return replace(relaxed, minimum=found.minimum, seconds=seconds)
+    seconds = relaxed.seconds + followed_state.state.seconds
+    if followed_state.lower < SAME_ENERGY:
+        return replace(relaxed, minimum=followed_state.minimum, seconds=seconds)
     return replace(
-        found.state, mirrored=relaxed, starts=relaxed.starts, seconds=seconds,
-        evaluations=relaxed.evaluations + found.state.evaluations,
+        followed_state.state, mirrored=relaxed, starts=relaxed.starts, seconds=seconds,
+        evaluations=relaxed.evaluations + followed_state.state.evaluations,
     )  # fmt: skip

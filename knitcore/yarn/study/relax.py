@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal, overload
+from typing import Literal, TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,40 +30,31 @@ __all__ = ["Branch", "OnSplines", "RelaxedRepeat", "relax"]
 OnSplines = Literal[Branch.MIRRORED, Branch.FREE, "mirrored", "free"]
 
 
-@overload
-def relax(
-    chart: StitchChart,
-    yarn: YarnModel,
-    loop_length_mm: ArrayLike,
-    *,
-    branch: OnSplines | None = ...,
-    convention: Convention | str = ...,
-    cell_course_mm: float | None = ...,
-    cell_wale_mm: float | None = ...,
-    flat: bool = ...,
-    grid: SplineGrid | None = ...,
-    starts: Sequence[Start] | None = ...,
-    time_limit_s: float | None = ...,
-    cancelled: Cancelled | None = ...,
-) -> RelaxedRepeat: ...
+class RelaxOptions(TypedDict, total=False):
+    """Options of :func:`relax` besides the branch."""
+
+    convention: Convention | str
+    cell_course_mm: float | None
+    cell_wale_mm: float | None
+    flat: bool
+    grid: SplineGrid | None
+    starts: Sequence[Start] | None
+    time_limit_s: float | None
+    cancelled: Cancelled | None
 
 
 @overload
 def relax(
-    chart: StitchChart,
-    yarn: YarnModel,
-    loop_length_mm: ArrayLike,
-    *,
-    branch: Branch | str | None,
-    convention: Convention | str = ...,
-    cell_course_mm: float | None = ...,
-    cell_wale_mm: float | None = ...,
-    flat: bool = ...,
-    grid: SplineGrid | None = ...,
-    starts: Sequence[Start] | None = ...,
-    time_limit_s: float | None = ...,
-    cancelled: Cancelled | None = ...,
-) -> RelaxedCell: ...
+    chart: StitchChart, yarn: YarnModel, loop_length_mm: ArrayLike, *,
+    branch: OnSplines | None = ..., **options: Unpack[RelaxOptions],
+) -> RelaxedRepeat: ...  # fmt: skip
+
+
+@overload
+def relax(
+    chart: StitchChart, yarn: YarnModel, loop_length_mm: ArrayLike, *,
+    branch: Branch | str | None, **options: Unpack[RelaxOptions],
+) -> RelaxedCell: ...  # fmt: skip
 
 
 def relax(
@@ -137,11 +128,11 @@ def relax(
         if in_rounds and cell.stitches >= WINDOWS_FROM:
             check_stitches(cell.stitches, MAX_STITCHES, "its cell")
             check_time(cell.stitches, lambda stitches: SECONDS_PER_STITCH * stitches, time_limit_s)
-            found = relax_whole(
+            whole = relax_whole(
                 StitchChart(cell.purl), yarn, np.resize(lengths, cell.rows),
                 convention=factors, cancelled=cancelled,
             )  # fmt: skip
-            return replace(found, branch=kind)
+            return replace(whole, branch=kind)
 
         def searched(image: StitchChart) -> RelaxedRepeat:
             relaxed = relax_splines(

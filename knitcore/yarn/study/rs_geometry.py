@@ -20,7 +20,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import SegmentGeometry
-from knitcore.yarn import kernels
+from knitcore.yarn.kernels.contact import contact_slopes
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
 from knitcore.yarn.model.tiling import centre_lines
 from knitcore.yarn.model.yarn_model import YarnModel
@@ -51,11 +51,11 @@ def segment_geometry(relaxed: RelaxedRepeat) -> Mapping[Direction, SegmentGeomet
         Direction.WALE: (edges[0][0], edges[1][1]),
     }
     parity = {Direction.COURSE: cell.mirror_course, Direction.WALE: cell.mirror_wale}
-    found = {}
+    segments = {}
     for direction, (begin, end) in ends.items():
         first, last = (round((1.0 + t) * samples - 0.5) for t in (begin, end))
-        found[direction] = _measured(direction, parity[direction], line[first : last + 1])
-    return found
+        segments[direction] = _measured(direction, parity[direction], line[first : last + 1])
+    return segments
 
 
 def published_segment_geometry(
@@ -116,7 +116,7 @@ def _contact_load(relaxed: RelaxedRepeat) -> Array:
     energy = relaxed.energy
     curve = energy.curve(relaxed.state)
     pairs, _ = energy.pairs(curve, relaxed.state, 2.0 * relaxed.yarn.radius_mm)
-    _, load = kernels.contact_slopes(
+    _, load = contact_slopes(
         curve, relaxed.cell_course_mm, relaxed.cell_wale_mm, pairs, relaxed.cell.layout,
         energy.contact_law,
     )  # fmt: skip

@@ -65,8 +65,7 @@ from knitcore.yarn.solve.splines import (
     relax_splines,
     relaxed_repeat,
 )  # fmt: skip
-from knitcore.yarn.solve.topology import Clearance
-from knitcore.yarn.solve.trajectory import SKIN, Trajectory
+from knitcore.yarn.solve.topology import SKIN, Trajectory, clearance_at
 from knitcore.yarn.solve.windows import Window, each, row_lengths, touch, window_energy, windows
 from knitcore.yarn.study.lowest import MAX_STITCHES, without_mirrors
 
@@ -87,7 +86,7 @@ _PASS = Options(tolerance=1e-6, iterations=3, mended=False)
 _LAST_PASS = Options(tolerance=1e-6, iterations=6)
 """Its steps keep the lengths, which no later pass would mend."""
 _PROBE = Options(tolerance=1e-3, iterations=4, damping=0.1, mended=False)
-"""Of a pass whose windows leave saddles: they count as settled early, and look for one."""
+"""Settings of a pass whose windows leave saddles: they count as settled early, and seek one."""
 _EXACT_FLAT = 36
 """Largest chart laid flat that ends in Newton's method: what holds it is not in the sparse matrix,
 which takes many damped steps."""
@@ -260,8 +259,8 @@ def explored(energy: CellEnergy, cancelled: Cancelled | None = None) -> Minimum:
         False, _EXPLORED, MAX_ROUNDS, None, None, cancelled,
     )  # fmt: skip
     with one_blas_thread():
-        _, found, _ = work.mended(work.settled(work.grown(work.first_shape())))
-    return found
+        _, minimum, _ = work.mended(work.settled(work.grown(work.first_shape())))
+    return minimum
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,9 +282,9 @@ class _Work:
         if not sheet.fine:
             sheet = self.settled(self.grown(sheet))
             sheet = self._refined(sheet)
-        sheet, found, left_n = self.mended(self.settled(self.grown(sheet)))
+        sheet, minimum, left_n = self.mended(self.settled(self.grown(sheet)))
         energy = replace(self.energy(sheet), flat=self.flat)
-        became = outcome(energy, found)
+        became = outcome(energy, minimum)
         if became not in (RELAXED, UNSETTLED):
             raise UnravelledError(f"The relaxed chart is not a fabric: {became}.")
         rounds = sheet.earlier + len(sheet.rounds)
@@ -295,20 +294,20 @@ class _Work:
             f"size by {sheet.size_change:.2%}; more rounds may take up to {sheet.may_fall:.1%} of "
             f"the energy away. Forces of up to {left_n:.1e} N are left on the yarn."
         )
-        exact = self._exact(energy, found)
+        exact = self._exact(energy, minimum)
         if exact is not None:
-            found, changes = exact, (0.0, 0.0, 0.0)
+            minimum, changes = exact, (0.0, 0.0, 0.0)
             where = "a minimum, though perhaps not the lowest" if exact.stable else "rest"
             note = f"After {rounds} rounds, Newton's method brought the chart to {where}."
-            path = Trajectory(energy, found.state, PAIR_CAP)
-            left_n = float(np.abs(path.slope(found.tension, hessian=False).gradient).max())
+            path = Trajectory(energy, minimum.state, PAIR_CAP)
+            left_n = float(np.abs(path.slope(minimum.tension, hessian=False).gradient).max())
         repeat = relaxed_repeat(
-            self.chart, energy, Branch.FREE, found, seconds=time.process_time() - clock,
-            evaluations=sheet.evaluations + (found.evaluations if exact else 0),
+            self.chart, energy, Branch.FREE, minimum, seconds=time.process_time() - clock,
+            evaluations=sheet.evaluations + (minimum.evaluations if exact else 0),
             notes=(note,),
         )  # fmt: skip
         if exact is not None:
-            repeat = replace(repeat, minimum=found.stable)
+            repeat = replace(repeat, minimum=minimum.stable)
         return RelaxedChart(
             **vars(repeat), rounds=rounds, energy_change=changes[0], size_change=changes[1],
             may_fall=changes[2], largest_force_n=left_n,
@@ -321,12 +320,12 @@ class _Work:
             return None
         tension = np.append(begin.tension, np.zeros(energy.constraints - len(begin.tension)))
         try:
-            found = minimise(
+            minimum = minimise(
                 energy, begin.state, tension=tension, options=TIGHT, cancelled=self.cancelled
             )  # fmt: skip
         except (ConvergenceError, UnravelledError):
             return None
-        return found if outcome(energy, found) == RELAXED else None
+        return minimum if outcome(energy, minimum) == RELAXED else None
 
     def mended(self, sheet: WholeShape) -> tuple[WholeShape, Minimum, float]:
         """The sheet after a last pass that gives every course its length, as a minimum, and the
@@ -334,10 +333,10 @@ class _Work:
         energy = self.energy(sheet)
         for number in range(len(_FIRSTS)):  # again where windows failed and the lengths with them
             sheet = self._one_pass(sheet, energy, _LAST_PASS, number)
-            found, left_n = self._minimum(energy, sheet)
-            if not overlong(energy, found):
+            minimum, left_n = self._minimum(energy, sheet)
+            if not overlong(energy, minimum):
                 break
-        return sheet, found, left_n
+        return sheet, minimum, left_n
 
     def energy(self, sheet: WholeShape) -> CellEnergy:
         """Energy of the whole sheet."""
@@ -377,13 +376,13 @@ class _Work:
             convention=self.convention, sizes_mm=(None, None), flat=self.flat, grid=COARSE,
             starts=None, time_limit_s=None, cancelled=self.cancelled,
         )  # fmt: skip
-        found = same_for_images(search, repeat, cancelled=self.cancelled)
+        relaxed = same_for_images(search, repeat, cancelled=self.cancelled)
         if not fits and not self.flat and part.stitches <= MAX_STITCHES:
             with suppress(ConvergenceError, UnravelledError):  # then with its mirrors
-                found = without_mirrors(found, part=part, cancelled=self.cancelled).state
+                relaxed = without_mirrors(relaxed, part=part, cancelled=self.cancelled).state
         cell = plain_cell(self.chart, COARSE)
-        state = tiled_state(found.cell, found.state, cell)
-        tension = np.resize(found.tension_n[: found.cell.rows], cell.rows)
+        state = tiled_state(relaxed.cell, relaxed.state, cell)
+        tension = np.resize(relaxed.tension_n[: relaxed.cell.rows], cell.rows)
         return WholeShape(
             cell.controls(state), state[-2:], np.tile(tension[:, None], cell.wales),
             self.yarn.core_radius_mm, fine=True,
@@ -397,7 +396,7 @@ class _Work:
 
     def _fitted(self, sheet: WholeShape, opening: float) -> WholeShape:
         """The sheet with as thick a core as fits."""
-        distance = self._clearance(self.energy(sheet), sheet).min_distance_mm
+        distance = clearance_at(self.energy(sheet), sheet.state, 2.0 + SKIN).min_distance_mm
         core = core_that_fits(self.yarn, distance, opening)
         return replace(sheet, core_radius_mm=core)
 
@@ -431,19 +430,19 @@ class _Work:
             energy = self.energy(sheet)
             sheet = self._one_pass(sheet, energy, _PROBE if probed else _PASS, number)
             path = Trajectory(energy, sheet.state, PAIR_CAP)
-            found = polished(
+            lowered = polished(
                 energy, path, sheet.tension_n.mean(axis=1),
                 _windows(energy.cell, path.clearance.pairs, number), flat=self.flat,
                 steps=_DESCENT_STEPS, cancelled=self.cancelled,
             )  # fmt: skip
             del path  # its list of pairs is most of the memory
-            per_stitch = found.terms.energy / energy.cell.stitches
-            wide, high = found.state[-2:].tolist()
+            per_stitch = lowered.terms.energy / energy.cell.stitches
+            wide, high = lowered.state[-2:].tolist()
             sheet = replace(
-                sheet, controls=energy.cell.controls(found.state), sizes_mm=found.state[-2:],
-                tension_n=np.tile(found.tension[:, None], energy.cell.wales),
+                sheet, controls=energy.cell.controls(lowered.state), sizes_mm=lowered.state[-2:],
+                tension_n=np.tile(lowered.tension[:, None], energy.cell.wales),
                 rounds=(*sheet.rounds, (per_stitch, wide, high)),
-                evaluations=sheet.evaluations + found.evaluations,
+                evaluations=sheet.evaluations + lowered.evaluations,
             )  # fmt: skip
             self._tell(sheet)
         return sheet
@@ -467,15 +466,15 @@ class _Work:
         missing = energy.loop_length_mm - row_lengths(energy.cell, curve) / energy.cell.wales
 
         def settled(window: Window) -> Callable[[], int] | None:
-            """What lays the relaxed window into the sheet and tells how many evaluations it took;
-            None where it cannot be relaxed."""
+            """Relax a window; returned is a function that lays it into the sheet and tells how many
+            evaluations it took, or None where the window cannot be relaxed."""
             rows, wales = window
             part, state = window_energy(
                 energy, controls, sheet.sizes_mm, window, missing, flat=self.flat
             )
             pulls = tension[np.ix_(rows.own, wales.own)].mean(axis=1)
             try:
-                found = minimise(
+                minimum = minimise(
                     part, state, tension=np.concatenate([pulls, np.zeros(len(part.held))]),
                     fixed=(COURSE, WALE), options=options,
                 )  # fmt: skip
@@ -485,15 +484,17 @@ class _Work:
             def lay() -> int:
                 place = np.ix_(rows.stitches, each(wales.stitches, energy.cell.grid.controls))
                 block = controls[place]
-                block[part.cell.free] = found.state[:-2].reshape(-1, 3)
+                block[part.cell.free] = minimum.state[:-2].reshape(-1, 3)
                 controls[place] = block
-                tension[np.ix_(rows.own, wales.own)] = found.tension[: len(rows.own), None]
-                return found.evaluations
+                tension[np.ix_(rows.own, wales.own)] = minimum.tension[: len(rows.own), None]
+                return minimum.evaluations
 
             return lay
 
         laid, evaluations = 0, sheet.evaluations
-        covering = _windows(energy.cell, self._clearance(energy, sheet).pairs, number)
+        near = clearance_at(energy, sheet.state, 2.0 + SKIN)
+        covering = _windows(energy.cell, near.pairs, number)
+        del near  # its list of pairs is most of the memory
         for some in _side_by_side(covering):
             check_cancelled(self.cancelled)
             for lay in chain.from_iterable(on_halves(lambda of: [*map(settled, of)], some, 2)):
@@ -504,18 +505,12 @@ class _Work:
             raise UnravelledError("No window of the chart could be relaxed.")
         return replace(sheet, controls=controls, tension_n=tension, evaluations=evaluations)
 
-    def _clearance(self, energy: CellEnergy, sheet: WholeShape) -> Clearance:
-        reach = (2.0 + SKIN) * self.yarn.radius_mm
-        curve = energy.curve(sheet.state)
-        pairs, _ = energy.pairs(curve, sheet.state, reach)
-        return Clearance(energy.cell, sheet.state, curve, pairs, reach, 2.0 * self.yarn.radius_mm)
-
     def _minimum(self, energy: CellEnergy, sheet: WholeShape) -> tuple[Minimum, float]:
         """The sheet as a minimum, and the largest force that is left, N."""
         path = Trajectory(energy, sheet.state, PAIR_CAP)
         tension = sheet.tension_n.mean(axis=1)
         slope = path.slope(tension, hessian=False, lengths=False)
-        found = Minimum(
+        minimum = Minimum(
             state=sheet.state, tension=tension, terms=path.here.terms,
             force=slope.gradient[-2:].copy(), min_distance_mm=path.min_distance_mm,
             converged=sheet.change <= self.tolerance, stable=False, steps=0,
@@ -524,7 +519,7 @@ class _Work:
         left = slope.gradient[:-2].reshape(*sheet.controls.shape)
         if self.flat:
             _take_held_forces(energy.cell, left)
-        return found, float(np.abs(left).max())
+        return minimum, float(np.abs(left).max())
 
     def _tell(self, sheet: WholeShape) -> None:
         if self.kept is not None:
@@ -569,10 +564,10 @@ def _windows(cell: YarnCell, pairs: Pairs, number: int) -> list[Window]:
 def _side_by_side(covering: list[Window]) -> Iterator[list[Window]]:
     """The windows, by twos where neither touches the other."""
     half = -(-len(covering) // 2)
-    for one, other in zip_longest(covering[:half], covering[half:]):
-        if other is None:
-            yield [one]
-        elif touch(one, other):
-            yield from ([one], [other])
+    for first, second in zip_longest(covering[:half], covering[half:]):
+        if second is None:
+            yield [first]
+        elif touch(first, second):
+            yield from ([first], [second])
         else:
-            yield [one, other]
+            yield [first, second]

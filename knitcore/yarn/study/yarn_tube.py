@@ -166,14 +166,14 @@ def _turned(
 
     nothing = np.zeros(len(begin.state) + len(begin.rows))
     try:
-        found = root(
+        solution = root(
             residual, nothing, method="krylov",
             options={"fatol": _SETTLED * begin.energy.yarn.radius_mm, "maxiter": _STEPS},
         )  # fmt: skip
     except ZeroDivisionError:  # scipy's, when its steps no longer change the residual
         return None
-    if not found.success:
+    if not solution.success:
         return None
-    here = moved(np.asarray(found.x))
+    here = moved(np.asarray(solution.x))
     curvature = turn / float(here.state[COURSE])
     return here, here.lagrangian(Deformation(course_per_mm=curvature)).value

@@ -7,8 +7,8 @@ import pytest
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.materials import material
-from knitcore.yarn.library.yarns import phase_shares, yarn_for
+from knitcore.materials import load_library, material
+from knitcore.yarn.library.yarns import phase_shares, yarn_for, yarn_friction
 from knitcore.yarn.model.paper_samples import sample
 
 
@@ -54,3 +54,30 @@ def test_a_loop_length_may_stand_in_for_a_missing_one():
     assert refusal.value.field == "loop_length_mm"
     known = yarn_for(lace, stitch)
     assert yarn_for(unknown, stitch, known.loop_length_mm) == known
+
+
+def test_every_yarn_of_the_library_has_an_interval_around_its_default():
+    for name in load_library():
+        friction = yarn_friction(material(name))
+        assert 0.0 < friction.low < friction.coefficient < friction.high < 1.0
+        assert "not measured" in friction.source
+
+
+@pytest.mark.parametrize(
+    ("name", "high", "listed"),
+    [("cotton", 0.51, True), ("glove-wool", 0.37, True), ("acrylic", 0.51, False)],
+)
+def test_the_first_fibre_that_is_named_decides(name, high, listed):
+    friction = yarn_friction(material(name))
+    assert friction.high == high
+    assert ("not listed" not in friction.source) is listed
+
+
+def test_a_measured_coefficient_goes_before_that_of_the_fibre():
+    cotton = material("cotton")
+    measured = replace(
+        cotton, yarn=replace(cotton.yarn, friction=0.2, friction_interval=(0.2, 0.3))
+    )
+    friction = yarn_friction(measured)
+    assert (friction.low, friction.coefficient, friction.high) == (0.2, 0.2, 0.3)
+    assert "given" in friction.source

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.yarn.model.cell import mirrored_cell, plain_cell
 from knitcore.yarn.model.constraints import Surroundings, foot_rows, independent, plane_rows
@@ -13,6 +12,7 @@ from knitcore.yarn.model.start_shape import start_state
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.whole_chart import relax_whole
+from tests.knitcore.yarn.relaxed import relaxed
 
 YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 LENGTH = 11.28
@@ -87,7 +87,7 @@ def test_yarn_does_not_slide_out_of_a_plane():
 def test_rib_of_any_height_stays_as_flat_as_its_repeat(yarn, rows):
     """Its rows do not tip to the front and to the back in turn."""
     entry, rib = sample(yarn, "rib"), StitchChart.parse("KP")
-    flat = relax(rib, entry.yarn, entry.loop_length_mm, flat=True)
+    flat = relaxed(rib, entry, flat=True)
     whole = relax_whole(rib.tile(rows, 2), entry.yarn, entry.loop_length_mm, flat=True)
     assert whole.minimum
     assert whole.energy_n_mm == pytest.approx(flat.energy_n_mm, rel=0.02)
@@ -127,21 +127,3 @@ def test_rules_that_symmetry_keeps_are_left_out():
 def test_spare_rows_are_dropped():
     rows = np.array([[1.0, 0.0, 1.0], [2.0, 0.0, 2.0], [0.0, 0.0, 0.0], [1.0, 1.0, 0.0]])
     np.testing.assert_array_equal(independent(rows), rows[[0, 3]])
-
-
-@pytest.mark.parametrize(
-    ("field", "arguments", "bound"),
-    [
-        ("loop_length_mm", {"loop_length_mm": 5.0}, "8.10"),
-        ("loop_length_mm", {"loop_length_mm": [[11.0, 12.0, 13.0]]}, "every stitch"),
-        ("loop_length_mm", {"loop_length_mm": [[11.0], [12.0, 13.0]]}, "every stitch"),
-        ("cell_course_mm", {"cell_course_mm": 40.0}, "10.15"),
-        ("chart", {"chart": "KKPP\nKPKP\nPKKK\nPPKP", "time_limit_s": 0.5}, "at most 3 stitches"),
-    ],
-)
-def test_impossible_input_is_refused_with_a_bound(field, arguments, bound):
-    asked = {"chart": "KKP\nPKK", "loop_length_mm": LENGTH} | arguments
-    chart = StitchChart.parse(asked.pop("chart"))
-    with pytest.raises(InputError, match=bound) as refusal:
-        relax(chart, YARN, asked.pop("loop_length_mm"), **asked)
-    assert refusal.value.field == field

@@ -4,22 +4,14 @@ import numpy as np
 import pytest
 
 from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
 from knitcore.yarn.model.paper_samples import sample
-from knitcore.yarn.solve.spline_stretch import with_slides_held
-from knitcore.yarn.study.relax import relax
-from knitcore.yarn.study.sweep import sweep
+from knitcore.yarn.study.sweep import sweep, with_slides_held
+from tests.knitcore.yarn.relaxed import relaxed
 
 
 @pytest.fixture(scope="module")
 def seed():
-    entry = sample("acrylic", Fabric.SEED)
-    return relax(
-        StitchChart.of_fabric(Fabric.SEED, 2, 2),
-        entry.yarn,
-        entry.loop_length_mm,
-        branch="mirrored",
-    )
+    return relaxed(Fabric.SEED, sample("acrylic", Fabric.SEED), branch="mirrored")
 
 
 def test_a_stitch_has_the_two_slides_of_the_paper(seed):

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -6,23 +7,42 @@ import pytest
 from knitcore.base.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.chart.fabric import Fabric
 from knitcore.yarn.model.conventions import Convention
-from knitcore.yarn.model.paper_samples import load_samples, sample
-from knitcore.yarn.paper.bezier_relax import lowest, relax_published
+from knitcore.yarn.model.paper_samples import Sample, load_samples, sample
+from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.paper.bezier_relax import first_shapes, lowest, relax_published
 from knitcore.yarn.paper.bezier_shape import unknown_names
 from knitcore.yarn.paper.bezier_stitch import Stitch
 from knitcore.yarn.paper.certificate import is_certified, is_clasped
 from knitcore.yarn.paper.continuation import free_constraints, is_admissible
-from knitcore.yarn.paper.minimise import minimise_bezier
-from knitcore.yarn.paper.starts import first_shapes
+from knitcore.yarn.paper.minimise import BezierMinimum, minimise_bezier
 
 SAMPLES = load_samples()
 NAMES = [f"{s.yarn_id}-{s.fabric}" for s in SAMPLES]
 
 
+def settled(stitch: Stitch, start: np.ndarray, known: Sample) -> BezierMinimum:
+    """The minimum that a start leads to at the loop length of a sample."""
+    return minimise_bezier(
+        stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
+    )
+
+
+def published(known: Sample, *sizes_mm: float, **options: Any) -> RelaxedCell:
+    """The stitch of a sample, at sizes that are held if there are any."""
+    return relax_published(known.fabric, known.yarn, known.loop_length_mm, *sizes_mm, **options)
+
+
+def turned_over(unknowns: np.ndarray, fabric: Fabric) -> np.ndarray:
+    """A shape whose strands have passed through each other."""
+    swapped = unknowns.copy()
+    swapped[unknown_names(fabric).index("tilt")] *= -1.0
+    return swapped
+
+
 @pytest.mark.parametrize("known", SAMPLES, ids=NAMES)
 def test_published_energies_and_shares(known):
     # Supplementary Table 8 (printed in J, meant in mJ = N mm)
-    cell = relax_published(known.fabric, known.yarn, known.loop_length_mm, starts=2)
+    cell = published(known, starts=2)
     assert cell.converged
     assert cell.energy_n_mm == pytest.approx(known.energy_n_mm, rel=0.03)
     assert cell.contact_share == pytest.approx(known.contact_share, abs=0.015)
@@ -51,9 +71,7 @@ def test_packaged_shapes_are_stationary(known):
     stitch = Stitch(known.fabric, known.yarn)
     start = first_shapes(stitch, known.loop_length_mm, 2)[known.yarn_id == "cotton"]
     before = stitch.evaluate(start)
-    after = minimise_bezier(
-        stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
-    )
+    after = settled(stitch, start, known)
     assert before.lengths_mm.sum() == pytest.approx(known.loop_length_mm, rel=1e-5)
     assert before.energy_n_mm == pytest.approx(after.energy_n_mm, rel=1e-3)
     assert np.abs(after.force_n).max() < 5e-4  # N; garter ends on a constraint
@@ -63,9 +81,7 @@ def test_random_starts_end_in_one_minimum():
     known = sample("cotton", Fabric.SEED)
     stitch = Stitch(known.fabric, known.yarn)
     energies = [
-        minimise_bezier(
-            stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
-        ).energy_n_mm
+        settled(stitch, start, known).energy_n_mm
         for start in first_shapes(stitch, known.loop_length_mm, 5)[2:]
     ]
     assert np.ptp(energies) < 1e-4
@@ -83,18 +99,9 @@ def test_conventions_weigh_the_same_stitch_differently():
 
 def test_holding_a_size_costs_energy():
     known = sample("cotton", "rib")
-    free = relax_published("rib", known.yarn, known.loop_length_mm, starts=1)
-    wider = relax_published(
-        "rib", known.yarn, known.loop_length_mm, 1.2 * free.cell_course_mm, starts=1
-    )
-    both = relax_published(
-        "rib",
-        known.yarn,
-        known.loop_length_mm,
-        1.2 * free.cell_course_mm,
-        1.1 * wider.cell_wale_mm,
-        starts=1,
-    )
+    free = published(known, starts=1)
+    wider = published(known, 1.2 * free.cell_course_mm, starts=1)
+    both = published(known, 1.2 * free.cell_course_mm, 1.1 * wider.cell_wale_mm, starts=1)
     assert free.energy_n_mm < wider.energy_n_mm < both.energy_n_mm
     assert both.cell_wale_mm == pytest.approx(1.1 * wider.cell_wale_mm)
 
@@ -132,17 +139,14 @@ def test_jammed_unravelled_and_unfinished_stitches_are_refused():
     known = sample("acrylic", "rib")
     stitch = Stitch(known.fabric, known.yarn)
     start = first_shapes(stitch, known.loop_length_mm, 1)[0]
-    good = minimise_bezier(
-        stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
-    )
+    good = settled(stitch, start, known)
     assert lowest(stitch, [good]) is good
     thick = replace(known.yarn, core_radius_mm=0.501 * good.evaluation.closest_mm)
     with pytest.raises(ConvergenceError, match="jammed"):
         lowest(Stitch(known.fabric, thick), [good])
     with pytest.raises(ConvergenceError, match="starts"):
         lowest(stitch, [replace(good, converged=False)])
-    swapped = good.unknowns.copy()
-    swapped[unknown_names(known.fabric).index("tilt")] *= -1.0
+    swapped = turned_over(good.unknowns, known.fabric)
     certified = is_certified(stitch, start, swapped)
     assert not certified
     with pytest.raises(UnravelledError):
@@ -160,12 +164,9 @@ def test_strands_that_passed_through_each_other_are_noticed(fabric):
     known = sample("acrylic", fabric)
     stitch = Stitch(fabric, known.yarn)
     start = first_shapes(stitch, known.loop_length_mm, 1)[0]
-    minimum = minimise_bezier(
-        stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
-    )
+    minimum = settled(stitch, start, known)
     assert is_admissible(stitch, minimum)
-    swapped = minimum.unknowns.copy()
-    swapped[unknown_names(fabric).index("tilt")] *= -1.0
+    swapped = turned_over(minimum.unknowns, fabric)
     # all stitches turned over: another fabric in stockinette only, but no way there in any
     assert is_clasped(stitch, swapped) == (fabric is not Fabric.STOCKINETTE)
     assert is_certified(stitch, start, minimum.unknowns)
@@ -174,7 +175,7 @@ def test_strands_that_passed_through_each_other_are_noticed(fabric):
 
 def test_all_starts_are_reported():
     known = sample("cotton", "stockinette")
-    cell = relax_published("stockinette", known.yarn, known.loop_length_mm, starts=3)
+    cell = published(known, starts=3)
     assert [start.name for start in cell.starts] == ["start 1", "start 2", "start 3"]
     relaxed = [start.energy_n_mm for start in cell.starts if start.outcome == "relaxed"]
     assert min(relaxed) == cell.energy_n_mm
@@ -183,7 +184,7 @@ def test_all_starts_are_reported():
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_centre_lines_cover_the_repeat(fabric):
     known = sample("cotton", fabric)
-    cell = relax_published(fabric, known.yarn, known.loop_length_mm, starts=1)
+    cell = published(known, starts=1)
     across, up = 1 + fabric.course_odd, 1 + fabric.wale_odd
     assert len(cell.centre_lines) == up
     for line in cell.centre_lines:
@@ -201,4 +202,4 @@ def test_centre_lines_cover_the_repeat(fabric):
 def test_an_unknown_convention_is_refused():
     known = sample("cotton", "rib")
     with pytest.raises(InputError, match="convention"):
-        relax_published("rib", known.yarn, known.loop_length_mm, convention="ours")
+        published(known, convention="ours")

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from knitcore.chart.fabric import Fabric
 from knitcore.yarn.model.paper_samples import sample
+from knitcore.yarn.paper.bezier_relax import first_shapes
 from knitcore.yarn.paper.bezier_shape import (
     COUNT,
     control_points,
@@ -16,7 +17,6 @@ from knitcore.yarn.paper.bezier_shape import (
 )
 from knitcore.yarn.paper.bezier_stitch import Stitch
 from knitcore.yarn.paper.elastic import bernstein
-from knitcore.yarn.paper.starts import first_shapes
 
 FABRICS = list(Fabric)
 ENDS = np.array([0.0, 1.0])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore.yarn.kernels import empty_tiles, tiled_product
+from knitcore.yarn.kernels.tiles import empty_tiles, tiled_product
 from knitcore.yarn.solve.fronts import FrontalFactor, Room, elimination
 
 SIZE, UNKNOWNS = 3, 58

@@ -13,7 +13,7 @@ from knitcore.yarn.model.start_shape import start_state
 from knitcore.yarn.solve.growth import Start, grow
 from knitcore.yarn.solve.newton import Options
 from knitcore.yarn.solve.systems import DenseSystem
-from knitcore.yarn.solve.trajectory import Trajectory
+from knitcore.yarn.solve.topology import Trajectory
 
 
 def test_a_saddle_is_left_for_the_minimum_below_it():

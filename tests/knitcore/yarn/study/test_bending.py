@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Fabric
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.yarn.model.paper_samples import load_samples
+from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.solve.splines import refined
 from knitcore.yarn.study.bending import FabricBending, bending_response, repeat_bending
 from knitcore.yarn.study.bent_cell import GRID, BentCell, Deformation, settled
 from knitcore.yarn.study.lowest import without_mirrors
-from knitcore.yarn.study.relax import RelaxedRepeat, relax
+from knitcore.yarn.study.relax import RelaxedRepeat
+from tests.knitcore.yarn.relaxed import relaxed
 
 REPEATS = {"stockinette": "K", "garter": "P\nK", "rib": "KP", "seed": "PK\nKP"}
 
@@ -24,10 +23,7 @@ REPEATS = {"stockinette": "K", "garter": "P\nK", "rib": "KP", "seed": "PK\nKP"}
 @cache
 def _relaxed(repeat: str, fabric: str = "stockinette") -> RelaxedRepeat:
     """A repeat of the paper's acrylic sample of a fabric."""
-    sample = next(
-        s for s in load_samples() if s.yarn_id == "acrylic" and s.fabric is Fabric(fabric)
-    )
-    return relax(StitchChart.parse(repeat), sample.yarn, sample.loop_length_mm, branch="mirrored")
+    return relaxed(repeat, sample("acrylic", fabric), branch="mirrored")
 
 
 @cache
@@ -176,10 +172,7 @@ def test_a_minimum_has_no_other_state() -> None:
 
 
 def test_a_repeat_that_is_held_flat_is_refused() -> None:
-    sample = load_samples()[0]
-    held = relax(
-        StitchChart.parse("K"), sample.yarn, sample.loop_length_mm, flat=True, branch="mirrored"
-    )
+    held = relaxed("K", sample("acrylic", "stockinette"), flat=True, branch="mirrored")
     with pytest.raises(InputError, match="flat"):
         bending_response(held)
 

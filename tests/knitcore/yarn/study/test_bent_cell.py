@@ -35,9 +35,7 @@ def _carried(plan: Array, height: Array, curvature: tuple[float, float, float]) 
 
 @given(curvatures, st.tuples(numbers, numbers), st.tuples(numbers, numbers))
 def test_distance_of_two_points_that_are_carried_along(
-    curvature: tuple[float, float, float],
-    way: tuple[float, float],
-    heights: tuple[float, float],
+    curvature: tuple[float, float, float], way: tuple[float, float], heights: tuple[float, float]
 ) -> None:
     delta = np.array(way)
     ends = _carried(np.array([-0.5 * delta, 0.5 * delta]), np.array(heights), curvature)

@@ -8,7 +8,7 @@ import pytest
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.yarn.study.hysteresis import History, at_rest, hysteresis, pull, rest_sizes
-from tests.knitcore.yarn.model.test_friction import forces, stockinette, walk
+from tests.knitcore.yarn.solve.test_friction import forces, stockinette, walk
 
 __all__ = ["stockinette"]
 

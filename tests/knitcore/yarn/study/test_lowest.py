@@ -19,20 +19,13 @@ from knitcore.yarn.solve import newton as solver
 from knitcore.yarn.solve.search import SAME_ENERGY, lowest_of
 from knitcore.yarn.solve.splines import COARSE
 from knitcore.yarn.study import lowest as lowest_module
-from knitcore.yarn.study.lowest import (
-    Followed,
-    can_be_followed,
-    followed,
-    lowest,
-    without_mirrors,
-)
-from knitcore.yarn.study.relax import relax
+from knitcore.yarn.study.lowest import Followed, can_be_followed, followed, lowest, without_mirrors
+from tests.knitcore.yarn.relaxed import relaxed
 
 
 def mirrored(yarn, fabric):
-    entry = sample(yarn, fabric)
     chart = StitchChart.of_fabric(Fabric(fabric), 2, 2)
-    return relax(chart, entry.yarn, entry.loop_length_mm, grid=COARSE, branch="mirrored")
+    return relaxed(chart, sample(yarn, fabric), grid=COARSE, branch="mirrored")
 
 
 def test_stockinette_needs_no_mirrors():
@@ -58,12 +51,12 @@ def test_where_a_saddle_leads_does_not_hang_on_the_last_digits(text, monkeypatch
     """Nor on how far it is left: the start is shaken by a billionth of the radius."""
     entry = sample("cotton", "rib")
     chart = StitchChart.parse(text)
-    relaxed = relax(chart, entry.yarn, entry.loop_length_mm, branch="mirrored")
-    cell = free_cell(chart, relaxed.cell.grid)
-    lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
-    energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
-    state = tiled_state(relaxed.cell, relaxed.state, cell)
-    tension = np.resize(relaxed.tension_n, cell.rows)
+    found = relaxed(chart, entry, branch="mirrored")
+    cell = free_cell(chart, found.cell.grid)
+    lengths = np.resize(found.loop_lengths_mm, cell.rows)
+    energy = CellEnergy(cell, found.yarn, lengths, found.convention)
+    state = tiled_state(found.cell, found.state, cell)
+    tension = np.resize(found.tension_n, cell.rows)
     first, _ = followed(energy, state, tension=tension)
     assert first.saddles > 0
     noise = scattered((len(state),), 1e-9 * entry.yarn.radius_mm, seed=3)
@@ -99,10 +92,9 @@ def test_a_shape_that_is_not_known_to_be_a_minimum_is_not_called_one(monkeypatch
 
 @pytest.mark.slow
 def test_the_free_branch_is_not_above_what_an_instability_leads_to():
-    entry = sample("acrylic", "rib")
     chart = StitchChart.of_fabric(Fabric.RIB, 2, 2)
     followed = without_mirrors(mirrored("acrylic", "rib"))
-    free = relax(chart, entry.yarn, entry.loop_length_mm, branch="free", grid=COARSE)
+    free = relaxed(chart, sample("acrylic", "rib"), branch="free", grid=COARSE)
     assert free.energy_n_mm < followed.state.energy_n_mm * (1.0 + 1e-4)
     assert free.starts[0].name == "mirrored, followed"
 
@@ -110,8 +102,7 @@ def test_the_free_branch_is_not_above_what_an_instability_leads_to():
 def test_a_state_that_is_held_is_refused():
     with pytest.raises(InputError, match="held"):
         without_mirrors(replace(mirrored("acrylic", "stockinette"), flat=True))
-    entry = sample("acrylic", "stockinette")
-    wide = relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, cell_course_mm=4.0)
+    wide = relaxed("K", sample("acrylic", "stockinette"), cell_course_mm=4.0)
     assert wide.held
     assert not can_be_followed(wide)
     with pytest.raises(InputError, match="size is held"):

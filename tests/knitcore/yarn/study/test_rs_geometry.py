@@ -4,17 +4,16 @@ import pytest
 
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
 from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import rs_fabrics
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.paper.bezier_relax import relax_published
-from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.rs_geometry import (
     entangled_regions,
     published_segment_geometry,
     segment_geometry,
 )
+from tests.knitcore.yarn.relaxed import relaxed
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))
@@ -40,11 +39,8 @@ def test_the_papers_own_curves_give_its_tables(yarn, fabric):
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_a_spline_has_much_the_same_feet(fabric):
     """It has no explicit crossovers, so that the edges of the regions differ more wale-wise."""
-    entry = sample("acrylic", fabric)
-    relaxed = relax(
-        StitchChart.of_fabric(fabric, 2, 2), entry.yarn, entry.loop_length_mm, branch="mirrored"
-    )
-    found = segment_geometry(relaxed)
+    stitch = relaxed(fabric, sample("acrylic", fabric), branch="mirrored")
+    found = segment_geometry(stitch)
     assert (found[Direction.COURSE].parity is Parity.ODD) == fabric.course_odd
     assert (found[Direction.WALE].parity is Parity.ODD) == fabric.wale_odd
     published = rs_fabrics("acrylic")[fabric]
@@ -55,15 +51,13 @@ def test_a_spline_has_much_the_same_feet(fabric):
 
 
 def test_entangled_regions_mirror_each_other_about_the_wale_axis():
-    entry = sample("cotton", "stockinette")
-    relaxed = relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, branch="mirrored")
-    first, second, third, fourth = entangled_regions(relaxed)
+    stitch = relaxed("K", sample("cotton", "stockinette"), branch="mirrored")
+    first, second, third, fourth = entangled_regions(stitch)
     assert third == pytest.approx((1 - second[1], 1 - second[0]), abs=1e-6)
     assert fourth == pytest.approx((1 - first[1], 1 - first[0]), abs=1e-6)
 
 
 def test_a_mixed_repeat_is_refused():
-    entry = sample("cotton", "stockinette")
-    relaxed = relax(StitchChart.parse("KKP"), entry.yarn, entry.loop_length_mm, branch="mirrored")
+    stitch = relaxed("KKP", sample("cotton", "stockinette"), branch="mirrored")
     with pytest.raises(InputError, match="single stitch"):
-        segment_geometry(relaxed)
+        segment_geometry(stitch)

@@ -10,21 +10,14 @@ from knitcore.yarn.library.law_of_stretches import fit_sweeps
 from knitcore.yarn.library.store import stored_stitch
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.model.spline import SplineGrid
-from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.sweep import sweep
+from tests.knitcore.yarn.relaxed import relaxed
 
 
 @pytest.fixture(scope="module")
 def zero():
-    entry = sample("cotton", "stockinette")
-    return relax(
-        StitchChart.parse("K"),
-        entry.yarn,
-        entry.loop_length_mm,
-        grid=SplineGrid(16, 5),
-        branch="mirrored",
-    )
+    return relaxed("K", sample("cotton", "stockinette"), grid=SplineGrid(16, 5), branch="mirrored")
 
 
 @pytest.mark.parametrize("direction", list(Direction))
@@ -68,33 +61,19 @@ def test_yarn_pulled_straight_ends_the_sweep_with_a_note(zero):
 
 @pytest.mark.parametrize("strain", [0.0, -0.1, float("nan"), float("inf")])
 def test_strains_that_are_not_positive_are_refused(zero, strain):
-    with pytest.raises(InputError, match="max_strain"):
+    with pytest.raises(InputError, match=r"max_strain.*above 0"):
         sweep(zero, "course", strain)
 
 
 def test_one_point_is_refused(zero):
-    with pytest.raises(InputError, match="points"):
+    with pytest.raises(InputError, match=r"points.*2 to 1000"):
         sweep(zero, "course", 0.1, points=1)
-
-
-def test_two_by_two_rib_stretches_more_than_one_by_one():
-    """Composite study, common parameters: 35 to 50 % more; here at .05 N/mm."""
-    yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
-    strains = []
-    for text in ("KP", "KKPP"):
-        rest = relax(
-            StitchChart.parse(text), yarn, 11.28, grid=SplineGrid(12, 4), branch="mirrored"
-        )
-        curve = sweep(rest, "course", 3.0, points=40, max_stress_n_per_mm=0.06, back=False)
-        strains.append(np.interp(0.05, curve.stress_n_per_mm, curve.strain))
-    assert strains[1] > 1.05 * strains[0]
 
 
 def test_a_stretch_that_buckles_jumps_however_many_points_it_has():
     """Acrylic seed pulled wale-wise leaves the plane (paper, Supplementary Fig. 8): both states
     have the same energy there, so that the work balances."""
-    entry = sample("acrylic", "seed")
-    rest = relax(StitchChart.parse("KP\nPK"), entry.yarn, entry.loop_length_mm, branch="mirrored")
+    rest = relaxed("KP\nPK", sample("acrylic", "seed"), branch="mirrored")
     curve = sweep(rest, "wale", 1.46, points=61, max_stress_n_per_mm=0.1)
     (after,) = curve.jumps
     assert curve.stress_n_per_mm[after] < 0.7 * curve.stress_n_per_mm[after - 1]
@@ -106,8 +85,7 @@ def test_a_stretch_that_buckles_jumps_however_many_points_it_has():
 
 
 def test_a_stretch_in_few_steps_has_no_jump_for_that():
-    entry = sample("acrylic", "rib")
-    rest = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm, branch="mirrored")
+    rest = relaxed("KP", sample("acrylic", "rib"), branch="mirrored")
     assert sweep(rest, "course", 1.0, points=6).jumps == ()
 
 
@@ -123,11 +101,8 @@ def test_a_direction_that_is_not_known_is_refused(zero):
 
 
 def test_a_held_state_is_refused_as_rest():
-    entry = sample("cotton", "stockinette")
-    held = relax(
-        StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, cell_course_mm=3.6,
-        grid=SplineGrid(12, 4), branch="mirrored",
-    )  # fmt: skip
+    stockinette, grid = sample("cotton", "stockinette"), SplineGrid(12, 4)
+    held = relaxed("K", stockinette, cell_course_mm=3.6, grid=grid, branch="mirrored")
     with pytest.raises(InputError, match="its size is held"):
         sweep(held, "wale", 0.1)
 

@@ -1,6 +1,7 @@
 """Whole charts: windows of a sheet, sweeps and the descent of the whole."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,14 +20,17 @@ from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.start_shape import start_state
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.growth import FIRST_OPENING, core_that_fits
-from knitcore.yarn.solve.topology import Clearance
+from knitcore.yarn.solve.topology import clearance_at
 from knitcore.yarn.solve.windows import each, row_lengths, touch, window_energy, windows
 from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.whole_chart import WholeShape, relax_whole
+from tests.knitcore.yarn.relaxed import relaxed
 
 SAMPLE = sample("acrylic", Fabric.STOCKINETTE)
 ROWS, WALES = 9, 8
 AROUND = np.full((2, ROWS, WALES), 2)
+OTHER = WholeShape(np.zeros((2, 24, 3)), np.ones(2), np.zeros((2, 2)), 0.1)
+BY_COURSE = r"Give one length, or one for every course\.$"
 PURL = np.random.default_rng(3).random((ROWS, WALES)) < 0.3
 
 
@@ -37,10 +41,7 @@ def sheet() -> tuple[CellEnergy, np.ndarray]:
     lengths = np.full(ROWS, SAMPLE.loop_length_mm)
     energy = CellEnergy(cell, SAMPLE.yarn, lengths, Convention.PUBLISHED)
     state = start_state(cell, SAMPLE.loop_length_mm, 0.8 * SAMPLE.yarn.radius_mm)
-    curve = energy.curve(state)
-    touch = 2.0 * SAMPLE.yarn.radius_mm
-    pairs, _ = energy.pairs(curve, state, touch)
-    nearest = Clearance(cell, state, curve, pairs, touch, touch).min_distance_mm
+    nearest = clearance_at(energy, state).min_distance_mm
     core = core_that_fits(SAMPLE.yarn, nearest, FIRST_OPENING)
     return replace(energy, yarn=replace(SAMPLE.yarn, core_radius_mm=core)), state
 
@@ -114,11 +115,10 @@ def test_pairs_found_in_two_threads_are_those_found_in_one(
 
 
 def test_windows_that_move_side_by_side_do_not_touch() -> None:
-    one, *_, last = windows(np.full((2, 40, 20), 2), 8, (0, 0))
-    below = windows(np.full((2, 40, 20), 2), 8, (0, 0))[3]
-    assert not touch(one, windows(np.full((2, 40, 20), 2), 8, (0, 0))[7])
-    assert touch(one, below)
-    assert touch(last, one)  # over the edge
+    covering = windows(np.full((2, 40, 20), 2), 8, (0, 0))
+    assert not touch(covering[0], covering[7])
+    assert touch(covering[0], covering[3])
+    assert touch(covering[-1], covering[0])  # over the edge
 
 
 def test_a_window_has_the_slopes_of_the_sheet(sheet: tuple[CellEnergy, np.ndarray]) -> None:
@@ -172,21 +172,20 @@ def test_the_lengths_of_windows_add_up_to_those_of_the_courses(
     assert lengths.shape == (ROWS,)
 
 
-def test_wrong_input_is_refused() -> None:
-    chart = StitchChart(PURL)
-    with pytest.raises(InputError, match="3 lengths were given for a repeat of 8 columns x 9 rows"):
-        relax_whole(chart, SAMPLE.yarn, [11.0, 11.0, 11.0])
-    with pytest.raises(InputError, match=r"Give one length, or one for every course.$"):
-        relax_whole(chart, SAMPLE.yarn, np.full((ROWS, WALES), 11.0))
-    with pytest.raises(InputError, match="tolerance"):
-        relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=0.5)
-    with pytest.raises(InputError, match="rounds"):
-        relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, rounds=1)
-    with pytest.raises(InputError, match=r"rounds: 2.5 is not a whole number"):
-        relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, rounds=2.5)
-    other = WholeShape(np.zeros((2, 24, 3)), np.ones(2), np.zeros((2, 2)), 0.1)
-    with pytest.raises(InputError, match="another chart"):
-        relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, resume=other)
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        ({"tolerance": 0.5}, "tolerance"),
+        ({"rounds": 1}, "rounds"),
+        ({"rounds": 2.5}, "rounds: 2.5 is not a whole number"),
+        ({"loop_length_mm": [11.0] * 3}, "3 lengths were given for a repeat of 8 columns x 9 rows"),
+        ({"loop_length_mm": np.full((ROWS, WALES), 11.0)}, BY_COURSE),
+        ({"resume": OTHER}, "another chart"),
+    ],
+)
+def test_wrong_input_is_refused(options: dict[str, Any], problem: str) -> None:
+    with pytest.raises(InputError, match=problem):
+        relax_whole(StitchChart(PURL), SAMPLE.yarn, **{"loop_length_mm": 11.0} | options)
 
 
 def test_a_chart_is_settled_when_neither_energy_nor_size_changes_much() -> None:
@@ -229,7 +228,7 @@ def test_a_whole_chart_can_be_cancelled() -> None:
 
 def test_a_whole_chart_of_a_repeat_has_no_mirrors() -> None:
     entry = sample("cotton", "rib")
-    one = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm)
+    one = relaxed("KP", entry)
     chart = StitchChart.parse("KPKP\nKPKP\nKPKP\nKPKP")
     whole = relax_whole(chart, entry.yarn, entry.loop_length_mm)
     assert one.mirrored is not None

@@ -13,12 +13,12 @@ from knitcore.yarn.study import yarn_tube as tube
 from knitcore.yarn.study.bending import bending_response
 from knitcore.yarn.study.relax import RelaxedRepeat, relax
 from knitcore.yarn.study.yarn_tube import in_the_round
+from tests.knitcore.yarn.relaxed import relaxed
 
 
 @pytest.fixture(scope="module")
 def stockinette() -> RelaxedRepeat:
-    entry = sample("cotton", Fabric.STOCKINETTE)
-    return relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm)
+    return relaxed("K", sample("cotton", Fabric.STOCKINETTE))
 
 
 @pytest.mark.parametrize("face_outside", [True, False])
@@ -43,11 +43,8 @@ def test_stockinette_curls_the_way_of_its_tube(stockinette: RelaxedRepeat) -> No
 
 
 def test_a_step_that_fails_is_halved() -> None:
-    entry = sample("cotton", Fabric.RIB)
     tubes = [
-        in_the_round(
-            relax(StitchChart.parse(text), entry.yarn, entry.loop_length_mm, branch="mirrored"), 24
-        )
+        in_the_round(relaxed(text, sample("cotton", Fabric.RIB), branch="mirrored"), 24)
         for text in ("KP", "PK")
     ]
     one, other = ((t.cell_course_mm, t.cell_wale_mm, t.energy_n_mm) for t in tubes)
@@ -82,8 +79,7 @@ def test_a_tube_without_an_equilibrium_says_where_its_shape_gives_way(
 def test_wrong_tubes_are_refused(stockinette: RelaxedRepeat) -> None:
     with pytest.raises(InputError, match="wales"):
         in_the_round(stockinette, 2)
-    entry = sample("acrylic", Fabric.RIB)
-    rib = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm, branch="mirrored")
+    rib = relaxed("KP", sample("acrylic", Fabric.RIB), branch="mirrored")
     with pytest.raises(InputError, match="not a multiple"):
         in_the_round(rib, 25)
     with pytest.raises(InputError, match="held flat"):

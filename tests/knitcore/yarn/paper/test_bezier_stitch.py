@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 
 from knitcore.chart.fabric import Fabric
+from knitcore.yarn.kernels.potential import potential
 from knitcore.yarn.model.conventions import REGULARISATION_N_MM4, Convention
 from knitcore.yarn.model.paper_samples import load_samples, sample
-from knitcore.yarn.model.potential import potential
 from knitcore.yarn.paper import bezier_contact as contact
+from knitcore.yarn.paper.bezier_relax import first_shapes
 from knitcore.yarn.paper.bezier_stitch import Stitch
 from knitcore.yarn.paper.elastic import bernstein, elastic_energy, gauss_tables
-from knitcore.yarn.paper.starts import first_shapes
 
 
 def case(fabric, convention=Convention.PUBLISHED, yarn_id="acrylic"):
@@ -100,10 +100,6 @@ def test_quadrature_is_fine_enough():
         controls = stitch.controls(unknowns)
         room = np.zeros_like(controls), np.empty(8), np.empty_like(controls)
         energy = elastic_energy(
-            controls,
-            0.5 * known.yarn.bending_modulus_n_mm2,
-            REGULARISATION_N_MM4,
-            *fine,
-            *room,
+            controls, 0.5 * known.yarn.bending_modulus_n_mm2, REGULARISATION_N_MM4, *fine, *room
         )
         assert stitch.evaluate(unknowns).bending_n_mm == pytest.approx(energy, rel=1e-5)

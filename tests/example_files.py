@@ -1,4 +1,7 @@
-"""Make the files of the API's examples: small measurements of which the truth is known."""
+"""Make the files of the API's examples: ``python -m tests.example_files``.
+
+They are small measurements of which the truth is known, made as the tests make theirs.
+"""
 
 from __future__ import annotations
 

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.yarn import kernels
+from knitcore.yarn.kernels.curve_samples import sample_curve
+from knitcore.yarn.kernels.rod import rod_energy
+from knitcore.yarn.kernels.structures import RodLaw
 from knitcore.yarn.model.cell import mirrored_cell, plain_cell
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import CellEnergy
@@ -39,9 +41,9 @@ def test_a_circle_has_its_known_bending_and_regularisation(bend, regular, exact)
     points = np.zeros((1, 64, 3))
     points[0, :, 0] = grid.interpolate(radius * np.cos(2 * np.pi * t))
     points[0, :, 1] = grid.interpolate(radius * np.sin(2 * np.pi * t))
-    curve = kernels.sample_curve(points, 0.0, 1, grid.basis).reshape(-1, 4, 3)
-    law = kernels.RodLaw(bend, regular, 0.0, 1.0 / grid.samples)
-    found, _ = kernels.rod_energy(curve, law, np.ones(len(curve)))
+    curve = sample_curve(points, 0.0, 1, grid.basis).reshape(-1, 4, 3)
+    law = RodLaw(bend, regular, 0.0, 1.0 / grid.samples)
+    found, _ = rod_energy(curve, law, np.ones(len(curve)))
     assert found == pytest.approx(exact, rel=1e-6)
 
 
@@ -69,7 +71,7 @@ def _rod_of_ellipse(wobble):
         ],
         axis=1,
     )
-    return kernels.rod_energy(curve, kernels.RodLaw(0.3, 0.1, 0.0, 1 / n), np.ones(n))[0]
+    return rod_energy(curve, RodLaw(0.3, 0.1, 0.0, 1 / n), np.ones(n))[0]
 
 
 @pytest.mark.parametrize(("text", "kind"), CASES)

@@ -1,4 +1,4 @@
-"""Run the real service in a process of its own, for measurements over HTTP."""
+"""Run the real service in a process of its own, and the browser that visits it."""
 
 from __future__ import annotations
 
@@ -14,6 +14,22 @@ from pathlib import Path
 import httpx2 as httpx
 
 STARTS_WITHIN_S = 120.0
+CHROMIUM = Path("/usr/bin/chromium")
+FLAGS = [
+    "--no-sandbox",
+    "--enable-unsafe-swiftshader",
+    "--disable-gpu-compositing",  # the imitated GPU is slow: for WebGL only
+    "--disable-gpu-rasterization",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-dev-shm-usage",
+]
+"""Options of Chromium on a machine without a GPU."""
+FORCED = "--use-angle=swiftshader"
+"""Option that makes it draw every frame whole, by an imitated GPU."""
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,13 @@
 import numpy as np
 import pytest
 
-from knitcore.base.errors import CancelledError, InputError
+from knitcore.base.errors import CancelledError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.yarn.library.law_of_stretches import fit_sweeps
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.paper.bezier_relax import relax_published
 from knitcore.yarn.paper.bezier_stitch import Stitch
-from knitcore.yarn.paper.slide import SlideQuenching
-from knitcore.yarn.paper.stretch import PublishedStretch
+from knitcore.yarn.paper.stretch import PublishedStretch, SlideQuenching
 from knitcore.yarn.study.sweep import follow, sweep
 
 
@@ -116,10 +115,3 @@ def test_a_stretch_can_be_stopped():
     with pytest.raises(CancelledError):
         stretch("cotton", "rib", "course", 0.2, 5, cancelled=at_the_third_time)
     assert len(asked) == 3
-
-
-def test_impossible_stretches_are_refused():
-    with pytest.raises(InputError, match="above 0"):
-        stretch("cotton", "rib", "course", 0.0, 5)
-    with pytest.raises(InputError, match="2 to 1000"):
-        stretch("cotton", "rib", "course", 0.5, 1)

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore.yarn.model.potential import CAP, potential, potential_and_derivatives
+from knitcore.yarn.kernels.potential import CAP, potential, potential_and_derivatives
 
 K, P, R, CORE = 6e-4, 2.4, 0.74, 0.335
 SHELL = 2 * (R - CORE)

@@ -6,23 +6,23 @@ import numpy as np
 import pytest
 
 from knitcore.base.errors import InputError
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.yarn import kernels
-from knitcore.yarn.model.friction import agitated, rubbed
+from knitcore.yarn.kernels.curve_samples import laid_out
+from knitcore.yarn.kernels.friction_kernels import Sliding, slides
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.model.spline import SplineGrid
+from knitcore.yarn.solve.friction import agitated, rubbed
 from knitcore.yarn.solve.newton import COURSE
 from knitcore.yarn.study.hysteresis import at_rest
 from knitcore.yarn.study.relax import relax
-from tests.knitcore.yarn.study.test_cell_energy import CASES, energy_of
+from tests.knitcore.yarn.model.test_energy import CASES, energy_of
+from tests.knitcore.yarn.relaxed import relaxed
 
 GRID = SplineGrid(12, 3)
 
 
 @pytest.fixture(scope="module")
 def stockinette():
-    entry = sample("acrylic", "stockinette")
-    return relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, grid=GRID)
+    return relaxed("K", sample("acrylic", "stockinette"), grid=GRID)
 
 
 def walk(relaxed, strains, coefficient):
@@ -45,13 +45,13 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
     curve = energy.curve(state)
     size = state[-2], state[-1]
     pairs, _ = energy.pairs(curve, state, 2.0)
-    slide, cosine = kernels.slides(curve, *size, pairs, energy.cell.layout, energy.speeds)
+    slide, cosine = slides(curve, *size, pairs, energy.cell.layout, energy.speeds)
     rng = np.random.default_rng(3)
     # about half of the pairs slip
     rest = slide + 0.03 * rng.standard_normal(slide.shape)
     limit = 1.0 + rng.random(len(pairs))
     slip = np.full(len(pairs), 0.03)
-    sliding = kernels.Sliding(pairs, limit, rest, 1.0 / np.sqrt(1.0 + cosine**2), slip)
+    sliding = Sliding(pairs, limit, rest, 1.0 / np.sqrt(1.0 + cosine**2), slip)
     # no contact: its stiff cores would hide the friction
     empty = pairs[:0]
     rubbing = replace(energy, sliding=sliding)
@@ -86,7 +86,7 @@ def test_turning_the_fabric_rubs_nothing():
     # an image across would not turn with the cell
     pairs = pairs[(pairs[:, 2] == 0) & (pairs[:, 3] == 0)]
     place, layout = energy.cell.place, energy.cell.layout
-    at = kernels.laid_out(curve, place, state[-2], state[-1])[:, :3]
+    at = laid_out(curve, place, state[-2], state[-1])[:, :3]
     angle = 0.4
     turn = np.array(
         [[1, 0, 0], [0, np.cos(angle), -np.sin(angle)], [0, np.sin(angle), np.cos(angle)]]
@@ -94,8 +94,8 @@ def test_turning_the_fabric_rubs_nothing():
     turned = curve @ turn.T
     drift = at - curve[:, 0]
     turned[:, 0] = at @ turn.T - drift
-    before, _ = kernels.slides(curve, *state[-2:], pairs, layout, energy.speeds)
-    after, _ = kernels.slides(turned, *state[-2:], pairs, layout, energy.speeds)
+    before, _ = slides(curve, *state[-2:], pairs, layout, energy.speeds)
+    after, _ = slides(turned, *state[-2:], pairs, layout, energy.speeds)
     np.testing.assert_allclose(after, before, atol=1e-12)
 
 

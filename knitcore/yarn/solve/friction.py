@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
-from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError
+from knitcore.base.errors import Cancelled
 from knitcore.chart.stitch_chart import check_stitches
-from knitcore.yarn import kernels
+from knitcore.yarn.kernels.friction_kernels import Sliding, normal_forces, slides
 from knitcore.yarn.kernels.structures import Pairs
 from knitcore.yarn.model.energy import CellEnergy
 from knitcore.yarn.solve.newton import Options, minimise
-from knitcore.yarn.solve.search import RELAXED, UNSETTLED, outcome
+from knitcore.yarn.solve.search import check_reached
 from knitcore.yarn.solve.splines import RelaxedRepeat, check_unheld, relaxed_repeat
 
 MAX_COEFFICIENT = 2.0
@@ -130,30 +130,24 @@ def rubbed(
     state, tension, evaluations = cell.state, cell.tension_n, 0
     for _ in range(_NORMAL_FORCES):
         sliding, pairs = _sliding(energy, cell.state, state, last.rubbing, coefficient)
-        found = minimise(
+        minimum = minimise(
             replace(energy, sliding=sliding), state, tension=tension, fixed=fixed, target=target,
             options=Options(tolerance=1e-8 if small else 1e-6, iterations=80), cancelled=cancelled,
         )  # fmt: skip
-        became = outcome(energy, found)
-        if became == "unravelled":
-            raise UnravelledError("the stitches come undone.")
-        if became not in (RELAXED, UNSETTLED, "pulled straight"):
-            raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
-        state, tension = found.state, found.tension
-        evaluations += found.evaluations
+        check_reached(energy, minimum)
+        state, tension = minimum.state, minimum.tension
+        evaluations += minimum.evaluations
     held, lost = _held(energy, sliding, cell.state, state)
     shown = relaxed_repeat(
-        cell.chart, energy, cell.branch, found,
+        cell.chart, energy, cell.branch, minimum,
         seconds=time.process_time() - began, evaluations=evaluations,
     )  # fmt: skip
-    return RubbedCell(
-        shown, Rubbing(pairs, held), last.lost_n_mm + lost / cell.cell.stitches
-    )  # fmt: skip
+    return RubbedCell(shown, Rubbing(pairs, held), last.lost_n_mm + lost / cell.cell.stitches)
 
 
 def _sliding(
     energy: CellEnergy, begin: Array, end: Array, before: Rubbing, coefficient: float
-) -> tuple[kernels.Sliding, NDArray[np.int64]]:
+) -> tuple[Sliding, NDArray[np.int64]]:
     """The pairs that touch at the end of a step, as far as it is known, and their keys.
 
     They begin with the forces that they hold. They stick with the mean of the stiffness at the
@@ -166,13 +160,13 @@ def _sliding(
     pairs, key = pairs[order], key[order]
     first, limit = (
         coefficient
-        * kernels.normal_forces(
+        * normal_forces(
             energy.curve(state), float(state[-2]), float(state[-1]), pairs, layout,
             energy.contact_law,
         )
         for state in (begin, end)
     )  # fmt: skip
-    slide, cosine = kernels.slides(
+    slide, cosine = slides(
         energy.curve(begin), float(begin[-2]), float(begin[-1]), pairs, layout, energy.speeds
     )
     force = np.zeros((len(key), 2))
@@ -185,17 +179,15 @@ def _sliding(
     slip = np.maximum(limit, _LEAST) / stiffness
     scale = 1.0 / np.sqrt(1.0 + cosine**2)
     rest = slide - force / (stiffness * scale)[:, None]
-    return kernels.Sliding(pairs, limit, rest, scale, slip), key
+    return Sliding(pairs, limit, rest, scale, slip), key
 
 
-def _held(
-    energy: CellEnergy, sliding: kernels.Sliding, begin: Array, end: Array
-) -> tuple[Array, float]:
+def _held(energy: CellEnergy, sliding: Sliding, begin: Array, end: Array) -> tuple[Array, float]:
     """(n, 2) friction forces after a step, N, and the work against friction in it, N·mm."""
     before, after = (
         sliding.scale[:, None]
         * (
-            kernels.slides(
+            slides(
                 energy.curve(state), float(state[-2]), float(state[-1]), sliding.pairs,
                 energy.cell.layout, energy.speeds,
             )[0]
