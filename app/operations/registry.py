@@ -1,4 +1,4 @@
-"""The registry of operations: one module of this package each.
+"""The registry of operations: one module of a subject's folder each.
 
 A module holds one ``OPERATION``. Routes (:mod:`app.service.api.operations`), commands
 (:mod:`app.cli.commands`), jobs (:mod:`app.service.jobs.kinds`), the client's methods
@@ -132,7 +132,7 @@ class Operation(Generic[Request, Result]):
 @cache
 def operations() -> dict[str, Operation[Any, Any]]:
     """All operations by name, in the order of their modules."""
-    modules = [importlib.import_module(f"{package.__name__}.{name}") for name in sorted(_modules())]
+    modules = [importlib.import_module(name) for _, name in sorted(_modules().items())]
     declared = [module.OPERATION for module in modules if hasattr(module, "OPERATION")]
     return {operation.name: operation for operation in declared}
 
@@ -142,7 +142,7 @@ def operation_of_command(name: str, group: str = "") -> Operation[Any, Any] | No
     module = f"{name}_" if keyword.iskeyword(name) else name
     if module not in _modules():
         return None
-    operation = getattr(importlib.import_module(f"{package.__name__}.{module}"), "OPERATION", None)
+    operation = getattr(importlib.import_module(_modules()[module]), "OPERATION", None)
     if not isinstance(operation, Operation) or operation.command is None:
         return None
     return operation if operation.command.group == group else None
@@ -159,5 +159,7 @@ def commands(group: str = "") -> set[str]:
 
 
 @cache
-def _modules() -> frozenset[str]:
-    return frozenset(module.name for module in pkgutil.iter_modules(package.__path__))
+def _modules() -> dict[str, str]:
+    """Full names of the modules, by their last part."""
+    modules = pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    return {m.name.rpartition(".")[2]: m.name for m in modules if not m.ispkg}

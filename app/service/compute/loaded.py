@@ -33,7 +33,7 @@ def _load() -> None:
 
     from ...context import Context
     from ...models.charts import PureFabricChart
-    from ...operations.stretch import StretchRequest, stretch
+    from ...operations.cloth.stretch import StretchRequest, stretch
 
     stretch(
         StretchRequest(

@@ -22,8 +22,8 @@ from app.models.base import Ends, Floats, IntervalResult, Known, RequestModel, R
 from app.models.charts import ChartInput, MaterialName, OutlineInput, RepeatInput
 from app.models.gauge import GaugeInput
 from app.models.uploads import UploadedFile, stored
+from app.operations.cloth.stretch import StretchResult
 from app.operations.registry import Command, Operation, commands, operations
-from app.operations.stretch import StretchResult
 from knitcore.chart.fabric import Direction
 from knitcore.materials import Interval
 
@@ -32,7 +32,7 @@ MACHINERY = {"__init__", "perform", "registry"}
 
 def test_every_module_of_the_package_is_one_operation() -> None:
     folder = Path(sys.modules["app.operations"].__path__[0])
-    modules = {file.stem for file in folder.glob("*.py")} - MACHINERY
+    modules = {file.stem for file in folder.rglob("*.py")} - MACHINERY
     assert {
         operation.run.__module__.rpartition(".")[2] for operation in operations().values()
     } == modules
@@ -285,7 +285,7 @@ def test_a_command_loads_no_other_operation() -> None:
     loaded = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
-    assert "app.operations.rs" in loaded.stdout
+    assert "app.operations.yarn.rs" in loaded.stdout
     assert "predict" not in loaded.stdout
     assert "fastapi" not in loaded.stdout
 

@@ -1,0 +1,173 @@
+"""Cut pieces and their tests over REST and on the command line."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+from app.context import Context
+from app.operations.cloth.bias import BiasRequest, bias
+from app.operations.cloth.biaxial import BiaxialRequest, biaxial
+from app.operations.cloth.piece import PieceRequest, piece
+from app.operations.cloth.trellis import TrellisRequest, trellis
+from knitcore.base.errors import CancelledError, InputError
+from knitcore.chart.fabric import Fabric
+from knitcore.materials import material
+
+PIECE: dict[str, Any] = {
+    "outline": [[0, 0], [50, 0], [50, 80], [25, 60], [0, 80]],
+    "holes": [[[20, 20], [30, 20], [25, 35]]],
+    "grain_deg": 30,
+    "edges": {"hem": [1], "top": [3, 4], "hole": [6, 7, 8]},
+    "conditions": [
+        {"kind": "held", "edge": "hem"},
+        {"kind": "pulled", "edge": "top", "x_n": 0.1, "y_n": 1.0},
+        {"kind": "sewn", "edge": "hole", "stiffness_n": 5.0},
+    ],
+}
+ASKED = {"chart": "K", "material": "acrylic", "steps": 2, "mesh_mm": 10}
+
+
+@pytest.fixture
+def context(tmp_path: Path) -> Context:
+    return Context(tmp_path)
+
+
+def loaded(**more: Any) -> PieceRequest:
+    """A request with a piece that is changed so."""
+    return PieceRequest.model_validate(ASKED | {"piece": PIECE | more, "fields": True})
+
+
+def test_a_piece_is_loaded(context: Context) -> None:
+    told = piece(loaded(), context)
+    assert told.converged
+    assert told.share == [0.5, 1.0]
+    hem, top, hole = told.edges
+    assert (hem.force_x_n[-1], hem.force_y_n[-1]) == pytest.approx((-0.1, -1.0))
+    assert (top.force_y_n[-1], top.force_y_interval_n) == (1.0, ([0.5, 1.0], [0.5, 1.0]))
+    assert top.moved_y_mm[-1] > 2.5 * hole.moved_y_mm[-1] > 0
+    low, high = np.array(top.moved_y_interval_mm)
+    assert np.all(low < top.moved_y_mm)
+    assert np.all((low > 0) & (top.moved_y_mm < high))
+    assert told.shape is not None
+    assert len(told.shape.elements) == len(told.shape.strain_wale) == told.elements
+    assert len(told.shape.moved_mm) == len(told.shape.corners_mm)
+
+
+def test_the_command_line_reads_a_piece_and_writes_results(
+    tmp_path: Path, context: Context
+) -> None:
+    file, out = tmp_path / "piece.json", tmp_path / "out.csv"
+    file.write_text(json.dumps(PIECE))
+    options = ["--material", "acrylic", "--steps", "2", "--mesh-mm", "10", "--json"]
+    arguments = ["piece", "stockinette", "--piece", str(file), "--out", str(out), *options]
+    told = CliRunner().invoke(main, arguments)
+    assert told.exit_code == 0, told.output
+    edges = json.loads(told.stdout)["edges"]
+    assert edges[0]["force_y_n"] == pytest.approx(piece(loaded(), context).edges[0].force_y_n)
+    assert np.genfromtxt(out, delimiter=",", names=True)["top_y_n"] == pytest.approx([0.5, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [("{", "JSON"), ('{"outline": [[0, 0], [1, 0]]}', "outline"), (None, "No such file")],
+)
+def test_a_file_that_is_not_a_piece_is_refused(
+    tmp_path: Path, written: str | None, told: str
+) -> None:
+    file = tmp_path / "piece.json"
+    if written is not None:
+        file.write_text(written)
+    found = CliRunner().invoke(
+        main, ["piece", "garter", "--piece", str(file), "--material", "acrylic"]
+    )
+    assert found.exit_code == 2
+    assert told in found.stderr
+
+
+def test_a_bias_strip_has_an_interval(context: Context) -> None:
+    told, straight = (
+        bias(BiasRequest.model_validate(ASKED | {"strain": 0.2, "angle_deg": angle}), context)
+        for angle in (45.0, 0.0)
+    )
+    (low, high), force = np.array(told.force_interval_n), np.array(told.force_n)
+    assert np.all(low < force)
+    assert np.all(force < high)
+    taut = math.sqrt(2 - 1.2**2) - 1  # of rows and columns that only turn
+    # cloth is soft in shear: on the bias its Poisson's ratio is above a half, and below theirs
+    assert taut < told.waist_strain[-1] < -0.5 * 0.2
+    assert told.force_n[-1] < straight.force_n[-1]
+
+
+def test_equal_pulls_of_seed_stitch_in_both_directions(context: Context) -> None:
+    request = {"strain_x": 0.1, "strain_y": 0.1, "mesh_mm": 50}
+    told = biaxial(BiaxialRequest.model_validate(ASKED | request), context)
+    turned = biaxial(BiaxialRequest.model_validate(ASKED | request | {"grain_deg": 90}), context)
+    assert told.force_x_n == pytest.approx(turned.force_y_n, rel=1e-6)
+    for end, other in zip(told.force_x_interval_n, turned.force_y_interval_n, strict=True):
+        assert end == pytest.approx(other, rel=1e-3)
+
+
+def test_a_frame_measures_the_shear_modulus(context: Context) -> None:
+    request = TrellisRequest.model_validate(ASKED | {"angle_deg": 2, "mesh_mm": 50})
+    told = trellis(request, context)
+    law, angle = material("acrylic").law(Fabric.STOCKINETTE), math.radians(2)
+    modulus = law.shear_modulus * (1 + law.shear_stiffening * angle**2)
+    assert told.angle_deg == pytest.approx([1.0, 2.0])
+    assert told.shear_stress_n_per_mm[-1] / angle == pytest.approx(modulus, rel=1e-6)
+
+
+def test_cloth_past_its_lock_up_is_reported(context: Context) -> None:
+    conditions = [{"kind": "held", "edge": "hem"}, {"kind": "held", "edge": "top", "y_mm": 90}]
+    told = piece(loaded(conditions=conditions, grain_deg=0), context)
+    assert told.utilisation > 0.98
+    assert any("lock-up" in message for message in told.messages)
+
+
+def test_too_fine_a_mesh_is_for_the_command_line(context: Context, tmp_path: Path) -> None:
+    request = BiasRequest.model_validate(ASKED | {"strain": 0.2, "steps": 900})
+    with pytest.raises(InputError) as refused:
+        bias(request, context)
+    assert refused.value.field == "mesh_mm"
+    with pytest.raises(CancelledError):
+        bias(request, Context(tmp_path, local=True, cancelled=lambda: True))
+
+
+@pytest.mark.parametrize(
+    ("field", "change"),
+    [
+        ("outline", {"outline": [[0, 0], [50, 80], [50, 0], [0, 80]]}),
+        ("edges.hem", {"edges": {"hem": [99]}}),
+        ("edge", {"edges": {"low": [1]}}),
+        ("conditions", {"conditions": [{"kind": "pulled", "edge": "top", "y_n": 1}]}),
+    ],
+)
+def test_pieces_that_cannot_be_used_are_refused_by_name(
+    context: Context, field: str, change: dict[str, Any]
+) -> None:
+    with pytest.raises(InputError) as refused:
+        piece(loaded(**change), context)
+    assert refused.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("field", "change"),
+    [
+        ("piece.outline", {"outline": [[0, 0], [1e9, 0], [0, 1]]}),
+        ("piece.conditions", {"conditions": [{"kind": "glued", "edge": "hem"}]}),
+    ],
+)
+def test_the_service_refuses_a_piece_that_is_badly_written(
+    client: TestClient, field: str, change: dict[str, Any]
+) -> None:
+    problem = client.post("/api/v1/piece", json=ASKED | {"piece": PIECE | change}).json()
+    assert problem["status"] == 422, problem
+    assert problem["field"].startswith(field)
