@@ -21,9 +21,9 @@ from pydantic import BaseModel
 from knitcore.base.errors import InputError
 
 from ..context import Context
-from ..models.base import IntervalResult
 from ..operations.perform import Viewed, carried_out
 from ..operations.registry import Operation
+from ..requests.base import IntervalResult
 from .common import emit, json_option, telling_what_is_compiled, user_data_dir
 from .inputs import Inputs
 from .options import CHART_HELP

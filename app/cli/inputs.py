@@ -29,10 +29,10 @@ from pydantic.fields import FieldInfo
 
 from knitcore.base.errors import InputError
 
-from ..models.base import UNIT
-from ..models.charts import IS_REPEAT
-from ..models.refusals import OF_VALUES, problem_in_words, remedy_in_words
-from ..models.uploads import UploadedFile
+from ..requests.base import UNIT
+from ..requests.charts import IS_REPEAT
+from ..requests.faults import OF_VALUES, problem_in_words, remedy_in_words
+from ..requests.uploads import UploadedFile
 from .options import chart_file, is_fabric, resolve_chart
 
 FILE = click.Path(path_type=Path)

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from knitcore.base.errors import InputError
 
-from ..models.base import first_fault
+from ..requests.base import first_fault
 from .common import emit, json_option, user_settings
 
 

@@ -10,8 +10,8 @@ from pydantic import ValidationError
 
 from knitcore.base.errors import KnitcoreError
 
-from ..models.base import first_fault
 from ..operations.registry import commands, operation_of_command
+from ..requests.base import first_fault
 from .options import CHART_HELP
 
 GROUPS = {"measure": "Measure a yarn's bending and its compression."}

@@ -19,9 +19,8 @@ from knitcore.formats.designs.layout import DesignRegion
 from knitcore.materials import Material
 from knitcore.mechanics.local_moduli import StitchTable, stitch_table
 
-from ..models.base import RequestModel
-from ..models.charts import MAX_FIELD
-from ..models.stretched import StretchView
+from ..requests.base import RequestModel
+from ..requests.charts import MAX_FIELD
 from .colours import (
     FABRIC_COLOURS,
     diverging,
@@ -30,6 +29,7 @@ from .colours import (
     rgb,
     sequential,
 )
+from .computed import StretchView
 
 Colours = NDArray[np.uint8]
 

@@ -14,9 +14,9 @@ from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM, increasing
 from knitcore.prediction.curve import curve as chart_curve
 
 from ...context import Context
-from ...models.base import EndsOfList, Floats, IntervalResult
-from ...models.checks import CheckedBy
-from ...models.gauge import GaugedRequest
+from ...requests.base import EndsOfList, Floats, IntervalResult
+from ...requests.fabrics import GaugedRequest
+from ...requests.faults import CheckedBy
 from ..registry import Command, Operation
 
 Stress = Annotated[float, Field(ge=0, le=100)]

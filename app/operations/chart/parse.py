@@ -5,8 +5,8 @@ from __future__ import annotations
 from knitcore.chart.stitch_chart import StitchChart
 
 from ...context import Context
-from ...models.base import RequestModel, ResultModel
-from ...models.charts import ChartLines, ChartText, RepeatText
+from ...requests.base import RequestModel, ResultModel
+from ...requests.charts import ChartLines, ChartText, RepeatText
 from ..registry import Operation
 
 

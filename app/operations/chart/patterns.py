@@ -5,8 +5,8 @@ from __future__ import annotations
 from knitcore.chart.patterns import PATTERNS
 
 from ...context import Context
-from ...models.base import NoRequest, ResultModel
-from ...models.charts import RepeatText
+from ...requests.base import NoRequest, ResultModel
+from ...requests.charts import RepeatText
 from ..registry import Operation
 
 

@@ -13,10 +13,9 @@ from knitcore.prediction.predict import predict as predict_chart
 from knitcore.prediction.swept import worth_relaxing
 
 from ...context import Context
-from ...models.base import Ends, IntervalResult, ResultModel
-from ...models.charts import OutlineInput
-from ...models.gauge import GaugedRequest
-from ...models.laws import ElasticConstants, Extensibility
+from ...requests.base import Ends, IntervalResult, ResultModel
+from ...requests.charts import OutlineInput
+from ...requests.fabrics import ElasticConstants, Extensibility, GaugedRequest
 from ..registry import Command, Operation
 
 

@@ -9,8 +9,8 @@ from pydantic import Field
 from knitcore.cloth.cut.standard_tests import bias_test
 
 from ...context import Context
-from ...models.base import EndsOfList, Floats
-from ...models.pieces import PieceTestRequest, PieceTestResult, Size, text_table
+from ...requests.base import EndsOfList, Floats
+from ...requests.pieces import PieceTestRequest, PieceTestResult, Size, text_table
 from ..registry import Command, Operation
 
 

@@ -11,9 +11,9 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.border import RULE_ROWS, RULE_STITCHES, advice
 
 from ...context import Context
-from ...models.base import ResultModel
-from ...models.charts import RepeatInput, to_repeat
-from ...models.weighed import FROM_QUARTERS, WeighedRequest
+from ...requests.base import ResultModel
+from ...requests.charts import RepeatInput, to_repeat
+from ...requests.weighed import FROM_QUARTERS, WeighedRequest
 from ..registry import Command, Operation
 
 _RULE = (

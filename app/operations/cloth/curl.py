@@ -17,11 +17,11 @@ from knitcore.garment.shaped import outline_marks
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import Known, RequestModel, ResultModel
-from ...models.charts import OutlineInput
-from ...models.laws import FabricRequest
-from ...models.posed import PosedView
-from ...models.weighed import Corners, TimeLimit, corner_lists
+from ...drawing.computed import PosedView
+from ...requests.base import Known, RequestModel, ResultModel
+from ...requests.charts import OutlineInput
+from ...requests.fabrics import FabricRequest
+from ...requests.weighed import Corners, TimeLimit, corner_lists
 from ..perform import Viewed
 from ..registry import Command, Operation
 

@@ -12,10 +12,10 @@ from knitcore.cloth.space.drape import drape as drape_cloth
 from knitcore.draw.body import Body
 
 from ...context import Context
-from ...models.base import Ends, ResultModel
-from ...models.charts import RepeatInput, to_repeat
-from ...models.posed import PosedView
-from ...models.weighed import (
+from ...drawing.computed import PosedView
+from ...requests.base import Ends, ResultModel
+from ...requests.charts import RepeatInput, to_repeat
+from ...requests.weighed import (
     ClothPiece,
     Corners,
     WantsCorners,

@@ -13,10 +13,10 @@ from knitcore.cloth.space.hang import hang as hang_piece
 from knitcore.garment.shaped import outline_marks
 
 from ...context import Context
-from ...models.base import ResultModel
-from ...models.charts import ChartInput, OutlineInput, to_chart
-from ...models.posed import PosedView
-from ...models.weighed import (
+from ...drawing.computed import PosedView
+from ...requests.base import ResultModel
+from ...requests.charts import ChartInput, OutlineInput, to_chart
+from ...requests.weighed import (
     FRICTIONLESS,
     Corners,
     TimeLimit,

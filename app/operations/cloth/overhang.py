@@ -13,10 +13,10 @@ from knitcore.cloth.space.overhang import overhang as hang_over
 from knitcore.draw.body import Body
 
 from ...context import Context
-from ...models.base import ResultModel
-from ...models.charts import RepeatInput, to_repeat
-from ...models.posed import PosedView
-from ...models.weighed import (
+from ...drawing.computed import PosedView
+from ...requests.base import ResultModel
+from ...requests.charts import RepeatInput, to_repeat
+from ...requests.weighed import (
     ClothPiece,
     Corners,
     WantsCorners,

@@ -18,10 +18,10 @@ from knitcore.materials.law_uncertainty import Z_SCORE
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import EndsOfList, Floats, ResultModel, first_fault
-from ...models.charts import to_repeat
-from ...models.checks import CheckedBy
-from ...models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
+from ...requests.base import EndsOfList, Floats, ResultModel, first_fault
+from ...requests.charts import to_repeat
+from ...requests.faults import CheckedBy
+from ...requests.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
 from ..registry import Command, Operation
 
 

@@ -30,10 +30,10 @@ from knitcore.law.stiffening import EXTENSION_START
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import EndsOfList, Floats, IntervalResult, ResultModel
-from ...models.charts import Column, OutlineInput, Row, to_chart
-from ...models.gauge import GaugedRequest
-from ...models.stretched import StretchView
+from ...drawing.computed import StretchView
+from ...requests.base import EndsOfList, Floats, IntervalResult, ResultModel
+from ...requests.charts import Column, OutlineInput, Row, to_chart
+from ...requests.fabrics import GaugedRequest
 from ..perform import Viewed
 from ..registry import Command, Operation
 

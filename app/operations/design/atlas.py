@@ -18,9 +18,9 @@ from knitcore.design.targets import USUAL_LOAD_N_PER_MM
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import IntervalResult
-from ...models.charts import MaterialName, RepeatText
-from ...models.laws import LawsRequest
+from ...requests.base import IntervalResult
+from ...requests.charts import MaterialName, RepeatText
+from ...requests.fabrics import LawsRequest
 from ...service.results.atlases import EXTENTS, Extent, repeats_of
 from ..registry import Command, Operation
 

@@ -20,8 +20,8 @@ from knitcore.garment.shaped import outline_marks
 
 from ...cli.options import atlas_option, design_option, resolve_chart, write_design_of
 from ...context import Context
-from ...models.base import Ends, IntervalResult, Known, RequestModel, ResultModel
-from ...models.charts import (
+from ...requests.base import Ends, IntervalResult, Known, RequestModel, ResultModel
+from ...requests.charts import (
     ChartLines,
     ChartText,
     Column,
@@ -30,7 +30,7 @@ from ...models.charts import (
     RepeatText,
     Row,
 )
-from ...models.laws import LawsRequest
+from ...requests.fabrics import LawsRequest
 from ...service.results.atlases import Extent
 from ..registry import Command, Operation
 

@@ -18,10 +18,10 @@ from knitcore.design.targets import USUAL_LOAD_N_PER_MM, Quantity, Target, WornT
 from knitcore.materials import load_library
 
 from ...context import Context
-from ...models.base import Ends, IntervalResult, Known, KnownEnds, RequestModel, ResultModel
-from ...models.charts import MaterialName, RepeatText
-from ...models.checks import CheckedBy
-from ...models.laws import LawsRequest
+from ...requests.base import Ends, IntervalResult, Known, KnownEnds, RequestModel, ResultModel
+from ...requests.charts import MaterialName, RepeatText
+from ...requests.fabrics import LawsRequest
+from ...requests.faults import CheckedBy
 from ...service.results.atlases import EXTENTS, Extent
 from ..registry import Command, Operation
 

@@ -18,9 +18,9 @@ from knitcore.design.shape import fill_shape
 
 from ...cli.options import atlas_option, design_option, write_design_of
 from ...context import Context
-from ...models.base import Known, ResultModel
-from ...models.charts import ChartLines, MaterialName, RepeatText
-from ...models.laws import LawsRequest
+from ...requests.base import Known, ResultModel
+from ...requests.charts import ChartLines, MaterialName, RepeatText
+from ...requests.fabrics import LawsRequest
 from ...service.results.atlases import Extent
 from ..registry import Command, Operation
 

@@ -9,7 +9,7 @@ from pydantic import RootModel
 from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 
 from ...context import Context
-from ...models.base import NoRequest
+from ...requests.base import NoRequest
 from ..registry import Operation
 
 

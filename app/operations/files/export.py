@@ -17,11 +17,10 @@ from knitcore.formats.write.knitout import Finish
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import ResultModel
-from ...models.charts import ChartInput, MaterialName, to_chart
-from ...models.gauge import GaugeInput
-from ...models.laws import LawsRequest
-from ...models.uploads import Content
+from ...requests.base import ResultModel
+from ...requests.charts import ChartInput, MaterialName, to_chart
+from ...requests.fabrics import GaugeInput, LawsRequest
+from ...requests.uploads import Content
 from ..registry import Command, Operation
 
 MAX_STITCHES: dict[str, int] = {

@@ -10,7 +10,7 @@ from knitcore.formats.write.export import Exporter
 from knitcore.materials import Material
 
 from ...context import Context
-from ...models.base import NoRequest, ResultModel
+from ...requests.base import NoRequest, ResultModel
 from ..registry import Command, Operation
 
 KINDS: dict[Group, type[Offer]] = {

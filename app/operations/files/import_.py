@@ -12,9 +12,9 @@ from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_o
 from knitcore.formats.read.chart_files import read_chart, read_piece
 
 from ...context import Context
-from ...models.base import RequestModel, ResultModel
-from ...models.charts import ChartLines, RepeatText
-from ...models.uploads import UploadedFile, stored
+from ...requests.base import RequestModel, ResultModel
+from ...requests.charts import ChartLines, RepeatText
+from ...requests.uploads import UploadedFile, stored
 from ..registry import Command, Operation
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from ...context import Context
-from ...models.base import NoRequest, ResultModel
+from ...requests.base import NoRequest, ResultModel
 from ...service import VERSION
 from ..registry import Operation
 

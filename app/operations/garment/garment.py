@@ -25,9 +25,9 @@ from knitcore.materials.law_uncertainty import log_interval
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import Ends, IntervalResult, RequestModel, ResultModel
-from ...models.charts import CellLines, ChartLines, MaterialName, RepeatText
-from ...models.laws import Extensibility, LawsRequest, Moduli
+from ...requests.base import Ends, IntervalResult, RequestModel, ResultModel
+from ...requests.charts import CellLines, ChartLines, MaterialName, RepeatText
+from ...requests.fabrics import Extensibility, LawsRequest, Moduli
 from ..registry import Command, Operation
 
 Length = Annotated[float, Field(gt=0, le=5000)]

@@ -16,8 +16,8 @@ from knitcore.mechanics.pressure import ELASTIC_MEAN
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import IntervalResult
-from ...models.posed import PosedView
+from ...drawing.computed import PosedView
+from ...requests.base import IntervalResult
 from ..perform import Viewed
 from ..registry import Command, Operation
 from .garment import Glove, KnitterRequest, measured_options, read_measured

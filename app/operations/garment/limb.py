@@ -31,10 +31,10 @@ from knitcore.prediction.predict import predict
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import Ends, IntervalResult, RequestModel, ResultModel
-from ...models.charts import to_chart
-from ...models.laws import FabricRequest
-from ...models.posed import PosedView
+from ...drawing.computed import PosedView
+from ...requests.base import Ends, IntervalResult, RequestModel, ResultModel
+from ...requests.charts import to_chart
+from ...requests.fabrics import FabricRequest
 from ..perform import Viewed
 from ..registry import Command, Operation
 

@@ -32,9 +32,9 @@ from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Prediction
 
 from ...context import Context
-from ...models.base import Ends, IntervalResult
-from ...models.charts import ChartInput, MaterialName, to_chart
-from ...models.laws import LawsRequest
+from ...requests.base import Ends, IntervalResult
+from ...requests.charts import ChartInput, MaterialName, to_chart
+from ...requests.fabrics import LawsRequest
 from ..registry import Command, Operation
 
 NO_INTERVAL = "No interval: the law comes without standard errors."

@@ -9,8 +9,8 @@ from pydantic import Field
 from knitcore.measure.bending_modulus import measure_bending
 
 from ...context import Context
-from ...models.base import RequestModel, ResultModel
-from ...models.uploads import UploadedFile, example_file, stored
+from ...requests.base import RequestModel, ResultModel
+from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
 
 MAX_PHOTOS = 100

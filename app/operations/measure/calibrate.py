@@ -21,11 +21,11 @@ from knitcore.measure.uniaxial_files import Marks, read_stretch_test
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import Floats
-from ...models.charts import MaterialName
-from ...models.fields import FieldRequest, FrameErrorResult, errors_table, load
-from ...models.laws import LawResult, LawsRequest
-from ...models.uploads import UploadedFile, example_file, stored
+from ...requests.base import Floats
+from ...requests.charts import MaterialName
+from ...requests.fabrics import LawResult, LawsRequest
+from ...requests.fields import FieldRequest, FrameErrorResult, errors_table, load
+from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
 
 

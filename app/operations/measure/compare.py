@@ -15,11 +15,11 @@ from knitcore.formats.read.law_files import load_law
 from knitcore.law.constitutive import ConstitutiveLaw
 
 from ...context import Context
-from ...models.base import ResultModel
-from ...models.charts import MaterialName
-from ...models.fields import FieldRequest, FrameErrorResult, errors_table, load
-from ...models.laws import LawsRequest
-from ...models.uploads import UploadedFile, example_file, stored
+from ...requests.base import ResultModel
+from ...requests.charts import MaterialName
+from ...requests.fabrics import LawsRequest
+from ...requests.fields import FieldRequest, FrameErrorResult, errors_table, load
+from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
 
 

@@ -13,8 +13,8 @@ from knitcore.measure.compression import PROBE_WIDTH_MM, average_compression, fi
 from knitcore.measure.compression_files import read_compression
 
 from ...context import Context
-from ...models.base import RequestModel, ResultModel
-from ...models.uploads import UploadedFile, example_file, stored
+from ...requests.base import RequestModel, ResultModel
+from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
 
 

@@ -16,10 +16,10 @@ from knitcore.measure.uniaxial_files import read_stretch_test
 
 from ...cli.options import out_option, write_table
 from ...context import Context
-from ...models.base import Floats, RequestModel, ResultModel
-from ...models.checks import CheckedBy
-from ...models.laws import ElasticConstants, LawConstants, LawResult, elastic_constants_of
-from ...models.uploads import UploadedFile, example_file, stored
+from ...requests.base import Floats, RequestModel, ResultModel
+from ...requests.fabrics import ElasticConstants, LawConstants, LawResult, elastic_constants_of
+from ...requests.faults import CheckedBy
+from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
 
 PLOTTED_POINTS = 2000

@@ -20,9 +20,9 @@ from knitcore.yarn.study.bent_cell import BendingResponse
 from knitcore.yarn.study.relax import relax
 
 from ...context import Context
-from ...models.base import ResultModel
-from ...models.laws import LawsRequest
-from ...models.yarn_level import StitchRequest, YarnResult
+from ...requests.base import ResultModel
+from ...requests.fabrics import LawsRequest
+from ...requests.yarn_level import StitchRequest, YarnResult
 from ..registry import Command, Operation
 
 _FRICTIONLESS = (

@@ -32,8 +32,8 @@ from knitcore.yarn.study.relax import Branch
 
 from ...cli.options import write_table
 from ...context import Context
-from ...models.base import Positive, RequestModel, ResultModel
-from ...models.charts import MaterialName
+from ...requests.base import Positive, RequestModel, ResultModel
+from ...requests.charts import MaterialName
 from ..registry import Command, Operation
 
 MAX_SETTINGS = 24

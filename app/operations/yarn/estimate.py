@@ -25,8 +25,8 @@ from knitcore.materials.material_files import save_material_file
 
 from ...cli.options import out_option
 from ...context import Context
-from ...models.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
-from ...models.laws import LawResult
+from ...requests.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
+from ...requests.fabrics import LawResult
 from ..registry import Command, Operation
 from .estimate_report import (
     LeftOutResult,

@@ -10,7 +10,7 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials.estimate.yarn_statistics import left_out, library_table
 
 from ...context import Context
-from ...models.base import NoRequest, ResultModel
+from ...requests.base import NoRequest, ResultModel
 from ..registry import Operation
 
 

@@ -15,10 +15,9 @@ from knitcore.yarn.study.hysteresis import DEFAULT_POINTS, MAX_CYCLES
 from knitcore.yarn.study.relax import relax
 
 from ...context import Context
-from ...models.base import Ends, Floats, IntervalResult, ResultModel
-from ...models.friction import HISTORIES, RestSizeResult, rest_line
-from ...models.laws import LawsRequest
-from ...models.yarn_level import StitchRequest, YarnResult
+from ...requests.base import Ends, Floats, IntervalResult, ResultModel
+from ...requests.fabrics import LawsRequest
+from ...requests.yarn_level import HISTORIES, RestSizeResult, StitchRequest, YarnResult, rest_line
 from ..registry import Command, Operation
 
 

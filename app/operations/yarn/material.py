@@ -15,7 +15,7 @@ from knitcore.materials.material_document import CurveDocument
 from knitcore.mechanics.local_moduli import StitchTable, stitch_table
 
 from ...context import Context
-from ...models.base import (
+from ...requests.base import (
     Ends,
     Floats,
     IntervalResult,
@@ -23,8 +23,8 @@ from ...models.base import (
     RequestModel,
     ResultModel,
 )
-from ...models.charts import MaterialName
-from ...models.laws import (
+from ...requests.charts import MaterialName
+from ...requests.fabrics import (
     ElasticConstants,
     Extensibility,
     LawResult,

@@ -7,7 +7,7 @@ import click
 from knitcore.materials import load_library, load_variants, offered_materials
 
 from ...context import Context
-from ...models.base import NoRequest, ResultModel
+from ...requests.base import NoRequest, ResultModel
 from ...service.identity import current_user
 from ...service.results.own_materials import added_by, own_materials
 from ..registry import Command, Operation

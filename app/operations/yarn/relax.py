@@ -25,10 +25,18 @@ from knitcore.yarn.study.whole_chart import WINDOWS_FROM
 
 from ...cli.options import loop_lengths
 from ...context import Context
-from ...models.base import Ends, IntervalResult, Known, ResultModel
-from ...models.friction import HISTORIES, RestSizeResult, RubbedRequest, on_splines, rest_line
-from ...models.gauge import FoundGauge
-from ...models.yarn_level import YarnResult, kept_or_made, relax_requested
+from ...requests.base import Ends, IntervalResult, Known, ResultModel
+from ...requests.fabrics import FoundGauge
+from ...requests.yarn_level import (
+    HISTORIES,
+    RestSizeResult,
+    RubbedRequest,
+    YarnResult,
+    kept_or_made,
+    on_splines,
+    relax_requested,
+    rest_line,
+)
 from ..registry import Command, Operation
 
 

@@ -10,9 +10,9 @@ from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import rs_fabrics
 
 from ...context import Context
-from ...models.base import Ends, IntervalResult, RequestModel, ResultModel
-from ...models.charts import MaterialName
-from ...models.laws import Moduli
+from ...requests.base import Ends, IntervalResult, RequestModel, ResultModel
+from ...requests.charts import MaterialName
+from ...requests.fabrics import Moduli
 from ..registry import Command, Operation
 
 

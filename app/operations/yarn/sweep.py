@@ -26,10 +26,15 @@ from knitcore.yarn.study.sweep import sweep as swept
 
 from ...cli.options import loop_lengths
 from ...context import Context
-from ...models.base import EndsOfList, Floats, IntervalResult
-from ...models.friction import RubbedRequest, on_splines
-from ...models.laws import ElasticConstants, elastic_constants_of
-from ...models.yarn_level import YarnResult, kept_or_made, relax_requested
+from ...requests.base import EndsOfList, Floats, IntervalResult
+from ...requests.fabrics import ElasticConstants, elastic_constants_of
+from ...requests.yarn_level import (
+    RubbedRequest,
+    YarnResult,
+    kept_or_made,
+    on_splines,
+    relax_requested,
+)
 from ..registry import Command, Operation
 
 FACTOR = log_interval(1.0, YARN_LEVEL_STRAIN_LOG_SD).high

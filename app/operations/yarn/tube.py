@@ -17,8 +17,8 @@ from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.yarn_tube import MAX_WALES, MIN_WALES, in_the_round
 
 from ...context import Context
-from ...models.base import Ends, IntervalResult
-from ...models.yarn_level import StitchRequest, YarnResult
+from ...requests.base import Ends, IntervalResult
+from ...requests.yarn_level import StitchRequest, YarnResult
 from ..registry import Command, Operation
 
 

@@ -15,9 +15,9 @@ from knitcore.yarn.solve.splines import size_intervals
 from knitcore.yarn.study.whole_chart import MAX_ROUNDS, WholeShape, relax_whole
 
 from ...context import Context
-from ...models.base import Ends, IntervalResult
-from ...models.charts import ChartInput, to_chart
-from ...models.yarn_level import StitchRequest, YarnResult
+from ...requests.base import Ends, IntervalResult
+from ...requests.charts import ChartInput, to_chart
+from ...requests.yarn_level import StitchRequest, YarnResult
 from ..registry import Command, Operation
 
 

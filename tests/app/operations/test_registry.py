@@ -18,12 +18,12 @@ from pydantic import Field, ValidationError
 from app.cli.commands import command_of
 from app.cli.main import main
 from app.context import Context
-from app.models.base import Ends, Floats, IntervalResult, Known, RequestModel, ResultModel
-from app.models.charts import ChartInput, MaterialName, OutlineInput, RepeatInput
-from app.models.gauge import GaugeInput
-from app.models.uploads import UploadedFile, stored
 from app.operations.cloth.stretch import StretchResult
 from app.operations.registry import Command, Operation, commands, operations
+from app.requests.base import Ends, Floats, IntervalResult, Known, RequestModel, ResultModel
+from app.requests.charts import ChartInput, MaterialName, OutlineInput, RepeatInput
+from app.requests.fabrics import GaugeInput
+from app.requests.uploads import UploadedFile, stored
 from knitcore.chart.fabric import Direction
 from knitcore.materials import Interval
 
@@ -312,7 +312,7 @@ CONVERSIONS = {
 """Names of NumPy with which an operation turns lists into arrays, units into others, and back."""
 
 
-@pytest.mark.parametrize("room", ["operations", "models"])
+@pytest.mark.parametrize("room", ["operations", "requests"])
 def test_an_operation_computes_nothing_itself(room: str) -> None:
     files = sorted(Path(sys.modules["app"].__path__[0], room).rglob("*.py"))
     assert files

@@ -20,12 +20,12 @@ from PIL import Image
 from pydantic import ValidationError
 
 from app.context import Context
-from app.models.uploads import UploadedFile, stored
 from app.operations.files.import_ import ImportRequest, import_
 from app.operations.measure.bending import BendingRequest, bending
 from app.operations.measure.compare import CompareRequest, compare
 from app.operations.measure.compression import CompressionRequest, compression
 from app.operations.measure.fit import FitRequest, fit
+from app.requests.uploads import UploadedFile, stored
 from knitcore.base.errors import InputError, KnitcoreError
 
 FILES = int(os.environ.get("KNITCORE_HOSTILE_FILES", "40"))

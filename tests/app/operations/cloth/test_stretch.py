@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.context import Context
-from app.models.stretched import StretchView
+from app.drawing.computed import StretchView
 from app.operations.cloth.stretch import StretchRequest, stretch
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import DesignFile

@@ -10,7 +10,7 @@ from knitcore.chart.fabric import Direction
 from knitcore.fit.measured_field import MeasuredField, load_field
 
 from .base import RequestModel, ResultModel
-from .checks import CheckedBy
+from .faults import CheckedBy
 from .uploads import UploadedFile, stored
 
 

@@ -17,7 +17,7 @@ from knitcore.garment.shaped import ShapedChart
 from ..context import Context
 from .base import ResultModel
 from .charts import CellLines, ChartLines, MaterialName
-from .laws import LawsRequest
+from .fabrics import LawsRequest
 
 LinearDensity = Annotated[
     float,

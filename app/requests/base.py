@@ -18,7 +18,7 @@ from pydantic import (
 
 from knitcore.base.errors import InputError
 
-from .refusals import problem_in_words
+from .faults import problem_in_words
 
 T = TypeVar("T")
 UNIT = "_n_per_mm"

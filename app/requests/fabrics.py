@@ -1,14 +1,16 @@
-"""Laws in requests and results."""
+"""Fabrics in requests and results: a chart of a material, its laws and its gauge."""
 
 from __future__ import annotations
 
-from typing import Any, Self
+from dataclasses import replace
+from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Laws, Material, load_library
+from knitcore.prediction.size import KnownBy, RelaxedSize
 
 from ..context import Context
 from .base import RequestModel, ResultModel
@@ -58,6 +60,59 @@ class FabricRequest(LawsRequest):
     def fabric(self, context: Context) -> tuple[StitchChart, Material]:
         """Both, as the library has them."""
         return to_chart(self.chart), context.material(self.material)
+
+
+Count = Annotated[
+    float,
+    Field(
+        gt=0,
+        le=1000,
+        description="Counted on your own relaxed swatch; give stitches and rows, or neither.",
+    ),
+]
+
+
+class GaugeInput(RequestModel):
+    """The gauge of a chart: counted on your own relaxed cloth, or from a relaxation."""
+
+    stitches_per_10_cm: Count
+    rows_per_10_cm: Count
+    log_sd: float = Field(
+        RelaxedSize.log_sd,
+        ge=0.001,
+        le=1,
+        description="Uncertainty of both numbers: standard deviation of their logarithms.",
+    )
+    known_by: KnownBy = Field(
+        KnownBy.GAUGE, description="`relaxation` for the `gauge` in the result of `relax`."
+    )
+
+    def relaxed_size(self) -> RelaxedSize:
+        """The relaxed size of one stitch."""
+        size = RelaxedSize.from_gauge(self.stitches_per_10_cm, self.rows_per_10_cm)
+        return replace(size, log_sd=self.log_sd, known_by=self.known_by)
+
+
+class FoundGauge(ResultModel):
+    """The gauge that a relaxation found; other requests take it as it is."""
+
+    stitches_per_10_cm: float
+    rows_per_10_cm: float
+    log_sd: float
+    known_by: KnownBy
+
+
+class GaugedRequest(FabricRequest):
+    """A chart of a material, and how somebody knits it."""
+
+    gauge: GaugeInput | None = Field(
+        None, description="Measured gauge of the chart; its relaxed size is estimated if left out."
+    )
+
+    @property
+    def relaxed_size(self) -> RelaxedSize | None:
+        """The relaxed size of one stitch, if the gauge was measured."""
+        return self.gauge.relaxed_size() if self.gauge else None
 
 
 class Moduli(ResultModel):

@@ -11,7 +11,7 @@ from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.garment.shaped import outline_marks
 
 from .base import RequestModel
-from .checks import CheckedBy
+from .faults import CheckedBy
 
 MAX_TEXT = 1_200_000
 """Characters of a chart text: the largest chart with its line ends and some blanks."""

@@ -19,7 +19,7 @@ from knitcore.materials.law_uncertainty import Z_SCORE
 from ..context import Context
 from .base import Floats, IntervalResult, RequestModel
 from .charts import MaterialName, RepeatInput, to_repeat
-from .laws import LawsRequest
+from .fabrics import LawsRequest
 
 T = TypeVar("T")
 MAX_ELEMENT_STEPS = 40_000

@@ -1,15 +1,20 @@
-"""A piece as it lies, hangs or is worn: data of a result for the 3D view."""
+"""Views of computed results in 3D: a piece in space, or a stretch test."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.base.arrays import Array
+from knitcore.chart.fabric import Direction
 from knitcore.draw.body import Body, Floats, upright
 
 
 @dataclass(frozen=True, eq=False)
 class PosedView:
-    """A piece in space.
+    """A piece as it lies, hangs or is worn.
 
     Attributes
     ----------
@@ -32,3 +37,26 @@ class PosedView:
         """Memory that it takes, bytes."""
         more = 0 if self.body is None else self.body.size_bytes
         return self.corners_mm.nbytes + more + (0 if self.mmhg is None else self.mmhg.nbytes)
+
+
+@dataclass(frozen=True, eq=False)
+class StretchView:
+    """A test for the 3D view.
+
+    Attributes
+    ----------
+    direction : of the pull.
+    positions_mm : (steps, rows, columns, 2) stitch centres.
+    strain : (steps, rows, columns, 2) course-wise and wale-wise.
+    utilisation : (steps, rows, columns).
+    """
+
+    direction: Direction
+    positions_mm: NDArray[np.float32]
+    strain: Array
+    utilisation: Array
+
+    @property
+    def size_bytes(self) -> int:
+        """Memory that it takes, bytes."""
+        return sum(array.nbytes for array in (self.positions_mm, self.strain, self.utilisation))
