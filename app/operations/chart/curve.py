@@ -92,7 +92,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Predict the stress-strain curve of CHART. It is a repeat or a swatch of any size.",
+        more="It is a repeat or a swatch of any size.",
         names={"stress_n_per_mm": None},
         fields=_stresses,
     ),

@@ -158,6 +158,5 @@ OPERATION = Operation(
     example={"chart": "KKPP", "material": "acrylic"},
     command=Command(
         _lines,
-        help="Predict moduli, Poisson's ratios and size at rest of CHART.",
     ),
 )

@@ -73,7 +73,6 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Pull a strip cut from CHART at an angle to its rows. It is cut on the bias by "
-        "default.",
+        more="It is cut on the bias by default.",
     ),
 )

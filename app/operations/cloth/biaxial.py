@@ -71,6 +71,5 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Pull all four edges of a rectangle of CHART outwards.",
     ),
 )

@@ -106,5 +106,5 @@ OPERATION = Operation(
     summary="Width of a border that keeps a piece flat",
     example={"chart": "K", "material": "acrylic", "linear_density_g_per_m": 0.5, "border": "rib"},
     job=True,
-    command=Command(_lines, help="Compute how wide a border keeps a piece of CHART flat."),
+    command=Command(_lines),
 )

@@ -170,8 +170,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help=f"Compute how the whole piece CHART curls and folds. It has up to {MAX_STITCHES:,} "
-        "stitches.",
+        more=f"It has up to {MAX_STITCHES:,} stitches.",
         names={"after": None, "corners": None},
         run=_and_write,
     ),

@@ -119,7 +119,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Drape a round piece of CHART over a disc. The result is Cusick's drape coefficient.",
+        more="The result is Cusick's drape coefficient.",
         names={"corners": None},
     ),
 )

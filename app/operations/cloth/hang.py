@@ -98,7 +98,6 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Compute how the whole piece CHART hangs under its weight.",
         names={"corners": None},
     ),
 )

@@ -117,8 +117,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Bend a strip of CHART over the edge of a table. The result is Peirce's bending "
-        "length.",
+        more="The result is Peirce's bending length.",
         names={"corners": None},
     ),
 )

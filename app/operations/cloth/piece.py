@@ -192,7 +192,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Load a piece of any outline that is cut from CHART. Loads act at its edges.",
+        more="Loads act at its edges.",
         names={"piece": None},
         fields=_piece_file,
         run=_command,

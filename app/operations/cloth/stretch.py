@@ -353,7 +353,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Pull CHART between two clamps, as in a strip test. It is simulated, not certified.",
+        more="It is simulated, not certified.",
         run=_command,
     ),
 )

@@ -71,6 +71,6 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Shear a square of CHART in a hinged frame. The test is called picture frame.",
+        more="The test is called picture frame.",
     ),
 )

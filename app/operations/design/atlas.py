@@ -154,8 +154,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Predict every repeat of a material, for `knitcore find`. A stopped run continues "
-        "where it left off.",
+        more="A stopped run continues where it left off.",
         names={"repeats": None},
         run=_command,
     ),

@@ -267,8 +267,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Design a chart with given moduli at each stitch. TARGET is a CSV of row, column and "
-        "target moduli, such as `export --to csv` writes.",
+        more="TARGET is a CSV of row, column and target moduli, such as `export --to csv` writes.",
         names=dict.fromkeys((*MAPS, "rows", "columns", "wishes", "chart")),
         run=_command,
     ),

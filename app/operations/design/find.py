@@ -298,9 +298,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Find repeats that meet targets, the surest first. They come from atlases, or, up "
-        "to 3x3, "
-        "from materials.",
+        more="They come from atlases, or, up to 3x3, from materials.",
         names=dict.fromkeys(("materials", "targets", "repeats", "elsewhere"))
         | {
             "transfers_per_stitch": "--most-transfers",

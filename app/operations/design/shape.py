@@ -161,10 +161,9 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Design a chart that takes given widths when it is stretched. PROFILE is a CSV with a "
-        "column `width`, stretched width over width at rest, one line across the pull after the "
-        "other "
-        "from the bottom (or the left); empty where any width will do.",
+        more="PROFILE is a CSV with a column `width`, stretched width over width at rest, one line "
+        "across the pull after the other from the bottom (or the left); empty where any width "
+        "will do.",
         names={"width": None},
         fields=_widths,
         run=_command,

@@ -149,9 +149,7 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         _lines,
-        help="Write CHART for machines, knitters or other programs. Knitout is first run on a "
-        "virtual "
-        "machine that checks it.",
+        more="Knitout is first run on a virtual machine that checks it.",
         names={
             "linear_density_tex": "--tex",
             "photo": None,

@@ -64,5 +64,5 @@ OPERATION = Operation(
     method="GET",
     tag="materials",
     summary="Additions of installed packages",
-    command=Command(_lines, help="List what installed packages add to Knitcore."),
+    command=Command(_lines),
 )

@@ -90,8 +90,6 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         lambda r: [r.chart],
-        help="Read the chart in FILE. It holds K/P text, written rows, KnitSpeak, PNG, knitout "
-        "or a "
-        "design.",
+        more="It holds K/P text, written rows, KnitSpeak, PNG, knitout or a design.",
     ),
 )

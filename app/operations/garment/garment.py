@@ -438,7 +438,6 @@ OPERATION = Operation(
     },
     command=Command(
         _lines,
-        help="Plan a garment from a TEMPLATE and measurements.",
         names={"garment": None, "gauge": None, "linear_density_tex": "--tex"},
         fields=_asked,
         run=_command,

@@ -140,7 +140,6 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         _lines,
-        help="Compute how a glove fits a hand and presses on it.",
         names={"garment": None, "gauge": None},
         fields=_hand,
         run=_and_write,

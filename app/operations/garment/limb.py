@@ -285,9 +285,7 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         _lines,
-        help="Compute how a tube of CHART fits a limb and presses on it. The result has ease, "
-        "pressure "
-        "and nearness to lock-up along the limb.",
+        more="The result has ease, pressure and nearness to lock-up along the limb.",
         names={"girths": None},
         fields=_girths,
         run=_and_write,

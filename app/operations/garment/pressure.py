@@ -221,8 +221,7 @@ OPERATION = Operation(
     },
     command=Command(
         _lines,
-        help="Compute the pressure of a knitted tube on a limb. It is an interval, never a medical "
-        "class.",
+        more="It is an interval, never a medical class.",
         names={"law": None, "chart": None},
         run=_command,
     ),

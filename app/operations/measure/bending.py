@@ -89,8 +89,6 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        group="measure",
-        help="Measure a yarn's bending modulus from IMAGES. The yarn hangs from a horizontal "
-        "clamp.",
+        more="The yarn hangs from a horizontal clamp.",
     ),
 )

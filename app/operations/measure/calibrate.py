@@ -162,7 +162,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Fit shear and couplings to a measured displacement field. FIELD is a .npz file.",
+        more="FIELD is a .npz file.",
         names={"frames": "--frame"},
         run=_command,
     ),

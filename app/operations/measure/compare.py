@@ -96,7 +96,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Compare a law with a measured displacement field. FIELD is a .npz file.",
+        more="FIELD is a .npz file.",
         names={"frames": "--frame"},
     ),
 )

@@ -131,9 +131,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        group="measure",
-        help="Fit the contact law of a yarn to compression tests. Each FILE is an XLS, XLSX or "
-        "CSV.",
+        more="Each FILE is an XLS, XLSX or CSV.",
         run=_command,
     ),
 )

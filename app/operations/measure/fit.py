@@ -191,9 +191,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Fit a law to a course-wise and a wale-wise stretch test. Each is an HDF5, CSV or "
-        "XLSX "
-        "file.",
+        more="Each is an HDF5, CSV or XLSX file.",
         names={"residuals": None},
         run=_command,
     ),

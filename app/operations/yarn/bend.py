@@ -217,7 +217,6 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Compute bending rigidity and curl of the repeat CHART. Its shear modulus comes with "
-        "them; all are without friction.",
+        more="Its shear modulus comes with them; all are without friction.",
     ),
 )

@@ -350,9 +350,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Simulate the pure fabrics of yarns and fit their laws.\n\nEvery fabric is relaxed "
-        "at every loop length and stretched both ways. A "
-        "stopped command continues where it left off. FOLDER holds table.csv, curves.csv, and "
+        more="\n\nEvery fabric is relaxed at every loop length and stretched both ways. A stopped "
+        "command continues where it left off. FOLDER holds table.csv, curves.csv, and "
         "material files that every other command takes for --material.",
         names={
             "name": "--yarn",

@@ -281,7 +281,6 @@ OPERATION = Operation(
     example={"bending_modulus_n_mm2": 0.04, "loop_length_mm": 14.0},
     command=Command(
         _lines,
-        help="Estimate the fabrics of a yarn that is not in the library.",
         run=_command,
         request=YarnFacts,
     ),

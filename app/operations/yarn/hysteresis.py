@@ -184,8 +184,6 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _text,
-        help="Load and unload the repeat CHART, with friction in its yarn. The result has the "
-        "loop, "
-        "the energy lost and the sizes at rest.",
+        more="The result has the loop, the energy lost and the sizes at rest.",
     ),
 )

@@ -80,7 +80,7 @@ OPERATION = Operation(
     summary="The library of materials",
     command=Command(
         _lines,
-        help="List the library's materials, or explain one. MATERIAL is an id or a file.",
+        more="MATERIAL is an id or a file.",
         run=_command,
     ),
 )

@@ -345,9 +345,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Compute the yarn's shape at rest in the repeat CHART. It is free of force, and "
-        "has no "
-        "friction unless --friction or --history asks for it.",
+        more="It is free of force, and has no friction unless --friction or --history asks for it.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,
     ),

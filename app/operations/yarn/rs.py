@@ -96,5 +96,5 @@ OPERATION = Operation(
     path="/rs/{material}",
     tag="mechanics",
     summary="Moduli from the shape of the yarn",
-    command=Command(_lines, help="Compute the four pure fabrics by the reduced-symmetry model."),
+    command=Command(_lines),
 )

@@ -297,9 +297,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Stretch the yarn of the repeat CHART and fit a law to it. It is free across, and "
-        "has no "
-        "friction unless --friction or --there-and-back asks for it.",
+        more="It is free across, and has no friction unless --friction or --there-and-back asks "
+        "for it.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,
     ),

@@ -127,7 +127,6 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Compute the yarn's shape at rest in a tube knitted of CHART. The tube is long, has "
-        "--wales stitches around, and no friction.",
+        more="The tube is long, has --wales stitches around, and no friction.",
     ),
 )

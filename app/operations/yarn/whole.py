@@ -161,9 +161,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Compute the yarn's shape at rest in a whole CHART. Its edges are free. It has up "
-        "to 4,000 "
-        "stitches, free of force and without friction. A stopped command continues where it "
-        "left off.",
+        more="Its edges are free. It has up to 4,000 stitches, free of force and without friction. "
+        "A stopped command continues where it left off.",
     ),
 )
