@@ -195,7 +195,7 @@ def _chart_input(model: type[BaseModel]) -> Input:
 
 def _design_fields(file: Path, model: type[BaseModel]) -> dict[str, Any]:
     """Read the fields of the request that a file holds."""
-    from ..operations.files.import_ import design_in
+    from ..operations.files.imports import design_in
 
     design = design_in(file)
     return {name: part for name, part in design if name in model.model_fields and part is not None}

@@ -31,15 +31,15 @@ SECTIONS: dict[str, dict[str, Entry]] = {
         "predict": ("chart.predict", "Predict moduli, Poisson's ratios and size at rest of CHART."),
         "curve": ("chart.curve", "Predict the stress-strain curve of CHART."),
         "stretch": ("cloth.stretch", "Pull CHART between two clamps, as in a strip test."),
-        "bias": ("cloth.bias", "Pull a strip cut from CHART at an angle to its rows."),
-        "biaxial": ("cloth.biaxial", "Pull all four edges of a rectangle of CHART outwards."),
-        "trellis": ("cloth.trellis", "Shear a square of CHART in a hinged frame."),
+        "bias": ("cloth.cut_tests", "Pull a strip cut from CHART at an angle to its rows."),
+        "biaxial": ("cloth.cut_tests", "Pull all four edges of a rectangle of CHART outwards."),
+        "trellis": ("cloth.cut_tests", "Shear a square of CHART in a hinged frame."),
         "piece": ("cloth.piece", "Load a piece of any outline that is cut from CHART."),
         "curl": ("cloth.curl", "Compute how the whole piece CHART curls and folds."),
-        "border": ("cloth.border", "Compute how wide a border keeps a piece of CHART flat."),
+        "border": ("cloth.weighing", "Compute how wide a border keeps a piece of CHART flat."),
         "hang": ("cloth.hang", "Compute how the whole piece CHART hangs under its weight."),
-        "drape": ("cloth.drape", "Drape a round piece of CHART over a disc."),
-        "overhang": ("cloth.overhang", "Bend a strip of CHART over the edge of a table."),
+        "drape": ("cloth.weighing", "Drape a round piece of CHART over a disc."),
+        "overhang": ("cloth.weighing", "Bend a strip of CHART over the edge of a table."),
         "rs": ("yarn.rs", "Compute the four pure fabrics by the reduced-symmetry model."),
     },
     "Yarn": {
@@ -63,10 +63,10 @@ SECTIONS: dict[str, dict[str, Entry]] = {
         "fit": ("measure.fit", "Fit a law to a course-wise and a wale-wise stretch test."),
         "measure": ("", "Measure a yarn's bending and its compression."),
         "calibrate": (
-            "measure.calibrate",
+            "measure.fields",
             "Fit shear and couplings to a measured displacement field.",
         ),
-        "compare": ("measure.compare", "Compare a law with a measured displacement field."),
+        "compare": ("measure.fields", "Compare a law with a measured displacement field."),
     },
     "Garment": {
         "garment": ("garment.garment", "Plan a garment from a TEMPLATE and measurements."),
@@ -75,7 +75,7 @@ SECTIONS: dict[str, dict[str, Entry]] = {
         "pressure": ("garment.pressure", "Compute the pressure of a knitted tube on a limb."),
     },
     "Files": {
-        "import": ("files.import_", "Read the chart in FILE."),
+        "import": ("files.imports", "Read the chart in FILE."),
         "export": ("files.export", "Write CHART for machines, knitters or other programs."),
     },
     "Serve": {
@@ -85,7 +85,7 @@ SECTIONS: dict[str, dict[str, Entry]] = {
         "token": (".service:token", ""),
         "backup": (".service:backup", ""),
         "restore": (".service:restore", ""),
-        "extensions": ("files.extensions", "List what installed packages add to Knitcore."),
+        "extensions": ("files.installed", "List what installed packages add to Knitcore."),
     },
 }
 """Commands by section of the help, whose lines are here so that it loads no operation."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
@@ -13,7 +13,7 @@ from knitcore.materials import Laws, Material, load_library
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 from ..context import Context
-from .base import RequestModel, ResultModel
+from .base import UNIT, RequestModel, ResultModel
 from .charts import ChartInput, MaterialName, to_chart
 
 
@@ -161,24 +161,10 @@ class LawResult(LawConstants):
         0.0, description="Growth of the shear stiffness with the angle squared, 1/rad²."
     )
 
-    @classmethod
-    def of_law(cls, law: ConstitutiveLaw, **more: Any) -> Self:
-        """Name the unit of each constant of a law, and add other fields."""
-        return cls(
-            stiffness_xxxx_n_per_mm=law.stiffness_xxxx,
-            stiffness_yyyy_n_per_mm=law.stiffness_yyyy,
-            stiffness_xxyy_n_per_mm=law.stiffness_xxyy,
-            stiffness_yyxx_n_per_mm=law.stiffness_yyxx,
-            alpha_xx=law.alpha_xx,
-            alpha_yy=law.alpha_yy,
-            beta_xx_n_per_mm=law.beta_xx,
-            beta_yy_n_per_mm=law.beta_yy,
-            shear_modulus_n_per_mm=law.shear_modulus,
-            kappa_xx=law.kappa_xx,
-            kappa_yy=law.kappa_yy,
-            shear_stiffening=law.shear_stiffening,
-            **more,
-        )
+
+def law_constants(law: ConstitutiveLaw) -> dict[str, float]:
+    """Return the fields of :class:`LawResult`, which name the unit of each constant of a law."""
+    return {name: getattr(law, name.removesuffix(UNIT)) for name in LawResult.model_fields}
 
 
 def moduli_of(law: ConstitutiveLaw) -> dict[str, float]:

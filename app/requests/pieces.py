@@ -194,11 +194,3 @@ def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
         "utilisation": test.utilisation() if test.equilibria else 0.0,
         "messages": [*([test.problem] if test.problem else []), *([extrapolated] if past else [])],
     }
-
-
-def text_table(columns: dict[str, list[float]]) -> list[str]:
-    """Lines of a table with a heading."""
-    return [
-        " ".join(f"{name:>12}" for name in columns),
-        *(" ".join(f"{v:12.4f}" for v in row) for row in zip(*columns.values(), strict=True)),
-    ]

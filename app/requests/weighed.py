@@ -10,13 +10,10 @@ from pydantic import Field
 
 from knitcore.base.arrays import Array
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of, stitched
-from knitcore.draw.body import Floats
-from knitcore.garment.shaped import ShapedChart
+from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of
 
 from ..context import Context
-from .base import ResultModel
-from .charts import CellLines, ChartLines, MaterialName
+from .charts import MaterialName
 from .fabrics import LawsRequest
 
 LinearDensity = Annotated[
@@ -45,14 +42,6 @@ FRICTIONLESS = (
     "Friction is left out, and so is what washing or pressing sets. Friction makes real "
     "fabric seem stiffer, and can hold it in more than one shape."
 )
-FROM_QUARTERS = (
-    "The repeat is too large for the yarn level, so its bending is the mean of the pure fabrics in "
-    "it, without the stiffness that folds add."
-)
-_CURLS = (
-    "This fabric curls. The test is not meant for fabric that rolls up, so it was calculated as if "
-    "it lay flat at rest."
-)
 
 
 class WeighedRequest(LawsRequest):
@@ -65,37 +54,6 @@ class WeighedRequest(LawsRequest):
         """Cloth of a repeat."""
         density = self.linear_density_g_per_m
         return cloth_of(repeat, context.material(self.material), linear_density_g_per_m=density)
-
-
-def notes_of(cloth: EvenCloth) -> list[str]:
-    """Notes on what a test of cloth that is flat at rest leaves out."""
-    return [
-        FRICTIONLESS,
-        *([_CURLS] if cloth.curls else []),
-        *([FROM_QUARTERS] if cloth.from_quarters else []),
-    ]
-
-
-class ClothPiece(ResultModel):
-    """The stitches of a piece of cloth in a test, to show them in 3D: chart and shape."""
-
-    id: str = Field(description="Name of the shape, for 3D views of this chart.")
-    chart: ChartLines
-    outline: CellLines
-
-
-def cloth_piece(
-    corners_mm: Array,
-    rectangle_mm: tuple[float, float],
-    cloth: EvenCloth,
-    repeat: StitchChart,
-    identifier: str,
-) -> tuple[ClothPiece, Floats]:
-    """The stitches of a sheet of rectangles, and their corners; lines follow the columns."""
-    laid = stitched(corners_mm, rectangle_mm, cloth.stitch_mm, repeat)
-    outline = ShapedChart(laid.chart, laid.stitches).outline
-    piece = ClothPiece(id=identifier, chart=laid.chart.text, outline=outline)
-    return piece, laid.corners_mm
 
 
 def corner_lists(corners_mm: Array, there: NDArray[np.bool_]) -> list[list[Corner]]:

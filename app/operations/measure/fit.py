@@ -17,7 +17,13 @@ from knitcore.measure.uniaxial_files import read_stretch_test
 from ...cli.options import out_option, write_table
 from ...context import Context
 from ...requests.base import Floats, RequestModel, ResultModel
-from ...requests.fabrics import ElasticConstants, LawConstants, LawResult, elastic_constants_of
+from ...requests.fabrics import (
+    ElasticConstants,
+    LawConstants,
+    LawResult,
+    elastic_constants_of,
+    law_constants,
+)
 from ...requests.faults import CheckedBy
 from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
@@ -117,18 +123,10 @@ def _fit(request: FitRequest, context: Context) -> LawFit:
 def _result(fit: LawFit, *, residuals: bool) -> FitResult:
     errors = fit.standard_errors
     names = {name: name.removesuffix("_n_per_mm") for name in LawErrors.model_fields}
-    return FitResult.of_law(
-        fit.law,
+    return FitResult.of(
+        fit,
         **elastic_constants_of(fit.law),
-        rms_n_per_mm=fit.rms_n_per_mm,
-        rms_course_n_per_mm=fit.rms_course_n_per_mm,
-        rms_wale_n_per_mm=fit.rms_wale_n_per_mm,
-        largest_strain=fit.largest_strain,
-        runs=fit.runs,
-        reduction=fit.reduction,
-        error_method=fit.error_method,
-        notes=fit.notes,
-        waist_rms=fit.waist_rms,
+        **law_constants(fit.law),
         standard_errors={name: errors.get(constant) for name, constant in names.items()},
         residuals={d: _points(r) for d, r in fit.residuals.items()} if residuals else None,
         curves={d: CurveDocument.from_curve(c) for d, c in fit.curves.items()},

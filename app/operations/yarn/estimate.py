@@ -26,15 +26,8 @@ from knitcore.materials.material_files import save_material_file
 from ...cli.options import out_option
 from ...context import Context
 from ...requests.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
-from ...requests.fabrics import LawResult
+from ...requests.fabrics import LawResult, law_constants
 from ..registry import Command, Operation
-from .estimate_report import (
-    LeftOutResult,
-    ModelReport,
-    report,
-    report_lines,
-    text_of_left_out,
-)
 
 
 class SwatchInput(RequestModel):
@@ -49,8 +42,8 @@ class SwatchInput(RequestModel):
 class YarnFacts(RequestModel):
     """Facts of the yarn and the product that a command takes as plain options."""
 
-    bending_modulus_n_mm2: float | None = Field(
-        None, description="Bending modulus B of the yarn (`measure bending`)."
+    bending_modulus_n_mm2: float = Field(
+        description="Bending modulus B of the yarn (`measure bending`)."
     )
     product_setting: str = Field(
         "", max_length=200, description="Needle or stitch setting of the product."
@@ -60,11 +53,23 @@ class YarnFacts(RequestModel):
 class EstimateRequest(YarnFacts):
     """The yarn, the product, and swatches of the yarn that were measured."""
 
-    bending_modulus_n_mm2: float = Field(
-        description="Bending modulus B of the yarn (`measure bending`)."
-    )
     loop_length_mm: float | dict[Fabric, float] = Field(description="Yarn per stitch.")
     swatches: list[SwatchInput] = Field(default_factory=list, max_length=4)
+
+
+class LeftOutResult(ResultModel):
+    """Errors for the library's yarns when each is left out; rms errors are factors."""
+
+    measured: list[Fabric]
+    values: int
+    strain_rms_factor: float
+    modulus_rms_factor: float
+    modulus_median_factor: float
+    modulus_within_two: float = Field(description="Share predicted within a factor of two.")
+    alpha_rms_factor: float
+    beta_rms_factor: float
+    modulus_coverage: float = Field(description="Coverage of the 90 % intervals.")
+    strain_coverage: float
 
 
 class FabricEstimateResult(ResultModel):
@@ -117,7 +122,7 @@ def _result(estimate: YarnEstimate) -> EstimateResult:
     return EstimateResult.of(
         estimate,
         fabrics={
-            fabric: FabricEstimateResult.of(f, law=LawResult.of_law(f.law), **_values(f))
+            fabric: FabricEstimateResult.of(f, law=law_constants(f.law), **_values(f))
             for fabric, f in estimate.fabrics.items()
         },
         interval_source=INTERVAL_SOURCE,
@@ -177,12 +182,6 @@ def _values(fabric: FabricEstimate) -> dict[str, Any]:
 )
 @click.option("--swatch-setting", default="", help="Needle or stitch setting of the swatches.")
 @out_option("--out", help="Write a material file.")
-@click.option(
-    "--report",
-    "with_report",
-    is_flag=True,
-    help="Refit the model and leave one yarn out at a time.",
-)
 def _command(
     request: YarnFacts,
     context: Context,
@@ -191,14 +190,7 @@ def _command(
     swatch_lengths: tuple[str, ...],
     swatch_setting: str,
     out: Path | None,
-    with_report: bool,
-) -> EstimateResult | ModelReport:
-    if with_report:
-        return report()
-    if request.bending_modulus_n_mm2 is None:
-        raise InputError(
-            "bending_modulus_n_mm2", "is missing.", "Measure it: `knitcore measure bending`."
-        )
+) -> EstimateResult:
     if not lengths:
         raise InputError("loop_length_mm", "is missing.", "Unravel ten stitches and measure.")
     product = _lengths(lengths, "loop_length_mm")
@@ -255,9 +247,7 @@ def _swatch(
     return MeasuredSwatch(fabric, law, length, setting or known, curves)
 
 
-def _lines(r: EstimateResult | ModelReport) -> list[str]:
-    if isinstance(r, ModelReport):
-        return report_lines(r)
+def _lines(r: EstimateResult) -> list[str]:
     lines = ["extension at 0.1 N/mm (90 % interval), then Young's modulus in N/mm"]
     for fabric, f in r.fabrics.items():
         kind = " (measured)" if f.measured else ""
@@ -270,8 +260,19 @@ def _lines(r: EstimateResult | ModelReport) -> list[str]:
                 f" ({low:.4f} to {high:.4f})"
             )
     if r.left_out is not None:
-        lines += ["", text_of_left_out(r.left_out)]
+        lines += ["", _left_out_line(r.left_out)]
     return lines
+
+
+def _left_out_line(r: LeftOutResult) -> str:
+    """Figures of left-out yarns, in a line."""
+    measured = " and ".join(r.measured) or "nothing"
+    return (
+        f"yarns left out, {measured} measured: extension within a factor {r.strain_rms_factor:.2f}"
+        f" (rms), moduli {r.modulus_rms_factor:.2f} ({r.modulus_within_two:.0%} within two);"
+        f" 90 % intervals cover {r.strain_coverage:.0%} and {r.modulus_coverage:.0%}"
+        f" of {r.values} values"
+    )
 
 
 OPERATION = Operation(

@@ -20,10 +20,10 @@ from PIL import Image
 from pydantic import ValidationError
 
 from app.context import Context
-from app.operations.files.import_ import ImportRequest, import_
+from app.operations.files.imports import ImportRequest, import_
 from app.operations.measure.bending import BendingRequest, bending
-from app.operations.measure.compare import CompareRequest, compare
 from app.operations.measure.compression import CompressionRequest, compression
+from app.operations.measure.fields import CompareRequest, compare
 from app.operations.measure.fit import FitRequest, fit
 from app.requests.uploads import UploadedFile, stored
 from knitcore.base.errors import InputError, KnitcoreError

@@ -86,16 +86,10 @@ def test_an_estimate_becomes_a_material(tmp_path: Path) -> None:
     assert (low, high) == pytest.approx(tuple(interval), rel=0.02)
 
 
-def test_the_report_refits_and_leaves_out(client: TestClient) -> None:
-    told = run("estimate", "--report")
-    assert client.get("/api/v1/estimate/report").json() == told
-    assert told["yarns"] == 8
-
-
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ([], "bending-modulus-n-mm2: is missing"),
+        ([], "Missing option '--bending-modulus-n-mm2'"),
         (["--bending-modulus-n-mm2", "0.02"], "loop_length_mm: is missing"),
         (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "long"], "FABRIC=MM"),
         (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "rib=9"], "missing"),

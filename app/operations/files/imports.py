@@ -1,18 +1,20 @@
-"""Charts from files."""
+"""Charts from files, and the schema of the project file."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-from pydantic import Field
+from pydantic import Field, RootModel
 
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
 from knitcore.formats.read.chart_files import read_chart, read_piece
 
 from ...context import Context
-from ...requests.base import RequestModel, ResultModel
+from ...requests.base import NoRequest, RequestModel, ResultModel
 from ...requests.charts import ChartLines, RepeatText
 from ...requests.uploads import UploadedFile, stored
 from ..registry import Command, Operation
@@ -82,7 +84,17 @@ def design_in(path: Path) -> FoundDesign:
     return FoundDesign.of(layout_of(piece), chart=piece.chart.text)
 
 
-OPERATION = Operation(
+class DesignSchema(RootModel[dict[str, Any]]):
+    """A JSON schema."""
+
+
+def design_schema(request: NoRequest, context: Context) -> DesignSchema:
+    """The JSON schema of a design file."""
+    del request, context
+    return DesignSchema(schema_of_designs())
+
+
+IMPORT = Operation(
     import_,
     tag="files",
     summary="The chart in a file",
@@ -92,4 +104,11 @@ OPERATION = Operation(
         lambda r: [r.chart],
         more="It holds K/P text, written rows, KnitSpeak, PNG, knitout or a design.",
     ),
+)
+DESIGN_SCHEMA = Operation(
+    design_schema,
+    method="GET",
+    path="/schemas/design",
+    tag="files",
+    summary="JSON schema of the project file",
 )

@@ -1,11 +1,12 @@
-"""Reading a typed chart."""
+"""Charts to start from: a typed text, and named patterns."""
 
 from __future__ import annotations
 
+from knitcore.chart.patterns import PATTERNS
 from knitcore.chart.stitch_chart import StitchChart
 
 from ...context import Context
-from ...requests.base import RequestModel, ResultModel
+from ...requests.base import NoRequest, RequestModel, ResultModel
 from ...requests.charts import ChartLines, ChartText, RepeatText
 from ..registry import Operation
 
@@ -32,10 +33,39 @@ def parse(request: ParseRequest, context: Context) -> ParsedChart:
     return ParsedChart.of(chart, repeat=chart.repeat_cut().key)
 
 
-OPERATION = Operation(
+class PatternResult(ResultModel):
+    """A repeat with a name."""
+
+    id: str
+    name: str
+    repeat: RepeatText
+    note: str
+
+
+class Patterns(ResultModel):
+    """All named patterns."""
+
+    patterns: list[PatternResult]
+
+
+def patterns(request: NoRequest, context: Context) -> Patterns:
+    """Repeats to start from: the four fabrics, ribs, basket and more."""
+    del request, context
+    return Patterns(
+        patterns=[PatternResult.of(p, id=p.identifier, repeat=p.chart.key) for p in PATTERNS]
+    )
+
+
+PARSE = Operation(
     parse,
     path="/charts/parse",
     tag="charts",
     summary="Read a chart text and find its repeat",
     example={"text": "KPKP\nPKPK"},
+)
+PATTERNS_SHOWN = Operation(
+    patterns,
+    method="GET",
+    tag="charts",
+    summary="Named patterns",
 )

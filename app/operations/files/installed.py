@@ -1,4 +1,4 @@
-"""Additions of installed packages, and problems of those that cannot be used."""
+"""Programs that are installed here: the version of this one, and what packages add to it."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from knitcore.materials import Material
 
 from ...context import Context
 from ...requests.base import NoRequest, ResultModel
+from ...service import VERSION
 from ..registry import Command, Operation
 
 KINDS: dict[Group, type[Offer]] = {
@@ -59,10 +60,25 @@ def _lines(result: Extensions) -> list[str]:
     return lines or ["no extensions are installed"]
 
 
-OPERATION = Operation(
+class VersionResult(ResultModel):
+    """The program and its versions."""
+
+    version: str = Field(description="Version of the program, as `knitcore --version` prints it.")
+    api: str = Field(description="Version of the REST API, as in its addresses after /api/.")
+
+
+def version(_: NoRequest, __: Context) -> VersionResult:
+    """The version of the program, as `knitcore --version` prints it on the service's machine."""
+    return VersionResult(version=VERSION, api="v1")
+
+
+EXTENSIONS = Operation(
     extensions,
     method="GET",
     tag="materials",
     summary="Additions of installed packages",
     command=Command(_lines),
+)
+VERSION_SHOWN = Operation(
+    version, tag="service", summary="The version of the service", method="GET"
 )
