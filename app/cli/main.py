@@ -96,7 +96,7 @@ GROUPS: dict[str, dict[str, Entry]] = {
             "measure.compression",
             "Fit the contact law of a yarn to compression tests.",
         ),
-    },
+    }
 }
 """Commands of groups."""
 

@@ -35,13 +35,7 @@ from ..requests.charts import (
 )
 from .computed import PosedView, StretchView
 from .fabric import Drawing, FabricScene
-from .stitch_colours import (
-    Colour,
-    FieldColours,
-    Palette,
-    region_labels,
-    stitch_colours,
-)
+from .stitch_colours import Colour, FieldColours, Palette, region_labels, stitch_colours
 
 MAX_REGIONS = 200
 MAX_LETTERS = 41_000

@@ -21,14 +21,7 @@ from knitcore.mechanics.local_moduli import StitchTable, stitch_table
 
 from ..requests.base import RequestModel
 from ..requests.charts import MAX_FIELD
-from .colours import (
-    FABRIC_COLOURS,
-    diverging,
-    fabric_mix,
-    named_colour,
-    rgb,
-    sequential,
-)
+from .colours import FABRIC_COLOURS, diverging, fabric_mix, named_colour, rgb, sequential
 from .computed import StretchView
 
 Colours = NDArray[np.uint8]

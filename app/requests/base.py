@@ -7,14 +7,7 @@ from collections.abc import Callable
 from inspect import signature
 from typing import Annotated, Any, Self, TypeVar
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    TypeAdapter,
-    ValidationError,
-)
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
 
 from knitcore.base.errors import InputError
 
@@ -99,7 +92,8 @@ class IntervalResult(ResultModel):
     interval_source: str = Field(description="Source of the 90 % intervals.")
 
 
-def _listed(value: Any) -> Any:
+def listed(value: Any) -> Any:
+    """Turn an array of the library into lists."""
     return value.tolist() if hasattr(value, "tolist") else value
 
 
@@ -111,7 +105,7 @@ def _known(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-Floats = Annotated[list[float], BeforeValidator(_listed)]
+Floats = Annotated[list[float], BeforeValidator(listed)]
 """An array of the library."""
 Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
 """An interval is [low, high] everywhere, each end in the shape and the unit of its value, and its

@@ -42,8 +42,7 @@ ChartLines = Annotated[
 RepeatText = Annotated[
     str,
     Field(
-        description="A repeat: K/P, the top row first, rows separated by /.",
-        examples=["KPKP/PKPK"],
+        description="A repeat: K/P, the top row first, rows separated by /.", examples=["KPKP/PKPK"]
     ),
 ]
 """A repeat in an answer, spelled as in a design."""

@@ -63,9 +63,4 @@ PARSE = Operation(
     summary="Read a chart text and find its repeat",
     example={"text": "KPKP\nPKPK"},
 )
-PATTERNS_SHOWN = Operation(
-    patterns,
-    method="GET",
-    tag="charts",
-    summary="Named patterns",
-)
+PATTERNS_SHOWN = Operation(patterns, method="GET", tag="charts", summary="Named patterns")

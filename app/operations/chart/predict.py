@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from pydantic import Field
 
 from knitcore.chart.fabric import Direction
@@ -84,39 +86,30 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
             f"{chart.columns} x {chart.rows} stitches."
         )
     predicted = predict_chart(chart, material, request.relaxed_size)
-    course, wale = predicted.course, predicted.wale
-    size = size_at_rest(shaped, material, predicted)
+    by_direction: dict[str, Any] = {}
+    for direction in Direction:
+        along = predicted.along(direction)
+        by_direction |= {
+            f"modulus_{direction}_n_per_mm": along.modulus_n_per_mm,
+            f"modulus_{direction}_interval_n_per_mm": along.modulus_interval_n_per_mm,
+            f"modulus_{direction}_bounds_n_per_mm": along.bounds_n_per_mm,
+            f"extensibility_{direction}_mm_per_n": 1.0 / along.modulus_n_per_mm,
+            f"relaxed_{direction}_mm": along.relaxed_mm,
+            f"relaxed_{direction}_interval_mm": along.relaxed_interval_mm,
+        }
     segments = segment_map(chart)
     to_relax = worth_relaxing(chart, material, predicted)
-    return PredictResult(
+    return PredictResult.of(
+        predicted,
+        **by_direction,
+        **vars(size_at_rest(shaped, material, predicted)),
         rows=chart.rows,
         columns=chart.columns,
         segments={direction: segments.counts(direction) for direction in Direction},
-        modulus_course_n_per_mm=course.modulus_n_per_mm,
-        modulus_wale_n_per_mm=wale.modulus_n_per_mm,
-        modulus_course_interval_n_per_mm=course.modulus_interval_n_per_mm,
-        modulus_wale_interval_n_per_mm=wale.modulus_interval_n_per_mm,
-        modulus_course_bounds_n_per_mm=course.bounds_n_per_mm,
-        modulus_wale_bounds_n_per_mm=wale.bounds_n_per_mm,
-        shear_modulus_n_per_mm=predicted.shear_modulus_n_per_mm,
-        extensibility_course_mm_per_n=1.0 / course.modulus_n_per_mm,
-        extensibility_wale_mm_per_n=1.0 / wale.modulus_n_per_mm,
-        poisson_yx=course.poisson,
-        poisson_xy=wale.poisson,
-        poisson_yx_interval=course.poisson_interval,
-        poisson_xy_interval=wale.poisson_interval,
-        relaxed_course_mm=course.relaxed_mm,
-        relaxed_wale_mm=wale.relaxed_mm,
-        relaxed_course_interval_mm=course.relaxed_interval_mm,
-        relaxed_wale_interval_mm=wale.relaxed_interval_mm,
-        relaxed_source=predicted.relaxed_source,
-        width_mm=size.width_mm,
-        height_mm=size.height_mm,
-        width_interval_mm=size.width_interval_mm,
-        height_interval_mm=size.height_interval_mm,
-        provenance=predicted.provenance,
-        method=predicted.method,
-        interval_source=predicted.interval_source,
+        poisson_yx=predicted.course.poisson,
+        poisson_xy=predicted.wale.poisson,
+        poisson_yx_interval=predicted.course.poisson_interval,
+        poisson_xy_interval=predicted.wale.poisson_interval,
         worth_relaxing=None if to_relax is None else to_relax.text,
         notes=[*notes, *predicted.notes],
     )
@@ -156,7 +149,5 @@ OPERATION = Operation(
     tag="mechanics",
     summary="Moduli and extensibility of a chart",
     example={"chart": "KKPP", "material": "acrylic"},
-    command=Command(
-        _lines,
-    ),
+    command=Command(_lines),
 )

@@ -146,10 +146,7 @@ def _lines(r: CurlResult) -> list[str]:
         f"as it lies      {r.width_mm:.0f} x {r.height_mm:.0f} x {r.depth_mm:.0f} mm{state}",
         *(
             f"{edges:15} {_where(curl_mm, r.thickness_mm)}"
-            for edges, curl_mm in (
-                ("sides", r.curl_course_mm),
-                ("top and bottom", r.curl_wale_mm),
-            )
+            for edges, curl_mm in (("sides", r.curl_course_mm), ("top and bottom", r.curl_wale_mm))
             if curl_mm is not None
         ),
         f"solved          {r.seconds:.1f} s CPU",

@@ -96,8 +96,5 @@ OPERATION = Operation(
         "linear_density_g_per_m": 0.5,
     },
     job=True,
-    command=Command(
-        _lines,
-        names={"corners": None},
-    ),
+    command=Command(_lines, names={"corners": None}),
 )

@@ -220,10 +220,7 @@ def _curve(request: StretchRequest, test: StripTest, margins: StretchMargins) ->
     return StretchCurve.of(
         test,
         interval_source=margins.source,
-        force_interval_n=(
-            test.force_n / margins.force_factor,
-            test.force_n * margins.force_factor,
-        ),
+        force_interval_n=(test.force_n / margins.force_factor, test.force_n * margins.force_factor),
         waist_strain_interval=_around(test.waist_strain, margins.waist),
         shear_modulus_assumed=request.shear_modulus_n_per_mm is None,
         nearest_lock_up=_nearest(test),
@@ -351,9 +348,5 @@ OPERATION = Operation(
         "steps": 3,
     },
     job=True,
-    command=Command(
-        _lines,
-        more="It is simulated, not certified.",
-        run=_command,
-    ),
+    command=Command(_lines, more="It is simulated, not certified.", run=_command),
 )

@@ -314,26 +314,17 @@ OVERHANG = Operation(
     example={"chart": "K/P", "material": "acrylic", "linear_density_g_per_m": 0.5},
     job=True,
     command=Command(
-        _overhang_lines,
-        more="The result is Peirce's bending length.",
-        names={"corners": None},
+        _overhang_lines, more="The result is Peirce's bending length.", names={"corners": None}
     ),
 )
 DRAPE = Operation(
     drape,
     tag="mechanics",
     summary="Drape coefficient: a round piece over a disc",
-    example={
-        "chart": "K/P",
-        "material": "acrylic",
-        "linear_density_g_per_m": 0.5,
-        "across": 10,
-    },
+    example={"chart": "K/P", "material": "acrylic", "linear_density_g_per_m": 0.5, "across": 10},
     job=True,
     command=Command(
-        _drape_lines,
-        more="The result is Cusick's drape coefficient.",
-        names={"corners": None},
+        _drape_lines, more="The result is Cusick's drape coefficient.", names={"corners": None}
     ),
 )
 BORDER = Operation(

@@ -64,10 +64,7 @@ class WishInput(RequestModel):
     def target(self) -> PartTarget:
         """The library's object."""
         return PartTarget(
-            self.name,
-            tuple(self.runs),
-            self.modulus_course_n_per_mm,
-            self.modulus_wale_n_per_mm,
+            self.name, tuple(self.runs), self.modulus_course_n_per_mm, self.modulus_wale_n_per_mm
         )
 
 

@@ -185,12 +185,7 @@ def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atl
 
 
 def _candidate(candidate: Candidate) -> CandidateResult:
-    return CandidateResult.of(
-        candidate,
-        transfers_per_stitch=candidate.cost.transfers_per_stitch,
-        crossings_per_stitch=candidate.cost.crossings_per_stitch,
-        curl=candidate.cost.curl,
-    )
+    return CandidateResult.of(candidate, **vars(candidate.cost))
 
 
 _TARGET = re.compile(
@@ -231,10 +226,7 @@ def _asked(
     help="Search the library's other yarns if nothing meets the targets.",
 )
 def _command(
-    request: FindRequest,
-    context: Context,
-    atlases: tuple[Path, ...],
-    elsewhere: bool,
+    request: FindRequest, context: Context, atlases: tuple[Path, ...], elsewhere: bool
 ) -> FindResult:
     named = request.materials[len(atlases) :]
     tables = [*map(load_atlas, atlases), *_atlases(named, request.repeats, context)]

@@ -59,8 +59,7 @@ class ExportRequest(DesignLayout, LawsRequest):
         None, gt=0, lt=1e5, description="Linear density of the yarn, for its mass."
     )
     photo: Content | None = Field(
-        None,
-        description="PNG picture of the cloth, base64, for the first page of a pattern.",
+        None, description="PNG picture of the cloth, base64, for the first page of a pattern."
     )
 
 

@@ -14,10 +14,7 @@ from ...requests.base import NoRequest, ResultModel
 from ...service import VERSION
 from ..registry import Command, Operation
 
-KINDS: dict[Group, type[Offer]] = {
-    Group.MATERIALS: Material,
-    Group.EXPORTERS: Exporter,
-}
+KINDS: dict[Group, type[Offer]] = {Group.MATERIALS: Material, Group.EXPORTERS: Exporter}
 
 
 class ExtensionResult(ResultModel):

@@ -331,16 +331,9 @@ def _gauge(fabric: Fabric, gauge: Gauge) -> GaugeResult:
 
 
 def _worn(place: Worn) -> WornResult:
-    pressure = place.pressure
-    if pressure is None:
+    if (pressure := place.pressure) is None:
         return WornResult.of(place, strain=None, mmhg=None, kpa=None, warnings=[place.problem])
-    return WornResult.of(
-        place,
-        strain=pressure.strain,
-        mmhg=pressure.mmhg,
-        kpa=pressure.kpa,
-        warnings=pressure.warnings,
-    )
+    return WornResult.of(place, **vars(pressure))
 
 
 def measured_options(command: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:

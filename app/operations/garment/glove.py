@@ -83,10 +83,7 @@ def _result(worn: GloveOnHand, request: GloveRequest, context: Context) -> Glove
 def _worn(request: GloveRequest, context: Context) -> GloveOnHand:
     material = context.material(request.material)
     return glove_on_hand(
-        request.garment.hand,
-        material,
-        ease=request.garment.ease,
-        gauges=request.gauges(material),
+        request.garment.hand, material, ease=request.garment.ease, gauges=request.gauges(material)
     )
 
 
@@ -126,10 +123,7 @@ def _and_write(request: GloveRequest, context: Context, out: Path | None) -> Glo
 
 
 def _lines(r: GloveResult) -> list[str]:
-    return [
-        f"{'':18} {HEADING}",
-        *(f"{part.name:18} {part.line}" for part in r.parts),
-    ]
+    return [f"{'':18} {HEADING}", *(f"{part.name:18} {part.line}" for part in r.parts)]
 
 
 OPERATION = Operation(
@@ -138,10 +132,5 @@ OPERATION = Operation(
     summary="The glove on a hand",
     example={"garment": {"template": "glove"}, "material": "glove-wool:glove"},
     heavy=True,
-    command=Command(
-        _lines,
-        names={"garment": None, "gauge": None},
-        fields=_hand,
-        run=_and_write,
-    ),
+    command=Command(_lines, names={"garment": None, "gauge": None}, fields=_hand, run=_and_write),
 )

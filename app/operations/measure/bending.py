@@ -24,8 +24,7 @@ class BendingRequest(RequestModel):
         description="Mass per length: weigh some metres; 0.5 g/m is 500 tex."
     )
     length_mm: list[float] | float | None = Field(
-        None,
-        description="Hanging length, clamp to free end; one for all photos or one per photo.",
+        None, description="Hanging length, clamp to free end; one for all photos or one per photo."
     )
     px_per_mm: float | None = Field(
         None, description="Scale of the photos, pixels per mm, if it is known."
@@ -87,8 +86,5 @@ OPERATION = Operation(
         "length_mm": 120.0,
     },
     job=True,
-    command=Command(
-        _lines,
-        more="The yarn hangs from a horizontal clamp.",
-    ),
+    command=Command(_lines, more="The yarn hangs from a horizontal clamp."),
 )

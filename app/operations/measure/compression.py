@@ -129,9 +129,5 @@ OPERATION = Operation(
     summary="Contact constants from compression tests",
     example={"file": example_file("my-yarn-1.csv"), "diameter_mm": 2.0},
     job=True,
-    command=Command(
-        _lines,
-        more="Each FILE is an XLS, XLSX or CSV.",
-        run=_command,
-    ),
+    command=Command(_lines, more="Each FILE is an XLS, XLSX or CSV.", run=_command),
 )

@@ -274,9 +274,6 @@ CALIBRATE = Operation(
     example=EXAMPLE,
     job=True,
     command=Command(
-        _calibrate_lines,
-        more="FIELD is a .npz file.",
-        names={"frames": "--frame"},
-        run=_command,
+        _calibrate_lines, more="FIELD is a .npz file.", names={"frames": "--frame"}, run=_command
     ),
 )

@@ -182,15 +182,9 @@ OPERATION = Operation(
     fit,
     tag="measure",
     summary="A law from two stretch tests",
-    example={
-        "test_course": example_file("course.csv"),
-        "test_wale": example_file("wale.csv"),
-    },
+    example={"test_course": example_file("course.csv"), "test_wale": example_file("wale.csv")},
     job=True,
     command=Command(
-        _lines,
-        more="Each is an HDF5, CSV or XLSX file.",
-        names={"residuals": None},
-        run=_command,
+        _lines, more="Each is an HDF5, CSV or XLSX file.", names={"residuals": None}, run=_command
     ),
 )

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
+from knitcore.chart.fabric import Direction
 from knitcore.yarn.library.store import stored_for
 from knitcore.yarn.study.bending import (
     MAX_STITCHES,
@@ -16,7 +17,6 @@ from knitcore.yarn.study.bending import (
     repeat_bending,
     weight_n_per_mm2,
 )
-from knitcore.yarn.study.bent_cell import BendingResponse
 from knitcore.yarn.study.relax import relax
 
 from ...context import Context
@@ -126,34 +126,30 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         notes.append("It folds by itself along a diagonal: the rigidity there is not positive.")
     if stable.twist_n_mm is not None and stable.twist_n_mm <= 0.0:
         notes.append("A strip of it twists by itself: the rigidity of twist is not positive.")
+    by_direction: dict[str, Any] = {}
+    for direction in Direction:
+        bent = direction.of(shown.course, shown.wale)
+        by_direction |= {
+            f"moment_{direction}_n": bent.moment_n,
+            f"bending_{direction}_n_mm": bent.rigidity_n_mm,
+            f"bending_held_{direction}_n_mm": bent.held_n_mm,
+            f"strain_across_{direction}_mm": bent.strain_across_mm,
+            f"bending_length_{direction}_mm": weight
+            and bending_length_mm(bent.rigidity_n_mm, weight),
+        }
     symmetry = "with" if bending.mirrored is not None else "without"
     return BendResult.of(
         shown,
-        moment_course_n=shown.course.moment_n,
-        moment_wale_n=shown.wale.moment_n,
-        bending_course_n_mm=shown.course.rigidity_n_mm,
-        bending_wale_n_mm=shown.wale.rigidity_n_mm,
-        bending_held_course_n_mm=shown.course.held_n_mm,
-        bending_held_wale_n_mm=shown.wale.held_n_mm,
-        strain_across_course_mm=shown.course.strain_across_mm,
-        strain_across_wale_mm=shown.wale.strain_across_mm,
+        **by_direction,
         shear_modulus_n_per_mm=shear,
         twist_n_mm=stable.twist_n_mm,
         coupling_n_mm=stable.coupling_n_mm,
-        bending_length_course_mm=_hanging(shown.course, weight),
-        bending_length_wale_mm=_hanging(shown.wale, weight),
         stable=shown.minimum,
         provenance="yarn level, linear response of the repeat, relaxed "
         f"{symmetry} the symmetries of its chart{whence}; yarn: {used.provenance}",
         yarn=YarnResult.of_chart(used),
         notes=notes,
     )
-
-
-def _hanging(response: BendingResponse, weight_n_per_mm2: float | None) -> float | None:
-    if weight_n_per_mm2 is None:
-        return None
-    return bending_length_mm(response.rigidity_n_mm, weight_n_per_mm2)
 
 
 def _failures(bending: RepeatBending) -> Iterator[str]:
@@ -215,8 +211,5 @@ OPERATION = Operation(
     summary="Bending, curl and shear of a repeat at the yarn level",
     example={"chart": "K", "material": "acrylic"},
     job=True,
-    command=Command(
-        _lines,
-        more="Its shear modulus comes with them; all are without friction.",
-    ),
+    command=Command(_lines, more="Its shear modulus comes with them; all are without friction."),
 )

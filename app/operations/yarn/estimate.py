@@ -280,9 +280,5 @@ OPERATION = Operation(
     tag="materials",
     summary="The four fabrics of a yarn that is not in the library",
     example={"bending_modulus_n_mm2": 0.04, "loop_length_mm": 14.0},
-    command=Command(
-        _lines,
-        run=_command,
-        request=YarnFacts,
-    ),
+    command=Command(_lines, run=_command, request=YarnFacts),
 )

@@ -182,8 +182,5 @@ OPERATION = Operation(
     summary="Loading, unloading and rest sizes of a repeat with friction",
     example={"chart": "K", "material": "acrylic", "points": 4, "rest_sizes": False},
     job=True,
-    command=Command(
-        _text,
-        more="The result has the loop, the energy lost and the sizes at rest.",
-    ),
+    command=Command(_text, more="The result has the loop, the energy lost and the sizes at rest."),
 )

@@ -287,11 +287,7 @@ MATERIALS = Operation(
     method="GET",
     tag="materials",
     summary="The library of materials",
-    command=Command(
-        _lines,
-        more="MATERIAL is an id or a file.",
-        run=_command,
-    ),
+    command=Command(_lines, more="MATERIAL is an id or a file.", run=_command),
 )
 MATERIAL = Operation(
     material,

@@ -84,10 +84,7 @@ def _lines(result: RSResult) -> list[str]:
                 f"v {s.slope:.3f}{angle}"
             )
     factor = log_interval(1.0, RS_LOG_SD).high
-    return [
-        *lines,
-        f"90 % interval of Y: a factor of {factor:.1f} either way.",
-    ]
+    return [*lines, f"90 % interval of Y: a factor of {factor:.1f} either way."]
 
 
 OPERATION = Operation(

@@ -177,10 +177,7 @@ def _result(
         both = {}
         for d in Direction:
             both[d] = pulled(
-                d,
-                _FAR_STRAIN[d],
-                points=_FAR_POINTS,
-                max_stress_n_per_mm=1.2 * MAX_STRESS_N_PER_MM,
+                d, _FAR_STRAIN[d], points=_FAR_POINTS, max_stress_n_per_mm=1.2 * MAX_STRESS_N_PER_MM
             )
             seconds += both[d].seconds
         law = fit_sweeps(both[Direction.COURSE], both[Direction.WALE])
@@ -210,19 +207,9 @@ def _result(
 
 
 def _swept_law(fitted: SimulatedLaw) -> SweptLaw:
-    law = fitted.law
-    return SweptLaw.of(
-        fitted,
-        **elastic_constants_of(law),
-        stiffness_xxxx=law.stiffness_xxxx,
-        stiffness_yyyy=law.stiffness_yyyy,
-        stiffness_xxyy=law.stiffness_xxyy,
-        stiffness_yyxx=law.stiffness_yyxx,
-        alpha_xx=law.alpha_xx,
-        alpha_yy=law.alpha_yy,
-        beta_xx=law.beta_xx,
-        beta_yy=law.beta_yy,
-    )
+    law = vars(fitted.law)
+    constants = {name: law[name] for name in SweptLaw.model_fields if name in law}
+    return SweptLaw.of(fitted, **elastic_constants_of(fitted.law), **constants)
 
 
 def _pulling(zero: RelaxedCell, request: SweepRequest, context: Context) -> Callable[..., Sweep]:
@@ -232,10 +219,7 @@ def _pulling(zero: RelaxedCell, request: SweepRequest, context: Context) -> Call
             pull, on_splines(zero), coefficient=request.friction, cancelled=context.cancelled
         )
     return partial(
-        swept,
-        zero,
-        slide_quenching=request.slide_quenching or None,
-        cancelled=context.cancelled,
+        swept, zero, slide_quenching=request.slide_quenching or None, cancelled=context.cancelled
     )
 
 

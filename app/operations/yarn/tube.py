@@ -104,10 +104,7 @@ def _lines(r: TubeResult) -> list[str]:
     thick, wide, high = r.diameter_interval_mm, r.cell_course_interval_mm, r.cell_wale_interval_mm
     wider, higher = (
         f"{100 * (size / flat - 1):+.1f} %"
-        for size, flat in (
-            (r.cell_course_mm, r.flat_course_mm),
-            (r.cell_wale_mm, r.flat_wale_mm),
-        )
+        for size, flat in ((r.cell_course_mm, r.flat_course_mm), (r.cell_wale_mm, r.flat_wale_mm))
     )
     return [
         f"tube            {r.wales} stitches around, its {side} outside",
@@ -125,8 +122,5 @@ OPERATION = Operation(
     summary="Relax a repeat in the round",
     example={"chart": "K", "material": "acrylic", "wales": 60},
     job=True,
-    command=Command(
-        _lines,
-        more="The tube is long, has --wales stitches around, and no friction.",
-    ),
+    command=Command(_lines, more="The tube is long, has --wales stitches around, and no friction."),
 )

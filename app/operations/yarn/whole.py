@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, Field
+from pydantic import BeforeValidator, Field
 
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.materials.law_uncertainty import YARN_LEVEL_ERRORS
@@ -15,7 +15,7 @@ from knitcore.yarn.solve.splines import size_intervals
 from knitcore.yarn.study.whole_chart import MAX_ROUNDS, WholeShape, relax_whole
 
 from ...context import Context
-from ...requests.base import Ends, IntervalResult
+from ...requests.base import Ends, Floats, IntervalResult, ResultModel, listed
 from ...requests.charts import ChartInput, to_chart
 from ...requests.yarn_level import StitchRequest, YarnResult
 from ..registry import Command, Operation
@@ -72,34 +72,24 @@ class WholeResult(IntervalResult):
     )
 
 
-class KeptSheet(BaseModel):
+class KeptSheet(ResultModel):
     """Progress of a chart that is being relaxed."""
 
-    controls: list[list[tuple[float, float, float]]]
-    sizes_mm: list[float]
-    tension_n: list[list[float]]
+    controls: Annotated[list[list[tuple[float, float, float]]], BeforeValidator(listed)]
+    sizes_mm: Floats
+    tension_n: Annotated[list[list[float]], BeforeValidator(listed)]
     core_radius_mm: float
     fine: bool
     rounds: list[tuple[float, float, float]]
     earlier: int
     evaluations: int = 0
 
-    @classmethod
-    def of(cls, sheet: WholeShape) -> KeptSheet:
-        """The shape in a form that can be stored."""
-        return cls(
-            controls=sheet.controls.tolist(), sizes_mm=sheet.sizes_mm.tolist(),
-            tension_n=sheet.tension_n.tolist(), core_radius_mm=sheet.core_radius_mm,
-            fine=sheet.fine, rounds=list(sheet.rounds), earlier=sheet.earlier,
-            evaluations=sheet.evaluations,
-        )  # fmt: skip
-
     def sheet(self) -> WholeShape:
         """The shape as an object of the library."""
-        return WholeShape(
-            np.array(self.controls), np.array(self.sizes_mm), np.array(self.tension_n),
-            self.core_radius_mm, self.fine, tuple(self.rounds), self.earlier, self.evaluations,
-        )  # fmt: skip
+        arrays = {
+            name: np.array(getattr(self, name)) for name in ("controls", "sizes_mm", "tension_n")
+        }
+        return WholeShape(**{**dict(self), **arrays, "rounds": tuple(self.rounds)})
 
 
 def whole(request: WholeRequest, context: Context) -> WholeResult:
