@@ -8,11 +8,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from app.cli.main import main
 from knitcore import warm_up
 from knitcore.base.compiled import COMPILING
+from tests.app.command_line import printed
 
 KERNEL = """
 from knitcore.base.compiled import compiled
@@ -67,8 +66,7 @@ def nothing() -> None:
 
 def test_warm_up_names_the_parts_that_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(warm_up, "TASKS", (nothing,))
-    told = CliRunner().invoke(main, ["warm-up"])
-    assert told.exit_code == 0
+    told = printed("warm-up")
     assert told.stdout == ""
     assert told.stderr.splitlines() == [
         "Compiling kernels for this processor in 1 parts …",

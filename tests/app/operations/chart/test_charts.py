@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import pytest
 from fastapi.testclient import TestClient
 
 from knitcore import StitchChart
@@ -20,29 +19,6 @@ def test_patterns_are_repeats_without_a_smaller_one(client: TestClient) -> None:
     for pattern in shelf:
         chart = StitchChart.parse(pattern["repeat"])
         assert chart.repeat() == chart
-
-
-@pytest.mark.parametrize(
-    ("body", "field"),
-    [
-        ({"text": "KQ"}, "chart"),
-        ({"text": "KP\nK"}, "chart"),
-        ({"text": ""}, "chart"),
-        ({"text": 5}, "text"),
-        ({}, "text"),
-        ({"text": "K", "extra": 1}, "extra"),
-    ],
-)
-def test_bad_charts_name_field_and_remedy(
-    client: TestClient, body: dict[str, object], field: str
-) -> None:
-    response = client.post("/api/v1/charts/parse", json=body)
-    assert response.status_code == 422
-    assert response.headers["content-type"] == "application/problem+json"
-    problem = response.json()
-    assert problem["field"] == field
-    assert problem["detail"]
-    assert problem["remedy"]
 
 
 def test_malformed_json_is_reported_as_such(client: TestClient) -> None:

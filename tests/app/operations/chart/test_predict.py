@@ -6,13 +6,12 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from knitcore import Fabric
 from knitcore.materials import load_library
 from tests.app.command_line import run
+from tests.app.rest import refusal
 
 FIELDS = {
     "rows",
@@ -56,8 +55,7 @@ def test_garter_is_the_papers(client: TestClient) -> None:
 @pytest.mark.parametrize("material", list(load_library()))
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_every_pure_fabric_has_its_table_values(material: str, fabric: Fabric) -> None:
-    asked = ("predict", fabric, "--size", "31x31", "--material", material)
-    told = run(*asked, "--laws", "published")
+    told = run("predict", fabric, "--size", "31x31", "--material", material, "--laws", "published")
     printed = load_library()[material].record(fabric).printed
     for name, direction in (("Y_x", "course"), ("Y_y", "wale")):
         modulus = told[f"modulus_{direction}_n_per_mm"]
@@ -95,54 +93,10 @@ def test_a_prediction_is_of_the_largest_rectangle_in_the_outline(
     file.write_text(json.dumps(design | {"chart": chart, "outline": outline}))
     assert run("predict", str(file), "--material", "acrylic") == told
 
-    refused = client.post("/api/v1/predict", json=asked | {"outline": "xx\nxx"})
-    assert refused.status_code == 422
-    assert refused.json()["field"] == "outline"
+    assert refusal(client, "predict", asked | {"outline": "xx\nxx"})["field"] == "outline"
 
 
 def test_a_small_mixed_repeat_is_labelled_with_care(client: TestClient) -> None:
     rows = "\n".join(["KKPP" * 5] * 10)
     told = client.post("/api/v1/predict", json={"chart": rows, "material": "acrylic"}).json()
     assert told["provenance"] == "learned"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (["garter", "--material", "acrylic"], "size"),
-        (["garter", "--size", "0x5", "--material", "acrylic"], "no stitches"),
-        (["garter", "--size", "5000x5000", "--material", "acrylic"], "too large"),
-        (["garter", "--size", "big", "--material", "acrylic"], "COLUMNSxROWS"),
-        (["velvet", "--size", "5x5", "--material", "acrylic"], "size"),
-        (["nothing.txt", "--material", "acrylic"], "does not exist"),
-        (["garter", "--size", "5x5", "--material", "steel"], "not in the library"),
-        (["garter", "--size", "5x5", "--material", "none.yaml"], "material"),
-        (["garter", "--size", "5x5"], "--material"),
-    ],
-)
-def test_bad_input_ends_with_code_2_and_a_word_on_stderr(arguments: list[str], says: str) -> None:
-    result = CliRunner().invoke(main, ["predict", *arguments, "--json"])
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert says in result.stderr
-
-
-@pytest.mark.parametrize(
-    ("body", "field"),
-    [
-        ({"chart": "KX", "material": "acrylic"}, "chart"),
-        ({"chart": "K", "material": "steel"}, "material"),
-        ({"chart": {"fabric": "garter", "columns": 0, "rows": 1}, "material": "acrylic"}, "chart"),
-        ({"chart": "K"}, "material"),
-        ({"chart": {"fabric": "velvet", "columns": 3, "rows": 3}, "material": "cotton"}, "chart"),
-        ({"chart": 5, "material": "cotton"}, "chart"),
-    ],
-)
-def test_bad_requests_name_the_field(
-    client: TestClient, body: dict[str, object], field: str
-) -> None:
-    problem = client.post("/api/v1/predict", json=body).json()
-    assert problem["status"] == 422
-    assert problem["field"].split(".")[0] == field
-    assert "constrained" not in problem["field"]
-    assert problem["remedy"]

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import io
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from app.context import Context
 from app.drawing.design_view import ViewRequest, build_scene
 from app.drawing.solid import solid_glb
@@ -20,6 +17,8 @@ from app.operations.cloth.curl import CurlRequest, curl
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import DesignFile, write_design
+from tests.app.command_line import printed, run
+from tests.app.rest import post
 
 STRIP = {"fabric": "stockinette", "columns": 12, "rows": 3}
 FIELDS = {
@@ -28,10 +27,7 @@ FIELDS = {
 
 
 def test_curl_over_rest(client: TestClient) -> None:
-    body = {"chart": STRIP, "material": "acrylic", "corners": True}
-    answer = client.post("/api/v1/curl", json=body)
-    assert answer.status_code == 200, answer.text
-    curled = answer.json()
+    curled = post(client, "curl", {"chart": STRIP, "material": "acrylic", "corners": True})
     assert set(curled) >= FIELDS
     assert curled["converged"]
     assert curled["curl_wale_mm"] > 0.0
@@ -46,10 +42,9 @@ def test_a_first_shape_begins_at_an_old_one(client: TestClient) -> None:
 
     def depth_mm(**more: object) -> float:
         body = {"chart": STRIP, "material": "acrylic", "time_limit_s": 1e-9} | more
-        answer = client.post("/api/v1/curl", json=body)
-        assert answer.status_code == 200, answer.text
-        assert not answer.json()["converged"]
-        return float(answer.json()["depth_mm"])
+        answer = post(client, "curl", body)
+        assert not answer["converged"]
+        return float(answer["depth_mm"])
 
     rest = client.post("/api/v1/curl", json={"chart": STRIP, "material": "acrylic"}).json()
     changed = "KKKKKKKKKKKK\nKKKKKPKKKKKK\nKKKKKKKKKKKK"
@@ -99,24 +94,13 @@ def test_a_piece_with_a_hole_over_rest_as_a_solid_and_hanging(client: TestClient
     assert hung["converged"]
 
 
-def test_an_outline_in_two_parts_is_refused(client: TestClient) -> None:
-    body = {"chart": "KKK\nKKK", "material": "acrylic", "outline": "x.x\nx.x"}
-    answer = client.post("/api/v1/curl", json=body)
-    assert answer.status_code == 422
-    assert answer.json()["field"] == "outline"
-    assert "2 parts" in answer.text
-
-
 def test_a_shaped_design_and_clamps_at_the_command_line(tmp_path: Path) -> None:
     design = tmp_path / "shaped.json"
     knits, outline = "\n".join(["KKKKKK"] * 4), "..xx..\nxxxxxx\nxx..xx\nxxxxxx"
     shaped = DesignFile(name="Shaped", material="acrylic", chart=knits, outline=outline)
     design.write_text(write_design(shaped))
     out = tmp_path / "shaped.glb"
-    arguments = ["curl", str(design), "--material", "acrylic", "--strain", "0.1", "--json"]
-    result = CliRunner().invoke(main, [*arguments, "--out", str(out)])
-    assert result.exit_code == 0, result.stderr
-    told = json.loads(result.stdout)
+    told = run("curl", design, "--material", "acrylic", "--strain", "0.1", "--out", out)
     assert told["curl_wale_mm"] is None
     assert "between clamps" in told["notes"][0]
     assert out.stat().st_size > 1000
@@ -125,10 +109,7 @@ def test_a_shaped_design_and_clamps_at_the_command_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", [".npz", ".glb"])
 def test_curl_writes_the_shape(tmp_path: Path, kind: str) -> None:
     out = tmp_path / f"shape{kind}"
-    arguments = ["curl", "stockinette", "--size", "12x3", "--material", "acrylic"]
-    result = CliRunner().invoke(main, [*arguments, "--json", "--out", str(out)])
-    assert result.exit_code == 0, result.stderr
-    told = json.loads(result.stdout)
+    told = run("curl", "stockinette", "--size", "12x3", "--material", "acrylic", "--out", out)
     size = [told["width_mm"], told["height_mm"], told["depth_mm"]]
     if kind == ".npz":
         with np.load(out) as found:
@@ -140,24 +121,9 @@ def test_curl_writes_the_shape(tmp_path: Path, kind: str) -> None:
 
 
 def test_curl_prints_words() -> None:
-    arguments = ["curl", "stockinette", "--size", "4x16", "--material", "acrylic"]
-    result = CliRunner().invoke(main, arguments)
+    result = printed("curl", "stockinette", "--size", "4x16", "--material", "acrylic")
     assert "to the back" in result.stdout
     assert "Without friction" in result.stderr
-
-
-def test_unknown_kinds_of_files_are_refused(tmp_path: Path) -> None:
-    arguments = ["curl", "garter", "--size", "4x4", "--material", "acrylic"]
-    result = CliRunner().invoke(main, [*arguments, "--out", str(tmp_path / "shape.obj")])
-    assert result.exit_code == 2
-    assert "--out" in result.stderr or "out" in result.stderr
-
-
-def test_a_piece_too_large_is_refused(client: TestClient) -> None:
-    chart = {"fabric": "garter", "columns": 101, "rows": 100}
-    answer = client.post("/api/v1/curl", json={"chart": chart, "material": "acrylic"})
-    assert answer.status_code == 422
-    assert answer.json()["field"] == "chart"
 
 
 def test_a_view_shows_the_shape(tmp_path: Path) -> None:

@@ -8,13 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from app.context import Context
 from app.operations.cloth.piece import PieceRequest, piece
 from knitcore.base.errors import InputError
+from tests.app.command_line import refused, run
 
 PIECE: dict[str, Any] = {
     "outline": [[0, 0], [50, 0], [50, 80], [25, 60], [0, 80]],
@@ -61,11 +59,8 @@ def test_the_command_line_reads_a_piece_and_writes_results(
 ) -> None:
     file, out = tmp_path / "piece.json", tmp_path / "out.csv"
     file.write_text(json.dumps(PIECE))
-    options = ["--material", "acrylic", "--steps", "2", "--mesh-mm", "10", "--json"]
-    arguments = ["piece", "stockinette", "--piece", str(file), "--out", str(out), *options]
-    told = CliRunner().invoke(main, arguments)
-    assert told.exit_code == 0, told.output
-    edges = json.loads(told.stdout)["edges"]
+    options = "--material", "acrylic", "--steps", "2", "--mesh-mm", "10"
+    edges = run("piece", "stockinette", "--piece", file, "--out", out, *options)["edges"]
     assert edges[0]["force_y_n"] == pytest.approx(piece(loaded(), context).edges[0].force_y_n)
     assert np.genfromtxt(out, delimiter=",", names=True)["top_y_n"] == pytest.approx([0.5, 1.0])
 
@@ -80,11 +75,7 @@ def test_a_file_that_is_not_a_piece_is_refused(
     file = tmp_path / "piece.json"
     if written is not None:
         file.write_text(written)
-    found = CliRunner().invoke(
-        main, ["piece", "garter", "--piece", str(file), "--material", "acrylic"]
-    )
-    assert found.exit_code == 2
-    assert told in found.stderr
+    assert told in refused("piece", "garter", "--piece", file, "--material", "acrylic")
 
 
 def test_cloth_past_its_lock_up_is_reported(context: Context) -> None:
@@ -109,18 +100,3 @@ def test_pieces_that_cannot_be_used_are_refused_by_name(
     with pytest.raises(InputError) as refused:
         piece(loaded(**change), context)
     assert refused.value.field == field
-
-
-@pytest.mark.parametrize(
-    ("field", "change"),
-    [
-        ("piece.outline", {"outline": [[0, 0], [1e9, 0], [0, 1]]}),
-        ("piece.conditions", {"conditions": [{"kind": "glued", "edge": "hem"}]}),
-    ],
-)
-def test_the_service_refuses_a_piece_that_is_badly_written(
-    client: TestClient, field: str, change: dict[str, Any]
-) -> None:
-    problem = client.post("/api/v1/piece", json=ASKED | {"piece": PIECE | change}).json()
-    assert problem["status"] == 422, problem
-    assert problem["field"].startswith(field)

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
+from tests.app.command_line import printed
+from tests.app.rest import post
 
 YARN = {"material": "acrylic", "linear_density_g_per_m": 0.5}
 PIECE = {"fabric": "garter", "columns": 5, "rows": 6}
@@ -26,9 +26,7 @@ PIECE = {"fabric": "garter", "columns": 5, "rows": 6}
 def test_simulated_tests_over_rest(
     client: TestClient, address: str, body: dict[str, Any], lines: tuple[int, int]
 ) -> None:
-    answer = client.post(f"/api/v1/{address}", json={**body, "corners": True})
-    assert answer.status_code == 200, answer.text
-    told = answer.json()
+    told = post(client, f"{address}", {**body, "corners": True})
     assert told["converged"]
     assert np.array([[at is None for at in line] for line in told["corners_mm"]]).shape == lines
 
@@ -42,9 +40,7 @@ def test_simulated_tests_over_rest(
     ],
 )
 def test_simulated_tests_as_commands(arguments: list[str], words: str) -> None:
-    yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
-    result = CliRunner().invoke(main, [*arguments, *yarn])
-    assert result.exit_code == 0, result.output
+    result = printed(*arguments, "--material", "acrylic", "--linear-density-g-per-m", "0.5")
     assert words in result.stdout
 
 
@@ -57,27 +53,22 @@ def test_the_piece_of_a_test_is_shown_in_3d(
     told = client.post(f"/api/v1/{address}", json={"chart": "K/P", **more, **YARN}).json()
     piece = told["piece"]
     view = {"curl": {"id": piece.pop("id")}, "material": "acrylic", **piece}
-    answer = client.post("/api/v1/views/still", json=view)
-    assert answer.status_code == 200, answer.text
+    assert client.post("/api/v1/views/still", json=view).status_code == 200
 
 
 def test_fabric_that_curls_is_said_to() -> None:
     yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
-    result = CliRunner().invoke(main, ["overhang", "stockinette", *yarn])
-    assert "curls" in result.stderr
+    assert "curls" in printed("overhang", "stockinette", *yarn).stderr
 
 
 def test_border_over_rest(client: TestClient) -> None:
     body = {"chart": "K/P", "border": "seed", **YARN}
-    answer = client.post("/api/v1/border", json=body)
-    assert answer.status_code == 200, answer.text
-    assert answer.json()["sides"]["stitches"] == 0
+    assert post(client, "border", body)["sides"]["stitches"] == 0
 
 
 @pytest.mark.slow
 def test_border_as_a_command() -> None:
     yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
-    result = CliRunner().invoke(main, ["border", "stockinette", "--border", "rib", *yarn])
-    assert result.exit_code == 0, result.output
+    result = printed("border", "stockinette", "--border", "rib", *yarn)
     assert "top and bottom" in result.stdout
     assert "Knitters make borders" in result.stderr

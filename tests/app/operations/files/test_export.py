@@ -7,13 +7,11 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
-from app.operations.files.export import MAX_STITCHES
 from knitcore.formats.write.export import FORMATS, ExportKind
-from tests.app.command_line import run
+from tests.app.command_line import refused, run
+from tests.app.rest import post
 
 CHART = "KPKK\nPPKP\nKKPP"
 
@@ -39,9 +37,7 @@ def test_export_writes_the_file(kind: ExportKind, tmp_path: Path) -> None:
     ],
 )
 def test_an_exported_file_is_imported(kind: ExportKind, client: TestClient, tmp_path: Path) -> None:
-    asked = client.post("/api/v1/export", json={"chart": CHART, "to": kind, "name": "A/b"})
-    assert asked.status_code == 200, asked.text
-    file = asked.json()
+    file = post(client, "export", {"chart": CHART, "to": kind, "name": "A/b"})
     assert file["name"] == "A-b" + FORMATS[kind].suffix
 
     upload = {"file": {"name": file["name"], "content": file["content"]}}
@@ -68,17 +64,14 @@ SHAPED = {
     "kind", [ExportKind.KNITOUT, ExportKind.PNG, ExportKind.WRITTEN, ExportKind.DESIGN]
 )
 def test_outlines_and_yarns_go_there_and_back(kind: ExportKind, client: TestClient) -> None:
-    asked = client.post("/api/v1/export", json=SHAPED | {"to": kind, "linear_density_tex": 400})
-    assert asked.status_code == 200, asked.text
-    file = asked.json()
+    file = post(client, "export", SHAPED | {"to": kind, "linear_density_tex": 400})
     assert file["carriers"] == (2 if kind is ExportKind.KNITOUT else None)
     upload = {"file": {"name": file["name"], "content": file["content"]}}
     told = client.post("/api/v1/import", json=upload).json()
     assert told["outline"] == SHAPED["outline"]
     (region,) = told["regions"]
     assert (region["yarn"], region["colour"], region["runs"]) == ("navy", "#1f3b70", [[0, 0, 4]])
-    again = client.post("/api/v1/export", json=SHAPED | {k: told[k] for k in SHAPED} | {"to": kind})
-    assert again.status_code == 200
+    post(client, "export", SHAPED | {k: told[k] for k in SHAPED} | {"to": kind})
 
 
 def test_the_command_line_keeps_what_a_design_holds(tmp_path: Path) -> None:
@@ -105,30 +98,7 @@ def test_an_import_notes_doubtful_readings(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("name", "says"), [("none.png", "does not exist"), (".", "is a folder")])
 def test_a_missing_file_is_reported(name: str, says: str, tmp_path: Path) -> None:
-    refused = CliRunner().invoke(main, ["import", str(tmp_path / name)])
-    assert refused.exit_code == 2
-    assert says in refused.stderr
-
-
-def test_limits_are_named(client: TestClient) -> None:
-    side = int(MAX_STITCHES[ExportKind.GLB] ** 0.5) + 1
-    chart = {"fabric": "rib", "rows": side, "columns": side}
-    refused = client.post("/api/v1/export", json={"chart": chart, "to": "glb"})
-    assert refused.status_code == 422
-    assert "has 2601 stitches" in refused.json()["detail"]
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "field"),
-    [("chart.k", b"knit", "knitout"), ("chart.doc", b"KP", "chart"), ("a.txt", b"KX", "chart")],
-)
-def test_files_that_hold_no_chart(
-    client: TestClient, name: str, content: bytes, field: str
-) -> None:
-    upload = {"file": {"name": name, "content": base64.b64encode(content).decode()}}
-    refused = client.post("/api/v1/import", json=upload)
-    assert refused.status_code == 422
-    assert refused.json()["field"] == field
+    assert says in refused("import", str(tmp_path / name))
 
 
 def test_the_schema_is_published(client: TestClient) -> None:
@@ -137,8 +107,4 @@ def test_the_schema_is_published(client: TestClient) -> None:
 
 def test_a_missing_folder_is_named(tmp_path: Path) -> None:
     out = tmp_path / "none" / "chart.png"
-    result = CliRunner().invoke(
-        main, ["export", "rib", "--size", "2x2", "--to", "png", "-o", str(out)]
-    )
-    assert result.exit_code == 2
-    assert "is not a folder" in result.stderr
+    assert "is not a folder" in refused("export", "rib", "--size", "2x2", "--to", "png", "-o", out)

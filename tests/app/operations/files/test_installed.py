@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import base64
-import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from app.context import Context
 from app.operations.files.export import ExportRequest, export
 from knitcore.base.errors import InputError
 from knitcore.base.extensions import Group
+from tests.app.command_line import printed, run
 from tests.extension_package import install, install_example
 
 
@@ -23,20 +21,13 @@ def house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     install_example(monkeypatch, tmp_path / "site")
 
 
-def run(*arguments: str) -> str:
-    result = CliRunner().invoke(main, arguments)
-    assert result.exit_code == 0, result.output
-    return result.stdout
-
-
 def test_the_commands_take_its_yarn_and_its_format(tmp_path: Path) -> None:
-    asked = ["moss", "--size", "24x6", "--material", "house-dk"]
-    predicted = json.loads(run("predict", *asked, "--json"))
+    predicted = run("predict", "moss", "--size", "24x6", "--material", "house-dk")
     assert (predicted["columns"], predicted["rows"]) == (24, 6)
     assert predicted["modulus_course_n_per_mm"] > 0
 
     out = tmp_path / "card.txt"
-    run("export", "moss", "--size", "24x6", "--to", "punchcard", "-o", str(out))
+    printed("export", "moss", "--size", "24x6", "--to", "punchcard", "-o", str(out))
     assert out.read_text().splitlines()[1] == ".o" * 12
 
 
@@ -60,4 +51,4 @@ def test_the_list_shows_what_is_wrong(
     found = {e["name"]: e for e in client.get("/api/v1/extensions").json()["extensions"]}
     assert found["knit-house"]["problem"] is None
     assert "ModuleNotFoundError" in found["gone"]["problem"]
-    assert "gone (bad 2.0)" in run("extensions")
+    assert "gone (bad 2.0)" in printed("extensions").stdout

@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from knitcore.formats.designs.design_file import read_design
+from tests.app.command_line import printed, refused, run
+from tests.app.rest import post
 
 REQUESTS = (
     {"template": "glove"},
@@ -24,24 +24,19 @@ REQUESTS = (
 def test_rest_and_command_line_agree(
     client: TestClient, garment: dict[str, object], tmp_path: Path
 ) -> None:
-    asked = client.post("/api/v1/garment", json={"garment": garment, "material": "glove-wool"})
-    assert asked.status_code == 200, asked.text
+    asked = post(client, "garment", {"garment": garment, "material": "glove-wool"})
     out = tmp_path / "garment.json"
     settings = [f"--set={k}={json.dumps(v)}" for k, v in garment.items() if k != "template"]
-    told = CliRunner().invoke(
-        main,
-        [
-            "garment",
-            str(garment["template"]),
-            "--material=glove-wool",
-            *settings,
-            f"-o{out}",
-            "--json",
-        ],
+    told = run(
+        "garment",
+        str(garment["template"]),
+        "--material=glove-wool",
+        *settings,
+        f"-o{out}",
+        "--json",
     )
-    assert told.exit_code == 0, told.output
-    assert json.loads(told.stdout) == asked.json()
-    assert read_design(out).to_piece().shaped.stitches == asked.json()["stitches"]
+    assert told == asked
+    assert read_design(out).to_piece().shaped.stitches == asked["stitches"]
 
 
 def test_a_garment_is_kept_as_a_design(client: TestClient) -> None:
@@ -73,41 +68,17 @@ def test_gauge_yarn_and_pressure_of_ones_own(client: TestClient) -> None:
     gauge = next(g for g in fine["gauges"] if g["fabric"] == "stockinette")
     assert gauge["stitches_per_4_in"] == pytest.approx(22)
     assert gauge["rows_per_5_cm"] == pytest.approx(30 * 50 / 101.6)
-    told = CliRunner().invoke(
-        main,
-        [
-            "garment",
-            "wrist-brace",
-            "--material=acrylic",
-            "--set=wrist_mm=170",
-            "--set=length_mm=90",
-            "--set=target_mmhg=20",
-            "--gauge=22x30",
-            "--per=4 in",
-            "--tex=500",
-            "--json",
-        ],
-    )
-    assert json.loads(told.stdout) == fine
+    sizes = "--set=wrist_mm=170", "--set=length_mm=90", "--set=target_mmhg=20"
+    knitter = "--material=acrylic", "--gauge=22x30", "--per=4 in", "--tex=500"
+    assert run("garment", "wrist-brace", *sizes, *knitter) == fine
 
 
 def test_an_outline_is_drawn_and_never_dropped(tmp_path: Path) -> None:
     design, drawing = tmp_path / "glove.json", tmp_path / "glove.svg"
-    make = ["garment", "glove", "--material=glove-wool", f"-o{design}"]
-    assert CliRunner().invoke(main, make).exit_code == 0
-    export = ["export", str(design), "--to", "svg", "-o", str(drawing)]
-    assert CliRunner().invoke(main, export).exit_code == 0
+    printed("garment", "glove", "--material=glove-wool", f"-o{design}")
+    printed("export", design, "--to", "svg", "-o", drawing)
     assert "no stitch" in drawing.read_text()
-    refused = CliRunner().invoke(main, ["export", str(design), "--to", "text", "-o", "x.txt"])
-    assert refused.exit_code == 2
-    assert "cannot hold an outline" in refused.stderr
-
-
-def test_a_missing_measurement_is_named(client: TestClient) -> None:
-    garment = {"template": "wrist-brace", "wrist_mm": 170}
-    refused = client.post("/api/v1/garment", json={"garment": garment, "material": "acrylic"})
-    assert refused.status_code == 422
-    assert "length_mm" in refused.json()["detail"]
+    assert "cannot hold an outline" in refused("export", design, "--to", "text", "-o", "x.txt")
 
 
 def test_sizes_and_yarn_have_intervals_and_a_swatch_narrows_those_of_sizes(

@@ -11,6 +11,7 @@ import trimesh
 from fastapi.testclient import TestClient
 
 from tests.app.command_line import run
+from tests.app.rest import post
 
 ASKED = {"garment": {"template": "glove"}, "material": "glove-wool:glove"}
 
@@ -22,9 +23,7 @@ def told() -> dict[str, Any]:
 
 @pytest.mark.slow
 def test_the_glove_is_worn_and_shown(client: TestClient, told: dict[str, Any]) -> None:
-    answer = client.post("/api/v1/glove", json=ASKED)
-    assert answer.status_code == 200, answer.text
-    assert answer.json() == told
+    assert post(client, "glove", ASKED) == told
     design = client.post("/api/v1/garment", json=ASKED).json()
     assert (told["rows"], told["columns"]) == (design["rows"], design["columns"])
     view = {

@@ -7,13 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from knitcore.cloth.flat import SheetModel
 from knitcore.materials import material
-from tests.app.command_line import run
+from tests.app.command_line import refused, run
+from tests.app.rest import post
 from tests.knitcore.cloth.flat.synthetic import camera_arrays
 
 FABRIC = ["--material", "acrylic", "--fabric", "garter", "--direction", "wale"]
@@ -61,9 +60,7 @@ def test_a_calibrated_law_can_be_compared(field: Path, tmp_path: Path) -> None:
     ],
 )
 def test_unusable_input_ends_with_code_2(field: Path, arguments: list[str], message: str) -> None:
-    result = CliRunner().invoke(main, [str(field) if a == "FIELD" else a for a in arguments])
-    assert result.exit_code == 2
-    assert message in result.stderr
+    assert message in refused(*(field if a == "FIELD" else a for a in arguments))
 
 
 def test_rest_compares_too(client: TestClient, field: Path) -> None:
@@ -73,7 +70,5 @@ def test_rest_compares_too(client: TestClient, field: Path) -> None:
         "material": "acrylic",
         "fabric": "garter",
     }
-    answer = client.post("/api/v1/compare", json=body)
-    assert answer.status_code == 200, answer.text
-    assert answer.json()["frames"][1]["frame"] == 3
+    assert post(client, "compare", body)["frames"][1]["frame"] == 3
     assert client.post("/api/v1/compare", json=body | {"material": None}).status_code == 422

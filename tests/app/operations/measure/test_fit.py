@@ -7,13 +7,12 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from knitcore.chart.fabric import Direction
 from knitcore.formats.read.law_files import load_law
-from tests.app.command_line import run
+from tests.app.command_line import refused, run
+from tests.app.rest import refusal
 from tests.knitcore.measure.synthetic import LAW, hanging_yarn, save_photo, write_csv, write_h5
 from tests.knitcore.measure.test_compression import WORKBOOK, squeeze, write
 
@@ -67,8 +66,7 @@ def test_fit_writes_a_law_and_residuals(tmp_path: Path, tests: list[Path]) -> No
 @pytest.mark.slow
 def test_fit_reads_the_authors_layout(tmp_path: Path) -> None:
     files = [write_h5(tmp_path / f"{d}.h5", d) for d in Direction]
-    told = run("fit", *files, "--format", "h5")
-    assert told["runs"] == {"course": 4, "wale": 4}
+    assert run("fit", *files, "--format", "h5")["runs"] == {"course": 4, "wale": 4}
 
 
 def test_residuals_over_rest_are_bounded(client: TestClient, tests: list[Path]) -> None:
@@ -80,18 +78,12 @@ def test_residuals_over_rest_are_bounded(client: TestClient, tests: list[Path]) 
 
 
 def test_bad_tests_end_with_code_2_or_422(client: TestClient, tests: list[Path]) -> None:
-    result = CliRunner().invoke(main, ["fit", str(tests[0]), str(tests[0]), "--json"])
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert "same points" in result.stderr
+    assert "same points" in refused("fit", str(tests[0]), str(tests[0]))
     body = {"test_course": upload(tests[0]), "test_wale": upload(tests[0])}
-    problem = client.post("/api/v1/fit", json=body)
-    assert problem.status_code == 422
-    assert problem.json()["field"] == "test_wale"
+    problem = refusal(client, "fit", body)
+    assert problem["field"] == "test_wale"
     body["test_wale"] = {"name": "../../etc/x.csv", "content": base64.b64encode(b"a,b\n").decode()}
-    problem = client.post("/api/v1/fit", json=body)
-    assert problem.status_code == 422
-    assert problem.json()["field"] == "x.csv"
+    assert refusal(client, "fit", body)["field"] == "x.csv"
 
 
 def test_bending_from_photos(client: TestClient, tmp_path: Path) -> None:
@@ -100,11 +92,7 @@ def test_bending_from_photos(client: TestClient, tmp_path: Path) -> None:
         "measure", "bending", *photos, "--linear-density-g-per-m", "0.5", "--length-mm", "120"
     )
     assert set(told) >= {"bending_modulus_n_mm2", "standard_deviation", "photos"}
-    body = {
-        "images": [upload(p) for p in photos],
-        "linear_density_g_per_m": 0.5,
-        "length_mm": 120,
-    }
+    body = {"images": [upload(p) for p in photos], "linear_density_g_per_m": 0.5, "length_mm": 120}
     assert client.post("/api/v1/measure/bending", json=body).json() == told
     del body["length_mm"]
     problem = client.post("/api/v1/measure/bending", json=body).json()
@@ -119,9 +107,7 @@ def test_compression_from_csv(client: TestClient, tmp_path: Path) -> None:
     assert told["p"] == pytest.approx(2.5, rel=0.05)
     body = {"file": upload(path), "diameter_mm": 2.0}
     assert client.post("/api/v1/measure/compression", json=body).json() == told
-    result = CliRunner().invoke(main, ["measure", "compression", str(path), "--yarn", "steel"])
-    assert result.exit_code == 2
-    assert "steel" in result.stderr
+    assert "steel" in refused("measure", "compression", path, "--yarn", "steel")
 
 
 def test_a_workbook_of_two_yarns_on_the_command_line() -> None:

@@ -12,13 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
 from pydantic import ValidationError
 
-from app.cli.main import main
 from app.context import Context
 from app.operations.yarn.characterise import CharacteriseRequest, characterise
 from knitcore.base.errors import CancelledError
+from tests.app.command_line import printed, run
 from tests.knitcore.base.test_batch import cluster  # noqa: F401 - a fixture
 
 YARN = [
@@ -27,15 +26,12 @@ YARN = [
 ]  # fmt: skip
 
 
-def run(*arguments: str) -> list[dict[str, Any]]:
-    result = CliRunner().invoke(main, ["characterise", *arguments, "--json"])
-    assert result.exit_code == 0, result.stderr
-    told: list[dict[str, Any]] = json.loads(result.stdout)
-    return told
+def characterised(*arguments: str) -> Any:
+    return json.loads(printed("characterise", *arguments, "--json").stdout)
 
 
 def test_two_yarns_become_a_table_curves_and_materials(tmp_path: Path) -> None:
-    told = run(
+    told = characterised(
         "cotton", *YARN, "--fabrics", "stockinette", "--loop-lengths", "12,12.5", "--workers", "1",
         "--out", str(tmp_path),
     )  # fmt: skip
@@ -52,8 +48,7 @@ def test_two_yarns_become_a_table_curves_and_materials(tmp_path: Path) -> None:
     assert rows[0]["modulus_course_n_per_mm"] == rows[2]["modulus_course_n_per_mm"]
     with (tmp_path / "curves.csv").open() as file:
         assert {row["direction"] for row in csv.DictReader(file)} == {"course", "wale"}
-    detail = CliRunner().invoke(main, ["materials", str(tmp_path / "mine.json"), "--json"])
-    law = json.loads(detail.stdout)["fabrics"]["stockinette"]
+    law = run("materials", tmp_path / "mine.json")["fabrics"]["stockinette"]
     assert law["modulus_wale_n_per_mm"] == pytest.approx(float(rows[3]["modulus_wale_n_per_mm"]))
     assert law["origin"] == "simulated"
     assert (tmp_path / "mine-12mm.json").is_file()
@@ -95,8 +90,7 @@ def test_a_killed_batch_resumes(tmp_path: Path) -> None:
     before = {file: file.stat().st_mtime_ns for file in finished.glob("*.json")}
     assert len(before) == 2
     assert not (tmp_path / "table.csv").exists()
-    result = CliRunner().invoke(main, arguments)
-    assert result.exit_code == 0, result.stderr
+    result = printed(*arguments)
     assert {file: file.stat().st_mtime_ns for file in before} == before
     assert len(list(finished.glob("*.json"))) == 4
     assert result.stdout.count("stockinette") == 2
@@ -109,8 +103,8 @@ def test_a_cluster_of_two_processes_gives_the_same(
 ) -> None:
     address, _ = cluster
     asked = ("cotton", "--fabrics", "stockinette", "--tensions", "1,1.05")
-    there = run(*asked, "--scheduler", address, "--out", str(tmp_path / "there"))
-    here = run(*asked, "--workers", "1", "--out", str(tmp_path / "here"))
+    there = characterised(*asked, "--scheduler", address, "--out", str(tmp_path / "there"))
+    here = characterised(*asked, "--workers", "1", "--out", str(tmp_path / "here"))
     assert there == here
 
 
@@ -132,22 +126,3 @@ def test_the_operation_reports_progress_and_stops(tmp_path: Path) -> None:
 def test_one_yarn_has_to_be_named(body: dict[str, object]) -> None:
     with pytest.raises(ValidationError):
         CharacteriseRequest.model_validate(body)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--loop-lengths", "12"], "missing"),
-        (["cotton", "cotton"], "twice"),
-        (["cotton", "--loop-lengths", "twelve"], "'twelve': Input should be a valid number"),
-        (["cotton", "--fabrics", "tweed"], "tweed"),
-        (["--yarn", "mine", "--loop-lengths", "12"], "bending-modulus-n-mm2"),
-        (YARN, "no length is given"),
-        ([*YARN[:-1], "0.7", "--loop-lengths", "12"], "not inside the yarn"),
-        (["cotton", "--scheduler", "somewhere"], "not an address"),
-    ],
-)
-def test_unusable_arguments_are_refused(arguments: list[str], words: str, tmp_path: Path) -> None:
-    result = CliRunner().invoke(main, ["characterise", *arguments, "--out", str(tmp_path / "new")])
-    assert result.exit_code == 2
-    assert words in result.stderr

@@ -1,4 +1,4 @@
-"""Estimates and pressure over REST and on the command line."""
+"""Estimates over REST and on the command line."""
 
 from __future__ import annotations
 
@@ -7,10 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import load_material_file, material
 from tests.app.command_line import run
@@ -55,8 +53,7 @@ def test_measured_curves_go_from_the_tests_into_the_material(
     fitted = run("fit", *files, "--out", law)
     run("estimate", "--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "12",
         "--swatch", f"garter={law}", "--out", out)  # fmt: skip
-    told = run("materials", out)
-    assert told["measured"] == {"garter": fitted["curves"]}
+    assert run("materials", out)["measured"] == {"garter": fitted["curves"]}
     saved = load_material_file(out)
     curve = saved.record(Fabric.GARTER).measured[Direction.WALE]
     assert curve.pulls == 4
@@ -84,103 +81,3 @@ def test_an_estimate_becomes_a_material(tmp_path: Path) -> None:
     assert predicted["modulus_course_n_per_mm"] == pytest.approx(modulus, rel=1e-3)
     low, high = predicted["modulus_course_interval_n_per_mm"]  # type: ignore[misc]
     assert (low, high) == pytest.approx(tuple(interval), rel=0.02)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        ([], "Missing option '--bending-modulus-n-mm2'"),
-        (["--bending-modulus-n-mm2", "0.02"], "loop_length_mm: is missing"),
-        (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "long"], "FABRIC=MM"),
-        (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "rib=9"], "missing"),
-        (
-            ["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "9", "--swatch", "cotton"],
-            "FABRIC=",
-        ),
-        (
-            ["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "9", "--swatch", "rib=none"],
-            "library",
-        ),
-    ],
-)
-def test_bad_estimates_end_with_code_2(arguments: list[str], says: str) -> None:
-    result = CliRunner().invoke(main, ["estimate", *arguments, "--json"])
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert says in result.stderr
-
-
-GLOVE = ("--material", "glove-wool:glove", "--fabric", "stockinette", "--direction", "wale")
-
-
-def test_pressure_of_a_material(client: TestClient) -> None:
-    told = run("pressure", *GLOVE, "--rest-mm", "150", "--worn-mm", "180")
-    mmhg, kpa = told["mmhg"], told["kpa"]
-    assert isinstance(mmhg, list)
-    assert isinstance(kpa, list)
-    assert 0 < mmhg[0] < mmhg[1]
-    assert mmhg == pytest.approx([7.50062 * end for end in kpa], rel=1e-5)
-    assert told["warnings"]
-    body = {
-        "material": "glove-wool:glove",
-        "fabric": "stockinette",
-        "direction": "wale",
-        "rest_mm": 150,
-        "worn_mm": 180,
-    }
-    assert client.post("/api/v1/pressure", json=body).json() == told
-    law = asdict(material("glove-wool:glove").law(Fabric.STOCKINETTE))
-    body = {"law": law, "direction": "wale", "rest_mm": 150, "worn_mm": 180}
-    assert client.post("/api/v1/pressure", json=body).json()["mmhg"] == mmhg
-
-
-def test_a_tube_is_sized_for_a_target() -> None:
-    told = run("pressure", *GLOVE, "--target-mmhg", "20", "--worn-mm", "180")
-    sizes = told["rest_mm_for_target"]
-    assert isinstance(sizes, list)
-    assert sizes[0] < told["rest_mm"] < sizes[1] < 180
-    low, high = told["mmhg"]  # type: ignore[misc]
-    assert low < 20 < high
-
-
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (["--rest-mm", "200", "--worn-mm", "150"], "loose"),
-        (["--rest-mm", "100", "--worn-mm", "180"], "lock-up"),
-        (["--worn-mm", "150"], "rest_mm"),
-        (["--worn-mm", "150", "--rest-mm", "100", "--target-mmhg", "20"], "rest_mm"),
-        (["--worn-mm", "150", "--rest-mm", "120", "--law", "x.json"], "one of the two"),
-    ],
-)
-def test_bad_pressures_end_with_code_2(arguments: list[str], says: str) -> None:
-    result = CliRunner().invoke(main, ["pressure", *GLOVE, *arguments, "--json"])
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert says in result.stderr
-
-
-@pytest.mark.parametrize(
-    ("fields", "detail"),
-    [
-        ({"material": None}, "material: is missing."),
-        ({"law": {"alpha": 1.0}}, "law: material is given as well."),
-        ({"fabric": None}, "fabric: is missing."),
-        ({"chart": "KP"}, "chart: fabric is given as well."),
-        ({"rest_mm": None}, "rest_mm: is missing."),
-        ({"target_mmhg": 20}, "target_mmhg: rest_mm is given as well."),
-    ],
-)
-def test_a_pressure_names_the_field_that_is_missing_or_too_much(
-    client: TestClient, fields: dict[str, object], detail: str
-) -> None:
-    body = {
-        "direction": "course",
-        "material": "acrylic",
-        "fabric": "stockinette",
-        "rest_mm": 120,
-        "worn_mm": 150,
-    }
-    response = client.post("/api/v1/pressure", json=body | fields)
-    assert response.status_code == 422
-    assert response.json()["detail"] == detail

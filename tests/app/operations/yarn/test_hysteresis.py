@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
+from tests.app.command_line import printed
+from tests.app.rest import post
 
 
 def test_a_loop_over_rest(client: TestClient) -> None:
     asked = {"chart": "K", "material": "acrylic", "points": 4, "cycles": 1, "rest_sizes": False}
-    answer = client.post("/api/v1/hysteresis", json=asked)
-    assert answer.status_code == 200, answer.text
-    loop = answer.json()
+    loop = post(client, "hysteresis", asked)
     there, back = loop["legs"]
     assert (there["loading"], back["loading"]) == (True, False)
     assert 0.05 < loop["lost_share"] < 0.5
@@ -31,19 +29,8 @@ def test_a_given_coefficient_has_no_interval(client: TestClient) -> None:
     assert loop["lost_share_interval"] is None
 
 
-@pytest.mark.parametrize(
-    ("wrong", "field"), [({"friction": 3.0}, "friction"), ({"cycles": 9}, "cycles")]
-)
-def test_what_is_out_of_range_is_refused(client: TestClient, wrong: dict, field: str) -> None:
-    answer = client.post("/api/v1/hysteresis", json={"chart": "K", "material": "acrylic", **wrong})
-    assert answer.status_code == 422
-    assert answer.json()["field"] == field
-
-
 @pytest.mark.slow
 def test_rest_sizes_on_the_command_line() -> None:
-    asked = ["hysteresis", "stockinette", "--material", "acrylic", "--points", "6"]
-    result = CliRunner().invoke(main, asked)
-    assert result.exit_code == 0, result.stderr
+    result = printed("hysteresis", "stockinette", "--material", "acrylic", "--points", "6")
     assert "rest, stretched-course" in result.stdout
     assert "lost in a cycle" in result.stdout

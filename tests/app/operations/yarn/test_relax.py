@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from knitcore import StitchChart, relax
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.solve.splines import RelaxedRepeat, size_intervals
-from tests.app.command_line import run
+from tests.app.command_line import printed, refused, run
+from tests.app.rest import refusal
 
 FIELDS = {
     "cell_course_mm", "cell_wale_mm", "energy_n_mm", "bending_share", "contact_share",
@@ -59,8 +58,7 @@ def test_a_shape_that_needs_no_mirrors_says_so() -> None:
         assert told["branch"] == "mirrored"
         assert told["minimum"]
         assert told["mirrored"] is told["unmirrored"] is None
-    held = run(*asked, "--cell-course-mm", "3")
-    assert held["minimum"] is None
+    assert run(*asked, "--cell-course-mm", "3")["minimum"] is None
 
 
 def test_intervals_cover_other_minima_that_are_as_low() -> None:
@@ -82,40 +80,11 @@ def test_relax_in_the_published_branch() -> None:
     assert told["energy_n_mm"] == pytest.approx(0.401, rel=0.03)
 
 
-def test_the_published_branch_refuses_mixed_charts(client: TestClient) -> None:
-    body = {"chart": "KKP", "material": "cotton", "branch": "published"}
-    answer = client.post("/api/v1/relax", json=body)
-    assert answer.status_code == 422
-    assert "four pure fabrics" in answer.text
-
-
 def test_a_loop_that_is_too_short_is_refused_with_a_bound() -> None:
     arguments = ["relax", "rib", "--size", "2x2", "--material", "acrylic"]
-    result = CliRunner().invoke(main, [*arguments, "--loop-length-mm", "5"])
-    assert result.exit_code == 2
-    assert "too short" in result.stderr
-    assert "at least" in result.stderr
-
-
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        (["--cell-course-mm", "40"], "cell-course-mm: 40 mm cannot be reached"),
-        (
-            ["--loop-lengths-mm", "14/12"],
-            "loop-lengths-mm: they do not fit a chart of 2 columns x 1 row. Give every row one "
-            "length, or one for each of its stitches",
-        ),
-        (
-            ["--flat", "--cell-course-mm", "3", "--friction", "0.2"],
-            "Leave it out.\ncell-course-mm: a fabric at rest",
-        ),
-    ],
-)
-def test_a_refusal_names_the_option(options: list[str], says: str) -> None:
-    told = CliRunner().invoke(main, ["relax", "rib", "--material", "cotton", *options])
-    assert told.exit_code == 2
-    assert says in told.stderr
+    result = refused(*arguments, "--loop-length-mm", "5")
+    assert "too short" in result
+    assert "at least" in result
 
 
 def test_loop_lengths_give_the_same_on_the_command_line_and_over_rest(client: TestClient) -> None:
@@ -137,26 +106,6 @@ def test_loop_lengths_give_the_same_on_the_command_line_and_over_rest(client: Te
     )
     assert wide.json()["cell_course_mm"] == pytest.approx(3.5)
     assert wide.json()["force_course_n"] > 0.0
-
-
-@pytest.mark.parametrize(
-    ("asked", "field"),
-    [
-        ({"loop_lengths_mm": [[15.0]] * 3}, "loop_lengths_mm"),
-        ({"loop_lengths_mm": [[15.0, 15.0], [15.0]]}, "loop_lengths_mm"),
-        ({"loop_lengths_mm": [[15.0], [15.0]], "loop_length_mm": 15.0}, "loop_lengths_mm"),
-        ({"loop_lengths_mm": []}, "loop_lengths_mm"),
-        ({"branch": "published", "flat": True}, "branch"),
-        ({"cell_wale_mm": 90.0}, "cell_wale_mm"),
-    ],
-)
-def test_an_impossible_held_size_is_refused(
-    client: TestClient, asked: dict[str, Any], field: str
-) -> None:
-    chart = {"fabric": "stockinette", "columns": 1, "rows": 2}
-    answer = client.post("/api/v1/relax", json={"chart": chart, "material": "cotton"} | asked)
-    assert answer.status_code == 422
-    assert answer.json()["field"] == field
 
 
 def test_sweep_on_the_command_line_and_over_rest_agree(client: TestClient) -> None:
@@ -207,7 +156,7 @@ def test_relax_prints_the_options_that_predict_takes(tmp_path: Path) -> None:
     chart = tmp_path / "chart.txt"
     chart.write_text("KKP\nPKP\nKPP\n")
     asked = [str(chart), "--material", "acrylic:simulation"]
-    told = CliRunner().invoke(main, ["relax", *asked]).output
+    told = printed("relax", *asked).output
     options = next(line for line in told.splitlines() if line.startswith("for predict")).split()[2:]
     assert run("predict", *asked, *options)["relaxed_source"] == "relaxation"
 
@@ -244,9 +193,7 @@ def test_a_coefficient_alone_means_as_knitted(client: TestClient) -> None:
     assert told["cell_wale_mm"] > 1.004 * told["rest_sizes"][0]["wale_mm"]
     assert len(told["centre_lines_mm"]) == 1
     assert "Coefficient of friction 0.4: as given." in told["notes"]
-    output = (
-        CliRunner().invoke(main, ["relax", "stockinette", *ACRYLIC, "--friction", "0.4"]).output
-    )
+    output = printed("relax", "stockinette", *ACRYLIC, "--friction", "0.4").output
     (here,) = (line for line in output.splitlines() if line.endswith(", here"))
     assert here.startswith("rest, as-knitted")
 
@@ -265,9 +212,8 @@ def test_what_cannot_be_had_with_friction_is_refused(
     client: TestClient, asked: dict[str, Any], fields: list[str]
 ) -> None:
     body = {"chart": "K", "material": "acrylic", "history": "agitated"} | asked
-    answer = client.post("/api/v1/relax", json=body)
-    assert answer.status_code == 422
-    assert [error["field"] for error in answer.json()["errors"]] == fields
+    answer = refusal(client, "relax", body)
+    assert [error["field"] for error in answer["errors"]] == fields
 
 
 def test_a_sweep_there_and_back_loses_energy_to_friction(client: TestClient) -> None:
@@ -326,8 +272,7 @@ def test_without_friction_the_way_back_retraces_the_way_there(client: TestClient
 
 def test_a_loop_is_printed_with_what_it_loses() -> None:
     asked = ["sweep", "stockinette", *ACRYLIC, "--direction", "wale", "--max-strain", "0.1"]
-    told = CliRunner().invoke(main, [*asked, "--points", "3", "--there-and-back"])
-    assert told.exit_code == 0, told.output
+    told = printed(*asked, "--points", "3", "--there-and-back")
     assert "lost there and back" in told.stdout
     assert "released until free of force" in told.stderr
 
@@ -337,7 +282,6 @@ def test_yarn_that_may_not_slide_cannot_have_friction(client: TestClient) -> Non
         "chart": "K", "material": "acrylic", "direction": "course", "max_strain": 0.2,
         "there_and_back": True, "slide_quenching": True, "flat": True,
     }  # fmt: skip
-    answer = client.post("/api/v1/sweep", json=body)
-    assert answer.status_code == 422
-    fields = [error["field"] for error in answer.json()["errors"]]
+    answer = refusal(client, "sweep", body)
+    fields = [error["field"] for error in answer["errors"]]
     assert fields == ["flat", "slide_quenching"]

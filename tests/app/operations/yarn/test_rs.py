@@ -1,10 +1,8 @@
 from __future__ import annotations
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from tests.app.command_line import run
 
 
@@ -25,7 +23,4 @@ def test_even_values_are_the_papers(client: TestClient, material: str) -> None:
 
 
 def test_other_yarns_have_no_geometry(client: TestClient) -> None:
-    result = CliRunner().invoke(main, ["rs", "--material", "glove-wool", "--json"])
-    assert result.exit_code == 2
-    assert "acrylic or cotton" in result.stderr
     assert client.get("/api/v1/rs/glove-wool").json()["field"] == "material"

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
-from tests.app.command_line import run
+from tests.app.command_line import printed, run
+from tests.app.rest import post
 
 
 def test_a_tube_is_the_same_over_rest_and_on_the_command_line(client: TestClient) -> None:
-    asked = {"chart": "K", "material": "cotton", "wales": 60}
-    answer = client.post("/api/v1/tube", json=asked)
-    assert answer.status_code == 200, answer.text
-    found = answer.json()
+    found = post(client, "tube", {"chart": "K", "material": "cotton", "wales": 60})
     told = run("tube", "stockinette", "--material", "cotton", "--wales", 60)
     assert told["diameter_mm"] == pytest.approx(found["diameter_mm"], rel=1e-9)
     low, high = found["diameter_interval_mm"]
@@ -25,17 +21,9 @@ def test_a_tube_is_the_same_over_rest_and_on_the_command_line(client: TestClient
 
 def test_the_command_compares_the_tube_with_flat_fabric() -> None:
     asked = ["tube", "stockinette", "--material", "cotton", "--wales", "60", "--no-face-outside"]
-    told = CliRunner().invoke(main, asked)
-    assert told.exit_code == 0, told.stderr
+    told = printed(*asked)
     assert "its back outside" in told.stdout
     assert "against flat" in told.stdout
-
-
-def test_a_repeat_goes_around_a_whole_number_of_times(client: TestClient) -> None:
-    asked = {"chart": "KP", "material": "acrylic", "wales": 25}
-    answer = client.post("/api/v1/tube", json=asked)
-    assert answer.status_code == 422
-    assert answer.json()["field"] == "wales"
 
 
 def test_a_tube_says_that_its_mirrored_shape_is_no_minimum() -> None:

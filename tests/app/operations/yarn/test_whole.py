@@ -4,9 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from app.cli.main import main
 from app.context import Context
 from app.operations.yarn.whole import WholeRequest, whole
 from knitcore.base.errors import CancelledError
@@ -32,12 +30,6 @@ def test_a_stopped_job_goes_on_where_it_was(tmp_path: Path) -> None:
     assert len(whole(REQUEST, Context(tmp_path / "fresh")).notes) == 1
     assert found.energy_n_mm == pytest.approx(0.2386, rel=5e-3)
     assert found.rows == found.columns == 1
-
-
-def test_a_fabric_needs_a_size_on_the_command_line() -> None:
-    told = CliRunner().invoke(main, ["whole", "rib", "--material", "cotton"])
-    assert told.exit_code == 2
-    assert told.stderr == "Error: size: rib needs a size. Add --size COLUMNSxROWS.\n"
 
 
 @pytest.mark.slow
