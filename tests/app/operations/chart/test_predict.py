@@ -14,23 +14,13 @@ from tests.app.command_line import run
 from tests.app.rest import refusal
 
 FIELDS = {
-    "rows",
-    "columns",
-    "segments",
-    "modulus_course_n_per_mm",
-    "modulus_wale_n_per_mm",
-    "poisson_yx",
-    "poisson_xy",
-    "extensibility_course_mm_per_n",
-    "extensibility_wale_mm_per_n",
-    "provenance",
-    "relaxed_course_mm",
-    "relaxed_wale_mm",
-    "relaxed_course_interval_mm",
-    "relaxed_wale_interval_mm",
-    "modulus_course_interval_n_per_mm",
-    "modulus_wale_interval_n_per_mm",
-}
+    "rows", "columns", "segments", "provenance", "poisson_yx", "poisson_xy",
+    "modulus_course_n_per_mm", "modulus_wale_n_per_mm",
+    "modulus_course_interval_n_per_mm", "modulus_wale_interval_n_per_mm",
+    "extensibility_course_mm_per_n", "extensibility_wale_mm_per_n",
+    "relaxed_course_mm", "relaxed_wale_mm",
+    "relaxed_course_interval_mm", "relaxed_wale_interval_mm",
+}  # fmt: skip
 
 
 def test_garter_is_the_papers(client: TestClient) -> None:

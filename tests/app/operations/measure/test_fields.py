@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ from fastapi.testclient import TestClient
 from knitcore.cloth.flat import SheetModel
 from knitcore.materials import material
 from tests.app.command_line import refused, run
-from tests.app.rest import post
+from tests.app.rest import post, upload
 from tests.knitcore.cloth.flat.synthetic import camera_arrays
 
 FABRIC = ["--material", "acrylic", "--fabric", "garter", "--direction", "wale"]
@@ -65,7 +64,7 @@ def test_unusable_input_ends_with_code_2(field: Path, arguments: list[str], mess
 
 def test_rest_compares_too(client: TestClient, field: Path) -> None:
     body = {
-        "field": {"name": "f.npz", "content": base64.b64encode(field.read_bytes()).decode()},
+        "field": upload(field),
         "direction": "wale",
         "material": "acrylic",
         "fabric": "garter",

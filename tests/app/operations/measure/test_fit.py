@@ -1,4 +1,4 @@
-"""Fits and measurements over REST and on the command line: the same numbers, the same names."""
+"""Fits over REST and on the command line: the same numbers, the same names."""
 
 from __future__ import annotations
 
@@ -12,24 +12,13 @@ from fastapi.testclient import TestClient
 from knitcore.chart.fabric import Direction
 from knitcore.formats.read.law_files import load_law
 from tests.app.command_line import refused, run
-from tests.app.rest import refusal
-from tests.knitcore.measure.synthetic import LAW, hanging_yarn, save_photo, write_csv, write_h5
-from tests.knitcore.measure.test_compression import WORKBOOK, squeeze, write
+from tests.app.rest import refusal, upload
+from tests.knitcore.measure.synthetic import LAW, write_csv, write_h5
 
 CONSTANTS = {
-    "stiffness_xxxx_n_per_mm",
-    "stiffness_yyyy_n_per_mm",
-    "stiffness_xxyy_n_per_mm",
-    "stiffness_yyxx_n_per_mm",
-    "alpha_xx",
-    "alpha_yy",
-    "beta_xx_n_per_mm",
-    "beta_yy_n_per_mm",
-}
-
-
-def upload(path: Path) -> dict[str, str]:
-    return {"name": path.name, "content": base64.b64encode(path.read_bytes()).decode()}
+    "stiffness_xxxx_n_per_mm", "stiffness_yyyy_n_per_mm", "stiffness_xxyy_n_per_mm",
+    "stiffness_yyxx_n_per_mm", "alpha_xx", "alpha_yy", "beta_xx_n_per_mm", "beta_yy_n_per_mm",
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -84,36 +73,3 @@ def test_bad_tests_end_with_code_2_or_422(client: TestClient, tests: list[Path])
     assert problem["field"] == "test_wale"
     body["test_wale"] = {"name": "../../etc/x.csv", "content": base64.b64encode(b"a,b\n").decode()}
     assert refusal(client, "fit", body)["field"] == "x.csv"
-
-
-def test_bending_from_photos(client: TestClient, tmp_path: Path) -> None:
-    photos = [save_photo(tmp_path / f"{n}.png", hanging_yarn(n, length_px=700)) for n in (80, 100)]
-    told = run(
-        "measure", "bending", *photos, "--linear-density-g-per-m", "0.5", "--length-mm", "120"
-    )
-    assert set(told) >= {"bending_modulus_n_mm2", "standard_deviation", "photos"}
-    body = {"images": [upload(p) for p in photos], "linear_density_g_per_m": 0.5, "length_mm": 120}
-    assert client.post("/api/v1/measure/bending", json=body).json() == told
-    del body["length_mm"]
-    problem = client.post("/api/v1/measure/bending", json=body).json()
-    assert problem["field"] == "length_mm"
-
-
-def test_compression_from_csv(client: TestClient, tmp_path: Path) -> None:
-    made = squeeze(1e-3, 2.5)
-    path = write(tmp_path / "mine-1.csv", made.depth_mm, made.force_n)
-    told = run("measure", "compression", path, "--diameter-mm", "2.0")
-    assert told["k_n_per_mm3"] == pytest.approx(1e-3, rel=0.05)
-    assert told["p"] == pytest.approx(2.5, rel=0.05)
-    body = {"file": upload(path), "diameter_mm": 2.0}
-    assert client.post("/api/v1/measure/compression", json=body).json() == told
-    assert "steel" in refused("measure", "compression", path, "--yarn", "steel")
-
-
-def test_a_workbook_of_two_yarns_on_the_command_line() -> None:
-    told = run("measure", "compression", WORKBOOK)
-    assert told["k_n_per_mm3"] is None  # two yarns have no common mean
-    assert "ask for one yarn" in told["notes"][0]  # type: ignore[index]
-    assert set(told["mean"]) == {"soft", "firm"}  # type: ignore[call-overload]
-    soft = run("measure", "compression", WORKBOOK, "--yarn", "soft")
-    assert soft["k_n_per_mm3"] == pytest.approx(1e-3, rel=0.03)

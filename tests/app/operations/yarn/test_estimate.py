@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from dataclasses import asdict
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from fastapi.testclient import TestClient
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import load_material_file, material
 from tests.app.command_line import run
+from tests.app.rest import upload
 from tests.knitcore.measure.synthetic import write_csv
 
 
@@ -58,10 +58,7 @@ def test_measured_curves_go_from_the_tests_into_the_material(
     curve = saved.record(Fabric.GARTER).measured[Direction.WALE]
     assert curve.pulls == 4
     assert not saved.record(Fabric.RIB).measured
-    uploads = {
-        f"test_{d}": {"name": f.name, "content": base64.b64encode(f.read_bytes()).decode()}
-        for d, f in zip(Direction, files, strict=True)
-    }
+    uploads = {f"test_{d}": upload(f) for d, f in zip(Direction, files, strict=True)}
     asked = client.post("/api/v1/fit", json=uploads).json()
     assert asked["curves"] == fitted["curves"]
     assert client.get("/api/v1/materials/acrylic").json()["measured"] == {}
