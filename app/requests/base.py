@@ -118,3 +118,11 @@ KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]
 """The ends of an interval, null where they are not finite."""
 
 Positive = Annotated[float, Field(gt=0, le=1000)]
+Seed = Annotated[
+    int,
+    Field(
+        ge=0,
+        le=2**32 - 1,
+        description="Seed of random choices: the same one gives the same chart.",
+    ),
+]

@@ -20,7 +20,7 @@ from knitcore.garment.shaped import outline_marks
 
 from ...cli.options import atlas_option, design_option, resolve_chart, write_design_of
 from ...context import Context
-from ...requests.base import Ends, IntervalResult, Known, RequestModel, ResultModel
+from ...requests.base import Ends, IntervalResult, Known, RequestModel, ResultModel, Seed
 from ...requests.charts import (
     ChartLines,
     ChartText,
@@ -102,12 +102,7 @@ class FillRequest(LawsRequest):
         description="Single stitches may be turned over where that comes nearer; otherwise every "
         "patch is a repeat, or stripes of two.",
     )
-    seed: int = Field(
-        0,
-        ge=0,
-        le=2**32 - 1,
-        description="Seed of random choices: the same one gives the same chart.",
-    )
+    seed: Seed = 0
     check: bool = Field(
         True,
         description="Pull the chart in the finite swatch; choose again where the result differs.",

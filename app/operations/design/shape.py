@@ -18,7 +18,7 @@ from knitcore.design.shape import fill_shape
 
 from ...cli.options import atlas_option, design_option, write_design_of
 from ...context import Context
-from ...requests.base import Known, ResultModel
+from ...requests.base import Known, ResultModel, Seed
 from ...requests.charts import ChartLines, MaterialName, RepeatText
 from ...requests.fabrics import LawsRequest
 from ...service.results.atlases import Extent
@@ -49,12 +49,7 @@ class ShapeRequest(LawsRequest):
     across: int = Field(ge=3, le=1000, description="Stitches in a line.")
     repeats: Extent = "small"
     smallest_band: int = Field(4, ge=1, le=100, description="Fewest lines in a band.")
-    seed: int = Field(
-        0,
-        ge=0,
-        le=2**32 - 1,
-        description="Seed of random choices: the same one gives the same chart.",
-    )
+    seed: Seed = 0
 
 
 class BandResult(ResultModel):
