@@ -14,7 +14,7 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
-from app.models.uploads import EXAMPLES
+from app.requests.uploads import EXAMPLES
 from app.service.identity import LOCAL_USER
 from app.service.jobs.store import OPEN
 from app.service.main import create_app

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from app.models.uploads import EXAMPLES
+from app.requests.uploads import EXAMPLES
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.cloth.flat import SheetModel
 from knitcore.materials import material

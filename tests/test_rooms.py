@@ -31,7 +31,7 @@ APP_FLOORS = (
     {"limits", "settings"},
     {"results"},
     {"context"},
-    {"models"},
+    {"requests"},
     {"drawing", "store"},
     {"operations"},
     {"compute", "web"},

@@ -21,16 +21,16 @@ from pydantic import BaseModel
 from knitcore.base.errors import InputError
 
 from ..context import Context
-from ..models.base import IntervalResult
 from ..operations.perform import Viewed, carried_out
 from ..operations.registry import Operation
+from ..requests.base import IntervalResult
 from .common import emit, json_option, telling_what_is_compiled, user_data_dir
 from .inputs import Inputs
 from .options import CHART_HELP
 
 
-def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
-    """Make the command of an operation."""
+def command_of(operation: Operation[Any, Any], name: str, line: str = "") -> click.Command:
+    """Make the command of an operation; its help begins with a line, or the summary."""
     declared = operation.command
     if declared is None:
         raise TypeError(f"{operation.name} is not a command")
@@ -51,7 +51,7 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
         for remark in () if given["as_json"] else _remarks(result):
             click.echo(remark, err=True)  # the result may be piped on
 
-    help_text = declared.help or f"{operation.summary}."
+    help_text = f"{line or operation.summary + '.'} {declared.more}".rstrip()
     epilog = CHART_HELP if "chart" in inputs.names else None
     command = json_option(click.command(name, help=help_text, epilog=epilog)(callback))
     command.params = [

@@ -29,10 +29,10 @@ from pydantic.fields import FieldInfo
 
 from knitcore.base.errors import InputError
 
-from ..models.base import UNIT
-from ..models.charts import IS_REPEAT
-from ..models.refusals import OF_VALUES, problem_in_words, remedy_in_words
-from ..models.uploads import UploadedFile
+from ..requests.base import UNIT
+from ..requests.charts import IS_REPEAT
+from ..requests.faults import OF_VALUES, problem_in_words, remedy_in_words
+from ..requests.uploads import UploadedFile
 from .options import chart_file, is_fabric, resolve_chart
 
 FILE = click.Path(path_type=Path)
@@ -195,7 +195,7 @@ def _chart_input(model: type[BaseModel]) -> Input:
 
 def _design_fields(file: Path, model: type[BaseModel]) -> dict[str, Any]:
     """Read the fields of the request that a file holds."""
-    from ..operations.import_ import design_in
+    from ..operations.files.imports import design_in
 
     design = design_in(file)
     return {name: part for name, part in design if name in model.model_fields and part is not None}

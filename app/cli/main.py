@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Mapping
 from typing import Any
 
 import click
@@ -10,38 +11,94 @@ from pydantic import ValidationError
 
 from knitcore.base.errors import KnitcoreError
 
-from ..models.base import first_fault
-from ..operations.registry import commands, operation_of_command
+from ..requests.base import first_fault
 from .options import CHART_HELP
 
-GROUPS = {"measure": "Measure a yarn's bending and its compression."}
-"""Groups of commands, which are operations."""
-SERVICE = {
-    "serve": ".serve:command",
-    "doctor": ".machine:doctor",
-    "warm-up": ".machine:warm_up",
-    "token": ".token:command",
-    "backup": ".backups:backup",
-    "restore": ".backups:restore",
+Entry = tuple[str, str]
+"""Where a command is, and its line in the help.
+
+An operation is named by its module in :mod:`app.operations`. Any other command is named by its
+module in this package and a name there; its line is its own. A group has no module.
+"""
+SECTIONS: dict[str, dict[str, Entry]] = {
+    "Design": {
+        "find": ("design.find", "Find repeats that meet targets, the surest first."),
+        "fill": ("design.fill", "Design a chart with given moduli at each stitch."),
+        "shape": ("design.shape", "Design a chart that takes given widths when it is stretched."),
+        "atlas": ("design.atlas", "Predict every repeat of a material, for `knitcore find`."),
+    },
+    "Fabric": {
+        "predict": ("chart.predict", "Predict moduli, Poisson's ratios and size at rest of CHART."),
+        "curve": ("chart.curve", "Predict the stress-strain curve of CHART."),
+        "stretch": ("cloth.stretch", "Pull CHART between two clamps, as in a strip test."),
+        "bias": ("cloth.cut_tests", "Pull a strip cut from CHART at an angle to its rows."),
+        "biaxial": ("cloth.cut_tests", "Pull all four edges of a rectangle of CHART outwards."),
+        "trellis": ("cloth.cut_tests", "Shear a square of CHART in a hinged frame."),
+        "piece": ("cloth.piece", "Load a piece of any outline that is cut from CHART."),
+        "curl": ("cloth.curl", "Compute how the whole piece CHART curls and folds."),
+        "border": ("cloth.weighing", "Compute how wide a border keeps a piece of CHART flat."),
+        "hang": ("cloth.hang", "Compute how the whole piece CHART hangs under its weight."),
+        "drape": ("cloth.weighing", "Drape a round piece of CHART over a disc."),
+        "overhang": ("cloth.weighing", "Bend a strip of CHART over the edge of a table."),
+        "rs": ("yarn.rs", "Compute the four pure fabrics by the reduced-symmetry model."),
+    },
+    "Yarn": {
+        "materials": ("yarn.materials", "List the library's materials, or explain one."),
+        "estimate": ("yarn.estimate", "Estimate the fabrics of a yarn that is not in the library."),
+        "characterise": (
+            "yarn.characterise",
+            "Simulate the pure fabrics of yarns and fit their laws.",
+        ),
+        "relax": ("yarn.relax", "Compute the yarn's shape at rest in the repeat CHART."),
+        "whole": ("yarn.whole", "Compute the yarn's shape at rest in a whole CHART."),
+        "tube": ("yarn.tube", "Compute the yarn's shape at rest in a tube knitted of CHART."),
+        "sweep": ("yarn.sweep", "Stretch the yarn of the repeat CHART and fit a law to it."),
+        "hysteresis": (
+            "yarn.hysteresis",
+            "Load and unload the repeat CHART, with friction in its yarn.",
+        ),
+        "bend": ("yarn.bend", "Compute bending rigidity and curl of the repeat CHART."),
+    },
+    "Measure": {
+        "fit": ("measure.fit", "Fit a law to a course-wise and a wale-wise stretch test."),
+        "measure": ("", "Measure a yarn's bending and its compression."),
+        "calibrate": (
+            "measure.fields",
+            "Fit shear and couplings to a measured displacement field.",
+        ),
+        "compare": ("measure.fields", "Compare a law with a measured displacement field."),
+    },
+    "Garment": {
+        "garment": ("garment.garment", "Plan a garment from a TEMPLATE and measurements."),
+        "glove": ("garment.glove", "Compute how a glove fits a hand and presses on it."),
+        "limb": ("garment.limb", "Compute how a tube of CHART fits a limb and presses on it."),
+        "pressure": ("garment.pressure", "Compute the pressure of a knitted tube on a limb."),
+    },
+    "Files": {
+        "import": ("files.imports", "Read the chart in FILE."),
+        "export": ("files.export", "Write CHART for machines, knitters or other programs."),
+    },
+    "Serve": {
+        "serve": (".serve:command", ""),
+        "doctor": (".service:doctor", ""),
+        "warm-up": (".service:warm_up", ""),
+        "token": (".service:token", ""),
+        "backup": (".service:backup", ""),
+        "restore": (".service:restore", ""),
+        "extensions": ("files.installed", "List what installed packages add to Knitcore."),
+    },
 }
-"""Commands that are no operations, and where each is in this package."""
-SECTIONS: dict[str, tuple[str, ...]] = {
-    "Design": ("find", "fill", "shape", "atlas"),
-    "Fabric": (
-        *("predict", "curve", "stretch", "bias", "biaxial", "trellis", "piece"),
-        *("curl", "border", "hang", "drape", "overhang", "rs"),
-    ),
-    "Yarn": (
-        *("materials", "estimate", "characterise"),
-        *("relax", "whole", "tube", "sweep", "hysteresis", "bend"),
-    ),
-    "Measure": ("fit", "measure", "calibrate", "compare"),
-    "Garment": ("garment", "glove", "limb", "pressure"),
-    "Files": ("import", "export"),
-    "Serve": (*SERVICE, "extensions"),
+"""Commands by section of the help, whose lines are here so that it loads no operation."""
+GROUPS: dict[str, dict[str, Entry]] = {
+    "measure": {
+        "bending": ("measure.bending", "Measure a yarn's bending modulus from IMAGES."),
+        "compression": (
+            "measure.compression",
+            "Fit the contact law of a yarn to compression tests.",
+        ),
+    }
 }
-"""Sections of the help; a command that is in none is listed last."""
-LAST_SECTION = "More"
+"""Commands of groups."""
 
 
 class Failure(click.ClickException):
@@ -54,73 +111,55 @@ class Failure(click.ClickException):
         click.echo(f"Error: {self.message}", file=file, err=True)
 
 
-class Operations(click.Group):
-    """Commands made of the operations of a group, each loaded when it is called."""
+class Commands(click.Group):
+    """Commands that are loaded when they are called.
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """List the names of all commands."""
-        return sorted(commands(self.operations_of))
+    Parameters
+    ----------
+    sections : the commands, by section of the help.
+    """
 
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Load the command of that name."""
-        try:
-            operation = operation_of_command(cmd_name, self.operations_of)
-        except ModuleNotFoundError as error:
-            return _not_installed(cmd_name, error)
-        if operation is None:
-            return None
-        from .commands import command_of
-
-        return command_of(operation, cmd_name)
+    def __init__(self, *, sections: Mapping[str, Mapping[str, Entry]], **more: Any) -> None:
+        super().__init__(**more)
+        self.sections = sections
 
     @property
-    def operations_of(self) -> str:
-        """The group of its operations."""
-        return self.name if self.name in GROUPS else ""
-
-
-class Commands(Operations):
-    """All commands: operations, their groups, and those that run the service."""
+    def entries(self) -> dict[str, Entry]:
+        """All commands, section by section."""
+        return {name: entry for of in self.sections.values() for name, entry in of.items()}
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """List the names of all commands, section by section."""
-        return [name for names in self.sections(ctx).values() for name in names]
-
-    def sections(self, ctx: click.Context) -> dict[str, list[str]]:
-        """Sort the names of all commands into sections."""
-        every = {*super().list_commands(ctx), *SERVICE, *GROUPS}
-        sections = {
-            title: [name for name in names if name in every] for title, names in SECTIONS.items()
-        }
-        rest = every.difference(*SECTIONS.values())
-        return sections | ({LAST_SECTION: sorted(rest)} if rest else {})
+        return list(self.entries)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Load the command of that name."""
-        if cmd_name in GROUPS:
-            return Operations(cmd_name, help=GROUPS[cmd_name])
-        if cmd_name in SERVICE:
-            module, _, name = SERVICE[cmd_name].partition(":")
-            try:
-                command: click.Command = getattr(importlib.import_module(module, __package__), name)
-            except ModuleNotFoundError as error:
-                return _not_installed(cmd_name, error)
-            return command
-        return super().get_command(ctx, cmd_name)
+        if cmd_name not in self.entries:
+            return None
+        module, line = self.entries[cmd_name]
+        if not module:
+            return Commands(name=cmd_name, help=line, sections={"Commands": GROUPS[cmd_name]})
+        try:
+            return _loaded(cmd_name, module, line)
+        except ModuleNotFoundError as error:
+            return _not_installed(cmd_name, error)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write each section with one line for each of its commands."""
-        sections = self.sections(ctx)
-        width = max(len(name) for names in sections.values() for name in names)
-        for title, names in sections.items():
-            made = [(name, self.get_command(ctx, name)) for name in names]
-            rows = [
-                (name.ljust(width), command.get_short_help_str(formatter.width - 6 - width))
-                for name, command in made
-                if command is not None
-            ]
+        width = max(map(len, self.entries))
+        for title, entries in self.sections.items():
             with formatter.section(title):
-                formatter.write_dl(rows)
+                formatter.write_dl(
+                    [
+                        (name.ljust(width), line or self._own_line(ctx, name, formatter))
+                        for name, (_, line) in entries.items()
+                    ]
+                )
+
+    def _own_line(self, ctx: click.Context, name: str, formatter: click.HelpFormatter) -> str:
+        command = self.get_command(ctx, name)
+        room = formatter.width - 6 - max(map(len, self.entries))
+        return "" if command is None else command.get_short_help_str(room)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; expected errors are printed in one line each."""
@@ -134,6 +173,19 @@ class Commands(Operations):
         except ValidationError as error:
             given = error.errors()[0]["input"]
             raise Failure(f"{first_fault(error)} (given: {given!r}).") from error
+
+
+def _loaded(name: str, module: str, line: str) -> click.Command:
+    """Load a command from its module."""
+    if not line:
+        file, _, attribute = module.partition(":")
+        command: click.Command = getattr(importlib.import_module(file, __package__), attribute)
+        return command
+    from ..operations.registry import operations_in
+    from .commands import command_of
+
+    (operation,) = (of for of in operations_in(module) if of.name == name)
+    return command_of(operation, name, line)
 
 
 def _not_installed(name: str, error: ModuleNotFoundError) -> click.Command:
@@ -153,6 +205,7 @@ def _remedy(error: ModuleNotFoundError) -> str:
 
 @click.command(
     cls=Commands,
+    sections=SECTIONS,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=f"{CHART_HELP} `knitcore COMMAND --help` lists the options of a command; each of them "
     "has --json.",

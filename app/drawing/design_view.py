@@ -23,8 +23,8 @@ from knitcore.garment.shaped import outline_marks
 from knitcore.materials import Material
 
 from ..context import Context
-from ..models.base import RequestModel
-from ..models.charts import (
+from ..requests.base import RequestModel
+from ..requests.charts import (
     ChartInput,
     Column,
     MaterialName,
@@ -33,16 +33,9 @@ from ..models.charts import (
     size_of_chart,
     to_chart,
 )
-from ..models.posed import PosedView
-from ..models.stretched import StretchView
+from .computed import PosedView, StretchView
 from .fabric import Drawing, FabricScene
-from .stitch_colours import (
-    Colour,
-    FieldColours,
-    Palette,
-    region_labels,
-    stitch_colours,
-)
+from .stitch_colours import Colour, FieldColours, Palette, region_labels, stitch_colours
 
 MAX_REGIONS = 200
 MAX_LETTERS = 41_000

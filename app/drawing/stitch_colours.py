@@ -19,17 +19,10 @@ from knitcore.formats.designs.layout import DesignRegion
 from knitcore.materials import Material
 from knitcore.mechanics.local_moduli import StitchTable, stitch_table
 
-from ..models.base import RequestModel
-from ..models.charts import MAX_FIELD
-from ..models.stretched import StretchView
-from .colours import (
-    FABRIC_COLOURS,
-    diverging,
-    fabric_mix,
-    named_colour,
-    rgb,
-    sequential,
-)
+from ..requests.base import RequestModel
+from ..requests.charts import MAX_FIELD
+from .colours import FABRIC_COLOURS, diverging, fabric_mix, named_colour, rgb, sequential
+from .computed import StretchView
 
 Colours = NDArray[np.uint8]
 

@@ -14,8 +14,8 @@ from pydantic import BaseModel
 from knitcore.base.errors import InputError
 
 from ..context import Context
-from ..models.base import read
-from ..models.checks import all_faults
+from ..requests.base import read
+from ..requests.faults import all_faults
 
 Result = TypeVar("Result", bound=BaseModel)
 T = TypeVar("T")

@@ -1,6 +1,6 @@
-"""The registry of operations: one module of this package each.
+"""The registry of operations, which modules in folders of subjects declare.
 
-A module holds one ``OPERATION``. Routes (:mod:`app.service.api.operations`), commands
+Each ``Operation`` that a module holds is one. Routes (:mod:`app.service.api.operations`), commands
 (:mod:`app.cli.commands`), jobs (:mod:`app.service.jobs.kinds`), the client's methods
 (``scripts/client_code.py``) and the page's types (``scripts/page_types.py``) are made from it, so
 a new operation is one file here and its test.
@@ -8,24 +8,14 @@ a new operation is one file here and its test.
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 import inspect
-import keyword
 import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cache, cached_property
-from typing import (
-    Any,
-    Generic,
-    Literal,
-    TypeVar,
-    cast,
-    get_args,
-    get_origin,
-    get_type_hints,
-)
+from operator import attrgetter
+from typing import Any, Generic, Literal, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
 
@@ -44,8 +34,7 @@ class Command:
     Attributes
     ----------
     lines : a result for people; its notes, warnings and messages are printed besides.
-    help : of the command; by default the operation's summary.
-    group : the command that it is a part of, such as ``measure``.
+    more : its help, after the line that it has in :mod:`app.cli.main`.
     names : options that are not named after their field; None leaves the field out.
     fields : makes fields of the request from options of its own (``click.option`` on it).
     run : runs the operation where the command does more, with options of its own. Both take any
@@ -54,8 +43,7 @@ class Command:
     """
 
     lines: Callable[[Any], list[str]]
-    help: str = ""
-    group: str = ""
+    more: str = ""
     names: Mapping[str, str | None] = field(default_factory=dict)
     fields: Callable[..., Mapping[str, Any]] | None = None
     run: Callable[..., BaseModel | Viewed[Any]] | None = None
@@ -78,7 +66,7 @@ class Operation(Generic[Request, Result]):
     heavy : whether it always takes long enough to need a worker process, as every job does; others
         go there with large charts only.
     job : whether it can run in the background.
-    command : on the command line, where its name is that of the module.
+    command : on the command line, where :mod:`app.cli.main` lists it.
     """
 
     run: Callable[[Request, Context], Result | Viewed[Result]]
@@ -131,33 +119,14 @@ class Operation(Generic[Request, Result]):
 
 @cache
 def operations() -> dict[str, Operation[Any, Any]]:
-    """All operations by name, in the order of their modules."""
-    modules = [importlib.import_module(f"{package.__name__}.{name}") for name in sorted(_modules())]
-    declared = [module.OPERATION for module in modules if hasattr(module, "OPERATION")]
-    return {operation.name: operation for operation in declared}
+    """All operations, in the order of their names."""
+    modules = pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    names = [module.name.removeprefix(f"{package.__name__}.") for module in modules]
+    declared = [operation for name in names for operation in operations_in(name)]
+    return {operation.name: operation for operation in sorted(declared, key=attrgetter("name"))}
 
 
-def operation_of_command(name: str, group: str = "") -> Operation[Any, Any] | None:
-    """The operation behind a command; loads no other."""
-    module = f"{name}_" if keyword.iskeyword(name) else name
-    if module not in _modules():
-        return None
-    operation = getattr(importlib.import_module(f"{package.__name__}.{module}"), "OPERATION", None)
-    if not isinstance(operation, Operation) or operation.command is None:
-        return None
-    return operation if operation.command.group == group else None
-
-
-def commands(group: str = "") -> set[str]:
-    """Names of all commands made from operations."""
-    names = set()
-    for name in (module.removesuffix("_") for module in _modules()):
-        with contextlib.suppress(ModuleNotFoundError):  # the light library has not all packages
-            if operation_of_command(name, group) is not None:
-                names.add(name)
-    return names
-
-
-@cache
-def _modules() -> frozenset[str]:
-    return frozenset(module.name for module in pkgutil.iter_modules(package.__path__))
+def operations_in(module: str) -> list[Operation[Any, Any]]:
+    """The operations that a module of this package declares."""
+    values = vars(importlib.import_module(f"{package.__name__}.{module}")).values()
+    return [value for value in values if isinstance(value, Operation)]

@@ -16,7 +16,7 @@ from anyio.to_thread import current_default_thread_limiter
 from fastapi import FastAPI
 
 from ..context import Context
-from ..operations.predict import PredictRequest, predict
+from ..operations.chart.predict import PredictRequest, predict
 from ..viewer import relay
 from ..viewer.client import viewer_page
 from ..viewer.views import Views

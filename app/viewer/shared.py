@@ -11,12 +11,11 @@ from knitcore.chart.stitch_chart import check_stitches
 from knitcore.garment.shaped import outline_marks
 
 from ..context import Context
+from ..drawing.computed import PosedView, StretchView
 from ..drawing.design_view import StretchStep, ViewRequest, build_scene
 from ..drawing.fabric import FabricScene
 from ..drawing.solid import MAX_SOLID, solid_glb
-from ..models.charts import to_chart
-from ..models.posed import PosedView
-from ..models.stretched import StretchView
+from ..requests.charts import to_chart
 from .share import page_html, recording
 from .still import still_png
 

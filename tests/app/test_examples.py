@@ -10,7 +10,7 @@ import jsonschema_rs
 import pytest
 from fastapi.testclient import TestClient
 
-from app.models.uploads import EXAMPLES
+from app.requests.uploads import EXAMPLES
 from app.service.web.schema import documented_operations
 from scripts.api_examples import ask_everything, patient_client
 

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.models.charts import size_of
-from app.operations.predict import PredictRequest
+from app.operations.chart.predict import PredictRequest
+from app.requests.charts import size_of
 from app.service.api.operations import MAX_LIGHT
 
 SMALL = {"fabric": "garter", "columns": 10, "rows": MAX_LIGHT // 10 - 10}

@@ -14,9 +14,9 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.context import Context
-from app.models.gauge import GaugeInput
-from app.operations.predict import PredictRequest
-from app.operations.predict import predict as predict_operation
+from app.operations.chart.predict import PredictRequest
+from app.operations.chart.predict import predict as predict_operation
+from app.requests.fabrics import GaugeInput
 from knitcore import Direction, Fabric, RelaxedSize, StitchChart, curve, predict, strip_test
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.atlas_build import build_atlas

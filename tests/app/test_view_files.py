@@ -20,7 +20,7 @@ from app.drawing.fabric import RECTANGLE, Box
 from app.service.listeners import Listeners
 from app.viewer.clicks import Cell, clicked_stitch
 from knitcore.base.errors import InputError
-from tests.app.test_stretch import ASKED, GARTER
+from tests.app.operations.cloth.test_stretch import ASKED, GARTER
 from tests.app.threads import threads_of_no_pool
 
 HERE = Context(Path())

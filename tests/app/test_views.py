@@ -15,7 +15,7 @@ from app.drawing.colours import diverging, fabric_mix, sequential
 from app.service.api import views as views_api
 from app.service.limits.budgets import BUDGETS
 from app.viewer.views import Views
-from tests.app.test_stretch import ASKED, GARTER
+from tests.app.operations.cloth.test_stretch import ASKED, GARTER
 from tests.app.threads import threads_of_no_pool
 
 DESIGN = "a-design-of-mine"

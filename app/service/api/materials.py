@@ -10,7 +10,7 @@ from fastapi.concurrency import run_in_threadpool
 from knitcore.materials.material_document import MaterialDocument
 
 from ...context import Context
-from ...operations.material import MaterialSummary, summary
+from ...operations.yarn.materials import MaterialSummary, summary
 from ..designs.parameters import MISSING, Owner
 from ..problems import NotFoundError
 from ..results.own_materials import keep_material, remove_material

@@ -12,9 +12,9 @@ from fastapi import APIRouter, Path, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
-from ...models.charts import size_of
 from ...operations.perform import Viewed, carried_out
 from ...operations.registry import Operation, operations
+from ...requests.charts import size_of
 from ..compute.answers import Answers
 from ..identity import current_user
 from ..limits.turns import Gate

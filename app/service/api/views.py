@@ -13,6 +13,7 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import Field
 
+from ...drawing.computed import PosedView, StretchView
 from ...drawing.design_view import (
     ViewRequest,
     ViewResult,
@@ -21,11 +22,9 @@ from ...drawing.design_view import (
     is_large,
 )
 from ...drawing.fabric import Box, Drawing
-from ...models.base import RequestModel
-from ...models.charts import size_of_chart
-from ...models.posed import PosedView
-from ...models.stretched import StretchView
 from ...operations.perform import Reply
+from ...requests.base import RequestModel
+from ...requests.charts import size_of_chart
 from ...viewer.camera import CameraSide
 from ...viewer.design_id import DesignId, private_name
 from ...viewer.scene import round_length_mm

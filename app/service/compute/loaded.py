@@ -32,8 +32,8 @@ def _load() -> None:
     from knitcore.materials import material
 
     from ...context import Context
-    from ...models.charts import PureFabricChart
-    from ...operations.stretch import StretchRequest, stretch
+    from ...operations.cloth.stretch import StretchRequest, stretch
+    from ...requests.charts import PureFabricChart
 
     stretch(
         StretchRequest(

@@ -11,8 +11,8 @@ from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE
 from knitcore.formats.designs.design_file import FORMAT, VERSION
 from knitcore.formats.designs.layout import DesignLayout
 
-from ...models.base import RequestModel
-from ...models.charts import ChartText
+from ...requests.base import RequestModel
+from ...requests.charts import ChartText
 
 Name = Annotated[
     str,

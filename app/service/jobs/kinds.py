@@ -14,8 +14,8 @@ from pydantic import Discriminator, Field, create_model
 from knitcore.base.extensions import Group, extensions
 from knitcore.yarn.library import fingerprint
 
-from ...models.base import RequestModel, ResultModel, read
 from ...operations.registry import Operation, operations
+from ...requests.base import RequestModel, ResultModel, read
 
 KINDS: dict[str, Operation[Any, Any]] = {
     name: operation for name, operation in operations().items() if operation.job

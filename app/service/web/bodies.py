@@ -18,7 +18,7 @@ from pydantic import ValidatorFunctionWrapHandler, WrapValidator
 from starlette.exceptions import HTTPException
 from starlette.types import Message, Receive
 
-from ...models.charts import MAX_FIELD
+from ...requests.charts import MAX_FIELD
 from ..identity import current_user
 from ..limits.turns import Gate
 

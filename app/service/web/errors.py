@@ -22,9 +22,8 @@ from knitcore.base.errors import (
     UnravelledError,
 )
 
-from ...models.base import InvalidRequestError, MissingError
-from ...models.checks import faults_of
-from ...models.refusals import problem_in_words, remedy_in_words
+from ...requests.base import InvalidRequestError, MissingError
+from ...requests.faults import faults_of, problem_in_words, remedy_in_words
 from ..problems import (
     MAX_FAULTS,
     PROBLEM_TYPE,

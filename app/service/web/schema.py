@@ -12,7 +12,7 @@ from fastapi import FastAPI, Request, Response
 
 from knitcore.base.errors import InputError
 
-from ...models.uploads import EXAMPLES
+from ...requests.uploads import EXAMPLES
 from ..problems import PROBLEM_TYPE
 from .errors import problem_of
 from .packed import tagged

@@ -19,8 +19,8 @@ from app.cli.commands import command_of
 from app.cli.inputs import Inputs
 from app.cli.main import main
 from app.cli.options import resolve_chart
-from app.models.charts import PureFabricChart, to_chart, to_repeat
 from app.operations.registry import operations
+from app.requests.charts import PureFabricChart, to_chart, to_repeat
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Iterator
 
 import click
@@ -9,8 +11,8 @@ import pytest
 from click.testing import CliRunner
 
 from app.cli.commands import command_of
-from app.cli.main import LAST_SECTION, SECTIONS, SERVICE, Commands, main
-from app.operations.registry import commands, operations
+from app.cli.main import SECTIONS, main
+from app.operations.registry import operations
 from tests.app.operations.test_registry import ASKING
 
 NAMES_SO_FAR = frozenset(
@@ -44,22 +46,36 @@ def test_the_help_has_sections_and_every_command_is_in_one() -> None:
     text = CliRunner().invoke(main, ["--help"]).output
     titles = [line.removesuffix(":") for line in text.splitlines() if line[:1].isalpha()]
     assert [title for title in titles if title in SECTIONS] == list(SECTIONS)
-    assert LAST_SECTION not in titles
-    listed = [name for names in SECTIONS.values() for name in names]
-    assert len(listed) == len(set(listed))
-    assert {*commands(), *SERVICE, "measure"} == set(listed)
+    listed = {words.split()[-1] for words in EVERY}
+    assert {name for name, of in operations().items() if of.command is not None} <= listed
+    assert len(main.list_commands(click.Context(main))) == sum(map(len, SECTIONS.values()))
 
 
 def test_names_of_commands_stay() -> None:
     assert {words.partition(" ")[0] for words in EVERY} >= NAMES_SO_FAR
 
 
-def test_a_command_that_no_section_names_comes_last(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(SECTIONS, "Files", ("import",))
-    assert isinstance(main, Commands)
-    sections = main.sections(click.Context(main))
-    assert list(sections)[-1] == LAST_SECTION
-    assert sections[LAST_SECTION] == ["export"]
+@pytest.mark.parametrize(
+    ("words", "loaded", "absent"),
+    [
+        (["--help"], set(), {"app.context", "fastapi", "scipy"}),
+        (["rs", "--help"], {"yarn", "yarn.rs"}, {"fastapi"}),
+    ],
+)
+def test_the_help_loads_no_other_operation(
+    words: list[str], loaded: set[str], absent: set[str]
+) -> None:
+    code = (
+        "import atexit, sys; from app.cli.main import main;"
+        "atexit.register(lambda: print(*sys.modules, sep='\\n')); main(sys.argv[1:])"
+    )
+    shown = subprocess.run(
+        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=True
+    )
+    modules = set(shown.stdout.splitlines())
+    subjects = {m.removeprefix("app.operations.") for m in modules if "app.operations." in m}
+    assert subjects - {"perform", "registry"} == loaded
+    assert not modules & absent
 
 
 def test_the_line_of_each_command_is_whole_and_begins_with_a_verb() -> None:

@@ -13,8 +13,8 @@ from PIL import Image
 
 from app.context import Context
 from app.drawing.colours import FABRIC_COLOURS, rgb
+from app.drawing.computed import PosedView
 from app.drawing.design_view import ViewRequest, build_scene
-from app.models.posed import PosedView
 from app.viewer.still import still_png
 from knitcore.chart.fabric import Fabric
 from knitcore.draw.body import Body

@@ -17,7 +17,7 @@ import pytest
 import yaml
 
 from app.context import Context
-from app.operations.curve import CurveRequest, CurveResult, curve
+from app.operations.chart.curve import CurveRequest, CurveResult, curve
 from app.service.compute import cluster as cluster_module
 from app.service.compute import compute as compute_module
 from app.service.compute.cluster import Cluster, ClusterError, ClusterWorker

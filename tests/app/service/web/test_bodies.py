@@ -10,8 +10,8 @@ import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
 
-from app.models.base import RequestModel
-from app.models.charts import MAX_FIELD
+from app.requests.base import RequestModel
+from app.requests.charts import MAX_FIELD
 from app.service.api import routers
 from app.service.identity import LOCAL_USER
 from app.service.limits.budgets import BUDGETS, Budgets, InUse

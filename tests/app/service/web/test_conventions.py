@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.models.charts import CellLines, ChartLines, RepeatText
 from app.operations.registry import operations
+from app.requests.charts import CellLines, ChartLines, RepeatText
 from knitcore.formats.designs.layout import Motif
 
 Schema = dict[str, Any]

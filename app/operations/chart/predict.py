@@ -1,0 +1,153 @@
+"""The mechanics of a chart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from knitcore.chart.fabric import Direction
+from knitcore.chart.segments import segment_map
+from knitcore.chart.stitch_chart import size_in_words
+from knitcore.draw.laid_out import size_at_rest
+from knitcore.garment.shaped import ShapedChart, outline_marks
+from knitcore.prediction.predict import predict as predict_chart
+from knitcore.prediction.swept import worth_relaxing
+
+from ...context import Context
+from ...requests.base import Ends, IntervalResult, ResultModel
+from ...requests.charts import OutlineInput
+from ...requests.fabrics import ElasticConstants, Extensibility, GaugedRequest
+from ..registry import Command, Operation
+
+
+class PredictRequest(GaugedRequest):
+    """A chart and its material; constants of a shaped piece are those of the largest rectangle
+    inside its outline, its size is that of the whole."""
+
+    outline: OutlineInput = None
+
+
+class SegmentCountsResult(ResultModel):
+    """Segments of one direction by their symmetry."""
+
+    even: int
+    odd: int
+
+
+class PredictResult(ElasticConstants, Extensibility, IntervalResult):
+    """Effective elastic constants of the whole chart at small strain, with 90 % intervals."""
+
+    rows: int = Field(description="Size of the chart that the constants describe.")
+    columns: int
+    segments: dict[Direction, SegmentCountsResult]
+    modulus_course_interval_n_per_mm: Ends
+    modulus_wale_interval_n_per_mm: Ends
+    poisson_yx_interval: Ends
+    poisson_xy_interval: Ends
+    modulus_course_bounds_n_per_mm: Ends = Field(
+        description="Reuss and Voigt bounds, widened where folds require it."
+    )
+    modulus_wale_bounds_n_per_mm: Ends
+    shear_modulus_n_per_mm: float = Field(
+        description="Shear modulus; an assumption unless it was calibrated."
+    )
+    relaxed_course_mm: float = Field(description="Mean width of a stitch at rest.")
+    relaxed_wale_mm: float = Field(description="Mean height of a stitch at rest.")
+    relaxed_course_interval_mm: Ends
+    relaxed_wale_interval_mm: Ends
+    relaxed_source: str
+    width_mm: float = Field(description="Width of the whole piece at rest, at its widest.")
+    height_mm: float = Field(description="Height of the whole piece at rest, at its highest.")
+    width_interval_mm: Ends
+    height_interval_mm: Ends
+    provenance: str = Field(
+        description="Source of the constants: measured; estimated; swept; learned; or learned with "
+        "known size."
+    )
+    method: str
+    worth_relaxing: str | None = Field(
+        description="Chart of the repeat whose relaxation (`relax`, some seconds) has a `gauge` "
+        "with which these numbers would be more certain; null if there is none."
+    )
+    notes: list[str]
+
+
+def predict(request: PredictRequest, context: Context) -> PredictResult:
+    """Effective constants with their 90 % intervals and their source."""
+    whole, material = request.fabric(context)
+    shaped = ShapedChart.rectangle(whole)
+    if request.outline is not None:
+        shaped = ShapedChart(whole, outline_marks(request.outline))
+    chart, notes = shaped.rectangle_inside(), []
+    if not shaped.is_rectangle:
+        notes.append(
+            "All but the size is of the largest rectangle inside the outline, "
+            f"{chart.columns} x {chart.rows} stitches."
+        )
+    predicted = predict_chart(chart, material, request.relaxed_size)
+    by_direction: dict[str, Any] = {}
+    for direction in Direction:
+        along = predicted.along(direction)
+        by_direction |= {
+            f"modulus_{direction}_n_per_mm": along.modulus_n_per_mm,
+            f"modulus_{direction}_interval_n_per_mm": along.modulus_interval_n_per_mm,
+            f"modulus_{direction}_bounds_n_per_mm": along.bounds_n_per_mm,
+            f"extensibility_{direction}_mm_per_n": 1.0 / along.modulus_n_per_mm,
+            f"relaxed_{direction}_mm": along.relaxed_mm,
+            f"relaxed_{direction}_interval_mm": along.relaxed_interval_mm,
+        }
+    segments = segment_map(chart)
+    to_relax = worth_relaxing(chart, material, predicted)
+    return PredictResult.of(
+        predicted,
+        **by_direction,
+        **vars(size_at_rest(shaped, material, predicted)),
+        rows=chart.rows,
+        columns=chart.columns,
+        segments={direction: segments.counts(direction) for direction in Direction},
+        poisson_yx=predicted.course.poisson,
+        poisson_xy=predicted.wale.poisson,
+        poisson_yx_interval=predicted.course.poisson_interval,
+        poisson_xy_interval=predicted.wale.poisson_interval,
+        worth_relaxing=None if to_relax is None else to_relax.text,
+        notes=[*notes, *predicted.notes],
+    )
+
+
+def _lines(r: PredictResult) -> list[str]:
+    course, wale = r.segments.values()
+    low_x, high_x = r.modulus_course_interval_n_per_mm
+    low_y, high_y = r.modulus_wale_interval_n_per_mm
+    return [
+        f"{size_in_words(r.columns, r.rows)}",
+        f"segments        course {course.even} even, {course.odd} odd   "
+        f"wale {wale.even} even, {wale.odd} odd",
+        f"Young's modulus course {r.modulus_course_n_per_mm:.4f} N/mm "
+        f"(90 %: {low_x:.4f} to {high_x:.4f})",
+        f"                wale   {r.modulus_wale_n_per_mm:.4f} N/mm "
+        f"(90 %: {low_y:.4f} to {high_y:.4f})",
+        f"extensibility   course {r.extensibility_course_mm_per_n:.2f} mm/N   "
+        f"wale {r.extensibility_wale_mm_per_n:.2f} mm/N",
+        f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
+        f"stitch at rest  {_relaxed(r)}",
+        f"size at rest    {r.width_mm / 10:.1f} x {r.height_mm / 10:.1f} cm",
+        f"source          {r.provenance} ({r.method})",
+    ]
+
+
+def _relaxed(r: PredictResult) -> str:
+    (low_x, high_x), (low_y, high_y) = r.relaxed_course_interval_mm, r.relaxed_wale_interval_mm
+    return (
+        f"{r.relaxed_course_mm:.2f} x {r.relaxed_wale_mm:.2f} mm (90 %: {low_x:.2f} to "
+        f"{high_x:.2f} x {low_y:.2f} to {high_y:.2f}; {r.relaxed_source})"
+    )
+
+
+OPERATION = Operation(
+    predict,
+    tag="mechanics",
+    summary="Moduli and extensibility of a chart",
+    example={"chart": "KKPP", "material": "acrylic"},
+    command=Command(_lines),
+)

@@ -1,0 +1,1 @@
+"""Cloth between clamps, cut, in space."""

@@ -1,0 +1,350 @@
+"""The stretch test of a chart: request, result, and data for the 3D view."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart, check_stitches
+from knitcore.cloth.flat import (
+    Clamps,
+    EnergyModel,
+    Sheet,
+    StripTest,
+    chart_sheet,
+    pull,
+    strain_at_force,
+)
+from knitcore.cloth.flat.margins import StretchMargins, sampled_steps, stretch_margins
+from knitcore.cloth.flat.strip import load_levels
+from knitcore.draw.strained_stitches import stitch_at, stitch_states
+from knitcore.garment.shaped import outline_marks
+from knitcore.law.stiffening import EXTENSION_START
+
+from ...cli.options import out_option
+from ...context import Context
+from ...drawing.computed import StretchView
+from ...requests.base import EndsOfList, Floats, IntervalResult, ResultModel
+from ...requests.charts import Column, OutlineInput, Row, to_chart
+from ...requests.fabrics import GaugedRequest
+from ..perform import Viewed
+from ..registry import Command, Operation
+
+Array = NDArray[np.float32]
+
+MAX_STITCHES = 40_000
+"""Largest chart of a test over REST, in stitches; the command line accepts larger ones."""
+MAX_VALUES = 60 * MAX_STITCHES
+"""Largest number of stitches times steps over REST: the answer has seven numbers for each."""
+NEAR_LOCK_UP = 0.95
+
+
+class StretchRequest(GaugedRequest):
+    """A chart between two clamps, which hold the outermost stitches, and how it is pulled."""
+
+    outline: OutlineInput = None
+    direction: Direction = Field(description="Direction of the pull: along rows, or along columns.")
+    strain: float | None = Field(
+        None,
+        gt=0,
+        le=5,
+        description="Last clamp-to-clamp strain: 0.5 is 50 %. Give this or a force.",
+    )
+    force_n: float | None = Field(
+        None, gt=0, le=10_000, description="Last force on the clamps, in place of a strain."
+    )
+    steps: int = Field(12, ge=1, le=1000)
+    clamps: Clamps = Field(
+        Clamps.CLAMPED, description="Grip of the ends: held, or free to slide along the clamps."
+    )
+    model: EnergyModel = EnergyModel.FULL
+    shear_modulus_n_per_mm: float | None = Field(
+        None,
+        ge=1e-4,
+        le=10,
+        description="Shear modulus C_xyxy in N/mm; that of the laws by default.",
+    )
+    width_mm: float | None = Field(
+        None, ge=1, le=10_000, description="Size course-wise; from the gauge by default."
+    )
+    length_mm: float | None = Field(
+        None, ge=1, le=10_000, description="Size wale-wise; from the gauge by default."
+    )
+
+
+StitchValues = list[list[float]]
+StitchEnds = tuple[StitchValues, StitchValues]
+
+
+class StitchFields(ResultModel):
+    """Values at the stitches: [step][row * columns + column], bottom row first; 0 where there is
+    no stitch.
+    """
+
+    strain_course: StitchValues
+    strain_wale: StitchValues
+    utilisation: StitchValues = Field(
+        description="Nearness to the lock-up: alpha * strain; 1 is the lock-up."
+    )
+    strain_course_interval: StitchEnds | None = Field(
+        None, description="Interval of the strain along the pull only."
+    )
+    strain_wale_interval: StitchEnds | None = None
+    utilisation_interval: StitchEnds
+
+
+class NearestLockUp(ResultModel):
+    """The place nearest to its lock-up at the last step."""
+
+    utilisation: float
+    row: Row
+    column: Column
+    direction: Direction
+    fabric: str
+
+
+class StretchCurve(IntervalResult):
+    """A simulated strip test (geometry after ISO 20932-1), not a certified test."""
+
+    strain: Floats
+    force_n: Floats
+    force_interval_n: EndsOfList
+    stress_n_per_mm: Floats = Field(
+        description="Force per width; its relative interval is that of the force."
+    )
+    waist_strain: Floats
+    waist_strain_interval: EndsOfList
+    iterations: list[int]
+    converged: bool
+    seconds: float
+    dofs: int
+    width_mm: float
+    length_mm: float
+    shear_modulus_assumed: bool = Field(
+        description="True if C_xyxy is the paper's assumption, not measured."
+    )
+    nearest_lock_up: NearestLockUp | None
+    messages: list[str]
+
+
+class StretchResult(StretchCurve):
+    """The curve of a test, with fields at its stitches."""
+
+    kind: Literal["stretch"] = "stretch"
+    id: str = Field(description="Name of this test, for the 3D view.")
+    rows: int
+    columns: int
+    stitch_fields: StitchFields
+
+
+def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:
+    """Nonlinear strip test of the whole chart; stops when the caller disconnects.
+
+    A test that was run a short while ago is returned from memory.
+
+    Raises
+    ------
+    InputError, CancelledError
+    """
+    chart = to_chart(request.chart)
+    check_stitches(chart.stitches, MAX_STITCHES, instead=", or the command line")
+    if chart.stitches * request.steps > MAX_VALUES:
+        raise InputError(
+            "steps",
+            f"{request.steps} are too many here for a chart of this size.",
+            f"Use at most {MAX_VALUES // chart.stitches}, or the command line.",
+        )
+    test, margins = _test(chart, request, context)
+    return _stitches(chart, request, test, margins)
+
+
+def _test(
+    chart: StitchChart, request: StretchRequest, context: Context
+) -> tuple[StripTest, StretchMargins]:
+    material = context.material(request.material)
+    total = request.steps + len(sampled_steps(request.steps))
+    sheet = request.pass_to(
+        chart_sheet,
+        chart,
+        material,
+        stitch=None if request.outline is None else outline_marks(request.outline),
+        size=request.relaxed_size,
+        laws=None,  # those that the request chooses are in the material
+    )
+    test = pull(
+        sheet,
+        request.direction,
+        load_levels(_last_strain(sheet, request, context), request.steps),
+        clamps=request.clamps,
+        cancelled=context.cancelled,
+        progress=lambda done, _: context.progress(done, total),
+    )
+    margins = stretch_margins(
+        test,
+        material,
+        request.clamps,
+        progress=lambda done: context.progress(request.steps + done, total),
+        cancelled=context.cancelled,
+    )
+    return test, margins
+
+
+def _last_strain(sheet: Sheet, request: StretchRequest, context: Context) -> float:
+    """The strain that is asked for, or at which the clamps hold the force that is."""
+    match request.strain, request.force_n:
+        case float(strain), None:
+            return strain
+        case None, float(force_n):
+            return strain_at_force(
+                sheet,
+                request.direction,
+                force_n,
+                clamps=request.clamps,
+                cancelled=context.cancelled,
+            )
+        case None, None:
+            raise InputError("strain", "is missing.", "Give a strain or a force.")
+        case _:
+            raise InputError("force_n", "strain is given as well.", "Give one of the two.")
+
+
+def _curve(request: StretchRequest, test: StripTest, margins: StretchMargins) -> StretchCurve:
+    """The numbers of a test."""
+    return StretchCurve.of(
+        test,
+        interval_source=margins.source,
+        force_interval_n=(test.force_n / margins.force_factor, test.force_n * margins.force_factor),
+        waist_strain_interval=_around(test.waist_strain, margins.waist),
+        shear_modulus_assumed=request.shear_modulus_n_per_mm is None,
+        nearest_lock_up=_nearest(test),
+        messages=_messages(test),
+    )
+
+
+def _messages(test: StripTest) -> list[str]:
+    """Warnings and notes on a test."""
+    messages = [test.problem] if test.problem else []
+    used = float(test.utilisation.max(initial=0.0))
+    full = test.sheet.model.energy is EnergyModel.FULL
+    if full and test.steps and test.is_past_the_law():
+        first = next(step for step in range(test.steps) if test.is_past_the_law(step))
+        messages.append(
+            f"Beyond a stretch of {100 * test.strain[first]:.0f} % some cloth has used more than "
+            f"{100 * EXTENSION_START:.0f} % of what it has until it locks: its law is extrapolated "
+            "there; do not rely on the force."
+        )
+    elif used >= 1:
+        messages.append(
+            f"alpha times strain reaches {used:.2f}, and the cloth locks at 1. The published model "
+            "leaves out the lock-up, so it continues where real cloth cannot."
+        )
+    elif used >= NEAR_LOCK_UP:
+        messages.append(f"Some stitches are at {100 * used:.0f} % of their lock-up.")
+    return messages
+
+
+def _stitches(
+    chart: StitchChart, request: StretchRequest, test: StripTest, margins: StretchMargins
+) -> Viewed[StretchResult]:
+    states = stitch_states(test)
+    fields = {
+        "strain_course": states.strain[..., 0],
+        "strain_wale": states.strain[..., 1],
+        "utilisation": states.utilisation,
+    }
+    margin = {f"strain_{request.direction}": margins.strain, "utilisation": margins.utilisation}
+    shown: dict[str, Any] = {name: _rounded(values) for name, values in fields.items()}
+    for name, width in margin.items():
+        shown[f"{name}_interval"] = [_rounded(ends) for ends in _around(fields[name], width)]
+    result = StretchResult(
+        **dict(_curve(request, test, margins)),
+        rows=chart.rows,
+        columns=chart.columns,
+        id=OPERATION.key(request),
+        stitch_fields=shown,
+    )
+    view = StretchView(
+        direction=request.direction,
+        positions_mm=states.positions_mm,
+        strain=states.strain.astype(np.float32),
+        utilisation=states.utilisation.astype(np.float32),
+    )
+    return Viewed(result, view)
+
+
+def _rounded(values: NDArray[np.float64]) -> list[list[float]]:
+    """A list per step, to four digits, which is finer than any colour scale shows."""
+    lists: list[list[float]] = np.round(
+        values.reshape(len(values), math.prod(values.shape[1:])), 4
+    ).tolist()
+    return lists
+
+
+def _around(
+    values: NDArray[np.float64], margin: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """An interval by its half width."""
+    return values - margin, values + margin
+
+
+def _nearest(test: StripTest) -> NearestLockUp | None:
+    spot = test.nearest_lock_up
+    if spot is None:
+        return None
+    row, column = stitch_at(test, spot)
+    return NearestLockUp.of(spot, row=row, column=column)
+
+
+@out_option("--out", help="Write fields to FILE.npz or .vtu.", suffixes=(".npz", ".vtu"))
+def _command(request: StretchRequest, context: Context, out: Path | None) -> StretchCurve:
+    chart = to_chart(request.chart)
+    test, margins = _test(chart, request, context)
+    if out is not None:
+        test.write(out)
+    return _curve(request, test, margins)
+
+
+def _lines(curve: StretchCurve) -> list[str]:
+    lines = [f"{'strain':>8} {'force N':>9} {'90 %':>17} {'N/mm':>8} {'waist':>8}"]
+    rows = zip(
+        curve.strain,
+        curve.force_n,
+        *curve.force_interval_n,
+        curve.stress_n_per_mm,
+        curve.waist_strain,
+        strict=True,
+    )
+    lines += [
+        f"{e:8.3f} {f:9.3f} {low:8.3f}-{high:<8.3f} {s:8.4f} {w:8.3f}"
+        for e, f, low, high, s, w in rows
+    ]
+    if curve.nearest_lock_up is not None:
+        spot = curve.nearest_lock_up
+        lines.append(
+            f"nearest to lock-up: {spot.utilisation:.0%} {spot.direction}-wise in {spot.fabric}, "
+            f"row {spot.row + 1}, stitch {spot.column + 1}"
+        )
+    return lines
+
+
+OPERATION = Operation(
+    stretch,
+    tag="stretch",
+    summary="Pull a chart between two clamps",
+    example={
+        "chart": {"fabric": "garter", "columns": 4, "rows": 4},
+        "material": "acrylic",
+        "direction": "wale",
+        "strain": 0.3,
+        "steps": 3,
+    },
+    job=True,
+    command=Command(_lines, more="It is simulated, not certified.", run=_command),
+)

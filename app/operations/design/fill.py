@@ -1,0 +1,266 @@
+"""A chart with a target stiffness, given as a map or part by part."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import StitchChart, size_in_words
+from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
+from knitcore.design.fill import fill_field
+from knitcore.design.part_targets import Parts, PartTarget, target_maps, target_parts
+from knitcore.formats.read.stitch_maps import read_wanted_moduli
+from knitcore.garment.shaped import outline_marks
+
+from ...cli.options import atlas_option, design_option, resolve_chart, write_design_of
+from ...context import Context
+from ...requests.base import Ends, IntervalResult, Known, RequestModel, ResultModel, Seed
+from ...requests.charts import (
+    ChartLines,
+    ChartText,
+    Column,
+    MaterialName,
+    OutlineInput,
+    RepeatText,
+    Row,
+)
+from ...requests.fabrics import LawsRequest
+from ...service.results.atlases import Extent
+from ..registry import Command, Operation
+
+Maps = tuple[NDArray[np.float64], NDArray[np.float64], Parts | None]
+
+MAPS = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
+MAX_STITCHES = 40_000
+"""Largest map over REST, in stitches; the command line accepts larger ones."""
+MAX_WISHES = 200
+MAX_RUNS = 40_000
+
+Modulus = Annotated[float, Field(gt=0, le=1000)] | None
+Map = Annotated[list[list[Modulus]], Field(min_length=1, max_length=1000)]
+StitchRun = tuple[
+    Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]
+]
+
+
+class WishInput(RequestModel):
+    """Stiffness wanted in one part of the chart."""
+
+    name: str = Field("part", min_length=1, max_length=80)
+    runs: list[StitchRun] = Field(
+        min_length=1,
+        max_length=MAX_RUNS,
+        description="Stitches as runs [row, first column, length], with row 0 at the bottom.",
+    )
+    modulus_course_n_per_mm: Modulus = None
+    modulus_wale_n_per_mm: Modulus = None
+
+    def target(self) -> PartTarget:
+        """The library's object."""
+        return PartTarget(
+            self.name, tuple(self.runs), self.modulus_course_n_per_mm, self.modulus_wale_n_per_mm
+        )
+
+
+class FillRequest(LawsRequest):
+    """Wanted moduli, stitch by stitch or part by part."""
+
+    material: MaterialName
+    modulus_course_n_per_mm: Map | None = Field(
+        None,
+        description="Moduli [row][column], the bottom row first; null where any value will do.",
+    )
+    modulus_wale_n_per_mm: Map | None = None
+    rows: int | None = Field(
+        None, ge=1, le=1000, description="Rows of the chart, if wishes are given."
+    )
+    columns: int | None = Field(None, ge=1, le=1000)
+    wishes: list[WishInput] | None = Field(
+        None,
+        min_length=1,
+        max_length=MAX_WISHES,
+        description="Targets of parts, in place of the two maps.",
+    )
+    chart: ChartText | None = Field(
+        None,
+        description="K/P lines, the top row first: stitches without a target stay as in this "
+        "chart; otherwise they are filled.",
+    )
+    outline: OutlineInput = None
+    repeats: Extent = "small"
+    smallest_patch: int = Field(
+        4, ge=1, le=100, description="Smallest side of a patch, where its part is not smaller."
+    )
+    scattered: bool = Field(
+        True,
+        description="Single stitches may be turned over where that comes nearer; otherwise every "
+        "patch is a repeat, or stripes of two.",
+    )
+    seed: Seed = 0
+    check: bool = Field(
+        True,
+        description="Pull the chart in the finite swatch; choose again where the result differs.",
+    )
+
+
+class PatchResult(ResultModel):
+    """A region of one repeat."""
+
+    repeat: RepeatText
+    stitches: int
+    row: Row = Field(description="Row of its first stitch, counted from 0 at the bottom.")
+    column: Column
+    deviation_course: Known = Field(
+        description="Deviation of the repeat from the target; null without a target."
+    )
+    deviation_wale: Known
+    swatch_course: Known = Field(
+        description="Deviation of the patch in the finite swatch; null if it was not pulled."
+    )
+    swatch_wale: Known
+    modulus_course_n_per_mm: float = Field(
+        description="Modulus of the patch, in the finite swatch if it was pulled there."
+    )
+    modulus_course_interval_n_per_mm: Ends = Field(
+        description="90 % interval; includes that of a large cloth of the repeat."
+    )
+    modulus_wale_n_per_mm: float
+    modulus_wale_interval_n_per_mm: Ends
+
+
+class FillResult(IntervalResult):
+    """A chart, and how near it comes to the targets."""
+
+    kind: Literal["fill"] = "fill"
+    rows: int
+    columns: int
+    chart: ChartLines
+    off_share: float = Field(
+        description="Share of the stitches with a target that miss it by more than 10 %."
+    )
+    patches: list[PatchResult]
+    messages: list[str]
+
+
+def fill(request: FillRequest, context: Context) -> FillResult:
+    """Patches of repeats from the atlas, matched at their edges; reports targets that are missed.
+
+    Raises
+    ------
+    InputError
+        If the maps or wishes cannot be used, or are too large here.
+    """
+    targets = _wanted(request)
+    if targets[0].size > MAX_STITCHES:
+        raise InputError(
+            "rows" if request.wishes else MAPS[0],
+            f"{targets[0].size} stitches are too many here.",
+            f"Use at most {MAX_STITCHES}, or the command line.",
+        )
+    atlas = context.within(0.0, 0.3).atlas(request.material, request.repeats)
+    return _filled(request, targets, atlas, context.within(0.3, 0.7))
+
+
+def _filled(request: FillRequest, targets: Maps, atlas: Atlas, context: Context) -> FillResult:
+    course, wale, parts = targets
+    filled = request.pass_to(
+        fill_field,
+        course,
+        wale,
+        context.material(request.material),
+        atlas,
+        parts=parts,
+        kept=None if request.chart is None else StitchChart.parse(request.chart),
+        stitch=None if request.outline is None else outline_marks(request.outline),
+        progress=context.share,
+        cancelled=context.cancelled,
+    )
+    return FillResult.of(
+        filled,
+        rows=filled.chart.rows,
+        columns=filled.chart.columns,
+        interval_source=f"{INTERVAL_SOURCE} Widened to what a patch does in the finite swatch.",
+        chart=filled.chart.text,
+        patches=filled.regions,
+    )
+
+
+def _wanted(request: FillRequest) -> Maps:
+    maps = {name: getattr(request, name) for name in MAPS}
+    if request.wishes is None:
+        course, wale = (_array(rows, name) for name, rows in maps.items())
+        return course, wale, None
+    if any(rows is not None for rows in maps.values()):
+        raise InputError(
+            "wishes", "are given together with maps.", "Give maps or wishes, not both."
+        )
+    if request.rows is None or request.columns is None:
+        raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
+    targets = [wish.target() for wish in request.wishes]
+    return *request.pass_to(target_maps, targets), request.pass_to(target_parts, targets)
+
+
+def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float64]:
+    if rows is None:
+        raise InputError(name, "is missing.", "Give both maps, or wishes for parts of the chart.")
+    if len({len(row) for row in rows}) > 1 or not rows[0]:
+        raise InputError(
+            name, "the rows differ in length.", "Give a number or null for each stitch."
+        )
+    return np.array([[np.nan if v is None else v for v in row] for row in rows], dtype=float)
+
+
+@click.argument("target", type=click.Path(path_type=Path))
+@click.option(
+    "--chart", "kept", help="Chart in which stitches without a target keep what they are."
+)
+@atlas_option
+@design_option
+def _command(
+    request: FillRequest,
+    context: Context,
+    target: Path,
+    kept: str | None,
+    atlas: Path | None,
+    out: Path | None,
+) -> FillResult:
+    targets = *read_wanted_moduli(target), None
+    if kept is not None:
+        request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
+    table = context.atlas(request.material, request.repeats, atlas)
+    result = _filled(request, targets, table, context)
+    write_design_of(result.chart, request.material, target.stem, out)
+    return result
+
+
+def _lines(r: FillResult) -> list[str]:
+    head = (
+        f"{size_in_words(r.columns, r.rows)} in {len(r.patches)} patches; "
+        f"{r.off_share:.1%} of the stitches with a target miss it by more than 10 %"
+    )
+    return [r.chart, head]
+
+
+OPERATION = Operation(
+    fill,
+    tag="design",
+    summary="A chart for a map of target stiffness",
+    example={
+        "material": "acrylic",
+        "modulus_course_n_per_mm": [[0.2, 0.2, 0.2, 0.2], [0.2, 0.2, 0.2, 0.2]],
+        "modulus_wale_n_per_mm": [[None, None, None, None], [None, None, None, None]],
+    },
+    job=True,
+    command=Command(
+        _lines,
+        more="TARGET is a CSV of row, column and target moduli, such as `export --to csv` writes.",
+        names=dict.fromkeys((*MAPS, "rows", "columns", "wishes", "chart")),
+        run=_command,
+    ),
+)

@@ -1,0 +1,1 @@
+"""Garments, and the pressure of tubes on limbs."""

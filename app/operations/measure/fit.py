@@ -1,0 +1,190 @@
+"""Fitting a law to stretch tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from knitcore.chart.fabric import Direction
+from knitcore.fit.pull_fit import LawFit, Reduction, Residuals
+from knitcore.fit.strip_fit import fit_tests
+from knitcore.formats.read.law_files import LawFile, save_law
+from knitcore.materials.material_document import CurveDocument
+from knitcore.measure.uniaxial_files import read_stretch_test
+
+from ...cli.options import out_option, write_table
+from ...context import Context
+from ...requests.base import Floats, RequestModel, ResultModel
+from ...requests.fabrics import (
+    ElasticConstants,
+    LawConstants,
+    LawResult,
+    elastic_constants_of,
+    law_constants,
+)
+from ...requests.faults import CheckedBy
+from ...requests.uploads import UploadedFile, example_file, stored
+from ..registry import Command, Operation
+
+PLOTTED_POINTS = 2000
+"""Largest number of points of a residual plot: more than a screen resolves."""
+
+
+def _read(file: UploadedFile, _: Context) -> None:
+    with stored([file]) as (path,):
+        read_stretch_test(path)
+
+
+class FitRequest(RequestModel):
+    """Two stretch tests of one fabric."""
+
+    test_course: Annotated[UploadedFile, CheckedBy(_read)] = Field(
+        description="Test pulled along the rows; HDF5, CSV or XLSX."
+    )
+    test_wale: Annotated[UploadedFile, CheckedBy(_read)] = Field(
+        description="Test pulled along the columns."
+    )
+    format: Literal["csv", "h5"] | None = Field(
+        None, description="Format of the tests; recognised from the content if not given."
+    )
+    reduction: Reduction = Field(
+        Reduction.RECOMMENDED,
+        description="recommended: force and waist of the simulated test, clamp to clamp; uniform: "
+        "clamp to clamp, as if the cloth strained evenly; published: as in the paper.",
+    )
+    width_course_mm: float | None = Field(
+        None, ge=5, le=10_000, description="Clamped width, in place of the course-wise test's."
+    )
+    width_wale_mm: float | None = Field(
+        None, ge=5, le=10_000, description="Clamped width, in place of the wale-wise test's."
+    )
+    residuals: bool = Field(False, description="Return residuals at each point too.")
+
+
+class LawErrors(ElasticConstants, LawConstants):
+    """Standard errors of a law's constants."""
+
+    shear_modulus_n_per_mm: float | None = Field(
+        None,
+        description="Error with the recommended reduction only; mostly that of its prior, a factor "
+        "of 1.5.",
+    )
+    kappa_xx: float | None = None
+    kappa_yy: float | None = None
+
+
+class ResidualPoints(ResultModel):
+    """Measured points and the fitted stress there."""
+
+    strain_along: Floats
+    strain_across: Floats
+    stress_n_per_mm: Floats
+    fitted_n_per_mm: Floats
+
+
+class FitResult(ElasticConstants, LawResult):
+    """The constants of a law with their uncertainty."""
+
+    kind: Literal["fit"] = "fit"
+    standard_errors: LawErrors
+    rms_n_per_mm: float = Field(description="Rms of all residuals.")
+    rms_course_n_per_mm: float
+    rms_wale_n_per_mm: float
+    largest_strain: dict[Direction, float] = Field(description="Largest strain of the fit.")
+    runs: dict[Direction, int] = Field(description="Number of pulls used.")
+    reduction: Reduction
+    error_method: str
+    notes: list[str]
+    waist_rms: dict[Direction, float] | None = Field(
+        None,
+        description="Rms of the simulated minus the measured strain of the waist (recommended "
+        "reduction).",
+    )
+    residuals: dict[Direction, ResidualPoints] | None = None
+    curves: dict[Direction, CurveDocument] = Field(
+        description="Median curve of the pulls in each direction; kept with the law in a file."
+    )
+
+
+def fit(request: FitRequest, context: Context) -> FitResult:
+    """A law with standard errors from a course-wise and a wale-wise test."""
+    return _result(_fit(request, context), residuals=request.residuals)
+
+
+def _fit(request: FitRequest, context: Context) -> LawFit:
+    with stored([request.test_course, request.test_wale]) as (course, wale):
+        return request.pass_to(
+            fit_tests, course, wale, file_format=request.format, cancelled=context.cancelled
+        )
+
+
+def _result(fit: LawFit, *, residuals: bool) -> FitResult:
+    errors = fit.standard_errors
+    names = {name: name.removesuffix("_n_per_mm") for name in LawErrors.model_fields}
+    return FitResult.of(
+        fit,
+        **elastic_constants_of(fit.law),
+        **law_constants(fit.law),
+        standard_errors={name: errors.get(constant) for name, constant in names.items()},
+        residuals={d: _points(r) for d, r in fit.residuals.items()} if residuals else None,
+        curves={d: CurveDocument.from_curve(c) for d, c in fit.curves.items()},
+    )
+
+
+def _points(residuals: Residuals) -> ResidualPoints:
+    step = max(1, -(-len(residuals.stress) // PLOTTED_POINTS))
+    return ResidualPoints(
+        **{
+            name: getattr(residuals, name.removesuffix("_n_per_mm"))[::step]
+            for name in ResidualPoints.model_fields
+        }
+    )
+
+
+@out_option("--residuals", help="Write points and fit to FILE.csv.")
+@out_option("--out", help="Write the law to LAW.json.")
+def _command(
+    request: FitRequest, context: Context, out: Path | None, residuals: Path | None
+) -> FitResult:
+    fit = _fit(request, context)
+    if out is not None:
+        tests = f"{request.test_course.name} and {request.test_wale.name}"
+        source = f"fitted to {tests}, {fit.reduction} reduction"
+        file = LawFile(fit.law, source, fit.standard_errors, fit.largest_strain, fit.curves)
+        save_law(file, out)
+    if residuals is not None:
+        points = (
+            (direction, *map(float, row))
+            for direction, r in fit.residuals.items()
+            for row in zip(r.strain_along, r.strain_across, r.stress, r.fitted, strict=True)
+        )
+        write_table(residuals, ["direction", *ResidualPoints.model_fields], points)
+    return _result(fit, residuals=False)
+
+
+def _lines(r: FitResult) -> list[str]:
+    lines = []
+    for name, error in r.standard_errors.model_dump(exclude_none=True).items():
+        unit = " N/mm" if name.endswith("_n_per_mm") else ""
+        value = getattr(r, name)
+        lines.append(f"{name.removesuffix('_n_per_mm'):16} {value:9.4f} ± {error:.4f}{unit}")
+    lines += [
+        f"residuals        {r.rms_n_per_mm:.4f} N/mm rms "
+        f"(course {r.rms_course_n_per_mm:.4f}, wale {r.rms_wale_n_per_mm:.4f})",
+        f"reduction        {r.reduction}; errors: {r.error_method}",
+    ]
+    return lines
+
+
+OPERATION = Operation(
+    fit,
+    tag="measure",
+    summary="A law from two stretch tests",
+    example={"test_course": example_file("course.csv"), "test_wale": example_file("wale.csv")},
+    job=True,
+    command=Command(
+        _lines, more="Each is an HDF5, CSV or XLSX file.", names={"residuals": None}, run=_command
+    ),
+)

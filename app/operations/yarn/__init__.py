@@ -1,0 +1,1 @@
+"""Yarns, and stitches at the yarn level."""

@@ -1,0 +1,128 @@
+"""Bases of requests and results."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from inspect import signature
+from typing import Annotated, Any, Self, TypeVar
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
+
+from knitcore.base.errors import InputError
+
+from .faults import problem_in_words
+
+T = TypeVar("T")
+UNIT = "_n_per_mm"
+
+
+class MissingError(InputError):
+    """Error: nothing has the name that the address gives."""
+
+
+class InvalidRequestError(Exception):
+    """A body that is not a request of its address."""
+
+    def __init__(self, errors: list[Any]) -> None:
+        super().__init__(errors)
+        self._errors = errors
+
+    def errors(self) -> list[Any]:
+        """Pydantic's errors, with the inputs removed."""
+        return self._errors
+
+
+def read(model: Any, content: bytes | str) -> Any:
+    """A model, or what another annotation means, of JSON that somebody sent.
+
+    Raises
+    ------
+    InvalidRequestError
+    """
+    try:
+        return TypeAdapter(model).validate_json(content)
+    except ValidationError as error:
+        faults = error.errors(include_url=False, include_input=False)
+        raise InvalidRequestError(
+            [fault | {"loc": ("body", *fault["loc"])} for fault in faults]
+        ) from None
+
+
+def first_fault(error: ValidationError) -> str:
+    """The first thing that is wrong, and where."""
+    fault = error.errors()[0]
+    return ": ".join(filter(None, (".".join(map(str, fault["loc"])), problem_in_words(fault))))
+
+
+class RequestModel(BaseModel):
+    """A request, or a part of one; unknown fields are refused."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    def pass_to(self, function: Callable[..., T], *first: Any, **more: Any) -> T:
+        """Call a function or a class of the library with these fields and the values given.
+
+        A parameter that is not given takes the field of its name, or of its name and the unit N/mm.
+        """
+        names = list(signature(function).parameters)[len(first) :]
+        mine = {n: f for n in names for f in (n, n + UNIT) if f in type(self).model_fields}
+        return function(*first, **{n: getattr(self, f) for n, f in mine.items()} | more)
+
+
+class NoRequest(RequestModel):
+    """The request of an operation without inputs."""
+
+
+class ResultModel(BaseModel):
+    """A result, or a part of one, read from the attributes of a library result."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    @classmethod
+    def of(cls, source: object, **given: Any) -> Self:
+        """Read the fields that are not given from one library result, by their names."""
+        names = (name for name in cls.model_fields if name not in given and hasattr(source, name))
+        return cls.model_validate({name: getattr(source, name) for name in names} | given)
+
+
+class IntervalResult(ResultModel):
+    """A result, or a part of one, with 90 % intervals."""
+
+    interval_source: str = Field(description="Source of the 90 % intervals.")
+
+
+def listed(value: Any) -> Any:
+    """Turn an array of the library into lists."""
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _ends(value: Any) -> Any:
+    return (value.low, value.high) if hasattr(value, "low") else value
+
+
+def _known(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+Floats = Annotated[list[float], BeforeValidator(listed)]
+"""An array of the library."""
+Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
+"""An interval is [low, high] everywhere, each end in the shape and the unit of its value, and its
+field is named after that of the value: ``force_interval_n`` belongs to ``force_n``."""
+EndsOfList = Annotated[tuple[Floats, Floats], BeforeValidator(_ends)]
+"""The same of a list of values: the list of low ends, and that of high ends."""
+Known = Annotated[float | None, BeforeValidator(_known)]
+"""A number, null where the library's is not finite."""
+KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]
+"""The ends of an interval, null where they are not finite."""
+
+Positive = Annotated[float, Field(gt=0, le=1000)]
+Seed = Annotated[
+    int,
+    Field(
+        ge=0,
+        le=2**32 - 1,
+        description="Seed of random choices: the same one gives the same chart.",
+    ),
+]

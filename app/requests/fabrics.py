@@ -1,0 +1,180 @@
+"""Fabrics in requests and results: a chart of a material, its laws and its gauge."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.materials import Laws, Material, load_library
+from knitcore.prediction.size import KnownBy, RelaxedSize
+
+from ..context import Context
+from .base import UNIT, RequestModel, ResultModel
+from .charts import ChartInput, MaterialName, to_chart
+
+
+class LawsRequest(RequestModel):
+    """A request about materials, with a choice of the laws of the paper's yarns.
+
+    The choice becomes part of the materials' names, so that nothing else depends on it.
+    """
+
+    laws: Laws | None = Field(
+        None,
+        description="Laws of library yarns: refitted clamp to clamp (default), or as published.",
+    )
+
+    @model_validator(mode="after")
+    def _name_laws(self) -> Self:
+        if self.laws is not None:
+            for field in ("material", "materials"):
+                given = getattr(self, field, None)
+                if isinstance(given, str):
+                    setattr(self, field, self._named(given))
+                elif given:
+                    setattr(self, field, [self._named(name) for name in given])
+        return self
+
+    def _named(self, material: str) -> str:
+        """A material's name with the laws chosen; files and own materials have one law only."""
+        yarn = material.strip().lower().partition(":")[0]
+        if self.laws is None or yarn not in load_library():
+            if self.laws is Laws.PUBLISHED:
+                raise ValueError(
+                    f"{material} has one law only; omit laws, or choose a yarn of the library."
+                )
+            return material
+        return self.laws.of(material)
+
+
+class FabricRequest(LawsRequest):
+    """A chart of a material."""
+
+    chart: ChartInput
+    material: MaterialName
+
+    def fabric(self, context: Context) -> tuple[StitchChart, Material]:
+        """Both, as the library has them."""
+        return to_chart(self.chart), context.material(self.material)
+
+
+Count = Annotated[
+    float,
+    Field(
+        gt=0,
+        le=1000,
+        description="Counted on your own relaxed swatch; give stitches and rows, or neither.",
+    ),
+]
+
+
+class GaugeInput(RequestModel):
+    """The gauge of a chart: counted on your own relaxed cloth, or from a relaxation."""
+
+    stitches_per_10_cm: Count
+    rows_per_10_cm: Count
+    log_sd: float = Field(
+        RelaxedSize.log_sd,
+        ge=0.001,
+        le=1,
+        description="Uncertainty of both numbers: standard deviation of their logarithms.",
+    )
+    known_by: KnownBy = Field(
+        KnownBy.GAUGE, description="`relaxation` for the `gauge` in the result of `relax`."
+    )
+
+    def relaxed_size(self) -> RelaxedSize:
+        """The relaxed size of one stitch."""
+        size = RelaxedSize.from_gauge(self.stitches_per_10_cm, self.rows_per_10_cm)
+        return replace(size, log_sd=self.log_sd, known_by=self.known_by)
+
+
+class FoundGauge(ResultModel):
+    """The gauge that a relaxation found; other requests take it as it is."""
+
+    stitches_per_10_cm: float
+    rows_per_10_cm: float
+    log_sd: float
+    known_by: KnownBy
+
+
+class GaugedRequest(FabricRequest):
+    """A chart of a material, and how somebody knits it."""
+
+    gauge: GaugeInput | None = Field(
+        None, description="Measured gauge of the chart; its relaxed size is estimated if left out."
+    )
+
+    @property
+    def relaxed_size(self) -> RelaxedSize | None:
+        """The relaxed size of one stitch, if the gauge was measured."""
+        return self.gauge.relaxed_size() if self.gauge else None
+
+
+class Moduli(ResultModel):
+    """Young's moduli along rows and along columns."""
+
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+
+
+class ElasticConstants(Moduli):
+    """Moduli and Poisson ratios."""
+
+    poisson_yx: float = Field(description="Contraction wale-wise when pulled course-wise.")
+    poisson_xy: float = Field(description="Contraction course-wise when pulled wale-wise.")
+
+
+class Extensibility(ResultModel):
+    """Extensibility, the inverse of the moduli."""
+
+    extensibility_course_mm_per_n: float
+    extensibility_wale_mm_per_n: float
+
+
+class LawConstants(ResultModel):
+    """The constants of stress and strain in the plane."""
+
+    stiffness_xxxx_n_per_mm: float
+    stiffness_yyyy_n_per_mm: float
+    stiffness_xxyy_n_per_mm: float
+    stiffness_yyxx_n_per_mm: float
+    alpha_xx: float
+    alpha_yy: float
+    beta_xx_n_per_mm: float
+    beta_yy_n_per_mm: float
+
+
+class LawResult(LawConstants):
+    """The constants of a constitutive law."""
+
+    shear_modulus_n_per_mm: float = Field(
+        description="Shear modulus; an assumption unless it was fitted or calibrated."
+    )
+    kappa_xx: float = Field(description="Coupling: share of the strain across in the stiffening.")
+    kappa_yy: float
+    shear_stiffening: float = Field(
+        0.0, description="Growth of the shear stiffness with the angle squared, 1/rad²."
+    )
+
+
+def law_constants(law: ConstitutiveLaw) -> dict[str, float]:
+    """Return the fields of :class:`LawResult`, which name the unit of each constant of a law."""
+    return {name: getattr(law, name.removesuffix(UNIT)) for name in LawResult.model_fields}
+
+
+def moduli_of(law: ConstitutiveLaw) -> dict[str, float]:
+    """Return the fields of :class:`Moduli` of a law."""
+    return {
+        "modulus_course_n_per_mm": law.modulus_course,
+        "modulus_wale_n_per_mm": law.modulus_wale,
+    }
+
+
+def elastic_constants_of(law: ConstitutiveLaw) -> dict[str, float]:
+    """Return the fields of :class:`ElasticConstants` of a law."""
+    return moduli_of(law) | {"poisson_yx": law.poisson_yx, "poisson_xy": law.poisson_xy}

@@ -1,0 +1,284 @@
+"""Requests and results of the yarn level, with friction between yarns where it is wanted."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, replace
+from typing import Annotated, Any, Self, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field
+
+from knitcore.base.errors import InputError
+from knitcore.chart.stitch_chart import (
+    MAX_STITCHES_PER_SIDE,
+    StitchChart,
+    check_stitches,
+    size_in_words,
+)
+from knitcore.materials import Material
+from knitcore.yarn.library.yarns import ChartYarn, yarn_for, yarn_friction
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.solve.friction import MAX_COEFFICIENT, MAX_STITCHES
+from knitcore.yarn.study.hysteresis import TAKE_DOWN_N_PER_MM, WORN_N_PER_MM, History
+from knitcore.yarn.study.relax import Branch, RelaxedRepeat, relax
+
+from ..context import Context
+from .base import Ends, RequestModel, ResultModel
+from .charts import MaterialName, RepeatInput, to_chart, to_repeat
+from .faults import with_others
+
+LoopLength = Annotated[float, Field(gt=0, le=1000)]
+LoopLengths = list[
+    Annotated[list[LoopLength], Field(min_length=1, max_length=MAX_STITCHES_PER_SIDE)]
+]
+
+
+class StitchRequest(RequestModel):
+    """A repeat and its yarn."""
+
+    chart: RepeatInput
+    material: MaterialName
+    loop_length_mm: float | None = Field(
+        None, gt=0, le=1000, description="Yarn per stitch; the material's by default."
+    )
+
+    def repeat(self, most: int | None = None) -> StitchChart:
+        """The chart's repeat.
+
+        Raises
+        ------
+        InputError
+            If it has more than ``most`` stitches.
+        """
+        repeat = to_repeat(self.chart).repeat()
+        if most is not None:
+            check_stitches(repeat.stitches, most, "its repeat")
+        return repeat
+
+    def yarn(self, repeat: StitchChart, context: Context) -> ChartYarn:
+        """The material's yarn in a repeat, with the loop length if it is given."""
+        return _yarn(context.material(self.material), repeat, self.loop_length_mm)
+
+
+class YarnLevelRequest(StitchRequest):
+    """A repeat, its yarn, and the model to use."""
+
+    loop_lengths_mm: LoopLengths | None = Field(
+        None,
+        min_length=1,
+        max_length=MAX_STITCHES_PER_SIDE,
+        description="Yarn per stitch, in place of one length: a list for every row of the chart, "
+        "the bottom row first, of one length for all its stitches or one for each.",
+        examples=[[[14.0], [12.0]]],
+    )
+    flat: bool = Field(
+        False,
+        description="Hold the stitches in one plane, as a fabric laid flat; not in the published "
+        "branch.",
+    )
+    branch: Branch | None = None
+    convention: Convention = Convention.PUBLISHED
+    fresh: bool = Field(False, description="Compute again, even if the result is stored.")
+
+    def repeat(self, most: int | None = None) -> StitchChart:
+        """The chart's repeat, or the whole chart if its rows have loop lengths of their own."""
+        return super().repeat(most) if self.loop_lengths_mm is None else to_chart(self.chart)
+
+    def yarn(self, repeat: StitchChart, context: Context) -> ChartYarn:
+        """The material's yarn for a repeat, with the mean of the loop lengths if they are given.
+
+        Raises
+        ------
+        InputError
+            If lengths are given twice.
+        """
+        lengths, given = self.loop_lengths_mm, self.loop_length_mm
+        if lengths is not None and given is not None:
+            raise InputError(
+                "loop_lengths_mm", "loop_length_mm is given as well.", "Give one of the two."
+            )
+        if lengths is not None:
+            given = float(np.mean([np.mean(row) for row in lengths]))
+        return _yarn(context.material(self.material), repeat, given)
+
+    def inputs(self, repeat: StitchChart, used: ChartYarn) -> dict[str, Any]:
+        """Everything that decides a result, from which its stored name is made."""
+        options = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
+        return {"repeat": repeat.text, "used": asdict(used), "asked": options}
+
+
+def _yarn(material: Material, repeat: StitchChart, loop_length_mm: float | None) -> ChartYarn:
+    used = yarn_for(material, repeat, loop_length_mm)
+    return used if loop_length_mm is None else replace(used, loop_length_mm=loop_length_mm)
+
+
+class YarnResult(ResultModel):
+    """The yarn that was used, and the source of its numbers."""
+
+    bending_modulus_n_mm2: float
+    contact_stiffness_n_per_mm3: float
+    contact_exponent: float
+    radius_mm: float
+    core_radius_mm: float
+    provenance: str
+    estimated: bool
+
+    @classmethod
+    def of_chart(cls, used: ChartYarn) -> YarnResult:
+        """Describe the yarn of a chart."""
+        return cls.of(used.yarn, provenance=used.provenance, estimated=used.estimated)
+
+
+def _lengths(request: YarnLevelRequest, used: ChartYarn, rows: int, columns: int) -> ArrayLike:
+    """One loop length, one for every course, or one for every stitch."""
+    table = request.loop_lengths_mm
+    if table is None:
+        return used.loop_length_mm
+    if len(table) != rows or any(len(row) not in (1, columns) for row in table):
+        raise InputError(
+            "loop_lengths_mm",
+            f"they do not fit a chart of {size_in_words(columns, rows)}.",
+            "Give every row one length, or one for each of its stitches, the bottom row first.",
+        )
+    if all(len(row) == 1 for row in table):
+        return [row[0] for row in table]
+    return [row * (columns // len(row)) for row in table]
+
+
+def relax_requested(
+    repeat: StitchChart,
+    used: ChartYarn,
+    request: YarnLevelRequest,
+    context: Context,
+    sizes_mm: tuple[float | None, float | None] = (None, None),
+) -> RelaxedCell:
+    """Relax in the requested branch, at held sizes of a stitch if they are given."""
+    return relax(
+        repeat,
+        used.yarn,
+        _lengths(request, used, repeat.rows, repeat.columns),
+        branch=request.branch,
+        convention=request.convention,
+        cell_course_mm=sizes_mm[0],
+        cell_wale_mm=sizes_mm[1],
+        flat=request.flat,
+        cancelled=context.cancelled,
+    )
+
+
+Request = TypeVar("Request", bound=YarnLevelRequest)
+Kept = TypeVar("Kept", bound=ResultModel)
+
+
+def kept_or_made(
+    kind: type[Kept],
+    request: Request,
+    context: Context,
+    make: Callable[[Request, StitchChart, ChartYarn, Context], Kept],
+) -> Kept:
+    """The stored or new result of a request; it says which."""
+    repeat = request.repeat()
+    used = request.yarn(repeat, context)
+    result, known = context.kept.get_or_make(
+        kind,
+        request.inputs(repeat, used),
+        lambda: make(request, repeat, used, context),
+        fresh=request.fresh,
+    )
+    return result.model_copy(update={"known": known})
+
+
+HISTORIES = (
+    f"As-knitted: pulled along the columns by {TAKE_DOWN_N_PER_MM:g} N/mm, then released; "
+    f"stretched: by {WORN_N_PER_MM:g} N/mm. Agitated: shaken until friction holds nothing."
+)
+"""Note that explains the histories."""
+
+
+class RubbedRequest(YarnLevelRequest):
+    """A repeat, its yarn, the model to use, and friction between yarns where it is asked for."""
+
+    friction: float | None = Field(
+        None,
+        ge=0,
+        le=MAX_COEFFICIENT,
+        description="Coefficient of friction between yarns. Without it, and without the other "
+        "options that need one, there is no friction.",
+    )
+
+    @property
+    @abstractmethod
+    def has_friction(self) -> bool:
+        """True if an option that needs friction is given."""
+
+    def with_friction(self, context: Context) -> Self:
+        """The request with its coefficient of friction, that of the yarn unless it is given.
+
+        Raises
+        ------
+        InputError
+            With all that cannot be had with friction.
+        """
+        if not self.has_friction:
+            return self
+        faults = self._against_friction()
+        if (error := next(faults, None)) is not None:
+            raise with_others(error, faults)
+        if self.friction is not None:
+            return self
+        known = yarn_friction(context.material(self.material))
+        return self.model_copy(update={"friction": known.coefficient})
+
+    def friction_note(self, context: Context) -> str:
+        """The coefficient of friction and where it comes from."""
+        known = yarn_friction(context.material(self.material))
+        source = known.source if self.friction == known.coefficient else "as given"
+        return f"Coefficient of friction {self.friction:g}: {source}."
+
+    def _against_friction(self) -> Iterator[InputError]:
+        """Yield an error for each option that cannot be had with friction."""
+        if self.branch is Branch.PUBLISHED:
+            yield InputError(
+                "branch", "the published branch has no friction.", "Use mirrored or free."
+            )
+        if self.flat:
+            yield InputError(
+                "flat", "a repeat that is held flat cannot have friction.", "Leave it out."
+            )
+        if any(len(row) > 1 for row in self.loop_lengths_mm or ()):
+            yield InputError(
+                "loop_lengths_mm",
+                "lengths of single stitches hold the yarn, which friction must let slide.",
+                "Give one length for each row.",
+            )
+        try:
+            check_stitches(self.repeat().stitches, MAX_STITCHES, "its repeat", " with friction")
+        except InputError as error:
+            yield error
+
+
+def on_splines(zero: RelaxedCell) -> RelaxedRepeat:
+    """Return the relaxed cell of a request with friction as one on splines."""
+    assert isinstance(zero, RelaxedRepeat)  # noqa: S101 - the published branch was refused
+    return zero
+
+
+class RestSizeResult(ResultModel):
+    """Size of a stitch free of force after a history."""
+
+    history: History
+    course_mm: float
+    wale_mm: float
+    course_interval_mm: Ends | None = Field(
+        None, description="Interval of the size over the interval of friction."
+    )
+    wale_interval_mm: Ends | None = None
+
+
+def rest_line(rest: RestSizeResult) -> str:
+    """A rest size as commands print it."""
+    return f"rest, {rest.history:18}{rest.course_mm:6.3f} × {rest.wale_mm:.3f} mm a stitch"

@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+
+from app.context import Context
+from app.operations.chart.curve import CurveRequest, curve
+from knitcore.base.errors import CancelledError
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.law.uniaxial import strain_at_stress
+from knitcore.materials import material
+from tests.app.command_line import refused, run
+
+
+def test_a_pure_fabric_has_its_law(client: TestClient) -> None:
+    arguments = ["garter", "--size", "6x6", "--material", "acrylic", "--direction", "wale"]
+    told = run("curve", *arguments, "--points", "4")
+    law = material("acrylic").law(Fabric.GARTER)
+    expected = [strain_at_stress(law, Direction.WALE, s) for s in told["stress_n_per_mm"]]
+    assert told["strain"] == pytest.approx(expected)
+    assert told["provenance"] == "measured"
+    lows, highs = told["strain_interval"]
+    assert lows[0] == highs[0] == 0
+    assert len(told["stress_interval_n_per_mm"]) == 2
+    for low, strain, high in zip(lows[1:], told["strain"][1:], highs[1:], strict=True):
+        assert low < strain < high
+    # cloth that narrows locks a little later than cloth held at its width
+    assert highs[-1] < 1.05 * law.lock_up_strain(Direction.WALE)
+    body = {"chart": "K\nP", "material": "acrylic", "direction": "wale"}
+    body["stress_n_per_mm"] = told["stress_n_per_mm"]
+    assert client.post("/api/v1/curve", json=body).json()["strain"] == pytest.approx(expected)
+
+
+def test_a_wide_rib_is_learned_and_ones_own_gauge_counts(
+    client: TestClient, tmp_path: Path
+) -> None:
+    body = {"material": "acrylic", "direction": "course", "stress_n_per_mm": [0.05, 0.1]}
+    narrow = client.post("/api/v1/curve", json=body | {"chart": "KP"}).json()
+    wide = client.post("/api/v1/curve", json=body | {"chart": "KKPP"}).json()
+    assert wide["strain"] != narrow["strain"]
+    assert wide["provenance"] == "learned"
+
+    chart = tmp_path / "rib.txt"
+    chart.write_text("KKPP")
+    arguments = [str(chart), "--material", "acrylic", "--direction", "course"]
+    tight = ["--stitches-per-10-cm", "70", "--rows-per-10-cm", "35"]
+    own, table = run("curve", *arguments, *tight), run("curve", *arguments)
+    assert own["strain"][-1] > table["strain"][-1]
+    assert "rows-per-10-cm" in refused("curve", *arguments, *tight[:2])
+
+
+def test_the_prediction_takes_the_gauge_too(client: TestClient) -> None:
+    gauge = {"stitches_per_10_cm": 70, "rows_per_10_cm": 35}
+    body = {"chart": "KKPP", "material": "acrylic", "gauge": gauge}
+    told = client.post("/api/v1/predict", json=body).json()
+    assert told["relaxed_course_mm"] == pytest.approx(100 / 70)
+    assert told["relaxed_source"] == "gauge"
+    low, high = told["modulus_course_interval_n_per_mm"]
+    assert low < told["modulus_course_n_per_mm"] < high
+    problem = client.post("/api/v1/predict", json=body | {"gauge": {"rows_per_10_cm": 3}}).json()
+    assert problem["field"] == "gauge.stitches_per_10_cm"
+
+
+def test_an_abandoned_curve_is_not_computed(tmp_path: Path) -> None:
+    body = {"chart": "KKPP", "material": "acrylic", "direction": "course"}
+    with pytest.raises(CancelledError):
+        curve(CurveRequest.model_validate(body), Context(tmp_path, cancelled=lambda: True))

@@ -1,0 +1,199 @@
+"""Atlas and search over REST and on the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+
+from app.context import Context
+from app.operations.design import find as find_module
+from app.service.results.atlases import repeats_of
+from knitcore.base.errors import InputError
+from knitcore.formats.read.stitch_maps import read_wanted_moduli
+from tests.app.command_line import printed, refused, run
+from tests.app.rest import post, refusal
+
+WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.135, "tolerance": 0.05, "weight": 1.0}
+
+
+@pytest.fixture(scope="module")
+def atlas(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, list[object]]]:
+    """The small atlas of acrylic from the command line: its file and what was printed."""
+    file = tmp_path_factory.mktemp("atlas") / "acrylic.npz"
+    return file, printed_atlas(file)
+
+
+def printed_atlas(file: Path) -> dict[str, list[object]]:
+    options = "--material", "acrylic", "--repeats", "small", "-o", file, "--json"
+    made: dict[str, list[object]] = json.loads(printed("atlas", *options).stdout)
+    return made
+
+
+def test_rest_and_command_line_find_the_same(
+    client: TestClient, atlas: tuple[Path, dict[str, list[object]]]
+) -> None:
+    asked = post(client, "find", {"materials": ["acrylic"], "targets": [WISH], "count": 3})
+    assert asked["reached"]
+    assert asked["candidates"][0]["repeat"] in ("K/P", "P/K")
+    assert asked["searched"] == len(repeats_of("small"))
+
+    target = "course=0.135~5%*1"
+    assert run("find", "--atlas", atlas[0], "--target", target, "--count=3") == asked
+
+    columns = client.post("/api/v1/atlas", json={"material": "acrylic"}).json()
+    assert columns == atlas[1]
+    assert len(atlas[1]["repeats"]) == len(repeats_of("small"))
+
+
+@pytest.mark.slow
+def test_other_yarns_are_offered_where_the_wanted_one_reaches_nothing(client: TestClient) -> None:
+    """No acrylic is so stiff; the answer names the nearest and looks elsewhere."""
+    wish = WISH | {"value": 0.6, "tolerance": 0.2}
+    asked = client.post("/api/v1/find", json={"materials": ["acrylic"], "targets": [wish]}).json()
+    assert not asked["reached"]
+    assert {c["material"] for c in asked["elsewhere"]}.isdisjoint({"acrylic"})
+    alone = {"materials": ["acrylic"], "targets": [wish], "elsewhere": False}
+    assert client.post("/api/v1/find", json=alone).json()["elsewhere"] == []
+
+
+def test_stretch_pressure_and_limits_over_rest_and_on_the_command_line(
+    client: TestClient, atlas: tuple[Path, dict[str, list[object]]]
+) -> None:
+    targets = [
+        {"quantity": "stretch_wale", "value": 0.4, "load_n_per_mm": 0.05, "tolerance": 0.2},
+        {
+            "quantity": "pressure_course_mmhg",
+            "value": 20,
+            "limb": {"rest_mm": 180, "worn_mm": 240},
+            "weight": 2,
+        },
+        {"quantity": "poisson_xy", "value": 0.3, "tolerance": 0.2},
+    ]
+    request = {
+        "materials": ["acrylic"],
+        "targets": targets,
+        "limits": {"transfers_per_stitch": 0.5, "curl": 0.4},
+        "count": 4,
+        "elsewhere": False,
+    }
+    found = post(client, "find", request)
+    assert set(found["candidates"][0]["values"]) == {
+        "stretch_wale@0.05",
+        "pressure_course_mmhg@180/240",
+        "poisson_xy",
+    }
+    assert all(c["transfers_per_stitch"] <= 0.5 for c in found["candidates"])
+    told = run(
+        "find",
+        f"--atlas={atlas[0]}",
+        "--target=stretch_wale@0.05=0.4~20%",
+        "--target=pressure_course@180/240=20*2",
+        "--target=poisson_xy=0.3~0.2",
+        "--most-transfers=0.5",
+        "--most-curl=0.4",
+        "--count=4",
+        "--json",
+    )
+    assert told == found
+
+
+def test_targets_for_parts_fill_them_and_contradictions_are_refused(client: TestClient) -> None:
+    box = [[row, 0, 8] for row in range(8)]
+    wishes = [
+        {"name": "palm", "runs": box, "modulus_course_n_per_mm": 0.135},
+        {"name": "back", "runs": [[row, 8, 8] for row in range(8)], "modulus_wale_n_per_mm": 0.48},
+    ]
+    request = {"material": "acrylic", "rows": 8, "columns": 16, "wishes": wishes}
+    filled = post(client, "fill", request)
+    assert (filled["rows"], filled["columns"]) == (8, 16)
+    assert filled["off_share"] <= 0.3
+
+    kept = ["KPPKKPKKPPKPPPKK"] * 8
+    rest = {"wishes": wishes[:1], "chart": "\n".join(kept)}
+    beside = post(client, "fill", request | rest)
+    assert [line[8:] for line in beside["chart"].split()] == [line[8:] for line in kept]
+    shape = {"outline": "\n".join(["xxxxxxxxxxxxxx.."] * 8)}
+    post(client, "fill", request | rest | shape)
+    assert refusal(client, "fill", request | rest | {"chart": "KP"})["field"] == "chart"
+
+    wishes[1] = {"name": "thumb", "runs": box, "modulus_course_n_per_mm": 0.1}
+    problem = refusal(client, "fill", request)
+    assert "contradict" in problem["detail"]
+    for wrong in ({"rows": None}, {"modulus_course_n_per_mm": [[0.1]]}):
+        assert client.post("/api/v1/fill", json=request | wrong).status_code == 422
+
+
+def test_an_outline_over_rest_and_on_the_command_line(
+    client: TestClient, atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path
+) -> None:
+    width = [None, 0.97, 0.95, 0.94, 0.94, 0.95, 0.97, None]
+    request = {"material": "acrylic", "strain": 0.3, "width": width, "across": 8}
+    asked = post(client, "shape", request | {"smallest_band": 2})
+    assert asked["largest"] < 0.05
+    profile, design = tmp_path / "p.csv", tmp_path / "d.json"
+    profile.write_text("width\n" + "\n".join("" if w is None else str(w) for w in width) + "\n")
+    shape = ["shape", str(profile), "--material=acrylic", "--across=8", "--strain=0.3"]
+    assert run(*shape, "--smallest-band=2", f"--atlas={atlas[0]}", f"-o{design}") == asked
+    assert json.loads(design.read_text())["chart"] == asked["chart"]
+    profile.write_text("height\n1\n")
+    refused(*shape)
+
+
+def test_the_values_of_a_chart_give_the_chart_back(
+    client: TestClient, atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path
+) -> None:
+    """Exported values filled again: the same moduli over REST and on the command line."""
+    chart, values, design = (tmp_path / name for name in ("c.txt", "v.csv", "d.json"))
+    chart.write_text("\n".join(["KPKPKPKPKPKP"] * 6 + ["KKKKKKKKKKKK"] * 6))
+    printed("export", chart, "--to", "csv", "-o", values)
+    fill = ["fill", str(values), "--material=acrylic", f"--atlas={atlas[0]}", f"-o{design}"]
+    result = run(*fill)
+    assert result["off_share"] == 0
+    assert (result["rows"], result["columns"]) == (12, 12)
+    assert json.loads(design.read_text())["chart"] == result["chart"]
+
+    lines = values.read_text().splitlines()
+    values.write_text(
+        "\n".join([*lines[:61], *(f"{k // 12 + 1},{k % 12 + 1},," for k in range(60, 144))])
+    )
+    assert run(*fill, f"--chart={chart}")["chart"].split()[:7] == chart.read_text().split()[:7]
+    values.write_text("\n".join(lines))
+
+    course, wale = (m.tolist() for m in read_wanted_moduli(values))
+    request = {"material": "acrylic", "modulus_course_n_per_mm": course}
+    assert post(client, "fill", request | {"modulus_wale_n_per_mm": wale}) == result
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("row,column\n1,1\n", "lacks columns"),
+        ("row,column,modulus_wale_n_per_mm\n1,x,1\n", "line 2 holds no numbers"),
+        ("row,column,modulus_wale_n_per_mm\n0,1,1\n", "row 0, column 1"),
+        ("row,column,modulus_wale_n_per_mm\n", "holds no stitch"),
+        ("row,column,modulus_wale_n_per_mm\n1,1,\n", "there is no target"),
+    ],
+)
+def test_unreadable_maps_are_refused(
+    atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path, text: str, says: str
+) -> None:
+    file = tmp_path / "v.csv"
+    file.write_text(text)
+    assert says in refused("fill", file, "--material=acrylic", f"--atlas={atlas[0]}")
+
+
+def test_a_wrong_material_is_refused_before_any_atlas_is_computed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("an atlas was computed")
+
+    monkeypatch.setattr(Context, "atlas", never)
+    request = find_module.FindRequest.model_validate(
+        {"materials": ["acrylic", "nope"], "targets": [WISH]}
+    )
+    with pytest.raises(InputError, match="nope"):
+        find_module.find(request, Context(Path("/nonexistent")))

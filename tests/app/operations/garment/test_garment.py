@@ -1,0 +1,102 @@
+"""Garments over REST and on the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+
+from knitcore.formats.designs.design_file import read_design
+from tests.app.command_line import printed, refused, run
+from tests.app.rest import post
+
+REQUESTS = (
+    {"template": "glove"},
+    {"template": "wrist-brace", "wrist_mm": 170, "length_mm": 90},
+    {"template": "sock-leg", "ankle_mm": 220, "calf_mm": 360, "length_mm": 200},
+    {"template": "limb", "profile": [[0, 180], [200, 260]], "body": "seed"},
+)
+
+
+@pytest.mark.parametrize("garment", REQUESTS, ids=lambda garment: garment["template"])
+def test_rest_and_command_line_agree(
+    client: TestClient, garment: dict[str, object], tmp_path: Path
+) -> None:
+    asked = post(client, "garment", {"garment": garment, "material": "glove-wool"})
+    out = tmp_path / "garment.json"
+    settings = [f"--set={k}={json.dumps(v)}" for k, v in garment.items() if k != "template"]
+    told = run(
+        "garment",
+        str(garment["template"]),
+        "--material=glove-wool",
+        *settings,
+        f"-o{out}",
+        "--json",
+    )
+    assert told == asked
+    assert read_design(out).to_piece().shaped.stitches == asked["stitches"]
+
+
+def test_a_garment_is_kept_as_a_design(client: TestClient) -> None:
+    request = {"garment": {"template": "glove"}, "material": "glove-wool", "intarsia": True}
+    planned = client.post("/api/v1/garment", json=request).json()
+    kept = client.post("/api/v1/designs", json=planned["design"])
+    assert kept.status_code == 201, kept.text
+    document = kept.json()["document"]
+    assert document["regions"] == planned["design"]["regions"]
+    assert document["outline"] == planned["outline"]
+    facts = {r["name"]: r for r in planned["regions"]}
+    assert facts["wrist support"]["yarn_m"] == pytest.approx(
+        facts["wrist support"]["stitches"] * 11.7 / 1000,
+        rel=0.01,  # table 6: mm a stitch
+    )
+
+
+def test_gauge_yarn_and_pressure_of_ones_own(client: TestClient) -> None:
+    brace = {"template": "wrist-brace", "wrist_mm": 170, "length_mm": 90, "target_mmhg": 20}
+    request = {"garment": brace, "material": "acrylic", "linear_density_tex": 500}
+    plain = client.post("/api/v1/garment", json=request).json()
+    (place,) = plain["worn"]
+    low, high = place["mmhg"]
+    assert low < 22
+    assert high > 18
+    assert plain["yarn_g"] == pytest.approx(plain["yarn_m"] / 2)
+    inches = request | {"gauge": {"stitches": 22, "rows": 30, "per": "4 in"}}
+    fine = client.post("/api/v1/garment", json=inches).json()
+    gauge = next(g for g in fine["gauges"] if g["fabric"] == "stockinette")
+    assert gauge["stitches_per_4_in"] == pytest.approx(22)
+    assert gauge["rows_per_5_cm"] == pytest.approx(30 * 50 / 101.6)
+    sizes = "--set=wrist_mm=170", "--set=length_mm=90", "--set=target_mmhg=20"
+    knitter = "--material=acrylic", "--gauge=22x30", "--per=4 in", "--tex=500"
+    assert run("garment", "wrist-brace", *sizes, *knitter) == fine
+
+
+def test_an_outline_is_drawn_and_never_dropped(tmp_path: Path) -> None:
+    design, drawing = tmp_path / "glove.json", tmp_path / "glove.svg"
+    printed("garment", "glove", "--material=glove-wool", f"-o{design}")
+    printed("export", design, "--to", "svg", "-o", drawing)
+    assert "no stitch" in drawing.read_text()
+    assert "cannot hold an outline" in refused("export", design, "--to", "text", "-o", "x.txt")
+
+
+def test_sizes_and_yarn_have_intervals_and_a_swatch_narrows_those_of_sizes(
+    client: TestClient,
+) -> None:
+    asked = {
+        "garment": {"template": "wrist-brace", "wrist_mm": 165.0, "length_mm": 80.0},
+        "material": "acrylic",
+    }
+    swatch = {"stitches": 30, "rows": 40, "per": "10 cm"}
+    widths = []
+    for body in (asked, asked | {"gauge": swatch}):
+        found = client.post("/api/v1/garment", json=body).json()
+        low, high = found["yarn_interval_m"]
+        assert low < found["yarn_m"] < high
+        plain = next(r for r in found["regions"] if "P" not in r["fill"])
+        low, high = plain["width_interval_mm"]
+        assert low < plain["width_mm"] < high
+        widths.append(high / low)
+        assert "gauge" in found["interval_source"]
+    assert widths[1] < widths[0]

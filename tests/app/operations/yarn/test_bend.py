@@ -1,0 +1,78 @@
+"""``bend`` on the command line and over REST."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+
+from app.context import Context
+from app.operations.yarn.bend import BendRequest, BendResult, bend
+from knitcore.base.errors import ConvergenceError
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.materials import material
+from knitcore.yarn.library.yarns import yarn_for
+from tests.app.command_line import run
+from tests.app.rest import post
+
+
+def test_bend_says_what_the_edges_do(client: TestClient) -> None:
+    bent = post(client, "bend", {"chart": "K", "material": "acrylic"})
+    assert bent["moment_course_n"] < 0.0 < bent["moment_wale_n"]
+    assert (bent["curl_course"], bent["curl_wale"]) == ("back", "front")
+    assert bent["bending_length_course_mm"] is None
+    assert "yarn level" in bent["provenance"]
+
+
+def test_the_bending_length_needs_the_weight_of_the_yarn() -> None:
+    request = BendRequest(chart="K", material="acrylic", linear_density_g_per_m=0.3)
+    bent = bend(request, Context(Path()))
+    assert bent.bending_length_course_mm == pytest.approx(18.0, rel=0.02)
+
+
+def test_bend_says_why_twist_is_left_out() -> None:
+    bent = bend(BendRequest(chart="K\nP\nP\nK", material="acrylic"), Context(Path()))
+    assert not bent.stable
+    assert bent.twist_n_mm is None
+    assert any("not quite a minimum" in note for note in bent.notes)
+
+
+def test_states_that_differ_much_are_noted() -> None:
+    bent = bend(BendRequest(chart="P\nK", material="cotton"), Context(Path()))
+    assert not bent.stable
+    assert any("treat it as a range" in note for note in bent.notes)
+
+
+def test_packaged_repeats_are_bent_from_the_store(monkeypatch: pytest.MonkeyPatch) -> None:
+    def bent(loop_length_mm: float | None = None) -> BendResult:
+        request = BendRequest(chart="PPK", material="acrylic", loop_length_mm=loop_length_mm)
+        return bend(request, Context(Path()))
+
+    near = bent(1.0001 * yarn_for(material("acrylic"), StitchChart.parse("PPK")).loop_length_mm)
+    assert "stored" not in near.provenance
+    monkeypatch.setattr("app.operations.yarn.bend.relax", None)
+    stored = bent()
+    assert "stored" in stored.provenance
+    assert stored.curl_course == near.curl_course == "front"
+    assert stored.bending_course_n_mm == pytest.approx(near.bending_course_n_mm, rel=0.01)
+    assert stored.moment_wale_n == pytest.approx(near.moment_wale_n, rel=0.01)
+    assert stored.thickness_mm == pytest.approx(near.thickness_mm, rel=0.01)
+    assert stored.notes[0] == near.notes[0]
+
+
+def test_a_repeat_that_folds_by_itself_is_refused() -> None:
+    with pytest.raises(ConvergenceError, match="folds spontaneously"):
+        bend(BendRequest(chart="KP\nKK", material="acrylic"), Context(Path()))
+
+
+def test_a_fold_along_a_diagonal_is_noted() -> None:
+    bent = bend(BendRequest(chart="P\nK", material="acrylic"), Context(Path()))
+    assert bent.stable
+    assert any("along a diagonal" in note for note in bent.notes)
+
+
+def test_bend_on_the_command_line() -> None:
+    bent = run("bend", "garter", "--material", "acrylic")
+    assert bent["curl"] == "lies flat"
+    assert bent["bending_course_n_mm"] == pytest.approx(0.0055, rel=0.03)
