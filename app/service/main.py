@@ -216,6 +216,7 @@ def _most_each(settings: Settings) -> int | None:
 
 
 def _open_database(settings: Settings) -> Database:
+    settings.make_folder()
     database = Database(settings.store_url)
     migrate(database)
     return database

@@ -21,7 +21,6 @@ from starlette.websockets import WebSocketDisconnect
 from app.service import VERSION, doctor
 from app.service.main import THREADS, create_app
 from app.service.settings import Settings
-from app.service.store.lock import held
 from app.service.web.observing import JsonLines, TextLines, configure_logging
 from app.service.web.tokens import Tokens
 from knitcore.base.errors import InputError
@@ -131,7 +130,7 @@ def test_readyz_checks_database_and_disk(
 ) -> None:
     ready = client.get("/readyz").json()
     assert ready["status"] == "ok"
-    with held(client.app.state.database, "main"):  # type: ignore[attr-defined]
+    with client.app.state.database.reserved("main"):  # type: ignore[attr-defined]
         told = doctor.examine(Settings()).checks
     assert ready["checks"] | {"service": True} == {check.name: check.ok for check in told}
     monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=3_000_000))

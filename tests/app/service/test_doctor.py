@@ -32,7 +32,6 @@ from app.service.problems import DamagedError
 from app.service.settings import Settings
 from app.service.store import schema
 from app.service.store.database import Database
-from app.service.store.lock import held
 from app.service.store.schema import migrate, revision
 from app.service.web import observing
 from knitcore.base.errors import InputError
@@ -43,7 +42,7 @@ def _database(folder: Path) -> Path:
     file = folder / "knitcore.sqlite3"
     database = Database(f"sqlite:///{file}")
     migrate(database)
-    with held(database, "main"):
+    with database.reserved("main"):
         pass
     database.close()
     with sqlite3.connect(file) as connection:
@@ -241,15 +240,15 @@ def _start(folder: Path) -> subprocess.CompletedProcess[str]:
 def test_a_second_service_on_the_same_data_is_refused(tmp_path: Path) -> None:
     file = _database(tmp_path)
     database = Database(f"sqlite:///{file}")
-    with held(database, "main", "http://127.0.0.1:8737/"):
+    with database.reserved("main", "http://127.0.0.1:8737/"):
         done = _start(tmp_path)
         assert done.returncode == 2
         assert "another service (process" in done.stderr
         assert "Open http://127.0.0.1:8737/ in a browser" in done.stderr
         assert "KNITCORE_DATA_DIR" in done.stderr
-        with pytest.raises(InputError, match="another service"), held(database, "other"):
+        with pytest.raises(InputError, match="another service"), database.reserved("other"):
             pass
-    with held(database, "main"):  # free again
+    with database.reserved("main"):  # free again
         pass
     database.close()
 
@@ -257,7 +256,7 @@ def test_a_second_service_on_the_same_data_is_refused(tmp_path: Path) -> None:
 def test_doctor_names_the_service_that_runs(tmp_path: Path) -> None:
     database = Database(f"sqlite:///{_database(tmp_path)}")
     environment = {"KNITCORE_DATA_DIR": str(tmp_path)}
-    with held(database, "main", "http://127.0.0.1:8737/"):
+    with database.reserved("main", "http://127.0.0.1:8737/"):
         told = CliRunner().invoke(main, ["doctor"], env=environment)
         named = f"Process {os.getpid()} runs on it, at http://127.0.0.1:8737/."
         assert (told.exit_code, named in told.output) == (0, True)
@@ -269,7 +268,7 @@ def test_doctor_names_the_service_that_runs(tmp_path: Path) -> None:
 def test_two_services_of_one_name_are_refused_on_postgresql(postgres_url: str) -> None:
     database = Database(postgres_url)
     second = pytest.raises(InputError, match="KNITCORE_PROCESS_NAME")
-    with held(database, "main"), held(database, "other"), second, held(database, "main"):
+    with database.reserved("main"), database.reserved("other"), second, database.reserved("main"):
         pass
     database.close()
 

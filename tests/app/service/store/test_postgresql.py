@@ -23,9 +23,9 @@ from app.service.jobs.store import JobStore
 from app.service.main import create_app
 from app.service.problems import DispossessedError, StoreError
 from app.service.settings import Settings
-from app.service.store import name_lock
-from app.service.store.database import Database
-from app.service.store.lock import held, holder
+from app.service.store import postgresql
+from app.service.store.database import Database, holder
+from app.service.store.postgresql import NameLock, PostgresqlServer
 from app.service.store.schema import migrate
 from knitcore.base.errors import InputError
 from tests.app.databases import control
@@ -55,7 +55,7 @@ def _end_lock_of(database: Database) -> None:
 
 
 def test_a_restart_of_the_database_frees_no_name(database: Database, postgres_url: str) -> None:
-    with held(database, "main"):
+    with database.reserved("main"):
         _restart(postgres_url)
         deadline = time.monotonic() + 60
         while holder(postgres_url, "main") is None:  # until the watch takes it again
@@ -63,7 +63,7 @@ def test_a_restart_of_the_database_frees_no_name(database: Database, postgres_ur
         with (
             closing(Database(postgres_url)) as second,
             pytest.raises(InputError, match="KNITCORE_PROCESS_NAME"),
-            held(second, "main"),
+            second.reserved("main"),
         ):
             pass
         database.check()
@@ -74,8 +74,8 @@ def test_who_only_asks_takes_no_name(
     database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A command that took it for a moment could be taken for another service."""
-    with held(database, "main"):
-        monkeypatch.setattr(name_lock.NameLock, "take", lambda _: pytest.fail("took it"))
+    with database.reserved("main"):
+        monkeypatch.setattr(NameLock, "take", lambda _: pytest.fail("took it"))
         assert holder(postgres_url, "main") == "A service called 'main' runs on this database."
         assert holder(postgres_url, "another") is None
 
@@ -83,8 +83,8 @@ def test_who_only_asks_takes_no_name(
 def test_readiness_takes_the_name_again(
     database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(name_lock, "PING_S", 3600.0)
-    with held(database, "main"):
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
+    with database.reserved("main"):
         control(postgres_url, "-m", "fast", "stop")
         try:
             with pytest.raises(StoreError):
@@ -100,9 +100,10 @@ def test_a_lost_connection_of_our_own_is_no_other_service(
     database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The server may go on holding the lock for a connection that this side has lost."""
-    monkeypatch.setattr(name_lock, "PING_S", 3600.0)
-    with held(database, "main"):
-        lock = database.name_lock
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
+    with database.reserved("main"):
+        assert isinstance(database.backend, PostgresqlServer)
+        lock = database.backend.name_lock
         assert lock is not None
         forgotten, lock._connection = lock._connection, None
         deadline = time.monotonic() + 60
@@ -118,16 +119,16 @@ def test_a_lost_connection_of_our_own_is_no_other_service(
 def test_a_service_whose_name_was_taken_stops(
     database: Database, postgres_url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(name_lock, "PING_S", 3600.0)
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
     with ExitStack() as stack:
-        stack.enter_context(held(database, "main"))
+        stack.enter_context(database.reserved("main"))
         settings = Settings(data_dir=tmp_path, workers=1)
         app = create_app(settings, database)
         client = stack.enter_context(TestClient(app, base_url="http://127.0.0.1"))
         assert client.get("/readyz").status_code == 200
         _end_lock_of(database)
         second = stack.enter_context(closing(Database(postgres_url)))
-        stack.enter_context(held(second, "main"))
+        stack.enter_context(second.reserved("main"))
         told = client.get("/readyz")
         assert (told.status_code, "taken over" in told.json()["detail"]) == (503, True)
         assert "KNITCORE_PROCESS_NAME" in told.json()["remedy"]
@@ -140,7 +141,7 @@ def test_a_service_whose_name_was_taken_stops(
 def test_jobs_stop_where_the_name_was_taken(
     database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(name_lock, "PING_S", 3600.0)
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
     monkeypatch.setattr(runner_module, "BEAT_S", 0.05)
     monkeypatch.setitem(KINDS, "work", WORK)
 
@@ -153,7 +154,7 @@ def test_jobs_stop_where_the_name_was_taken(
             while (await runner.status("ada", job)).state is not JobState.RUNNING:
                 await asyncio.sleep(0.02)
             await asyncio.to_thread(_end_lock_of, database)
-            stack.enter_context(held(second, "main"))
+            stack.enter_context(second.reserved("main"))
             with pytest.raises(DispossessedError):
                 await asyncio.to_thread(database.check)
             while runner.counts() != {"waiting": 0, "running": 0}:
@@ -165,6 +166,6 @@ def test_jobs_stop_where_the_name_was_taken(
 
     with ExitStack() as stack:
         compute = stack.enter_context(closing(Compute(processes(1), timeout_s=60)))
-        stack.enter_context(held(database, "main"))
+        stack.enter_context(database.reserved("main"))
         second = stack.enter_context(closing(Database(postgres_url)))
         asyncio.run(scenario(compute))
