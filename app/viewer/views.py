@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import viser
 
 from ..drawing.fabric import Drawing
-from ..service.limits.budgets import BUDGETS, OverBudgetError
+from ..service.limits.user_limits import USER_LIMITS, OverLimitError
 from ..service.listeners import Listeners
 from ..service.problems import ServiceError, UnavailableError
 from .camera import FARTHEST
@@ -92,7 +92,7 @@ class Views:
 
         Raises
         ------
-        OverBudgetError
+        OverLimitError
             If the owner watches as many, or as many stitches, as one user may.
         UnavailableError
             If as many views as allowed are being watched.
@@ -171,14 +171,14 @@ class Views:
     def _make_room(self, design: str, stitches: int) -> None:
         others = [view for view in self._of(_owner(design)) if view != design]
         while (held := sum(self._views[d].stitches for d in others)) and (
-            held + stitches > BUDGETS.view_stitches
+            held + stitches > USER_LIMITS.view_stitches
         ):
-            refusal = OverBudgetError.of("view_stitches", held, BUDGETS.view_stitches)
+            refusal = OverLimitError.of("view_stitches", held, USER_LIMITS.view_stitches)
             others.remove(self._close_oldest(others, refusal))
         if design in self._views:
             return
-        if len(others) >= BUDGETS.views:
-            self._close_oldest(others, OverBudgetError.of("views", len(others), BUDGETS.views))
+        if len(others) >= USER_LIMITS.views:
+            self._close_oldest(others, OverLimitError.of("views", len(others), USER_LIMITS.views))
         if len(self._views) >= self._most:
             full = UnavailableError(f"All {self._most} 3D views are in use.")
             self._close_oldest(list(self._views), full)

@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 
 from app.drawing.colours import diverging, fabric_mix, sequential
 from app.service.api import views as views_api
-from app.service.limits.budgets import BUDGETS
+from app.service.limits.user_limits import USER_LIMITS
 from app.viewer.views import Views
 from tests.app.test_stretch import ASKED, GARTER
 from tests.app.threads import threads_of_no_pool
@@ -186,7 +186,7 @@ def test_pictures_that_no_browser_sends_do_not_delay_others(
         try:
             for _ in range(count):
                 browsers.submit(client.get, "/api/v1/views/hidden-tab/picture")
-            for _ in range(BUDGETS.pictures):  # the others are refused
+            for _ in range(USER_LIMITS.pictures):  # the others are refused
                 assert waiting.acquire(timeout=60)
             jobs = ThreadPoolExecutor(1).submit(client.get, "/api/v1/jobs")
             assert jobs.result(60).status_code == 200

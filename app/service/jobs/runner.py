@@ -12,7 +12,7 @@ from typing import Any
 from ..compute.answers import Answers
 from ..compute.workers import AbandonedError, NotBegunError
 from ..designs.idempotency import Retry
-from ..limits.budgets import SpentError
+from ..limits.user_limits import CpuTimeSpentError
 from ..problems import DispossessedError, Problem, ServiceError, StoreError
 from ..web.bodies import SMALL_BYTES
 from ..web.errors import problem_of
@@ -83,7 +83,7 @@ class JobRunner:
 
         Raises
         ------
-        OverBudgetError
+        OverLimitError
             If too many jobs of this owner wait.
         """
         key = await asyncio.to_thread(job_key, kind, request)
@@ -137,7 +137,7 @@ class JobRunner:
 
     def counts(self) -> dict[str, int]:
         """Numbers of waiting and running jobs of this process."""
-        waiting = self._compute.turns.waiting(background=True)
+        waiting = self._compute.queue.waiting(background=True)
         return {"waiting": waiting, "running": len(self._runs) - waiting}
 
     async def close(self) -> None:
@@ -231,7 +231,7 @@ class JobRunner:
         while True:
             try:
                 return await self._answers.answer(*args, **turn)
-            except (NotBegunError, SpentError) as error:
+            except (NotBegunError, CpuTimeSpentError) as error:
                 log.warning("a job waits on: %s", error)
                 await asyncio.sleep(AGAIN_S)
 

@@ -10,7 +10,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
 
 from ..designs.idempotency import Retry, once
-from ..limits.budgets import BUDGETS, OverBudgetError
+from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError, Problem, StoreError
 from ..store.database import Database
 from ..store.pages import one_page
@@ -61,7 +61,7 @@ class JobStore:
 
         Raises
         ------
-        OverBudgetError
+        OverLimitError
             If the requests of this owner's open jobs leave no room for it.
         """
         at = now()
@@ -264,22 +264,22 @@ def _make_room(connection: Connection, owner: str, more: int) -> None:
 
     Raises
     ------
-    OverBudgetError
+    OverLimitError
         If the open jobs alone leave too little room.
     """
-    if _kept_bytes(connection, owner) + more <= BUDGETS.job_bytes:
+    if _kept_bytes(connection, owner) + more <= USER_LIMITS.job_bytes:
         return
     ended = jobs.c.finished_at.is_not(None)
     so_far = func.sum(jobs.c.size_bytes).over(
         order_by=(ended, jobs.c.finished_at.desc(), jobs.c.id)
     )
     sizes = select(jobs.c.id, so_far.label("so_far")).where(jobs.c.owner == owner).subquery()
-    oldest = select(sizes.c.id).where(sizes.c.so_far + more > BUDGETS.job_bytes)
+    oldest = select(sizes.c.id).where(sizes.c.so_far + more > USER_LIMITS.job_bytes)
     connection.execute(jobs.delete().where(jobs.c.id.in_(oldest), ended))
-    if (held := _kept_bytes(connection, owner)) + more > BUDGETS.job_bytes:
-        raise OverBudgetError(
+    if (held := _kept_bytes(connection, owner)) + more > USER_LIMITS.job_bytes:
+        raise OverLimitError(
             f"The requests of your jobs that wait or run have {held / 1e6:.1f} of"
-            f" {BUDGETS.job_bytes / 1e6:g} MB.",
+            f" {USER_LIMITS.job_bytes / 1e6:g} MB.",
             field="job_bytes",
             remedy="Wait until one has ended, or cancel one.",
         )

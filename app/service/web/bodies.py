@@ -20,7 +20,7 @@ from starlette.types import Message, Receive
 
 from ...models.charts import MAX_FIELD
 from ..identity import current_user
-from ..limits.turns import Gate
+from ..limits.fair_queue import FairLock
 
 SMALL_BYTES = 64_000
 """Largest body that is decoded without waiting for a turn."""
@@ -67,8 +67,8 @@ class BoundedRoute(APIRoute):
                 return await handle(_Uncut(request.scope, request.receive, content))
             if len(content) > MAX_DECODED_BYTES:
                 raise _too_large(MAX_DECODED_BYTES)
-            gate: Gate = request.app.state.large_bodies
-            async with gate.turn(current_user.get()):
+            lock: FairLock = request.app.state.large_bodies
+            async with lock.turn(current_user.get()):
                 return await handle(request)
 
         return bounded

@@ -357,7 +357,7 @@ def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:
         compute = Compute([_Nobody()], timeout_s=0.1)  # type: ignore[list-item]
         with pytest.raises(NotBegunError, match="No worker began"):
             await compute.run(never, print)
-        compute.turns.enter("ada", background=False)
+        compute.queue.enter("ada", background=False)
         with pytest.raises(NotBegunError, match="No worker was free"):
             await compute.run(never, print)
 

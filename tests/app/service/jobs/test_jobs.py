@@ -22,7 +22,7 @@ from app.service.jobs.document import JobState, JobStatus
 from app.service.jobs.kinds import KINDS, job_key
 from app.service.jobs.runner import JobRunner
 from app.service.jobs.store import JobStore
-from app.service.limits.budgets import Budgets, OverBudgetError
+from app.service.limits.user_limits import OverLimitError, UserLimits
 from app.service.main import create_app
 from app.service.problems import NotFoundError, StoreError
 from app.service.settings import Settings
@@ -140,7 +140,7 @@ def test_a_user_with_too_many_waiting_jobs_is_refused_at_once(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> None:
-        monkeypatch.setattr(compute_module, "BUDGETS", Budgets(jobs=1))
+        monkeypatch.setattr(compute_module, "USER_LIMITS", UserLimits(jobs=1))
         pool = Compute(processes(1), timeout_s=60)
         runner = _runner(database, pool)
         first = await runner.submit("ada", "work", _wish("wait"))
@@ -149,7 +149,7 @@ def test_a_user_with_too_many_waiting_jobs_is_refused_at_once(
         async with asyncio.timeout(PATIENCE_S):
             while runner.counts()["waiting"] != 1:
                 await asyncio.sleep(0.02)
-        with pytest.raises(OverBudgetError, match="1 of 1 jobs"):
+        with pytest.raises(OverLimitError, match="1 of 1 jobs"):
             await runner.submit("ada", "work", _wish("wait", "third"))
         assert len(runner.store.page("ada", limit=9, cursor=None).jobs) == 2
         await runner.close()

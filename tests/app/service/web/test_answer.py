@@ -17,12 +17,12 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Message, Receive, Scope, Send
 
-from app.service.limits.budgets import InUse
+from app.service.limits.user_limits import ConcurrencyLimit
 from app.service.main import create_app
 from app.service.problems import StoreError
 from app.service.settings import Settings
 from app.service.web import security, tokens
-from app.service.web.security import PAGE_POLICY, Guard
+from app.service.web.security import PAGE_POLICY, AccessControl
 from app.service.web.tokens import Tokens
 from tests.app.running import serving
 
@@ -91,7 +91,9 @@ def _sent(
     told: list[Message] = []
     waiting = list(heard)
     passes = SimpleNamespace(holder=lambda _: None)
-    state = SimpleNamespace(passes=passes, login=login, in_use=InUse(), stopping=False)
+    state = SimpleNamespace(
+        passes=passes, login=login, concurrency=ConcurrencyLimit(), stopping=False
+    )
     scope: Scope = {
         "type": kind,
         "method": "GET",
@@ -111,7 +113,7 @@ def _sent(
 
     async def scenario() -> None:
         async with asyncio.timeout(60):
-            await Guard(application, Settings(require_login=True))(scope, receive, send)
+            await AccessControl(application, Settings(require_login=True))(scope, receive, send)
 
     asyncio.run(scenario())
     return told

@@ -14,7 +14,7 @@ from app.models.base import RequestModel
 from app.models.charts import MAX_FIELD
 from app.service.api import routers
 from app.service.identity import LOCAL_USER
-from app.service.limits.budgets import BUDGETS, Budgets, InUse
+from app.service.limits.user_limits import USER_LIMITS, ConcurrencyLimit, UserLimits
 from app.service.web.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
 
 PADDING = " " * SMALL_BYTES
@@ -142,15 +142,18 @@ def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
 
 def test_open_bodies_of_one_user_are_bounded(client: TestClient) -> None:
     state = client.app.state  # type: ignore[attr-defined]
-    usual, state.in_use = state.in_use, InUse(Budgets(body_bytes=SMALL_BYTES))
+    usual, state.concurrency = (
+        state.concurrency,
+        ConcurrencyLimit(UserLimits(body_bytes=SMALL_BYTES)),
+    )
     try:
         refused = _post(client, "predict", _padded(WISH))
         assert (refused.status_code, refused.json()["field"]) == (429, "body_bytes")
-        assert state.in_use.held("body_bytes", LOCAL_USER) == 0
+        assert state.concurrency.held("body_bytes", LOCAL_USER) == 0
         assert client.post("/api/v1/predict", json=WISH).status_code == 200
     finally:
-        state.in_use = usual
-    assert BUDGETS.body_bytes >= 2 * state.settings.max_body_bytes
+        state.concurrency = usual
+    assert USER_LIMITS.body_bytes >= 2 * state.settings.max_body_bytes
 
 
 def test_a_client_that_goes_in_the_middle_of_a_body_is_no_error_of_the_service(

@@ -11,7 +11,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from app.service.identity import current_user
 from app.service.web import tokens
-from app.service.web.passes import Passes
+from app.service.web.passes import ViewPasses
 from tests.app.service.web.test_security import bearing, guarded_service, tokens_of
 
 BODY = {"chart": "KP", "material": "acrylic"}
@@ -60,7 +60,7 @@ def test_a_pass_ends_with_the_token_it_was_asked_with(
 
 
 def test_passes_are_the_same_for_one_user_and_forgotten_in_turn() -> None:
-    passes = Passes(most=2)
+    passes = ViewPasses(most=2)
     first = passes.give("/view/a", None)
     assert passes.give("/view/a", None) == first != passes.give("/view/b", None)
     scope = {"type": "websocket", "path": "/view/a", "query_string": f"pass={first}".encode()}

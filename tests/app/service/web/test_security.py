@@ -22,7 +22,7 @@ from websockets.sync.client import connect
 from websockets.typing import Subprotocol
 
 from app.cli.main import main
-from app.service.limits.budgets import RateLimit
+from app.service.limits.user_limits import RateLimit
 from app.service.main import create_app
 from app.service.settings import Settings
 from app.service.web.bodies import MAX_VALUES
@@ -251,7 +251,9 @@ def test_the_token_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_client_over_its_rate_learns_when_to_retry(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.service.limits.budgets.time", SimpleNamespace(monotonic=lambda: 100.0))
+    monkeypatch.setattr(
+        "app.service.limits.user_limits.time", SimpleNamespace(monotonic=lambda: 100.0)
+    )
     with guarded_service(require_login=True, data_dir=tmp_path, requests_per_s=0.5) as client:
         ada, bob = (bearing(tokens_of(client).create(name).token) for name in ("ada", "bob"))
         first = client.get("/api/v1/patterns", headers=ada)

@@ -1,4 +1,4 @@
-"""Fair turns."""
+"""Fair queue."""
 
 from __future__ import annotations
 
@@ -8,46 +8,46 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.service.limits.budgets import OverBudgetError
-from app.service.limits.turns import Gate, Ticket, Turns
+from app.service.limits.fair_queue import FairLock, FairQueue, QueuedRequest
+from app.service.limits.user_limits import OverLimitError
 from app.service.problems import UnavailableError
 
 
-def _turns(places: int = 1, background: int = 1) -> Turns[int]:
-    return Turns(
+def _queue(places: int = 1, background: int = 1) -> FairQueue[int]:
+    return FairQueue(
         list(range(places)), most_background=background, most_waiting=100, most_waiting_each=100
     )
 
 
-async def _order(turns: Turns[int], line: list[tuple[str, bool]]) -> list[str]:
+async def _order(queue: FairQueue[int], line: list[tuple[str, bool]]) -> list[str]:
     """Who gets the only place when everybody in line gives it back at once."""
-    holder = turns.enter("holder", background=False)
-    tickets = [turns.enter(owner, background=b) for owner, b in line]
+    holder = queue.enter("holder", background=False)
+    tickets = [queue.enter(owner, background=b) for owner, b in line]
     order = []
-    turns.leave(holder)
+    queue.leave(holder)
     waiting = list(tickets)
     while waiting:
         (served,) = [t for t in waiting if t.place.done()]
         order.append(served.owner)
         waiting.remove(served)
-        turns.leave(served)
+        queue.leave(served)
     return order
 
 
-def test_users_take_turns() -> None:
+def test_users_take_queue() -> None:
     line = [("ada", True)] * 4 + [("bob", True)] * 2 + [("eve", True)]
-    order = asyncio.run(_order(_turns(), line))
+    order = asyncio.run(_order(_queue(), line))
     assert order == ["ada", "bob", "eve", "ada", "bob", "ada", "ada"]
 
 
 def test_requests_of_pages_come_first() -> None:
     line = [("ada", True), ("ada", True), ("bob", False)]
-    assert asyncio.run(_order(_turns(), line)) == ["bob", "ada", "ada"]
+    assert asyncio.run(_order(_queue(), line)) == ["bob", "ada", "ada"]
 
 
 @given(st.lists(st.tuples(st.sampled_from("abcd"), st.booleans()), max_size=30))
 def test_everybody_is_served_once_and_in_turn(line: list[tuple[str, bool]]) -> None:
-    order = asyncio.run(_order(_turns(), line))
+    order = asyncio.run(_order(_queue(), line))
     assert sorted(order) == sorted(owner for owner, _ in line)
     background = order[sum(not b for _, b in line) :]
     left = {o: sum(1 for owner, b in line if b and owner == o) for o in "abcd"}
@@ -60,12 +60,12 @@ def test_everybody_is_served_once_and_in_turn(line: list[tuple[str, bool]]) -> N
 
 def test_background_work_leaves_a_place_free() -> None:
     async def scenario() -> None:
-        turns = _turns(places=3, background=2)
-        background = [turns.enter("ada", background=True) for _ in range(4)]
+        queue = _queue(places=3, background=2)
+        background = [queue.enter("ada", background=True) for _ in range(4)]
         assert [t.place.done() for t in background] == [True, True, False, False]
-        page = turns.enter("bob", background=False)
+        page = queue.enter("bob", background=False)
         assert page.place.done()
-        turns.leave(background[0])
+        queue.leave(background[0])
         assert [t.place.done() for t in background] == [True, True, True, False]
 
     asyncio.run(scenario())
@@ -73,12 +73,12 @@ def test_background_work_leaves_a_place_free() -> None:
 
 def test_leaving_the_queue_does_not_delay_others() -> None:
     async def scenario() -> list[bool]:
-        turns = _turns()
-        holder: Ticket[int] = turns.enter("ada", background=False)
-        leaver = turns.enter("bob", background=False)
-        stayer = turns.enter("eve", background=False)
-        turns.leave(leaver)
-        turns.leave(holder)
+        queue = _queue()
+        holder: QueuedRequest[int] = queue.enter("ada", background=False)
+        leaver = queue.enter("bob", background=False)
+        stayer = queue.enter("eve", background=False)
+        queue.leave(leaver)
+        queue.leave(holder)
         return [leaver.place.cancelled(), stayer.place.done()]
 
     assert asyncio.run(scenario()) == [True, True]
@@ -86,43 +86,45 @@ def test_leaving_the_queue_does_not_delay_others() -> None:
 
 def test_the_queue_is_bounded() -> None:
     async def scenario() -> None:
-        turns: Turns[int] = Turns([0], most_background=1, most_waiting=1, most_waiting_each=1)
+        queue: FairQueue[int] = FairQueue(
+            [0], most_background=1, most_waiting=1, most_waiting_each=1
+        )
         for background in (False, True):
-            turns.enter("ada", background=background)
-        turns.enter("ada", background=False)
+            queue.enter("ada", background=background)
+        queue.enter("ada", background=False)
         with pytest.raises(UnavailableError, match="Too many"):
-            turns.enter("ada", background=False)
-        with pytest.raises(OverBudgetError, match="1 of 1 jobs"):
-            turns.enter("ada", background=True)
-        turns.enter("bob", background=True)
+            queue.enter("ada", background=False)
+        with pytest.raises(OverLimitError, match="1 of 1 jobs"):
+            queue.enter("ada", background=True)
+        queue.enter("bob", background=True)
 
     asyncio.run(scenario())
 
 
 def test_one_user_cannot_fill_the_queue() -> None:
     async def line_up() -> None:
-        turns = Turns([0], most_background=1, most_waiting=3, most_waiting_each=100)
+        queue = FairQueue([0], most_background=1, most_waiting=3, most_waiting_each=100)
         for _ in range(4):  # one has the place, three wait
-            turns.enter("ada", background=False)
+            queue.enter("ada", background=False)
         with pytest.raises(UnavailableError):
-            turns.enter("ada", background=False)
-        turns.enter("bob", background=False)
+            queue.enter("ada", background=False)
+        queue.enter("bob", background=False)
         with pytest.raises(UnavailableError):
-            turns.enter("bob", background=False)
+            queue.enter("bob", background=False)
 
     asyncio.run(line_up())
 
 
 def test_a_user_holds_only_so_many_places() -> None:
     async def scenario() -> None:
-        turns = Turns(
+        queue = FairQueue(
             [0, 1, 2], most_background=2, most_waiting=9, most_waiting_each=9, most_each=2
         )
-        ada = [turns.enter("ada", background=False) for _ in range(3)]
+        ada = [queue.enter("ada", background=False) for _ in range(3)]
         assert [ticket.place.done() for ticket in ada] == [True, True, False]
-        bob = turns.enter("bob", background=True)
+        bob = queue.enter("bob", background=True)
         assert bob.place.done()  # although ada waits at a page
-        turns.leave(ada[0])
+        queue.leave(ada[0])
         assert ada[2].place.done()
 
     asyncio.run(scenario())
@@ -130,11 +132,11 @@ def test_a_user_holds_only_so_many_places() -> None:
 
 def test_a_gate_lets_one_through_at_a_time_and_its_turns_are_given_back() -> None:
     async def scenario() -> tuple[list[str], int]:
-        gate, order, inside, most = Gate(), [], 0, 0
+        lock, order, inside, most = FairLock(), [], 0, 0
 
         async def come(owner: str) -> None:
             nonlocal inside, most
-            async with gate.turn(owner):
+            async with lock.turn(owner):
                 inside += 1
                 most = max(most, inside)
                 order.append(owner)
