@@ -13,10 +13,10 @@ from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from starlette.websockets import WebSocketState
 
+from ..service.designs.parameters import DesignId, private_name
 from ..service.identity import current_user
 from ..service.limits.user_limits import ConcurrencyLimit, OverLimitError, RateLimit
 from .client import ViewerPage
-from .design_id import DesignId, private_name
 from .incoming import BURST, PER_S, RefusedMessageError, passed_on
 from .private_port import RELAY_HEADERS
 from .views import View, Views

@@ -9,18 +9,18 @@ from dataclasses import dataclass, field
 
 import viser
 
-from ..drawing.fabric import Drawing
+from ..drawing.fabric import Drawing, Ground
 from ..service.limits.user_limits import USER_LIMITS, OverLimitError
 from ..service.listeners import Listeners
 from ..service.problems import ServiceError, UnavailableError
 from .camera import FARTHEST
-from .clicks import Cell, clicked_stitch
 from .cloth import UNITS_PER_MM
 from .incoming import WantedPicture
 from .private_port import private_server
 from .scene import SceneWriter
 
 log = logging.getLogger("knitcore.app")
+Cell = tuple[int, int]
 
 
 @dataclass
@@ -217,3 +217,20 @@ def new_view() -> View:
         client.camera.max_orbit_distance = FARTHEST
 
     return View(server, SceneWriter(server))
+
+
+def clicked_stitch(
+    ground: Ground,
+    origin: tuple[float, float, float],
+    direction: tuple[float, float, float],
+) -> Cell | None:
+    """The stitch where a ray meets the fabric's middle plane; None outside the fabric.
+
+    Tubes are thin and often missed, the plane never is.
+    """
+    if abs(direction[2]) < 1e-6:
+        return None
+    along = -origin[2] / direction[2]
+    if along < 0:
+        return None
+    return ground.stitch_at(origin[0] + along * direction[0], origin[1] + along * direction[1])

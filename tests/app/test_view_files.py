@@ -18,7 +18,7 @@ from app.drawing.colours import MAKERS_COLOURS, rgb
 from app.drawing.design_view import ViewRequest, build_scene
 from app.drawing.fabric import RECTANGLE, Box
 from app.service.listeners import Listeners
-from app.viewer.clicks import Cell, clicked_stitch
+from app.viewer.views import Cell, clicked_stitch
 from knitcore.base.errors import InputError
 from tests.app.test_stretch import ASKED, GARTER
 from tests.app.threads import threads_of_no_pool

@@ -27,7 +27,6 @@ from ...models.posed import PosedView
 from ...models.stretched import StretchView
 from ...operations.perform import Reply
 from ...viewer.camera import CameraSide
-from ...viewer.design_id import DesignId, private_name
 from ...viewer.scene import round_length_mm
 from ...viewer.share import picture_png
 from ...viewer.shared import (
@@ -40,6 +39,7 @@ from ...viewer.shared import (
 )
 from ...viewer.views import View
 from ..compute.compute import Compute
+from ..designs.parameters import DesignId, private_name
 from ..identity import current_user
 from ..limits.fair_queue import FairLock
 from ..limits.user_limits import ConcurrencyLimit

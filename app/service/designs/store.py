@@ -26,7 +26,6 @@ from knitcore.formats.designs.layout import DesignLayout, check_layout
 from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError
 from ..store.database import Database
-from ..store.pages import one_page
 from ..store.tables import design_versions, designs, now
 from .conditions import ConflictError, check_match
 from .document import (
@@ -95,8 +94,8 @@ class DesignStore:
         )
         if part:
             chosen = chosen.where(designs.c.name.icontains(part, autoescape=True))
-        rows, following = one_page(
-            self._database, chosen, designs.c.changed_at, designs.c.id, limit=limit, cursor=cursor
+        rows, following = self._database.page(
+            chosen, designs.c.changed_at, designs.c.id, limit=limit, cursor=cursor
         )
         summaries = [DesignSummary.model_validate(row, from_attributes=True) for row in rows]
         return DesignPage(designs=summaries, next_cursor=following)

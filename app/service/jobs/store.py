@@ -13,7 +13,6 @@ from ..designs.idempotency import Retry, once
 from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError, Problem, StoreError
 from ..store.database import Database
-from ..store.pages import one_page
 from ..store.tables import job_requests, jobs, now, results
 from .document import JobPage, JobState, JobStatus
 
@@ -106,8 +105,8 @@ class JobStore:
     def page(self, owner: str, *, limit: int, cursor: str | None) -> JobPage:
         """Jobs of an owner, latest first."""
         mine = select(jobs).where(jobs.c.owner == owner)
-        rows, following = one_page(
-            self._database, mine, jobs.c.created_at, jobs.c.id, limit=limit, cursor=cursor
+        rows, following = self._database.page(
+            mine, jobs.c.created_at, jobs.c.id, limit=limit, cursor=cursor
         )
         return JobPage(jobs=[_status(row) for row in rows], next_cursor=following)
 

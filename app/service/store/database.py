@@ -7,24 +7,30 @@ import contextlib
 import logging
 import queue
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, TypeVar
 
 from fastapi.concurrency import run_in_threadpool
 from sqlalchemy import (
+    Column,
     ColumnElement,
     Connection,
     Float,
     Insert,
+    Row,
+    Select,
     Table,
     literal_column,
     make_url,
     text,
+    tuple_,
 )
 from sqlalchemy.exc import DatabaseError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
+
+from knitcore.base.errors import InputError
 
 from ..problems import DamagedError, StoreError, StoreFullError
 from .backend import Backend
@@ -155,6 +161,47 @@ class Database:
         """
         with self.failures(), self.engine.connect() as connection:
             yield connection
+
+    def page(
+        self,
+        chosen: Select[Any],
+        at: Column[float],
+        identifier: Column[str],
+        *,
+        limit: int,
+        cursor: str | None,
+    ) -> tuple[Sequence[Row[Any]], str | None]:
+        """Rows, the latest first, and the cursor of the page after them; None at the end.
+
+        Parameters
+        ----------
+        chosen : all rows of the list.
+        at, identifier : the columns that order them; of equal times the identifier decides.
+        limit : most rows of a page.
+        cursor : of the page before; None for the first.
+
+        Raises
+        ------
+        InputError
+            If the cursor is not one.
+        """
+        if cursor is not None:
+            before, _, last = cursor.partition("_")
+            try:
+                chosen = chosen.where(tuple_(at, identifier) < tuple_(float(before), last))
+            except ValueError:
+                raise InputError(
+                    "cursor",
+                    "is not a cursor of this service.",
+                    "Send next_cursor of the page before.",
+                ) from None
+        with self.read() as connection:
+            ordered = chosen.order_by(at.desc(), identifier.desc()).limit(limit + 1)
+            rows = connection.execute(ordered).all()
+        if len(rows) <= limit:
+            return rows, None
+        last_row = rows[limit - 1]._mapping
+        return rows[:limit], f"{last_row[at.name]!r}_{last_row[identifier.name]}"
 
     @contextlib.contextmanager
     def snapshot(self) -> Iterator[Connection]:

@@ -280,7 +280,7 @@ def holder_of(path: Path) -> Holder | None:
     """The service that has reserved an SQLite file now; None if there is none."""
     try:
         handle = os.open(_lock_of(path), os.O_RDONLY)
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     try:
         fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
