@@ -19,7 +19,14 @@ from starlette.websockets import WebSocketClose
 
 from ..identity import NOBODY, current_session, current_user
 from ..limits.user_limits import ConcurrencyLimit, RateLimit
-from ..problems import RefusedError, ServiceError, StoppingError, StoreError, TooManyError
+from ..problems import (
+    RefusedError,
+    ServiceError,
+    StoppingError,
+    StoreError,
+    TooLargeError,
+    TooManyError,
+)
 from ..settings import Settings
 from .answer import Answer
 from .bodies import limited
@@ -79,12 +86,6 @@ class StrangeHostError(RefusedError):
     """Error: the Host header names none of the service's names."""
 
     status = 400
-
-
-class TooLargeError(RefusedError):
-    """Error: the request is too large."""
-
-    status = 413
 
 
 class UnknownUserError(ServiceError):
