@@ -152,16 +152,6 @@ class Compute:
                 raise NotBegunError("The worker died before it began.") from error
             raise WorkerDiedError("The process of this computation died.") from error
 
-    def check_room(self, owner: str) -> None:
-        """Refuse a background job that exceeds the number that may wait.
-
-        Raises
-        ------
-        OverLimitError
-            If too many of this owner wait already.
-        """
-        self.queue.check_room(owner, background=True)
-
     def close(self) -> None:
         """Close all workers."""
         for worker in self.workers:

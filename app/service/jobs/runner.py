@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,7 @@ from ..problems import DispossessedError, Problem, ServiceError, StoreError
 from ..web.bodies import SMALL_BYTES
 from ..web.errors import problem_of
 from .document import JobState, JobStatus
-from .kinds import KINDS, job_key, read_job
+from .kinds import KINDS, job_key
 from .store import JobStore
 
 log = logging.getLogger("knitcore.jobs")
@@ -65,17 +65,6 @@ class JobRunner:
         await self._go_on(await asyncio.to_thread(self.store.adopt))
         self._heart = asyncio.create_task(self._beat(), name="jobs of all processes")
 
-    async def read(
-        self, abandoned: Callable[[], Awaitable[bool]], content: bytes
-    ) -> tuple[str, str]:
-        """Kind and request of a large job, which a worker decodes.
-
-        Raises
-        ------
-        InvalidRequestError
-        """
-        return await self._compute.run(abandoned, read_job, content)
-
     async def submit(
         self, owner: str, kind: str, request: str, retry: Retry | None = None
     ) -> JobStatus:
@@ -92,7 +81,7 @@ class JobRunner:
         )
         state = JobState.DONE if known else JobState.WAITING
         if not known:
-            self._compute.check_room(owner)
+            self._compute.queue.check_room(owner, background=True)
         job = secrets.token_urlsafe(16)
         status = await asyncio.to_thread(
             self.store.add, owner, kind, request, key, state, job=job, retry=retry

@@ -230,7 +230,7 @@ class JobStore:
             )
             # equal jobs of two processes end at once: either result is the right one
             connection.execute(
-                self._database.insert_new(results).values(
+                self._database.backend.insert_new(results).values(
                     key=key, kind=kind, body=body, size_bytes=len(body), used_at=now()
                 )
             )

@@ -18,10 +18,8 @@ from sqlalchemy import (
     ColumnElement,
     Connection,
     Float,
-    Insert,
     Row,
     Select,
-    Table,
     literal_column,
     make_url,
     text,
@@ -78,10 +76,6 @@ class Database:
         if self.backend.one_writer:
             self._writer = threading.Thread(target=self._write_all, name="store", daemon=True)
             self._writer.start()
-
-    def insert_new(self, table: Table) -> Insert:
-        """An insertion that leaves existing rows unchanged."""
-        return self.backend.insert_new(table)
 
     @property
     def clock(self) -> ColumnElement[float]:
