@@ -28,7 +28,7 @@ NO_SETTINGS = frozenset(
         "CONFIG",
         "STUDY_DATA",
         # of tests:
-        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES", "HOSTILE_REQUESTS"),
+        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES"),
         "WORKER_NICENESS",
     )
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import json
 import os
@@ -17,24 +16,19 @@ from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner, Result
-from fastapi.testclient import TestClient
 
 from app.cli import serve as serve_module
 from app.cli.main import main
 from app.service import doctor
 from app.service.compute import cluster as cluster_module
-from app.service.compute import compute as compute_module
 from app.service.compute.cluster import Cluster, ClusterError
-from app.service.compute.compute import Compute
-from app.service.compute.workers import NotBegunError
-from app.service.main import create_app
-from app.service.problems import DamagedError
 from app.service.settings import Settings
 from app.service.store import schema
 from app.service.store.database import Database
 from app.service.store.schema import migrate, revision
 from app.service.web import observing
 from knitcore.base.errors import InputError
+from tests.app.clients import served, state_of
 
 
 def _database(folder: Path) -> Path:
@@ -146,7 +140,9 @@ BROKEN = {
     "a lost database": Broken("database", "is gone", spoil=_lose),
     "an emptied database": Broken("database", "is empty", spoil=_empty),
     "a database without a table": Broken("database", "lacks sessions", spoil=_drop_a_table),
-    "a newer database": Broken("database", "9999", spoil=_make_newer),
+    "a newer database": Broken(
+        "database", "9999, which this program does not know", spoil=_make_newer
+    ),
     "files open to all": Broken(
         "file modes", "other users", spoil=_open_to_all, starts=True, ready=True
     ),
@@ -206,24 +202,16 @@ def test_doctor_start_and_readiness_say_the_same_in_one_line(
         (line,) = started.stderr.strip().splitlines()
         assert line.startswith("Error: ")
         assert problem.removesuffix(".") in line
+        if broken.spoil is _lose:  # nothing is put in its place
+            assert not (tmp_path / "knitcore.sqlite3").exists()
         return
-    with TestClient(create_app(Settings(workers=1)), base_url="http://127.0.0.1") as client:
+    with served() as client:
         answer = client.get("/readyz")
     if broken.ready:
         assert (answer.status_code, answer.json()["checks"][broken.check]) == (200, False)
     else:
         told = answer.json()
         assert (answer.status_code, told["detail"], told["remedy"]) == (503, problem, remedy)
-
-
-def test_nothing_is_put_in_the_place_of_a_lost_database(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file = _database(tmp_path)
-    file.unlink()
-    monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
-    assert _serve(monkeypatch).exit_code != 0
-    assert not file.exists()
 
 
 def _start(folder: Path) -> subprocess.CompletedProcess[str]:
@@ -274,10 +262,9 @@ def test_two_services_of_one_name_are_refused_on_postgresql(postgres_url: str) -
 
 
 def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
-    app = create_app(Settings(workers=1, data_dir=tmp_path))
-    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+    with served(data_dir=tmp_path) as client:
         assert client.get("/readyz").status_code == 200
-        database = app.state.database
+        database = state_of(client).database
         assert client.get("/api/v1/designs").status_code == 200
         file = tmp_path / "knitcore.sqlite3"
         with contextlib.closing(sqlite3.connect(file, timeout=30)) as own:  # log into the file
@@ -316,54 +303,6 @@ def test_a_copy_is_kept_before_a_migration(tmp_path: Path, monkeypatch: pytest.M
     old.close()
 
 
-def test_damage_is_found_page_by_page(tmp_path: Path) -> None:
-    file = _database(tmp_path)
-    _damage(file)
-    database = Database(f"sqlite:///{file}")
-    with pytest.raises(DamagedError):
-        database.check_pages()
-    database.close()
-
-
-class _Nobody:
-    """A place that takes jobs and never begins."""
-
-    share = None
-    cpu_s = None
-
-    async def submit(self, job: object) -> asyncio.Future[int]:
-        self.future: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        return self.future
-
-    def cancel(self) -> None:
-        self.future.cancel()
-
-    def replace(self) -> None:
-        self.future.cancel()
-
-    def close(self) -> None:
-        pass
-
-
-def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For a worker that never begins, and for a place that is never free."""
-    monkeypatch.setattr(compute_module, "START_S", 0.1)
-    monkeypatch.setattr(compute_module, "POLL_S", 0.02)
-
-    async def never() -> bool:
-        return False
-
-    async def scenario() -> None:
-        compute = Compute([_Nobody()], timeout_s=0.1)  # type: ignore[list-item]
-        with pytest.raises(NotBegunError, match="No worker began"):
-            await compute.run(never, print)
-        compute.queue.enter("ada", background=False)
-        with pytest.raises(NotBegunError, match="No worker was free"):
-            await compute.run(never, print)
-
-    asyncio.run(scenario())
-
-
 def test_a_cluster_without_workers_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -382,10 +321,10 @@ def test_a_cluster_without_workers_is_reported(
         with pytest.raises(ClusterError, match="accepts computations"):
             cluster.begin("a-job", print)
         cluster.close()
-        settings = Settings(data_dir=tmp_path / "data", scheduler=address)
-        failed = doctor.examine(settings).failed
+        settings = {"data_dir": tmp_path / "data", "scheduler": address}
+        failed = doctor.examine(Settings(**settings)).failed
         assert [check.name for check in failed] == ["cluster"]
-        with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+        with served(**settings) as client:
             assert client.get("/readyz").status_code == 503
             wish = {"chart": "KP", "material": "acrylic"}
             refused = client.post("/api/v1/relax", json=wish)

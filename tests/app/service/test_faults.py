@@ -22,12 +22,12 @@ import viser
 import websockets.sync.client
 
 from tests.app.databases import control
+from tests.app.painter import Painter
 from tests.app.running import Service
 
 pytestmark = pytest.mark.slow
 
 OUTAGE_S = float(os.environ.get("KNITCORE_OUTAGE_S", "1"))
-SIDE = 60
 JOBS = "/api/v1/jobs"
 LONG = {
     "chart": {"fabric": "garter", "columns": 150, "rows": 150},
@@ -37,29 +37,6 @@ LONG = {
     "steps": 60,
 }
 SHORT = LONG | {"chart": {"fabric": "garter", "columns": 20, "rows": 20}, "steps": 8}
-
-
-class Painter:
-    """Paints one stitch after the other and knows what was acknowledged."""
-
-    def __init__(self, client: httpx.Client) -> None:
-        self._client = client
-        body = {"name": "x", "material": "acrylic", "chart": "\n".join(["K" * SIDE] * SIDE)}
-        self.design = client.post("/api/v1/designs", json=body).json()["id"]
-        self.acknowledged = 0
-
-    def paint(self) -> httpx.Response:
-        row, column = divmod(self.acknowledged, SIDE)
-        runs = [{"row": row, "column": column, "stitches": "P"}]
-        body = {"rows": SIDE, "columns": SIDE, "runs": runs}
-        answer = self._client.post(f"/api/v1/designs/{self.design}/strokes", json=body)
-        self.acknowledged += answer.status_code == 200
-        return answer
-
-    def check(self) -> None:
-        found = self._client.get(f"/api/v1/designs/{self.design}").json()
-        assert found["document"]["chart"].count("P") == self.acknowledged
-        assert found["revision"] == self.acknowledged + 1
 
 
 @pytest.fixture
@@ -81,29 +58,29 @@ def test_a_full_disk_refuses_clearly_and_loses_nothing(small_disk: Path, tmp_pat
     service = Service(tmp_path, data_dir=str(small_disk))
     client = service.start()
     try:
-        painter = Painter(client)
-        assert painter.paint().status_code == 200
+        painter = Painter.with_a_design(client, 1)
+        assert painter.paint(client).status_code == 200
         job = client.post(JOBS, json={"kind": "stretch", "request": SHORT}).json()["id"]
         _until(lambda: client.get(f"{JOBS}/{job}").json()["state"] == "done")
         with contextlib.suppress(OSError), (small_disk / "filler").open("wb", 0) as filler:
             while True:
                 filler.write(bytes(4096))
         for _ in range(1000):  # what is left in the log's pages
-            refused = painter.paint()
+            refused = painter.paint(client)
             if refused.status_code != 200:
                 break
         problem = refused.json()
         assert (refused.status_code, problem["type"]) == (507, "/problems/full"), problem
         assert "nothing was changed" in problem["detail"]
         assert "Make room" in problem["remedy"]
-        painter.check()
+        painter.check_over_http(client, unanswered=0)
         assert client.post(JOBS, json={"kind": "stretch", "request": LONG}).status_code == 507
         assert client.get(f"{JOBS}/{job}/result").status_code == 200
         assert client.get("/readyz").status_code == 503
 
         (small_disk / "filler").unlink()
-        assert painter.paint().status_code == 200
-        painter.check()
+        assert painter.paint(client).status_code == 200
+        painter.check_over_http(client, unanswered=0)
         service.kill()
         file = small_disk / "knitcore.sqlite3"
         with contextlib.closing(sqlite3.connect(file)) as database:
@@ -120,15 +97,15 @@ def test_a_database_outage_loses_nothing(postgres_url: str, tmp_path: Path) -> N
     client = service.start()
     away = False
     try:
-        painter = Painter(client)
-        assert painter.paint().status_code == 200
+        painter = Painter.with_a_design(client, 1)
+        assert painter.paint(client).status_code == 200
         job = client.post(JOBS, json={"kind": "stretch", "request": SHORT}).json()["id"]
         _until(lambda: client.get(f"{JOBS}/{job}").json()["state"] != "waiting")
         control(postgres_url, "-m", "immediate", "stop")
         away = True
         back = time.monotonic() + OUTAGE_S
         while time.monotonic() < back:
-            refused = painter.paint()
+            refused = painter.paint(client)
             assert refused.status_code == 503
             assert "nothing was changed" in refused.json()["detail"]
             assert refused.headers["retry-after"]
@@ -137,8 +114,8 @@ def test_a_database_outage_loses_nothing(postgres_url: str, tmp_path: Path) -> N
             time.sleep(0.2)
         control(postgres_url, "start")
         away = False
-        assert painter.paint().status_code == 200
-        painter.check()
+        assert painter.paint(client).status_code == 200
+        painter.check_over_http(client, unanswered=0)
         _until(lambda: client.get("/readyz").status_code == 200)
         second = subprocess.run(
             [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],

@@ -10,7 +10,6 @@ from typing import Any
 
 import msgspec
 import pytest
-import viser
 import zstandard
 from fastapi.testclient import TestClient
 from PIL import Image
@@ -24,6 +23,7 @@ from app.viewer.incoming import (
     WantedPicture,
     passed_on,
 )
+from tests.app.clients import state_of, watching
 
 CAMERA = {
     "type": "ViewerCameraMessage",
@@ -122,9 +122,7 @@ def test_a_picture_of_another_size_is_refused_by_its_header(content: bytes) -> N
 def _shown(client: TestClient, design: str) -> Any:
     body = {"chart": "KP\nPK", "material": "cotton"}
     assert client.put(f"/api/v1/views/{design}", json=body).status_code == 200
-    return client.websocket_connect(
-        f"ws://127.0.0.1/view/{design}", subprotocols=[f"viser-v{viser.__version__}"]
-    )
+    return watching(client, f"/view/{design}")
 
 
 def _drain(socket: Any) -> None:
@@ -150,7 +148,7 @@ def test_a_picture_is_requested_from_a_browser(
     design = f"a-picture-{status}"
     with _shown(client, design) as socket, ThreadPoolExecutor(1) as thread:
         socket.send_bytes(_packed(**CAMERA))
-        view = client.app.state.views.get(f"local/{design}")  # type: ignore[attr-defined]
+        view = state_of(client).views.get(f"local/{design}")
         deadline = time.monotonic() + 60
         while not view.server.get_clients() and time.monotonic() < deadline:
             time.sleep(0.01)

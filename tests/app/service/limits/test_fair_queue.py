@@ -58,97 +58,76 @@ def test_everybody_is_served_once_and_in_turn(line: list[tuple[str, bool]]) -> N
             assert served[owner] <= count + 1 or count == left[other]
 
 
-def test_background_work_leaves_a_place_free() -> None:
-    async def scenario() -> None:
-        queue = _queue(places=3, background=2)
-        background = [queue.enter("ada", background=True) for _ in range(4)]
-        assert [t.place.done() for t in background] == [True, True, False, False]
-        page = queue.enter("bob", background=False)
-        assert page.place.done()
-        queue.leave(background[0])
-        assert [t.place.done() for t in background] == [True, True, True, False]
-
-    asyncio.run(scenario())
+async def test_background_work_leaves_a_place_free() -> None:
+    queue = _queue(places=3, background=2)
+    background = [queue.enter("ada", background=True) for _ in range(4)]
+    assert [t.place.done() for t in background] == [True, True, False, False]
+    page = queue.enter("bob", background=False)
+    assert page.place.done()
+    queue.leave(background[0])
+    assert [t.place.done() for t in background] == [True, True, True, False]
 
 
-def test_leaving_the_queue_does_not_delay_others() -> None:
-    async def scenario() -> list[bool]:
-        queue = _queue()
-        holder: QueuedRequest[int] = queue.enter("ada", background=False)
-        leaver = queue.enter("bob", background=False)
-        stayer = queue.enter("eve", background=False)
-        queue.leave(leaver)
-        queue.leave(holder)
-        return [leaver.place.cancelled(), stayer.place.done()]
-
-    assert asyncio.run(scenario()) == [True, True]
+async def test_leaving_the_queue_does_not_delay_others() -> None:
+    queue = _queue()
+    holder: QueuedRequest[int] = queue.enter("ada", background=False)
+    leaver = queue.enter("bob", background=False)
+    stayer = queue.enter("eve", background=False)
+    queue.leave(leaver)
+    queue.leave(holder)
+    assert [leaver.place.cancelled(), stayer.place.done()] == [True, True]
 
 
-def test_the_queue_is_bounded() -> None:
-    async def scenario() -> None:
-        queue: FairQueue[int] = FairQueue(
-            [0], most_background=1, most_waiting=1, most_waiting_each=1
-        )
-        for background in (False, True):
-            queue.enter("ada", background=background)
+async def test_the_queue_is_bounded() -> None:
+    queue: FairQueue[int] = FairQueue([0], most_background=1, most_waiting=1, most_waiting_each=1)
+    for background in (False, True):
+        queue.enter("ada", background=background)
+    queue.enter("ada", background=False)
+    with pytest.raises(UnavailableError, match="Too many"):
         queue.enter("ada", background=False)
-        with pytest.raises(UnavailableError, match="Too many"):
-            queue.enter("ada", background=False)
-        with pytest.raises(OverLimitError, match="1 of 1 jobs"):
-            queue.enter("ada", background=True)
-        queue.enter("bob", background=True)
-
-    asyncio.run(scenario())
+    with pytest.raises(OverLimitError, match="1 of 1 jobs"):
+        queue.enter("ada", background=True)
+    queue.enter("bob", background=True)
 
 
-def test_one_user_cannot_fill_the_queue() -> None:
-    async def line_up() -> None:
-        queue = FairQueue([0], most_background=1, most_waiting=3, most_waiting_each=100)
-        for _ in range(4):  # one has the place, three wait
-            queue.enter("ada", background=False)
-        with pytest.raises(UnavailableError):
-            queue.enter("ada", background=False)
+async def test_one_user_cannot_fill_the_queue() -> None:
+    queue = FairQueue([0], most_background=1, most_waiting=3, most_waiting_each=100)
+    for _ in range(4):  # one has the place, three wait
+        queue.enter("ada", background=False)
+    with pytest.raises(UnavailableError):
+        queue.enter("ada", background=False)
+    queue.enter("bob", background=False)
+    with pytest.raises(UnavailableError):
         queue.enter("bob", background=False)
-        with pytest.raises(UnavailableError):
-            queue.enter("bob", background=False)
-
-    asyncio.run(line_up())
 
 
-def test_a_user_holds_only_so_many_places() -> None:
-    async def scenario() -> None:
-        queue = FairQueue(
-            [0, 1, 2], most_background=2, most_waiting=9, most_waiting_each=9, most_each=2
-        )
-        ada = [queue.enter("ada", background=False) for _ in range(3)]
-        assert [ticket.place.done() for ticket in ada] == [True, True, False]
-        bob = queue.enter("bob", background=True)
-        assert bob.place.done()  # although ada waits at a page
-        queue.leave(ada[0])
-        assert ada[2].place.done()
-
-    asyncio.run(scenario())
+async def test_a_user_holds_only_so_many_places() -> None:
+    queue = FairQueue(
+        [0, 1, 2], most_background=2, most_waiting=9, most_waiting_each=9, most_each=2
+    )
+    ada = [queue.enter("ada", background=False) for _ in range(3)]
+    assert [ticket.place.done() for ticket in ada] == [True, True, False]
+    bob = queue.enter("bob", background=True)
+    assert bob.place.done()  # although ada waits at a page
+    queue.leave(ada[0])
+    assert ada[2].place.done()
 
 
-def test_a_gate_lets_one_through_at_a_time_and_its_turns_are_given_back() -> None:
-    async def scenario() -> tuple[list[str], int]:
-        lock, order, inside, most = FairLock(), [], 0, 0
+async def test_a_fair_lock_lets_one_through_at_a_time_and_its_turns_are_given_back() -> None:
+    lock, order, inside, most = FairLock(), [], 0, 0
 
-        async def come(owner: str) -> None:
-            nonlocal inside, most
-            async with lock.turn(owner):
-                inside += 1
-                most = max(most, inside)
-                order.append(owner)
-                await asyncio.sleep(0)
-                inside -= 1
+    async def come(owner: str) -> None:
+        nonlocal inside, most
+        async with lock.turn(owner):
+            inside += 1
+            most = max(most, inside)
+            order.append(owner)
+            await asyncio.sleep(0)
+            inside -= 1
 
-        line = [asyncio.create_task(come(owner)) for owner in "aaaaab"]
-        await asyncio.sleep(0)
-        line[3].cancel()  # one that waits; its turn goes to the next
-        await asyncio.gather(*line, return_exceptions=True)
-        return order, most
-
-    order, most = asyncio.run(scenario())
+    line = [asyncio.create_task(come(owner)) for owner in "aaaaab"]
+    await asyncio.sleep(0)
+    line[3].cancel()  # one that waits; its turn goes to the next
+    await asyncio.gather(*line, return_exceptions=True)
     assert most == 1
     assert (len(order), order.index("b")) == (5, 2)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 from collections.abc import Callable, Iterator
 from dataclasses import fields
 from pathlib import Path
 
 import pytest
-import viser
 from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
@@ -29,14 +27,14 @@ from app.service.limits.user_limits import (
     CpuTimeLimit,
     CpuTimeSpentError,
     OverLimitError,
+    RateLimit,
     UserLimits,
 )
-from app.service.main import create_app
-from app.service.settings import Settings
 from app.service.store.database import Database
-from app.service.web.tokens import Tokens
 from app.viewer import views as views_module
 from app.viewer.views import Views
+from tests.app.clients import bearing, served, state_of, tokens_of, watching
+from tests.app.jobs import never
 
 RIB = DesignDocument(name="Cuff", material="acrylic", chart="\n".join(["KP" * 50] * 100))
 SIZE = 100 * 101 - 1 + len(RIB.model_dump_json(include={"outline", "regions", "repeats", "shelf"}))
@@ -52,6 +50,14 @@ def test_what_users_hold_is_counted_and_released() -> None:
     assert uses.held("streams", "ada") == 0
 
 
+def test_a_bucket_fills_again() -> None:
+    limit = RateLimit(per_s=2.0, burst=3)
+    assert [limit.take("ada", at=0.0) for _ in range(4)] == [(2, 0), (1, 0), (0, 0), (0, 0.5)]
+    assert limit.take("bob", at=0.0) == (2, 0)
+    assert limit.take("ada", at=0.5) == (0, 0)
+    assert limit.left("ada", at=100.0) == 3
+
+
 class _Finished:
     """A worker whose jobs are done at once, and took some CPU seconds."""
 
@@ -63,16 +69,12 @@ class _Finished:
         return done
 
 
-async def _never() -> bool:
-    return False
-
-
 def test_computing_time_is_spent_and_restored() -> None:
     compute = Compute([_Finished()], timeout_s=30.0)  # type: ignore[list-item]
     compute.cpu_time = CpuTimeLimit(UserLimits(cpu_s=0.1))
 
     def run(owner: str) -> int:
-        return asyncio.run(compute.run(_never, print, owner=owner))
+        return asyncio.run(compute.run(never, print, owner=owner))
 
     assert run("ada") == 1
     assert compute.cpu_time.used_s("ada") == pytest.approx(0.2, abs=1e-3)
@@ -86,19 +88,18 @@ def test_computing_time_is_spent_and_restored() -> None:
 
 def test_computations_of_a_user_share_the_memory_of_the_machine(tmp_path: Path) -> None:
     """With the default limit of a worker, half of the machine's memory, that is two at once."""
-    settings = Settings(require_login=True, workers=3, data_dir=tmp_path)
-    with TestClient(create_app(settings)) as client:
-        turns = client.app.state.compute.queue  # type: ignore[attr-defined]
+    with served(require_login=True, workers=3, data_dir=tmp_path) as client:
+        settings = state_of(client).settings
+        queue = state_of(client).compute.queue
         most = USER_LIMITS.memory_bytes // settings.worker_memory_bytes
-        assert turns.most_each == max(1, most)
+        assert queue.most_each == max(1, most)
 
 
 def test_a_user_has_so_many_connections(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    settings = Settings(require_login=True, workers=1, data_dir=tmp_path)
-    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
-        state = client.app.state  # type: ignore[attr-defined]
+    with served(require_login=True, data_dir=tmp_path) as client:
+        state = state_of(client)
         state.concurrency = ConcurrencyLimit(UserLimits(connections=2, streams=2))
-        headers = {"Authorization": f"Bearer {Tokens(state.database).create('ada').token}"}
+        headers = bearing(tokens_of(client).create("ada").token)
         client.put(
             "/api/v1/views/a-view", json={"chart": "K", "material": "cotton"}, headers=headers
         )
@@ -113,7 +114,7 @@ def test_a_user_has_so_many_connections(tmp_path: Path, monkeypatch: pytest.Monk
             refused = client.get("/api/v1/session", headers=headers)
             assert (refused.status_code, refused.json()["field"]) == (429, "connections")
             assert "2 of 2" in refused.json()["detail"]
-            other = {"Authorization": f"Bearer {Tokens(state.database).create('bob').token}"}
+            other = bearing(tokens_of(client).create("bob").token)
             assert client.get("/api/v1/session", headers=other).status_code == 200
         assert state.concurrency.held("connections", "ada") == 0
 
@@ -212,7 +213,7 @@ def test_large_charts_in_views_make_room_for_each_other(monkeypatch: pytest.Monk
 
 @pytest.fixture
 def narrow(client: TestClient) -> Iterator[TestClient]:
-    state = client.app.state  # type: ignore[attr-defined]
+    state = state_of(client)
     before, uses = (
         state.concurrency,
         ConcurrencyLimit(UserLimits(watchers=1, streams=0, pictures=0)),
@@ -231,11 +232,7 @@ def test_streams_pictures_and_watchers_are_bounded(narrow: TestClient, tmp_path:
         assert (answer.status_code, answer.json()["type"]) == (429, "/problems/too-many")
         assert answer.json()["remedy"]
 
-    def watch() -> contextlib.AbstractContextManager[object]:
-        address = "ws://127.0.0.1/view/a-view"
-        return narrow.websocket_connect(address, subprotocols=[f"viser-v{viser.__version__}"])
-
-    with watch():
-        with pytest.raises(WebSocketDisconnect) as refused, watch():
+    with watching(narrow, "/view/a-view"):
+        with pytest.raises(WebSocketDisconnect) as refused, watching(narrow, "/view/a-view"):
             pass
         assert refused.value.code == 1013

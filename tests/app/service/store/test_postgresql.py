@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Iterator
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 
@@ -18,27 +17,23 @@ from app.service.compute.processes import processes
 from app.service.jobs import runner as runner_module
 from app.service.jobs.document import JobState
 from app.service.jobs.kinds import KINDS
-from app.service.jobs.runner import JobRunner
-from app.service.jobs.store import JobStore
 from app.service.main import create_app
 from app.service.problems import DispossessedError, StoreError
 from app.service.settings import Settings
 from app.service.store import postgresql
 from app.service.store.database import Database, holder
 from app.service.store.postgresql import NameLock, PostgresqlServer
-from app.service.store.schema import migrate
 from knitcore.base.errors import InputError
 from tests.app.databases import control
-from tests.app.jobs import WORK, Task, answers
+from tests.app.jobs import WORK
+from tests.app.service.jobs.helpers import counted, runner_of, running, task
 
 pytestmark = pytest.mark.postgres
 
 
 @pytest.fixture
-def database(postgres_url: str) -> Iterator[Database]:
-    with closing(Database(postgres_url)) as database:
-        migrate(database)
-        yield database
+def database(postgres_database: Database) -> Database:
+    return postgres_database
 
 
 def _restart(url: str) -> None:
@@ -146,22 +141,18 @@ def test_jobs_stop_where_the_name_was_taken(
     monkeypatch.setitem(KINDS, "work", WORK)
 
     async def scenario(compute: Compute) -> None:
-        runner = JobRunner(JobStore(database, "main"), answers(compute, Path()), 60.0)
+        runner = runner_of(database, compute)
         await runner.resume()
-        wish = Task(what="wait", mark="/nonexistent").model_dump_json()
-        job = (await runner.submit("ada", "work", wish)).id
-        async with asyncio.timeout(150):
-            while (await runner.status("ada", job)).state is not JobState.RUNNING:
-                await asyncio.sleep(0.02)
-            await asyncio.to_thread(_end_lock_of, database)
-            stack.enter_context(second.reserved("main"))
-            with pytest.raises(DispossessedError):
-                await asyncio.to_thread(database.check)
-            while runner.counts() != {"waiting": 0, "running": 0}:
-                await asyncio.sleep(0.02)
+        job = (await runner.submit("ada", "work", task("wait"))).id
+        await running(runner, job)
+        await asyncio.to_thread(_end_lock_of, database)
+        stack.enter_context(second.reserved("main"))
+        with pytest.raises(DispossessedError):
+            await asyncio.to_thread(database.check)
+        await counted(runner, "running", 0)
         assert (await runner.status("ada", job)).state is JobState.RUNNING  # nothing was written
         with pytest.raises(DispossessedError):
-            await runner.submit("ada", "work", wish)
+            await runner.submit("ada", "work", task("wait"))
         await runner.close()
 
     with ExitStack() as stack:

@@ -16,6 +16,7 @@ from app.service.api import routers
 from app.service.identity import LOCAL_USER
 from app.service.limits.user_limits import USER_LIMITS, ConcurrencyLimit, UserLimits
 from app.service.web.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
+from tests.app.clients import state_of
 
 PADDING = " " * SMALL_BYTES
 WISH = {"chart": "KP\nPK", "material": "acrylic"}
@@ -41,7 +42,7 @@ def test_every_address_with_a_body_keeps_the_rule() -> None:
 @pytest.fixture
 def sent(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What workers are given."""
-    compute = client.app.state.compute  # type: ignore[attr-defined]
+    compute = state_of(client).compute
     given: list[Any] = []
     run = compute.run
 
@@ -141,7 +142,7 @@ def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
 
 
 def test_open_bodies_of_one_user_are_bounded(client: TestClient) -> None:
-    state = client.app.state  # type: ignore[attr-defined]
+    state = state_of(client)
     usual, state.concurrency = (
         state.concurrency,
         ConcurrencyLimit(UserLimits(body_bytes=SMALL_BYTES)),

@@ -10,6 +10,7 @@ from fastapi.testclient import TestClient
 from app.models.charts import size_of
 from app.operations.predict import PredictRequest
 from app.service.api.operations import MAX_LIGHT
+from tests.app.clients import state_of
 
 SMALL = {"fabric": "garter", "columns": 10, "rows": MAX_LIGHT // 10 - 10}
 LARGE = {"fabric": "garter", "columns": 101, "rows": MAX_LIGHT // 100}
@@ -19,7 +20,7 @@ TEXT = "\n".join(["KP" * 60] * 90)
 @pytest.fixture
 def asked(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What workers were asked to do."""
-    compute = client.app.state.compute  # type: ignore[attr-defined]
+    compute = state_of(client).compute
     found, run = list[Any](), compute.run
 
     async def counted(*args: Any, **turn: Any) -> Any:
@@ -48,7 +49,7 @@ def test_a_large_chart_is_laid_in_a_worker(
     answer = client.put("/api/v1/views/large-or-not", json={"chart": chart, "material": "acrylic"})
     assert answer.json()["stitches"] == 40_000
     assert len(asked) == computed
-    view = client.app.state.views.get("local/large-or-not")  # type: ignore[attr-defined]
+    view = state_of(client).views.get("local/large-or-not")
     assert view.writer.drawing.ground.shape == (200, columns)
 
 

@@ -1,4 +1,4 @@
-"""What operators rely on: logs, health, metrics, settings in a file, shutdown."""
+"""What operators rely on: logs, health, metrics, shutdown."""
 
 from __future__ import annotations
 
@@ -13,17 +13,14 @@ from types import SimpleNamespace
 
 import httpx2 as httpx
 import pytest
-from anyio.to_thread import current_default_thread_limiter
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from starlette.websockets import WebSocketDisconnect
 
 from app.service import VERSION, doctor
-from app.service.main import THREADS, create_app
 from app.service.settings import Settings
 from app.service.web.observing import JsonLines, TextLines, configure_logging
-from app.service.web.tokens import Tokens
-from knitcore.base.errors import InputError
+from tests.app.clients import bearing, served, state_of, tokens_of
 from tests.app.running import Service
 
 
@@ -103,19 +100,16 @@ def test_metrics_count_by_route_and_not_by_address(client: TestClient) -> None:
 
 
 def test_metrics_are_for_the_operator(tmp_path: Path) -> None:
-    settings = Settings(require_login=True, token="operator" * 4, workers=1, data_dir=tmp_path)
-    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
-        user = Tokens(client.app.state.database).create("ada").token  # type: ignore[attr-defined]
+    with served(require_login=True, token="operator" * 4, data_dir=tmp_path) as client:
+        user = tokens_of(client).create("ada").token
         for token, status in ((user, 403), ("operator" * 4, 200)):
-            headers = {"Authorization": f"Bearer {token}"}
-            assert client.get("/metrics", headers=headers).status_code == status
+            assert client.get("/metrics", headers=bearing(token)).status_code == status
 
 
 def test_a_websocket_is_a_line_too_and_refused_users_have_no_name(
     tmp_path: Path, lines: list[dict[str, object]]
 ) -> None:
-    settings = Settings(require_login=True, workers=1, data_dir=tmp_path)
-    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+    with served(require_login=True, data_dir=tmp_path) as client:
         with pytest.raises(WebSocketDisconnect), client.websocket_connect("/view/a-view"):
             pass
         client.get("/api/v1/designs")
@@ -130,7 +124,7 @@ def test_readyz_checks_database_and_disk(
 ) -> None:
     ready = client.get("/readyz").json()
     assert ready["status"] == "ok"
-    with client.app.state.database.reserved("main"):  # type: ignore[attr-defined]
+    with state_of(client).database.reserved("main"):
         told = doctor.examine(Settings()).checks
     assert ready["checks"] | {"service": True} == {check.name: check.ok for check in told}
     monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=3_000_000))
@@ -141,10 +135,9 @@ def test_readyz_checks_database_and_disk(
 
 
 def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
-    app = create_app(Settings(workers=1, data_dir=tmp_path))
     design = {"name": "a", "material": "acrylic", "chart": "KP"}
     file, away = tmp_path / "knitcore.sqlite3", tmp_path / "away"
-    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+    with served(data_dir=tmp_path) as client:
 
         def unavailable(words: str) -> None:
             for answer in (client.get("/readyz"), client.post("/api/v1/designs", json=design)):
@@ -164,22 +157,6 @@ def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
         away.rename(file)
         assert client.get("/readyz").status_code == 200
         assert client.post("/api/v1/designs", json=design).status_code == 201
-
-
-def test_settings_come_from_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = tmp_path / "knitcore.toml"
-    monkeypatch.setenv("KNITCORE_CONFIG", str(file))
-    with pytest.raises(InputError, match="not a TOML"):
-        Settings()
-    file.write_text('port = 9001\nworkers = 3\nlog_format = "json"\n')
-    monkeypatch.setenv("KNITCORE_WORKERS", "1")
-    assert (Settings().port, Settings().workers, Settings().log_format) == (9001, 1, "json")
-    file.write_text("porrt = 9001\n")
-    with pytest.raises(ValueError, match="porrt"):
-        Settings()
-    file.write_text("not toml at all")
-    with pytest.raises(InputError, match="not a TOML"):
-        Settings()
 
 
 def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
@@ -224,13 +201,3 @@ def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
     log = [json.loads(line) for line in service.log.read_text().splitlines()]
     assert {"request", "job waits"} <= {line["message"] for line in log}
     assert not [line for line in log if line["level"] == "error"]
-
-
-def test_the_service_has_few_threads(client: TestClient) -> None:
-    """The event loop waits for each of them that computes."""
-
-    async def threads() -> float:
-        return current_default_thread_limiter().total_tokens
-
-    assert client.portal is not None
-    assert client.portal.call(threads) == THREADS
