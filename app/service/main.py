@@ -22,7 +22,7 @@ from ..viewer.client import viewer_page
 from ..viewer.views import Views
 from . import VERSION, health, memory
 from .api import routers
-from .compute.answers import Answers
+from .compute.answers import Answers, RecentResults
 from .compute.compute import Compute
 from .compute.processes import processes
 from .compute.workers import Worker
@@ -34,7 +34,6 @@ from .jobs.store import JobStore
 from .limits.fair_queue import FairLock
 from .limits.user_limits import USER_LIMITS, ConcurrencyLimit
 from .problems import PROBLEM_RESPONSES, StoreError
-from .results.recent import RecentResults
 from .settings import Settings
 from .store.database import Database
 from .store.schema import migrate

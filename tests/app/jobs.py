@@ -14,9 +14,8 @@ from pydantic import BaseModel
 from app.context import Context
 from app.operations.perform import ViewData, perform
 from app.operations.registry import Operation
-from app.service.compute.answers import Answers
+from app.service.compute.answers import Answers, RecentResults
 from app.service.compute.compute import Compute
-from app.service.results.recent import RecentResults
 from knitcore import InputError
 
 

@@ -28,10 +28,10 @@ from ...models.stretched import StretchView
 from ...operations.perform import Reply
 from ...viewer.camera import CameraSide
 from ...viewer.scene import round_length_mm
-from ...viewer.share import picture_png
-from ...viewer.shared import (
+from ...viewer.share import (
     Computed,
     SharedViewRequest,
+    picture_png,
     shared_page,
     shared_recording,
     shared_solid,
