@@ -178,10 +178,14 @@ class SqliteFile(Backend):
     def keep_copy(self, name: str) -> None:
         """Copy the database to a file beside it, readable by this user only."""
         copy = self.path.with_name(f"{self.path.name}.{name}")
-        with contextlib.suppress(FileExistsError):
-            os.close(os.open(copy, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
-            with contextlib.closing(self.engine.raw_connection()) as connection:
-                connection.cursor().execute("VACUUM INTO ?", (str(copy),))
+        if copy.exists():
+            return
+        partial = copy.with_name(f"{copy.name}.partial")
+        partial.unlink(missing_ok=True)  # of a disk that was full
+        os.close(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
+        with contextlib.closing(self.engine.raw_connection()) as connection:
+            connection.cursor().execute("VACUUM INTO ?", (str(partial),))
+        partial.rename(copy)
 
     def close(self) -> None:
         """Close all connections, the last one, which was kept, too."""

@@ -291,6 +291,7 @@ def test_a_copy_is_kept_before_a_migration(tmp_path: Path, monkeypatch: pytest.M
         f"revision, down_revision = 'next', {before!r}\n\ndef upgrade():\n    pass\n"
     )
     monkeypatch.setattr(schema, "MIGRATIONS", migrations)
+    file.with_name(f"{file.name}.before-next.partial").touch()  # an attempt that failed
     migrate(database)
     assert revision(database) == "next"
     database.close()
