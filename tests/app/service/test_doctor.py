@@ -207,11 +207,13 @@ def test_doctor_start_and_readiness_say_the_same_in_one_line(
         return
     with served() as client:
         answer = client.get("/readyz")
+        assert client.get("/healthz").status_code == 200
     if broken.ready:
         assert (answer.status_code, answer.json()["checks"][broken.check]) == (200, False)
     else:
         told = answer.json()
-        assert (answer.status_code, told["detail"], told["remedy"]) == (503, problem, remedy)
+        assert (answer.status_code, told["title"]) == (503, "Not ready")
+        assert (told["detail"], told["remedy"]) == (problem, remedy)
 
 
 def _start(folder: Path) -> subprocess.CompletedProcess[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import json
-import os
 import time
 from pathlib import Path
 from typing import Any
@@ -247,17 +246,6 @@ async def test_a_result_outlives_a_database_outage(
     job = await runner.submit("ada", "work", task("answer"))
     assert (await ended(runner, job.id)).state is JobState.DONE
     assert len(failures) == 3
-
-
-def test_the_longest_unused_results_make_room(database: Database) -> None:
-    store = JobStore(database, "main")
-    for number in range(3):
-        status = store.add("ada", "work", "{}", f"k{number}", JobState.WAITING)
-        assert store.finish(status.id, "work", f"k{number}", os.urandom(1000))
-        time.sleep(0.002)
-    assert store.knows("k0")
-    store.tidy(most_bytes=2100)
-    assert [store.knows(f"k{n}") for n in range(3)] == [True, False, True]
 
 
 @pytest.mark.slow

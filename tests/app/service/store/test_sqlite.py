@@ -17,7 +17,7 @@ from sqlalchemy import text
 from app.cli.main import main
 from app.service.doctor import examine, examine_running, examine_start
 from app.service.main import create_app
-from app.service.problems import DispossessedError, StoreError, VanishedError
+from app.service.problems import DispossessedError, StoreError
 from app.service.settings import Settings
 from app.service.store.backup import back_up
 from app.service.store.database import Database
@@ -174,14 +174,6 @@ def test_the_doctor_misses_the_lock_of_an_open_database(database: Database, file
     assert doctor.exit_code == 1
     assert "knitcore.sqlite3.lock is not there" in doctor.output
     kept.rename(_beside(file, ".lock"))
-
-
-def test_a_service_without_its_database_stops(database: Database, file: Path) -> None:
-    kept = file.rename(file.parent / "kept")
-    with pytest.raises(VanishedError, match="is gone"):
-        _write(database)
-    kept.rename(file)
-    _write(database)
 
 
 def test_files_are_made_for_this_user_only(database: Database, file: Path) -> None:

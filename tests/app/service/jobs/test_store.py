@@ -1,7 +1,8 @@
-"""Several processes of one service: each knows, cancels and survives the others' jobs."""
+"""Jobs in a database, where several processes know, cancel and survive each other's."""
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -130,3 +131,14 @@ def test_equal_jobs_of_two_processes_may_end_at_the_same_time(database: Database
             for job in jobs:
                 assert stores[0].get("ada", job).state is JobState.DONE
                 assert stores[0].result("ada", job) == b"the result"
+
+
+def test_the_longest_unused_results_make_room(database: Database) -> None:
+    store = JobStore(database, "main")
+    for number in range(3):
+        status = store.add("ada", "work", "{}", f"k{number}", JobState.WAITING)
+        assert store.finish(status.id, "work", f"k{number}", os.urandom(1000))
+        time.sleep(0.002)
+    assert store.knows("k0")
+    store.tidy(most_bytes=2100)
+    assert [store.knows(f"k{n}") for n in range(3)] == [True, False, True]
