@@ -107,16 +107,6 @@ class Database:
             if not self.backend.is_whole(connection):
                 raise _damaged()
 
-    def keep_copy(self, name: str) -> None:
-        """Keep a copy of an SQLite file, as it is now, beside it.
-
-        Raises
-        ------
-        StoreError
-        """
-        with self.failures():
-            self.backend.keep_copy(name)
-
     @contextlib.contextmanager
     def reserved(self, process: str, at: str = "") -> Iterator[None]:
         """Reserve the data for this process while the block runs: a second one would end its jobs.

@@ -40,7 +40,8 @@ def migrate(database: Database, target: str = "head") -> None:
     config = _config()
     head = ScriptDirectory.from_config(config).get_current_head()
     if version not in (None, head) and target == "head":
-        database.keep_copy(f"before-{head}")
+        with database.failures():
+            database.backend.keep_copy(f"before-{head}")
 
     def upgrade(connection: object) -> None:
         config.attributes["connection"] = connection

@@ -79,7 +79,7 @@ def test_nothing_that_a_service_does_drops_its_locks(
         "a read": database.check,
         "a write": lambda: _write(database),
         "its pages": database.check_pages,
-        "a copy": lambda: database.keep_copy("copy"),
+        "a copy": lambda: database.backend.keep_copy("copy"),
         "a backup": lambda: back_up(database, tmp_path / "backup.gz"),
         "a migration": lambda: migrate(database),
         "the start": lambda: examine_start(settings, database),
