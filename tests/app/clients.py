@@ -15,6 +15,15 @@ from app.service.web.tokens import Tokens
 
 VIEW_PROTOCOLS = [f"viser-v{viser.__version__}"]
 
+LONG = {
+    "chart": {"fabric": "garter", "columns": 150, "rows": 150},
+    "material": "acrylic",
+    "direction": "wale",
+    "strain": 0.5,
+    "steps": 60,
+}
+"""A stretch test that takes minutes."""
+
 
 @contextlib.contextmanager
 def served(base_url: str = "http://127.0.0.1", **settings: Any) -> Iterator[TestClient]:

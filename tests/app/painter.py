@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import random
 import threading
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import httpx2 as httpx
+
+from tests.app.running import wait_until
 
 SIDE = 40
 
@@ -91,7 +92,4 @@ def painting(url: str, painters: list[Painter]) -> Iterator[None]:
 
 def until_painted(painters: list[Painter], revisions: int) -> None:
     """Wait until so many revisions of all painters together are acknowledged."""
-    deadline = time.monotonic() + 60
-    while sum(p.acknowledged for p in painters) < revisions:
-        assert time.monotonic() < deadline, [p.refused for p in painters]
-        time.sleep(0.01)
+    wait_until(lambda: sum(p.acknowledged for p in painters) >= revisions)

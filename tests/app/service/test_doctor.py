@@ -216,23 +216,15 @@ def test_doctor_start_and_readiness_say_the_same_in_one_line(
         assert (told["detail"], told["remedy"]) == (problem, remedy)
 
 
-def _start(folder: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
-        capture_output=True,
-        text=True,
-        timeout=150,
-        check=False,
-        env=os.environ | {"KNITCORE_DATA_DIR": str(folder)},
-    )
-
-
-def test_a_second_service_on_the_same_data_is_refused(tmp_path: Path) -> None:
+def test_a_second_service_on_the_same_data_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file = _database(tmp_path)
     database = Database(f"sqlite:///{file}")
     with database.reserved("main", "http://127.0.0.1:8737/"):
-        done = _start(tmp_path)
-        assert done.returncode == 2
+        monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
+        done = _serve(monkeypatch)
+        assert done.exit_code == 2
         assert "another service (process" in done.stderr
         assert "Open http://127.0.0.1:8737/ in a browser" in done.stderr
         assert "KNITCORE_DATA_DIR" in done.stderr

@@ -24,9 +24,8 @@ EXAMPLES = int(os.environ.get("KNITCORE_SCHEMA_EXAMPLES", "4"))
 @pytest.fixture(scope="module")
 def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     service = Service(tmp_path_factory.mktemp("schema"), job_timeout_s="1", workers="2")
-    service.start().close()
-    yield service.url
-    service.kill()
+    with service.running():
+        yield service.url
 
 
 def _faults(documented: dict[str, Any], case: Any, response: Any) -> list[str]:

@@ -6,7 +6,6 @@ import json
 import logging
 import sqlite3
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,8 +18,8 @@ from starlette.websockets import WebSocketDisconnect
 from app.service import VERSION, doctor
 from app.service.settings import Settings
 from app.service.web.observing import JsonLines, TextLines, configure_logging
-from tests.app.clients import bearing, served, state_of, tokens_of
-from tests.app.running import Service
+from tests.app.clients import LONG, bearing, served, state_of, tokens_of
+from tests.app.running import Service, wait_until
 
 
 @pytest.fixture
@@ -154,9 +153,7 @@ def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
 def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
     service = Service(tmp_path, log_format="json")
     client = service.start()
-    chart = {"fabric": "garter", "columns": 150, "rows": 150}
-    wish = {"chart": chart, "material": "acrylic", "direction": "wale", "strain": 0.3, "steps": 60}
-    job = client.post("/api/v1/jobs", json={"kind": "stretch", "request": wish}).json()["id"]
+    job = client.post("/api/v1/jobs", json={"kind": "stretch", "request": LONG}).json()["id"]
     heard: list[str] = []
 
     def listen() -> None:
@@ -169,16 +166,13 @@ def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
     answers: list[httpx.Response] = []
 
     def stretch() -> None:
-        answers.append(client.post("/api/v1/stretch", json=wish))
+        answers.append(client.post("/api/v1/stretch", json=LONG))
 
     threads = [threading.Thread(target=run, daemon=True) for run in (listen, stretch)]
     for thread in threads:
         thread.start()
-    deadline = time.monotonic() + 60
-    metrics = ""
-    while not heard or "knitcore_computations_waiting 1.0" not in metrics:
-        assert time.monotonic() < deadline
-        metrics = client.get("/metrics").text
+    waits = "knitcore_computations_waiting 1.0"
+    wait_until(lambda: heard and waits in client.get("/metrics").text)
     code = service.stop()
     for thread in threads:
         thread.join(60)

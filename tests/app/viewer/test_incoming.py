@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import time
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -24,6 +23,7 @@ from app.viewer.incoming import (
     passed_on,
 )
 from tests.app.clients import state_of, watching
+from tests.app.running import wait_until
 
 CAMERA = {
     "type": "ViewerCameraMessage",
@@ -149,9 +149,7 @@ def test_a_picture_is_requested_from_a_browser(
     with _shown(client, design) as socket, ThreadPoolExecutor(1) as thread:
         socket.send_bytes(_packed(**CAMERA))
         view = state_of(client).views.get(f"local/{design}")
-        deadline = time.monotonic() + 60
-        while not view.server.get_clients() and time.monotonic() < deadline:
-            time.sleep(0.01)
+        wait_until(view.server.get_clients)
         address = f"/api/v1/views/{design}/picture?width=40&height=30"
         answer = thread.submit(client.get, address)
         uuid = _asked_for(socket)

@@ -15,6 +15,7 @@ from fastapi.testclient import TestClient
 from app.service import memory
 from app.viewer.views import Views
 from tests.app.clients import served, state_of, watching
+from tests.app.running import wait_until
 from tests.app.threads import threads_of_no_pool
 
 ROUNDS, VIEWS = 3, 3
@@ -47,10 +48,7 @@ def _look(client: TestClient) -> None:
 def _dropped(client: TestClient, most: tuple[int, int]) -> None:
     """Close all views, and wait until no more is held than ``most``."""
     state_of(client).views.close()
-    deadline = time.monotonic() + 60
-    while any(now > m for now, m in zip(_held(), most, strict=True)):
-        assert time.monotonic() < deadline, _held()
-        time.sleep(0.01)
+    wait_until(lambda: all(now <= m for now, m in zip(_held(), most, strict=True)))
 
 
 def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None:

@@ -8,7 +8,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -27,6 +26,7 @@ from app.service.store.database import Database
 from knitcore.chart.fabric import Direction
 from tests.app import jobs
 from tests.app.jobs import never
+from tests.app.running import wait_until
 from tests.app.service.compute.contract import WorkerContract
 from tests.app.service.jobs.helpers import ended, runner_of
 
@@ -59,10 +59,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     running = [
         _dask("scheduler", folder, "--host=127.0.0.1", "--port=0", f"--scheduler-file={file}")
     ]
-    deadline = time.monotonic() + 60
-    while not file.exists() or not file.read_text():
-        assert time.monotonic() < deadline, (folder / "scheduler.log").read_text()
-        time.sleep(0.05)
+    wait_until(lambda: file.exists() and file.read_text())
     found: str = json.loads(file.read_text())["address"]
     (scratch,) = COMPOSE["services"]["worker"]["tmpfs"]
     changed = {"tcp://scheduler:8786": found, scratch: str(folder)}

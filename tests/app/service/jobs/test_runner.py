@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import json
-import time
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +22,9 @@ from app.service.problems import NotFoundError, StoreError
 from app.service.store.database import Database
 from knitcore.base.extensions import Group
 from knitcore.yarn.library import fingerprint
-from tests.app.clients import served, state_of
-from tests.app.running import Service
+from tests.app.clients import LONG, served, state_of
+from tests.app.running import Service, wait_until
 from tests.app.service.jobs.helpers import (
-    PATIENCE_S,
     counted,
     ended,
     runner_of,
@@ -252,14 +250,9 @@ async def test_a_result_outlives_a_database_outage(
 def test_the_real_service_killed_in_mid_job(tmp_path: Path) -> None:
     service = Service(tmp_path)
     client = service.start()
-    chart = {"fabric": "garter", "columns": 150, "rows": 150}
-    long = {"kind": "stretch", "request": STRETCH | {"chart": chart, "steps": 60}}
     try:
-        job = client.post(JOBS, json=long).json()["id"]
-        deadline = time.monotonic() + PATIENCE_S
-        while client.get(f"{JOBS}/{job}").json()["state"] == "waiting":
-            assert time.monotonic() < deadline
-            time.sleep(0.05)
+        job = client.post(JOBS, json={"kind": "stretch", "request": LONG}).json()["id"]
+        wait_until(lambda: client.get(f"{JOBS}/{job}").json()["state"] != "waiting")
         service.kill()
         client.close()
         client = service.start()

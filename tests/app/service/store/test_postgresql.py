@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 
@@ -24,8 +23,9 @@ from app.service.store import postgresql
 from app.service.store.database import Database, holder
 from app.service.store.postgresql import NameLock, PostgresqlServer
 from knitcore.base.errors import InputError
-from tests.app.databases import control
+from tests.app.databases import away, control
 from tests.app.jobs import WORK
+from tests.app.running import wait_until
 from tests.app.service.jobs.helpers import counted, runner_of, running, task
 
 pytestmark = pytest.mark.postgres
@@ -52,9 +52,7 @@ def _end_lock_of(database: Database) -> None:
 def test_a_restart_of_the_database_frees_no_name(database: Database, postgres_url: str) -> None:
     with database.reserved("main"):
         _restart(postgres_url)
-        deadline = time.monotonic() + 60
-        while holder(postgres_url, "main") is None:  # until the watch takes it again
-            assert time.monotonic() < deadline
+        wait_until(lambda: holder(postgres_url, "main"))  # the watch takes it again
         with (
             closing(Database(postgres_url)) as second,
             pytest.raises(InputError, match="KNITCORE_PROCESS_NAME"),
@@ -80,12 +78,8 @@ def test_readiness_takes_the_name_again(
 ) -> None:
     monkeypatch.setattr(postgresql, "PING_S", 3600.0)
     with database.reserved("main"):
-        control(postgres_url, "-m", "fast", "stop")
-        try:
-            with pytest.raises(StoreError):
-                database.check()
-        finally:
-            control(postgres_url, "start")
+        with away(postgres_url), pytest.raises(StoreError):
+            database.check()
         assert holder(postgres_url, "main") is None
         database.check()
         assert holder(postgres_url, "main") is not None
@@ -101,10 +95,12 @@ def test_a_lost_connection_of_our_own_is_no_other_service(
         lock = database.backend.name_lock
         assert lock is not None
         forgotten, lock._connection = lock._connection, None
-        deadline = time.monotonic() + 60
-        while lock._connection is None:
-            assert time.monotonic() < deadline
+
+        def is_taken_again() -> bool:
             database.check()
+            return lock._connection is not None
+
+        wait_until(is_taken_again)
         assert holder(postgres_url, "main") is not None
         assert forgotten is not None
         with suppress(DBAPIError):  # which the server has ended

@@ -15,7 +15,8 @@ from starlette.websockets import WebSocketDisconnect
 from app.service import main as main_module
 from app.service.web import security, tokens
 from app.service.web.sessions import Sessions
-from tests.app.clients import bearing, served, state_of, tokens_of, watching
+from tests.app.clients import LONG, bearing, served, state_of, tokens_of, watching
+from tests.app.running import wait_until
 
 SESSION = "/api/v1/session"
 
@@ -120,19 +121,14 @@ def test_a_revoked_token_ends_streams_views_and_jobs(lab: TestClient) -> None:
     lab.headers.update(bearing(ada.token))
     body = {"chart": "KP", "material": "cotton"}
     assert lab.put("/api/v1/views/a-view", json=body).status_code == 200
-    chart = {"fabric": "garter", "columns": 150, "rows": 150}
-    wish = {"chart": chart, "material": "acrylic", "direction": "wale", "strain": 0.3, "steps": 60}
-    job = lab.post("/api/v1/jobs", json={"kind": "stretch", "request": wish}).json()["id"]
+    job = lab.post("/api/v1/jobs", json={"kind": "stretch", "request": LONG}).json()["id"]
     with watching(lab, "/view/a-view") as socket:
         tokens_of(lab).revoke(ada.id)
         with pytest.raises(WebSocketDisconnect) as closed:
             _drain(socket)
     assert closed.value.code == 1008
     runner = state_of(lab).jobs
-    deadline = time.monotonic() + 60
-    while runner.store.get("ada", job).state != "cancelled" and time.monotonic() < deadline:
-        time.sleep(0.02)
-    assert runner.store.get("ada", job).state == "cancelled"
+    wait_until(lambda: runner.store.get("ada", job).state == "cancelled")
     assert lab.get(SESSION).status_code == 401
 
 
