@@ -21,7 +21,7 @@ from app.service.designs import document as designs
 from app.service.jobs.document import JobPage
 from app.service.problems import Problem
 from app.service.web.sessions import SignedIn
-from app.viewer.shared import SharedViewRequest
+from app.viewer.share import SharedViewRequest
 from knitcore.formats.designs.layout import DesignLayout
 
 FILE = Path(__file__).resolve().parent.parent / "frontend" / "types.d.ts"

@@ -39,7 +39,8 @@ def test_the_environment_of_the_service_is_valid(monkeypatch: pytest.MonkeyPatch
     assert not settings.is_loopback
 
 
-def test_no_secret_has_a_default() -> None:
+def test_no_secret_has_a_default_or_is_committed() -> None:
+    assert ".env" in (ROOT / ".gitignore").read_text().splitlines()
     for service in COMPOSE["services"].values():
         for name, value in service["environment"].items():
             if re.search("TOKEN|PASSWORD", name):
@@ -61,33 +62,32 @@ def test_the_cluster_is_the_one_that_the_service_asks() -> None:
 
 def test_services_wait_for_each_other_and_keep_their_data() -> None:
     services, volumes = COMPOSE["services"], COMPOSE["volumes"]
-    for service in services.values():
+    for name, service in services.items():
         assert service["healthcheck"]["test"]
         for other in service.get("depends_on", {}):
             assert "healthcheck" in services[other]
         for volume in service.get("volumes", []):
             assert volume.split(":")[0] in volumes
         assert set(service["networks"]) <= set(COMPOSE["networks"])
-    database = services["database"]["environment"]
-    url = services["app"]["environment"]["KNITCORE_DATABASE_URL"]
+        assert service["mem_limit"]
+        assert service["pids_limit"]
+        assert service["logging"]["options"]["max-size"]
+        assert name == "database" or service["init"]
+    app, worker = services["app"], services["worker"]
+    assert app["volumes"] == worker["volumes"]  # own materials, and results that are kept
+    assert app["environment"]["KNITCORE_DATA_DIR"] == worker["environment"]["KNITCORE_DATA_DIR"]
+    database, url = services["database"]["environment"], app["environment"]["KNITCORE_DATABASE_URL"]
     assert url.startswith(f"postgresql+psycopg://{database['POSTGRES_USER']}:")
     assert url.endswith(f"@database/{database['POSTGRES_DB']}")
 
 
-def test_the_service_has_no_more_rights_than_it_needs() -> None:
-    services = COMPOSE["services"]
+def test_the_service_has_no_rights_and_is_reached_through_its_proxy_only() -> None:
+    services, networks = COMPOSE["services"], COMPOSE["networks"]
     for name in ("proxy", "app", "scheduler", "worker"):
         assert services[name]["read_only"]
         assert services[name]["cap_drop"] == ["ALL"]
-    assert all(port.startswith("127.0.0.1:") for port in services["proxy"]["ports"])
-    assert [name for name, service in services.items() if "ports" in service] == ["proxy"]
-
-
-def test_the_service_is_reached_through_its_proxy_only() -> None:
-    services, networks = COMPOSE["services"], COMPOSE["networks"]
-    assert [name for name, service in services.items() if "outside" in service["networks"]] == [
-        "proxy"
-    ]
+    open_ = [name for name, of in services.items() if "ports" in of or "outside" in of["networks"]]
+    assert open_ == ["proxy"]
     assert networks["front"]["internal"]
     (front,) = networks["front"]["ipam"]["config"]
     environment = services["app"]["environment"]
@@ -176,18 +176,6 @@ def test_nothing_but_the_program_is_sent_to_the_engine() -> None:
                 assert not ignored.match_file(file), file
 
 
-def test_workers_find_own_materials_and_nothing_grows_without_end() -> None:
-    services = COMPOSE["services"]
-    app, worker = services["app"], services["worker"]
-    assert app["environment"]["KNITCORE_DATA_DIR"] == worker["environment"]["KNITCORE_DATA_DIR"]
-    assert app["volumes"] == worker["volumes"]
-    for name, service in services.items():
-        assert service["mem_limit"]
-        assert service["pids_limit"]
-        assert service["logging"]["options"]["max-size"]
-        assert name == "database" or service["init"]
-
-
 def test_a_worker_is_healthy_while_it_is_connected_to_the_scheduler() -> None:
     _, grep, option, pattern, *tables = COMPOSE["services"]["worker"]["healthcheck"]["test"]
     address = COMPOSE["services"]["app"]["environment"]["KNITCORE_SCHEDULER"]
@@ -198,11 +186,6 @@ def test_a_worker_is_healthy_while_it_is_connected_to_the_scheduler() -> None:
         assert subprocess.run(check, check=False).returncode == 1
         with socket.create_connection(("127.0.0.1", port)), scheduler.accept()[0]:
             assert subprocess.run(check, check=False).returncode == 0
-
-
-def test_secrets_stay_out_of_image_and_repository() -> None:
-    """compose.yaml asks for an .env file beside it."""
-    assert ".env" in (ROOT / ".gitignore").read_text().splitlines()
 
 
 def test_the_script_checks_the_files_where_no_engine_answers(tmp_path: Path) -> None:

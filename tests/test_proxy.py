@@ -20,7 +20,7 @@ import viser
 import websockets
 
 from app.service.settings import Settings
-from tests.app.running import Service
+from tests.app.running import Service, wait_until
 
 NGINX = shutil.which("nginx", path="/usr/sbin:/usr/bin:/usr/local/sbin:/usr/local/bin")
 SHIPPED = Path(__file__).resolve().parent.parent / "deploy" / "nginx.conf"
@@ -57,16 +57,17 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         command += ["-g", "user root;"]
     process = subprocess.Popen(command)
     try:
-        deadline = time.monotonic() + PATIENCE_S
-        while time.monotonic() < deadline:
-            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port)):
-                break
-            time.sleep(0.05)
+        wait_until(lambda: _listens(port))
         yield f"http://127.0.0.1:{port}"
     finally:
         process.terminate()
         process.wait(PATIENCE_S)
         service.stop()
+
+
+def _listens(port: int) -> bool:
+    with socket.socket() as client:
+        return client.connect_ex(("127.0.0.1", port)) == 0
 
 
 @pytest.fixture

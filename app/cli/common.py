@@ -49,6 +49,7 @@ def open_database(settings: Settings, *, migrated: bool = True) -> Iterator[Data
     from ..service.store.database import Database
     from ..service.store.schema import migrate
 
+    settings.make_folder()
     with contextlib.closing(Database(settings.store_url)) as database:
         if migrated:
             migrate(database)

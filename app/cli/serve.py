@@ -67,13 +67,13 @@ def _prepared(settings: Settings, address: str) -> Iterator[Database]:
     """Lock and migrate the data, and report failed checks; yields the database to serve."""
     from ..service.doctor import check_folder, examine_start
     from ..service.store.database import Database
-    from ..service.store.lock import held
     from ..service.store.schema import migrate
 
     check_folder(settings.folder)
+    settings.make_folder()
     with (
         contextlib.closing(Database(settings.store_url)) as database,
-        held(database, settings.process_name, address),
+        database.reserved(settings.process_name, address),
     ):
         database.check_pages()
         migrate(database)

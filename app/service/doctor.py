@@ -16,9 +16,7 @@ from knitcore.base.errors import InputError
 
 from .problems import ServiceError
 from .settings import Settings
-from .store.database import Database, sqlite_file
-from .store.file import check_not_lost, check_reserved
-from .store.lock import holder
+from .store.database import Database, backend_of, holder
 from .store.schema import check_schema
 
 if TYPE_CHECKING:
@@ -151,11 +149,8 @@ def check_space(folder: Path) -> None:
 
 
 def _check_database(settings: Settings) -> None:
-    if settings.database_url is None and not settings.database_file.exists():
-        check_not_lost(settings.database_file)
+    if not backend_of(settings.store_url).check_unopened():
         return  # it is made by the first start
-    if (file := sqlite_file(settings.store_url)) is not None:
-        check_reserved(file)
     with closing(Database(settings.store_url)) as database:
         database.check_pages()
         check_schema(database)
@@ -163,8 +158,6 @@ def _check_database(settings: Settings) -> None:
 
 def _holder(settings: Settings) -> str | None:
     """The service that runs on the data now; a second one would be refused."""
-    if settings.database_url is None and not settings.database_file.exists():
-        return None
     return holder(settings.store_url, settings.process_name)
 
 

@@ -1,4 +1,4 @@
-"""The user of a request: set by the guard, read by everything behind it."""
+"""The user of a request: set by access control, read by everything behind it."""
 
 from __future__ import annotations
 

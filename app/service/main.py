@@ -22,7 +22,7 @@ from ..viewer.client import viewer_page
 from ..viewer.views import Views
 from . import VERSION, health, memory
 from .api import routers
-from .compute.answers import Answers
+from .compute.answers import Answers, RecentResults
 from .compute.compute import Compute
 from .compute.processes import processes
 from .compute.workers import Worker
@@ -31,20 +31,19 @@ from .designs.store import DesignStore
 from .designs.watching import Watched
 from .jobs.runner import JobRunner
 from .jobs.store import JobStore
-from .limits.budgets import BUDGETS, InUse
-from .limits.turns import Gate
+from .limits.fair_queue import FairLock
+from .limits.user_limits import USER_LIMITS, ConcurrencyLimit
 from .problems import PROBLEM_RESPONSES, StoreError
-from .results.recent import RecentResults
 from .settings import Settings
 from .store.database import Database
 from .store.schema import migrate
 from .web.errors import install_problem_handlers
 from .web.observing import Metrics, Observer, configure_logging
 from .web.page import serve_page
-from .web.passes import Passes
+from .web.passes import ViewPasses
 from .web.reference import serve_kinds, serve_reference
 from .web.schema import install_schema
-from .web.security import Guard
+from .web.security import AccessControl
 from .web.sessions import Sessions
 from .web.tokens import REMEMBERED_S, Login, Tokens
 
@@ -75,9 +74,9 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.compute = Compute(
         _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
     )
-    app.state.large_bodies = Gate()
-    app.state.light_work = Gate()
-    app.state.drawing = Gate()
+    app.state.large_bodies = FairLock()
+    app.state.light_work = FairLock()
+    app.state.drawing = FairLock()
     app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
     app.state.recent = RecentResults()
     app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
@@ -133,9 +132,9 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
     app.state.settings = chosen
     app.state.database = database
     app.state.stopping = False
-    app.state.in_use = InUse()
+    app.state.concurrency = ConcurrencyLimit()
     app.state.watched = Watched()
-    app.state.passes = Passes()
+    app.state.passes = ViewPasses()
     app.state.metrics = Metrics(_gauges(app))
     install_problem_handlers(app)
     install_schema(app)
@@ -146,7 +145,7 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
     serve_reference(app)
     serve_kinds(app)
     serve_page(app)
-    app.add_middleware(Guard, settings=chosen)
+    app.add_middleware(AccessControl, settings=chosen)
     app.add_middleware(Observer, metrics=app.state.metrics)
     return app
 
@@ -159,11 +158,11 @@ def _gauges(app: FastAPI) -> dict[str, tuple[str, Callable[[], float]]]:
         "jobs_running": ("Jobs at work.", lambda: state.jobs.counts()["running"]),
         "computations_running": (
             "Computations at work, of requests and of jobs.",
-            lambda: state.compute.turns.taken,
+            lambda: state.compute.queue.taken,
         ),
         "computations_waiting": (
             "Requests that wait for a worker.",
-            lambda: state.compute.turns.waiting(background=False),
+            lambda: state.compute.queue.waiting(background=False),
         ),
     }
 
@@ -212,10 +211,11 @@ def _most_each(settings: Settings) -> int | None:
     """Workers that one user may hold, by their memory; no limit on a cluster."""
     if settings.scheduler is not None or not settings.asks_for_login:
         return None
-    return max(1, BUDGETS.memory_bytes // settings.worker_memory_bytes)
+    return max(1, USER_LIMITS.memory_bytes // settings.worker_memory_bytes)
 
 
 def _open_database(settings: Settings) -> Database:
+    settings.make_folder()
     database = Database(settings.store_url)
     migrate(database)
     return database

@@ -211,6 +211,13 @@ class NoRoomError(UnavailableError):
     )
 
 
+class UnsolvedError(ServiceError):
+    """The computation found no solution."""
+
+    status, type, title = 422, "unsolved", "No result was reached"
+    default_remedy = "Ask for less: a smaller strain, a smaller chart or more steps."
+
+
 class NotFoundError(ServiceError):
     """Error: the thing does not exist, or belongs to another user."""
 
@@ -221,6 +228,12 @@ class RefusedError(ServiceError):
     """The request is not allowed."""
 
     status, type, title = 403, "refused", "Refused"
+
+
+class TooLargeError(RefusedError):
+    """Error: the body of a request is too large."""
+
+    status, title = 413, "The request is too large"
 
 
 class TooManyError(ServiceError):

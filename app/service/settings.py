@@ -28,7 +28,7 @@ NO_SETTINGS = frozenset(
         "CONFIG",
         "STUDY_DATA",
         # of tests:
-        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES", "HOSTILE_REQUESTS"),
+        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES"),
         "WORKER_NICENESS",
     )
 )
@@ -164,38 +164,43 @@ class Settings(BaseSettings):
         return self.data_dir.expanduser()
 
     @property
-    def database_file(self) -> Path:
-        """The SQLite file of the data folder."""
-        return self.folder / "knitcore.sqlite3"
-
-    @property
     def store_url(self) -> str:
-        """The database's URL; makes the data folder if the database is a file in it.
+        """The database's URL.
 
         Raises
         ------
         InputError
-            If the folder cannot be made, or the URL's database is not supported.
+            If its database is not supported.
+        """
+        if self.database_url is None:
+            return f"sqlite:///{self.folder / 'knitcore.sqlite3'}"
+        url = self.database_url.get_secret_value()
+        if not url.startswith(("postgresql+psycopg://", "sqlite:///")):
+            raise InputError(
+                "database_url",
+                "names a database that is not supported.",
+                "Use postgresql+psycopg://user:password@host/name, or leave it out.",
+            )
+        return url
+
+    def make_folder(self) -> None:
+        """Make the data folder if the database is a file in it.
+
+        Raises
+        ------
+        InputError
+            If it cannot be made.
         """
         if self.database_url is not None:
-            url = self.database_url.get_secret_value()
-            if not url.startswith(("postgresql+psycopg://", "sqlite:///")):
-                raise InputError(
-                    "database_url",
-                    "names a database that is not supported.",
-                    "Use postgresql+psycopg://user:password@host/name, or leave it out.",
-                )
-            return url
-        folder = self.folder
+            return
         try:
-            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            self.folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError as error:
             raise InputError(
                 "data_dir",
-                f"{folder} cannot be created ({error.strerror}).",
+                f"{self.folder} cannot be created ({error.strerror}).",
                 "Set KNITCORE_DATA_DIR to a folder that can be written.",
             ) from error
-        return f"sqlite:///{self.database_file}"
 
     def check(self) -> Settings:
         """The settings themselves, if they are safe to serve with.

@@ -13,10 +13,10 @@ from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from starlette.websockets import WebSocketState
 
+from ..service.designs.parameters import DesignId, private_name
 from ..service.identity import current_user
-from ..service.limits.budgets import InUse, OverBudgetError, RateLimit
+from ..service.limits.user_limits import ConcurrencyLimit, OverLimitError, RateLimit
 from .client import ViewerPage
-from .design_id import DesignId, private_name
 from .incoming import BURST, PER_S, RefusedMessageError, passed_on
 from .private_port import RELAY_HEADERS
 from .views import View, Views
@@ -56,11 +56,11 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
     if view is None:
         await socket.close(code=1013, reason="This view is not open yet.")
         return
-    uses: InUse = socket.app.state.in_use
+    uses: ConcurrencyLimit = socket.app.state.concurrency
     try:
         with uses.hold("watchers", current_user.get()):
             await _watched(socket, name, view, views)
-    except OverBudgetError as error:
+    except OverLimitError as error:
         await socket.close(code=1013, reason=error.detail)
 
 

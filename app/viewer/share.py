@@ -1,21 +1,32 @@
-"""Views to share: pictures, pages that need no service, recordings."""
+"""Files of 3D views to give away: pictures, pages that need no service, recordings, solids."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
+from pydantic import Field
+
+from knitcore.chart.stitch_chart import check_stitches
+from knitcore.garment.shaped import outline_marks
+
+from ..context import Context
+from ..drawing.computed import PosedView, StretchView
+from ..drawing.design_view import StretchStep, ViewRequest, build_scene
 from ..drawing.fabric import FabricScene
+from ..drawing.solid import MAX_SOLID, solid_glb
+from ..requests.charts import to_chart
 from ..service.problems import ServiceError
 from .client import with_scripts
 from .incoming import WantedPicture
+from .still import still_png
 from .views import View, new_view
 
 FRAME_S = 0.14
 PICTURE_TIMEOUT_S = 25.0
-
-
+MAX_SHARED_STITCHES = 40_000
 PAGE_POLICY = (
     """<meta http-equiv="Content-Security-Policy" content="default-src 'none'; """
     "script-src 'unsafe-inline' 'wasm-unsafe-eval' data: blob:; style-src 'unsafe-inline'; "
@@ -65,30 +76,77 @@ def _silent() -> NoPictureError:
     )
 
 
-def page_html(scenes: Iterable[FabricScene], *, dark: bool) -> str:
-    """A page that shows a fabric, and plays the steps if there are several."""
-    with _recorded(scenes) as serializer:
-        page: str = serializer.as_html(dark_mode=dark)
-    return with_scripts(page, PAGE_POLICY)
+class SharedViewRequest(ViewRequest):
+    """A design, as it lies or with its stretch test as an animation."""
+
+    animated: bool = Field(False, description="Show all steps of the stretch test, not only one.")
+    dark: bool = Field(False, description="Dark background of a page.")
 
 
-def recording(scenes: Iterable[FabricScene]) -> bytes:
-    """A ``.viser`` file."""
-    with _recorded(scenes) as serializer:
+Computed = StretchView | PosedView | None
+"""Data for the view of a stretch test or a shape that was computed before."""
+
+
+# These run in workers.
+
+
+def shared_page(
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
+) -> bytes:
+    """A page that needs neither the service nor the network, and plays the steps if there are
+    several."""
+    with _recorded(request, computed, Context(data_dir, cancelled=cancelled)) as serializer:
+        page: str = serializer.as_html(dark_mode=request.dark)
+    return with_scripts(page, PAGE_POLICY).encode()
+
+
+def shared_recording(
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
+) -> bytes:
+    """A ``.viser`` recording."""
+    with _recorded(request, computed, Context(data_dir, cancelled=cancelled)) as serializer:
         content: bytes = serializer.serialize()
     return content
 
 
+def shared_solid(
+    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
+) -> bytes:
+    """The yarn as binary glTF.
+
+    Raises
+    ------
+    InputError
+        If there are too many stitches for a solid of use.
+    """
+    _check_size(request, MAX_SOLID)
+    return solid_glb(build_scene(request, computed, Context(data_dir, cancelled=cancelled)))
+
+
+def shared_still(
+    request: ViewRequest,
+    computed: Computed,
+    data_dir: Path,
+    width: int,
+    height: int,
+    *,
+    cancelled: Callable[[], bool],
+) -> bytes:
+    """A picture without background, with this many pixels: a PNG."""
+    scene = build_scene(request, computed, Context(data_dir, cancelled=cancelled))
+    return still_png(scene.drawing(), width, height)
+
+
 @contextmanager
-def _recorded(scenes: Iterable[FabricScene]) -> Iterator[Any]:
+def _recorded(request: SharedViewRequest, computed: Computed, context: Context) -> Iterator[Any]:
     """A separate server, so that viewers of the design are not disturbed."""
     view = new_view()
     try:
-        remaining = iter(scenes)
-        view.show(next(remaining).drawing())
+        scenes = _scenes(request, computed, context)
+        view.show(next(scenes).drawing())
         serializer = view.server.get_scene_serializer()
         played = False  # over and over, unless it has no length
-        for scene in remaining:
+        for scene in scenes:
             serializer.insert_sleep(FRAME_S)
             view.show(scene.drawing())
             played = True
@@ -97,3 +155,25 @@ def _recorded(scenes: Iterable[FabricScene]) -> Iterator[Any]:
         yield serializer
     finally:
         view.stop()
+
+
+def _scenes(
+    request: SharedViewRequest, computed: Computed, context: Context
+) -> Iterator[FabricScene]:
+    _check_size(request, MAX_SHARED_STITCHES)
+    scene = build_scene(request, computed, context)
+    if not request.animated or request.stretch is None or not isinstance(computed, StretchView):
+        yield scene
+        return
+    for step in range(len(computed.positions_mm)):
+        if context.cancelled():
+            return
+        at = StretchStep(id=request.stretch.id, step=step)
+        yield build_scene(request.model_copy(update={"stretch": at}), computed, context)
+
+
+def _check_size(request: SharedViewRequest, most: int) -> None:
+    stitches = to_chart(request.chart).stitches
+    if request.outline is not None:
+        stitches = int(outline_marks(request.outline).sum())
+    check_stitches(stitches, most)

@@ -9,18 +9,18 @@ from dataclasses import dataclass, field
 
 import viser
 
-from ..drawing.fabric import Drawing
-from ..service.limits.budgets import BUDGETS, OverBudgetError
+from ..drawing.fabric import Drawing, Ground
+from ..service.limits.user_limits import USER_LIMITS, OverLimitError
 from ..service.listeners import Listeners
 from ..service.problems import ServiceError, UnavailableError
 from .camera import FARTHEST
-from .clicks import Cell, clicked_stitch
 from .cloth import UNITS_PER_MM
 from .incoming import WantedPicture
 from .private_port import private_server
 from .scene import SceneWriter
 
 log = logging.getLogger("knitcore.app")
+Cell = tuple[int, int]
 
 
 @dataclass
@@ -92,7 +92,7 @@ class Views:
 
         Raises
         ------
-        OverBudgetError
+        OverLimitError
             If the owner watches as many, or as many stitches, as one user may.
         UnavailableError
             If as many views as allowed are being watched.
@@ -171,14 +171,14 @@ class Views:
     def _make_room(self, design: str, stitches: int) -> None:
         others = [view for view in self._of(_owner(design)) if view != design]
         while (held := sum(self._views[d].stitches for d in others)) and (
-            held + stitches > BUDGETS.view_stitches
+            held + stitches > USER_LIMITS.view_stitches
         ):
-            refusal = OverBudgetError.of("view_stitches", held, BUDGETS.view_stitches)
+            refusal = OverLimitError.of("view_stitches", held, USER_LIMITS.view_stitches)
             others.remove(self._close_oldest(others, refusal))
         if design in self._views:
             return
-        if len(others) >= BUDGETS.views:
-            self._close_oldest(others, OverBudgetError.of("views", len(others), BUDGETS.views))
+        if len(others) >= USER_LIMITS.views:
+            self._close_oldest(others, OverLimitError.of("views", len(others), USER_LIMITS.views))
         if len(self._views) >= self._most:
             full = UnavailableError(f"All {self._most} 3D views are in use.")
             self._close_oldest(list(self._views), full)
@@ -217,3 +217,20 @@ def new_view() -> View:
         client.camera.max_orbit_distance = FARTHEST
 
     return View(server, SceneWriter(server))
+
+
+def clicked_stitch(
+    ground: Ground,
+    origin: tuple[float, float, float],
+    direction: tuple[float, float, float],
+) -> Cell | None:
+    """The stitch where a ray meets the fabric's middle plane; None outside the fabric.
+
+    Tubes are thin and often missed, the plane never is.
+    """
+    if abs(direction[2]) < 1e-6:
+        return None
+    along = -origin[2] / direction[2]
+    if along < 0:
+        return None
+    return ground.stitch_at(origin[0] + along * direction[0], origin[1] + along * direction[1])

@@ -34,7 +34,7 @@ import numpy as np
 import viser
 import websockets
 
-from app.service.limits.budgets import BUDGETS
+from app.service.limits.user_limits import USER_LIMITS
 from scripts.serving import Served, serving
 
 USERS = int(os.environ.get("USERS", "50"))
@@ -46,8 +46,8 @@ P95_MS = float(os.environ.get("P95_MS", "250"))
 SLICE_S = 15.0
 PROBE_S = 0.1
 WARM_UP_S, WARM_UP_TESTS, WARM_UP_SLICES = 10.0, 7, 12
-"""Stretch tests that fill the memory of recent results (`app/service/results/recent.py`)."""
-VIEWS, ROUNDS = BUDGETS.views, int(os.environ.get("ROUNDS", "10"))
+"""Stretch tests that fill the memory of recent results (`app/service/compute/answers.py`)."""
+VIEWS, ROUNDS = USER_LIMITS.views, int(os.environ.get("ROUNDS", "10"))
 JOBS = "/api/v1/jobs"
 PATIENCE_S = 300.0
 """For computations, whose workers stand back behind everything else."""

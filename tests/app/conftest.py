@@ -2,25 +2,30 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
-from app.service.main import create_app
-from app.service.settings import Settings
 from app.service.store.database import Database
 from app.service.store.schema import migrate
 from app.service.store.tables import metadata
+from tests.app.clients import served
 from tests.app.databases import postgres, postgres_programs
+
+
+@pytest.fixture(scope="session")
+def anyio_backend() -> str:
+    """Loop of asynchronous tests."""
+    return "asyncio"
 
 
 @pytest.fixture(scope="session")
 def client() -> Iterator[TestClient]:
     """A client of the running service on loopback."""
-    app = create_app(Settings(workers=1))
-    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+    with served() as client:
         yield client
 
 
@@ -41,18 +46,25 @@ def postgres_url() -> Iterator[str]:
             yield url
 
 
-@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.postgres)])
-def database(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Database]:
-    """The same tests on both databases; ``make test-hard`` runs those on PostgreSQL."""
-    if request.param == "sqlite":
-        url = f"sqlite:///{tmp_path / 'knit.sqlite3'}"
-    else:
-        url = request.getfixturevalue("postgres_url")
-    database = Database(url)
-    migrate(database)
-    yield database
-    if request.param == "postgresql":
+@pytest.fixture
+def sqlite_database(tmp_path: Path) -> Iterator[Database]:
+    with closing(Database(f"sqlite:///{tmp_path / 'knit.sqlite3'}")) as database:
+        migrate(database)
+        yield database
+
+
+@pytest.fixture
+def postgres_database(postgres_url: str) -> Iterator[Database]:
+    with closing(Database(postgres_url)) as database:
+        migrate(database)
+        yield database
         with database.engine.begin() as connection:
             for table in reversed(metadata.sorted_tables):
                 connection.execute(table.delete())
-    database.close()
+
+
+@pytest.fixture(params=["sqlite", pytest.param("postgres", marks=pytest.mark.postgres)])
+def database(request: pytest.FixtureRequest) -> Database:
+    """The same tests on both databases; ``make test-hard`` runs those on PostgreSQL."""
+    database: Database = request.getfixturevalue(f"{request.param}_database")
+    return database

@@ -39,6 +39,16 @@ def control(url: str, *arguments: str) -> None:
 
 
 @contextlib.contextmanager
+def away(url: str) -> Iterator[None]:
+    """The server at a URL is stopped while the block runs."""
+    control(url, "-m", "immediate", "stop")
+    try:
+        yield
+    finally:
+        control(url, "start")
+
+
+@contextlib.contextmanager
 def postgres(folder: Path) -> Iterator[str]:
     """A PostgreSQL of our own that listens on a socket in ``folder``; yields its URL."""
     programs = postgres_programs()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 import signal
 import time
@@ -15,19 +14,18 @@ from pydantic import BaseModel
 from app.context import Context
 from app.operations.perform import ViewData, perform
 from app.operations.registry import Operation
-from app.service.compute.answers import Answers
+from app.service.compute.answers import Answers, RecentResults
 from app.service.compute.compute import Compute
-from app.service.results.recent import RecentResults
 from knitcore import InputError
+
+
+async def never() -> bool:
+    """Return that nobody has given a job up."""
+    return False
 
 
 def add(a: int, b: int, *, cancelled: Callable[[], bool]) -> int:
     return a + b
-
-
-def pid(*, cancelled: object) -> int:
-    """Process of the worker."""
-    return os.getpid()
 
 
 def priority(*, cancelled: object) -> tuple[int, int]:
@@ -60,21 +58,6 @@ def climb(folder: str, steps: int, *, cancelled: object, progress: Callable[...,
             progress(step, steps)
             time.sleep(0.01)
     return steps
-
-
-def shares_told_of(compute: Compute, folder: Path, steps: int) -> list[float]:
-    """Shares of :func:`climb` that somebody hears who waits for it and notes every step."""
-    shares: list[float] = []
-
-    async def never() -> bool:
-        return False
-
-    async def told(share: float) -> None:
-        shares.append(share)
-        (folder / str(round(share * steps))).touch()
-
-    assert asyncio.run(compute.run(never, climb, str(folder), steps, on_share=told)) == steps
-    return shares
 
 
 def stubborn(seconds: float, *, cancelled: Callable[[], bool]) -> None:

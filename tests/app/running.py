@@ -10,12 +10,20 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import httpx2 as httpx
 import uvicorn
 from fastapi import FastAPI
+
+
+def wait_until(true: Callable[[], object], patience_s: float = 150.0) -> None:
+    """Wait for something, on a machine that may be busy."""
+    deadline = time.monotonic() + patience_s
+    while not true():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
 
 
 class Service:
@@ -47,15 +55,24 @@ class Service:
         assert "http://" in line, self.log.read_text()
         self.url = line.split()[3].rstrip("/")
         client = httpx.Client(base_url=self.url, timeout=60.0)
-        deadline = time.monotonic() + 120
-        while time.monotonic() < deadline:
-            try:
-                client.get("/healthz")
-            except httpx.TransportError:
-                time.sleep(0.05)
-            else:
-                return client
-        raise AssertionError("the service does not answer: " + self.log.read_text())
+
+        def answers() -> bool:
+            with contextlib.suppress(httpx.TransportError):
+                return client.get("/healthz").is_success
+            return False
+
+        wait_until(answers)
+        return client
+
+    @contextlib.contextmanager
+    def running(self) -> Iterator[httpx.Client]:
+        """A client of it; it is killed at the end."""
+        client = self.start()
+        try:
+            yield client
+        finally:
+            client.close()
+            self.kill()
 
     @property
     def pid(self) -> int:

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from app.service.limits.budgets import OverBudgetError
+from app.service.limits.user_limits import OverLimitError
 from app.service.web.errors import problem_of
 from tests.app.running import Service
 from tests.browser.axe import THEMES, violations
 
-TOO_MANY: dict[str, str] = problem_of(OverBudgetError.of("connections", 128, 128)).model_dump()
+TOO_MANY: dict[str, str] = problem_of(OverLimitError.of("connections", 128, 128)).model_dump()
 
 
 @pytest.fixture

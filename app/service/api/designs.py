@@ -7,7 +7,6 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 
-from ...viewer.design_id import DesignId
 from ..designs.conditions import etag, knows
 from ..designs.document import (
     Design,
@@ -25,7 +24,7 @@ from ..designs.document import (
     Versions,
     VersionSummary,
 )
-from ..designs.parameters import MISSING, Cursor, Limit, Owner, Responses, RetryOf
+from ..designs.parameters import MISSING, Cursor, DesignId, Limit, Owner, Responses, RetryOf
 from ..designs.sharing import Sharing
 from ..designs.store import DesignStore
 from ..designs.watching import PERIOD_S, QUIET_S

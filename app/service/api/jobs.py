@@ -10,10 +10,11 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Path, Request, Response
 from fastapi.responses import StreamingResponse
 
+from ..compute.compute import Compute
 from ..designs.conditions import ConflictError
 from ..designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
 from ..jobs.document import JobPage, JobState, JobStatus
-from ..jobs.kinds import JobRequest, JobResult
+from ..jobs.kinds import JobRequest, JobResult, read_job
 from ..jobs.runner import JobRunner
 from ..problems import NotFoundError, Problem
 from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
@@ -47,7 +48,8 @@ async def post_job(
     """Queue a job, which waits for its turn among all users. If the result is known, the job is
     done immediately."""
     if isinstance(body, Undecoded):
-        kind, text = await runner.read(request.is_disconnected, body.content)
+        compute: Compute = request.app.state.compute
+        kind, text = await compute.run(request.is_disconnected, read_job, body.content)
     else:
         kind, text = body.kind, body.request.model_dump_json()
     status = await runner.submit(owner, kind, text, retry(kind, text))

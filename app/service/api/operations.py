@@ -17,7 +17,7 @@ from ...operations.registry import Operation, operations
 from ...requests.charts import size_of
 from ..compute.answers import Answers
 from ..identity import current_user
-from ..limits.turns import Gate
+from ..limits.fair_queue import FairLock
 from ..problems import Problem
 from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
 from ..web.events import abandoned
@@ -47,8 +47,8 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
         posted = body.content if isinstance(body, Undecoded) else body
         heavy = operation.heavy or operation.job
         if isinstance(posted, BaseModel) and not heavy and size_of(posted) <= MAX_LIGHT:
-            gate: Gate = request.app.state.light_work
-            async with gate.turn(current_user.get()):
+            lock: FairLock = request.app.state.light_work
+            async with lock.turn(current_user.get()):
                 return await run_in_threadpool(light, posted, request)
 
         answer = await answers.answer(partial(abandoned, request), operation, posted)

@@ -10,7 +10,7 @@ from ..designs.parameters import Owner
 from ..designs.sharing import Sharing
 from ..designs.store import DesignStore
 from ..identity import current_session
-from ..limits.budgets import BUDGETS, InUse, Use
+from ..limits.user_limits import USER_LIMITS, ConcurrencyLimit, Use
 from ..problems import NotFoundError, Problem
 from ..web.security import OPENED_BY, SESSION_COOKIE
 from ..web.sessions import Sessions, SignedIn
@@ -30,24 +30,24 @@ def get_session(owner: Owner, request: Request) -> SignedIn:
 
 def _use(owner: str, state: Any) -> dict[str, Use]:
     designs, kept_bytes = DesignStore(state.database).kept(owner)
-    in_use: InUse = state.in_use
+    concurrency: ConcurrencyLimit = state.concurrency
     used = {
-        name: float(in_use.held(name, owner))
+        name: float(concurrency.held(name, owner))
         for name in ("connections", "watchers", "streams", "pictures", "body_bytes")
     }
     used |= {
-        "memory_bytes": state.compute.turns.held(owner) * state.settings.worker_memory_bytes,
+        "memory_bytes": state.compute.queue.held(owner) * state.settings.worker_memory_bytes,
         "views": state.views.count(owner),
         "view_stitches": state.views.stitches(owner),
-        "jobs": state.compute.turns.waiting_of(owner),
-        "cpu_s": round(state.compute.spent.used_s(owner), 1),
+        "jobs": state.compute.queue.waiting_of(owner),
+        "cpu_s": round(state.compute.cpu_time.used_s(owner), 1),
         "designs": designs,
         "kept_bytes": kept_bytes,
         "versions": DesignStore(state.database).most_versions(owner),
         "links": Sharing(state.database).most_given(owner),
         "job_bytes": state.jobs.store.kept_bytes(owner),
     }
-    return {name: Use(used=value, most=getattr(BUDGETS, name)) for name, value in used.items()}
+    return {name: Use(used=value, most=getattr(USER_LIMITS, name)) for name, value in used.items()}
 
 
 @router.delete("/session", status_code=204, summary="Sign out")

@@ -26,12 +26,11 @@ from ...operations.perform import Reply
 from ...requests.base import RequestModel
 from ...requests.charts import size_of_chart
 from ...viewer.camera import CameraSide
-from ...viewer.design_id import DesignId, private_name
 from ...viewer.scene import round_length_mm
-from ...viewer.share import picture_png
-from ...viewer.shared import (
+from ...viewer.share import (
     Computed,
     SharedViewRequest,
+    picture_png,
     shared_page,
     shared_recording,
     shared_solid,
@@ -39,13 +38,14 @@ from ...viewer.shared import (
 )
 from ...viewer.views import View
 from ..compute.compute import Compute
+from ..designs.parameters import DesignId, private_name
 from ..identity import current_user
-from ..limits.budgets import InUse
-from ..limits.turns import Gate
+from ..limits.fair_queue import FairLock
+from ..limits.user_limits import ConcurrencyLimit
 from ..problems import NotFoundError, Problem
 from ..web.bodies import BoundedRoute
 from ..web.events import abandoned, event_stream
-from ..web.passes import Passes
+from ..web.passes import ViewPasses
 from ..web.security import OPENED_BY
 
 EVENT_PERIOD_S = 0.5
@@ -91,7 +91,7 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     state = request.app.state
     computed, name = _computed(body, request), private_name(design)
     context = state.answers.context()
-    passes: Passes = state.passes
+    passes: ViewPasses = state.passes
     code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
     large: Drawing | None = None
     if computed is None and is_large(body):
@@ -106,8 +106,8 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
             url=f"/view/{design}/#{code}",
         )
 
-    gate: Gate = state.drawing
-    async with gate.turn(current_user.get()):
+    lock: FairLock = state.drawing
+    async with lock.turn(current_user.get()):
         return await _in(_drawing, draw)
 
 
@@ -159,7 +159,7 @@ async def get_picture(
     """Take a picture as a browser that watches `/view/{design}/` sees it. At least one must
     watch."""
     view = _view(design, request)
-    uses: InUse = request.app.state.in_use
+    uses: ConcurrencyLimit = request.app.state.concurrency
     with uses.hold("pictures", current_user.get()):
         content = await _in(_pictures, picture_png, view, width, height)
     return Response(content, media_type="image/png")
@@ -220,11 +220,11 @@ async def post_still(
     """
     data_dir = request.app.state.answers.context().data_dir
     draw = partial(shared_still, body, _computed(body, request), data_dir, width, height)
-    gate: Gate = request.app.state.drawing
+    lock: FairLock = request.app.state.drawing
     if size_of_chart(body.chart) > MAX_STILL_HERE:
         content = await _by_worker(request, draw)
     else:
-        async with gate.turn(current_user.get()):
+        async with lock.turn(current_user.get()):
             content = await _in(_drawing, partial(draw, cancelled=lambda: False))
     return Response(content, media_type="image/png")
 

@@ -10,8 +10,8 @@ from functools import partial
 from typing import Any, TypeVar
 
 from ..identity import current_user
-from ..limits.budgets import BUDGETS, ComputingTime
-from ..limits.turns import Turns
+from ..limits.fair_queue import FairQueue
+from ..limits.user_limits import USER_LIMITS, CpuTimeLimit
 from .workers import (
     AbandonedError,
     NotBegunError,
@@ -49,13 +49,13 @@ class Compute:
         self, workers: Sequence[Worker], timeout_s: float, most_each: int | None = None
     ) -> None:
         self._timeout_s = timeout_s
-        self.spent = ComputingTime()
+        self.cpu_time = CpuTimeLimit()
         self.workers = list(workers)
-        self.turns = Turns(
+        self.queue = FairQueue(
             self.workers,
             most_background=max(1, len(workers) - 1),
             most_waiting=4 * len(workers),
-            most_waiting_each=BUDGETS.jobs,
+            most_waiting_each=USER_LIMITS.jobs,
             most_each=most_each,
         )
 
@@ -85,31 +85,31 @@ class Compute:
             If no worker was free, or none began, in time.
         UnavailableError
             If too many wait already, or the cluster cannot be reached.
-        OverBudgetError
+        OverLimitError
             If the user's computing time is spent, or too many of the user's jobs wait.
         """
         limit = self._timeout_s if timeout_s is None else timeout_s
         owner = owner or current_user.get()
-        self.spent.check(owner)
-        ticket = self.turns.enter(owner, background=background)
+        self.cpu_time.check(owner)
+        queued = self.queue.enter(owner, background=background)
         entered = asyncio.get_running_loop().time()
         try:
-            while not (await asyncio.wait([ticket.place], timeout=POLL_S))[0]:
+            while not (await asyncio.wait([queued.place], timeout=POLL_S))[0]:
                 if await abandoned():
                     raise AbandonedError("The computation was abandoned.")
                 if not background and asyncio.get_running_loop().time() > entered + self._timeout_s:
                     raise NotBegunError(f"No worker was free for {self._timeout_s:g} s.")
-            worker = ticket.place.result()
-            self.spent.check(owner)  # jobs of the same user may have run meanwhile
+            worker = queued.place.result()
+            self.cpu_time.check(owner)  # jobs of the same user may have run meanwhile
             begun = asyncio.get_running_loop().time()
             future = await worker.submit(partial(job, *args))
             try:
                 return await self._watch(worker, future, abandoned, limit, on_share)
             finally:
                 lasted = asyncio.get_running_loop().time() - begun
-                self.spent.spend(owner, lasted if worker.cpu_s is None else worker.cpu_s)
+                self.cpu_time.spend(owner, lasted if worker.cpu_s is None else worker.cpu_s)
         finally:
-            self.turns.leave(ticket)
+            self.queue.leave(queued)
 
     async def _watch(
         self,
@@ -151,16 +151,6 @@ class Compute:
             if idle:
                 raise NotBegunError("The worker died before it began.") from error
             raise WorkerDiedError("The process of this computation died.") from error
-
-    def check_room(self, owner: str) -> None:
-        """Refuse a background job that exceeds the number that may wait.
-
-        Raises
-        ------
-        OverBudgetError
-            If too many of this owner wait already.
-        """
-        self.turns.check_room(owner, background=True)
 
     def close(self) -> None:
         """Close all workers."""

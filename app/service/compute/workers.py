@@ -7,7 +7,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Protocol, TypeVar
 
-from ..problems import ServiceError, UnavailableError
+from ..problems import UnavailableError, UnsolvedError
 
 T = TypeVar("T")
 
@@ -66,10 +66,9 @@ class WorkerDiedError(UnavailableError):
     """The process of a computation ended without a result."""
 
 
-class MemoryLimitError(ServiceError):
+class MemoryLimitError(UnsolvedError):
     """The computation exceeded its memory limit."""
 
-    status, type, title = 422, "unsolved", "No result was reached"
     default_remedy = "Ask for less: a smaller chart or fewer steps."
 
 

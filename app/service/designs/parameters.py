@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any
 
-from fastapi import Depends, Header, Query, Request
+from fastapi import Depends, Header, Path, Query, Request
 from pydantic import BaseModel
 
-from ..identity import asking
+from ..identity import asking, current_user
 from ..problems import Problem
 from .idempotency import Retry
 
@@ -18,6 +18,13 @@ MISSING: Responses = {
 }
 
 Owner = Annotated[str, Depends(asking)]
+DesignId = Annotated[
+    str,
+    Path(
+        pattern=r"^[A-Za-z0-9_-]{1,64}$",
+        description="The design's identifier: up to 64 letters, digits, - or _.",
+    ),
+]
 Limit = Annotated[int, Query(ge=1, le=200)]
 Cursor = Annotated[str | None, Query(max_length=100, pattern=r"^[^\x00]*$")]
 Key = Annotated[
@@ -44,3 +51,8 @@ async def _retries(request: Request, owner: Owner, key: Key = None) -> Callable[
 
 RetryOf = Annotated[Callable[..., Retry | None], Depends(_retries)]
 """Makes the idempotency key of a request, if it has one, from the parts of its body."""
+
+
+def private_name(design: str) -> str:
+    """The name of a design's view, unique among users, so that views are private."""
+    return f"{current_user.get()}/{design}"

@@ -6,7 +6,7 @@ import secrets
 
 from sqlalchemy import Connection, Row, func, insert, select, update
 
-from ..limits.budgets import BUDGETS, OverBudgetError
+from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError, RefusedError
 from ..store.database import Database
 from ..store.tables import designs, hash_of, now, shares
@@ -37,9 +37,9 @@ class Sharing:
         def action(connection: Connection) -> None:
             find_design(connection, owner, design, change=True)
             open_ = select(func.count()).where(shares.c.design_id == design, _OPEN)
-            if connection.execute(open_).scalar_one() >= BUDGETS.links:
-                raise OverBudgetError(
-                    f"The design has {BUDGETS.links} open links, the most allowed.",
+            if connection.execute(open_).scalar_one() >= USER_LIMITS.links:
+                raise OverLimitError(
+                    f"The design has {USER_LIMITS.links} open links, the most allowed.",
                     field="links",
                     remedy="Take some back.",
                 )

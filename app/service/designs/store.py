@@ -23,10 +23,9 @@ from sqlalchemy import (
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.layout import DesignLayout, check_layout
 
-from ..limits.budgets import BUDGETS, OverBudgetError
+from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError
 from ..store.database import Database
-from ..store.pages import one_page
 from ..store.tables import design_versions, designs, now
 from .conditions import ConflictError, check_match
 from .document import (
@@ -95,8 +94,8 @@ class DesignStore:
         )
         if part:
             chosen = chosen.where(designs.c.name.icontains(part, autoescape=True))
-        rows, following = one_page(
-            self._database, chosen, designs.c.changed_at, designs.c.id, limit=limit, cursor=cursor
+        rows, following = self._database.page(
+            chosen, designs.c.changed_at, designs.c.id, limit=limit, cursor=cursor
         )
         summaries = [DesignSummary.model_validate(row, from_attributes=True) for row in rows]
         return DesignPage(designs=summaries, next_cursor=following)
@@ -287,12 +286,12 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
 
     Raises
     ------
-    OverBudgetError
+    OverLimitError
         If the owner has as many as the service stores.
     """
-    if _count(connection, owner) >= BUDGETS.designs:
-        raise OverBudgetError(
-            f"You have {BUDGETS.designs} designs, including deleted ones: the most allowed.",
+    if _count(connection, owner) >= USER_LIMITS.designs:
+        raise OverLimitError(
+            f"You have {USER_LIMITS.designs} designs, including deleted ones: the most allowed.",
             field="designs",
             remedy="Export and delete some; deleted designs are removed permanently after 30 days.",
         )
@@ -396,13 +395,13 @@ def _check_room(connection: Connection, owner: str, more: int) -> None:
 
     Raises
     ------
-    OverBudgetError
+    OverLimitError
     """
     total = _kept_bytes(connection, owner)
-    if total + more > BUDGETS.kept_bytes:
-        raise OverBudgetError(
+    if total + more > USER_LIMITS.kept_bytes:
+        raise OverLimitError(
             f"Your designs and their versions have {total / 1e6:.1f} of "
-            f"{BUDGETS.kept_bytes / 1e6:.0f} MB; this would be {more / 1e6:.1f} MB more.",
+            f"{USER_LIMITS.kept_bytes / 1e6:.0f} MB; this would be {more / 1e6:.1f} MB more.",
             field="kept_bytes",
             remedy="Export and delete some; deleted designs are removed permanently after 30 days.",
         )
@@ -423,9 +422,9 @@ def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) 
     mine = design_versions.c.design_id == row.id
     last = connection.execute(select(func.max(design_versions.c.number)).where(mine)).scalar()
     number = (last or 0) + 1
-    if number > BUDGETS.versions:
-        raise OverBudgetError(
-            f"This design has {BUDGETS.versions} versions, the most allowed.",
+    if number > USER_LIMITS.versions:
+        raise OverLimitError(
+            f"This design has {USER_LIMITS.versions} versions, the most allowed.",
             field="versions",
             remedy="Duplicate the design and continue with the copy.",
         )

@@ -5,19 +5,19 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from ..compute.answers import Answers
 from ..compute.workers import AbandonedError, NotBegunError
 from ..designs.idempotency import Retry
-from ..limits.budgets import SpentError
+from ..limits.user_limits import CpuTimeSpentError
 from ..problems import DispossessedError, Problem, ServiceError, StoreError
 from ..web.bodies import SMALL_BYTES
 from ..web.errors import problem_of
 from .document import JobState, JobStatus
-from .kinds import KINDS, job_key, read_job
+from .kinds import KINDS, job_key
 from .store import JobStore
 
 log = logging.getLogger("knitcore.jobs")
@@ -65,17 +65,6 @@ class JobRunner:
         await self._go_on(await asyncio.to_thread(self.store.adopt))
         self._heart = asyncio.create_task(self._beat(), name="jobs of all processes")
 
-    async def read(
-        self, abandoned: Callable[[], Awaitable[bool]], content: bytes
-    ) -> tuple[str, str]:
-        """Kind and request of a large job, which a worker decodes.
-
-        Raises
-        ------
-        InvalidRequestError
-        """
-        return await self._compute.run(abandoned, read_job, content)
-
     async def submit(
         self, owner: str, kind: str, request: str, retry: Retry | None = None
     ) -> JobStatus:
@@ -83,7 +72,7 @@ class JobRunner:
 
         Raises
         ------
-        OverBudgetError
+        OverLimitError
             If too many jobs of this owner wait.
         """
         key = await asyncio.to_thread(job_key, kind, request)
@@ -92,7 +81,7 @@ class JobRunner:
         )
         state = JobState.DONE if known else JobState.WAITING
         if not known:
-            self._compute.check_room(owner)
+            self._compute.queue.check_room(owner, background=True)
         job = secrets.token_urlsafe(16)
         status = await asyncio.to_thread(
             self.store.add, owner, kind, request, key, state, job=job, retry=retry
@@ -137,7 +126,7 @@ class JobRunner:
 
     def counts(self) -> dict[str, int]:
         """Numbers of waiting and running jobs of this process."""
-        waiting = self._compute.turns.waiting(background=True)
+        waiting = self._compute.queue.waiting(background=True)
         return {"waiting": waiting, "running": len(self._runs) - waiting}
 
     async def close(self) -> None:
@@ -231,7 +220,7 @@ class JobRunner:
         while True:
             try:
                 return await self._answers.answer(*args, **turn)
-            except (NotBegunError, SpentError) as error:
+            except (NotBegunError, CpuTimeSpentError) as error:
                 log.warning("a job waits on: %s", error)
                 await asyncio.sleep(AGAIN_S)
 

@@ -10,10 +10,9 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
 
 from ..designs.idempotency import Retry, once
-from ..limits.budgets import BUDGETS, OverBudgetError
+from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError, Problem, StoreError
 from ..store.database import Database
-from ..store.pages import one_page
 from ..store.tables import job_requests, jobs, now, results
 from .document import JobPage, JobState, JobStatus
 
@@ -61,7 +60,7 @@ class JobStore:
 
         Raises
         ------
-        OverBudgetError
+        OverLimitError
             If the requests of this owner's open jobs leave no room for it.
         """
         at = now()
@@ -106,8 +105,8 @@ class JobStore:
     def page(self, owner: str, *, limit: int, cursor: str | None) -> JobPage:
         """Jobs of an owner, latest first."""
         mine = select(jobs).where(jobs.c.owner == owner)
-        rows, following = one_page(
-            self._database, mine, jobs.c.created_at, jobs.c.id, limit=limit, cursor=cursor
+        rows, following = self._database.page(
+            mine, jobs.c.created_at, jobs.c.id, limit=limit, cursor=cursor
         )
         return JobPage(jobs=[_status(row) for row in rows], next_cursor=following)
 
@@ -231,7 +230,7 @@ class JobStore:
             )
             # equal jobs of two processes end at once: either result is the right one
             connection.execute(
-                self._database.insert_new(results).values(
+                self._database.backend.insert_new(results).values(
                     key=key, kind=kind, body=body, size_bytes=len(body), used_at=now()
                 )
             )
@@ -264,22 +263,22 @@ def _make_room(connection: Connection, owner: str, more: int) -> None:
 
     Raises
     ------
-    OverBudgetError
+    OverLimitError
         If the open jobs alone leave too little room.
     """
-    if _kept_bytes(connection, owner) + more <= BUDGETS.job_bytes:
+    if _kept_bytes(connection, owner) + more <= USER_LIMITS.job_bytes:
         return
     ended = jobs.c.finished_at.is_not(None)
     so_far = func.sum(jobs.c.size_bytes).over(
         order_by=(ended, jobs.c.finished_at.desc(), jobs.c.id)
     )
     sizes = select(jobs.c.id, so_far.label("so_far")).where(jobs.c.owner == owner).subquery()
-    oldest = select(sizes.c.id).where(sizes.c.so_far + more > BUDGETS.job_bytes)
+    oldest = select(sizes.c.id).where(sizes.c.so_far + more > USER_LIMITS.job_bytes)
     connection.execute(jobs.delete().where(jobs.c.id.in_(oldest), ended))
-    if (held := _kept_bytes(connection, owner)) + more > BUDGETS.job_bytes:
-        raise OverBudgetError(
+    if (held := _kept_bytes(connection, owner)) + more > USER_LIMITS.job_bytes:
+        raise OverLimitError(
             f"The requests of your jobs that wait or run have {held / 1e6:.1f} of"
-            f" {BUDGETS.job_bytes / 1e6:g} MB.",
+            f" {USER_LIMITS.job_bytes / 1e6:g} MB.",
             field="job_bytes",
             remedy="Wait until one has ended, or cancel one.",
         )

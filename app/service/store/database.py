@@ -5,37 +5,35 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import os
 import queue
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, TypeVar
 
 from fastapi.concurrency import run_in_threadpool
 from sqlalchemy import (
+    Column,
     ColumnElement,
     Connection,
-    Engine,
     Float,
-    Insert,
-    Table,
-    create_engine,
-    event,
+    Row,
+    Select,
     literal_column,
     make_url,
     text,
+    tuple_,
 )
-from sqlalchemy.dialects.postgresql import insert as postgresql_insert
-from sqlalchemy.dialects.sqlite import insert as sqlite_insert
 from sqlalchemy.exc import DatabaseError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
-from sqlalchemy.pool import QueuePool
+
+from knitcore.base.errors import InputError
 
 from ..problems import DamagedError, StoreError, StoreFullError
-from .file import DatabaseFile
-from .name_lock import NameLock
+from .backend import Backend
+from .postgresql import PostgresqlServer
+from .sqlite import SqliteFile
 
 log = logging.getLogger("knitcore.store")
 T = TypeVar("T")
@@ -45,10 +43,7 @@ FAILURES = (OperationalError, InterfaceError, PoolTimeoutError)
 """Failures of the database itself; other errors come from a statement or from this program."""
 FULL = ("disk is full", "No space left on device")
 DAMAGED = ("malformed", "file is not a database")
-BUSY_TIMEOUT_MS = 10_000
 MAX_BATCH = 64
-SQLITE_CLOCK = "(julianday('now') - 2440587.5) * 86400.0"
-POSTGRESQL_CLOCK = "CAST(EXTRACT(EPOCH FROM clock_timestamp()) AS double precision)"
 UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing was changed."
 
 
@@ -72,28 +67,20 @@ class Database:
     """
 
     def __init__(self, url: str) -> None:
-        path = sqlite_file(url)
-        self.is_sqlite = path is not None
-        self.file = None if path is None else DatabaseFile(path)
-        self.engine = _server_engine(url) if self.file is None else _sqlite_engine(self.file)
-        self.name_lock: NameLock | None = None
-        self._damaged = False
+        self.backend = backend_of(url)
+        self.backend.open()
+        self.engine = self.backend.engine
+        self._is_damaged = False
         self._waiting: queue.SimpleQueue[tuple[Action, Future[Any]] | None] = queue.SimpleQueue()
         self._writer: threading.Thread | None = None
-        if self.is_sqlite:
+        if self.backend.one_writer:
             self._writer = threading.Thread(target=self._write_all, name="store", daemon=True)
             self._writer.start()
-
-    def insert_new(self, table: Table) -> Insert:
-        """An insertion that leaves existing rows unchanged."""
-        kind = sqlite_insert if self.is_sqlite else postgresql_insert
-        return kind(table).on_conflict_do_nothing()
 
     @property
     def clock(self) -> ColumnElement[float]:
         """Seconds since 1970 by the clock of the database, which all its processes share."""
-        now = SQLITE_CLOCK if self.is_sqlite else POSTGRESQL_CLOCK
-        return literal_column(now, Float)
+        return literal_column(self.backend.clock, Float)
 
     def check(self) -> None:
         """Check that the database answers, is still this process's, and was not found damaged.
@@ -102,11 +89,10 @@ class Database:
         ------
         StoreError
         """
-        if self._damaged:
+        if self._is_damaged:
             raise _damaged()
-        if self.name_lock is not None:
-            with self.failures():
-                self.name_lock.keep()
+        with self.failures():
+            self.backend.check()
         with self.read() as connection:
             connection.execute(text("SELECT 1 FROM alembic_version"))
 
@@ -117,21 +103,36 @@ class Database:
         ------
         StoreError
         """
-        if self.is_sqlite:
-            with self.read() as connection:
-                if connection.exec_driver_sql("PRAGMA quick_check(1)").scalar() != "ok":
-                    raise _damaged()
+        with self.read() as connection:
+            if not self.backend.is_whole(connection):
+                raise _damaged()
 
-    def copy_to(self, file: Path) -> None:
-        """Copy an SQLite database as it is now to a new file, readable by this user only.
+    @contextlib.contextmanager
+    def reserved(self, process: str, at: str = "") -> Iterator[None]:
+        """Reserve the data for this process while the block runs: a second one would end its jobs.
+
+        An SQLite file has one service; a PostgreSQL database has one of each name. If the
+        reservation is lost meanwhile, the database refuses to write, with a
+        :class:`~app.service.problems.DispossessedError`.
+
+        Parameters
+        ----------
+        process : name of this process.
+        at : its address, which a second service shows its user.
 
         Raises
         ------
+        InputError
+            If another process has them.
         StoreError
+            If the database cannot be reached.
         """
-        with self.failures(), contextlib.closing(self.engine.raw_connection()) as connection:
-            os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
-            connection.cursor().execute("VACUUM INTO ?", (str(file),))
+        with contextlib.ExitStack() as stack:
+            with self.read():  # opens the files of SQLite, which its lock then lists
+                pass
+            with self.failures():
+                stack.enter_context(self.backend.reserved(process, at))
+            yield
 
     @contextlib.contextmanager
     def read(self) -> Iterator[Connection]:
@@ -145,12 +146,52 @@ class Database:
         with self.failures(), self.engine.connect() as connection:
             yield connection
 
+    def page(
+        self,
+        chosen: Select[Any],
+        at: Column[float],
+        identifier: Column[str],
+        *,
+        limit: int,
+        cursor: str | None,
+    ) -> tuple[Sequence[Row[Any]], str | None]:
+        """Rows, the latest first, and the cursor of the page after them; None at the end.
+
+        Parameters
+        ----------
+        chosen : all rows of the list.
+        at, identifier : the columns that order them; of equal times the identifier decides.
+        limit : most rows of a page.
+        cursor : of the page before; None for the first.
+
+        Raises
+        ------
+        InputError
+            If the cursor is not one.
+        """
+        if cursor is not None:
+            before, _, last = cursor.partition("_")
+            try:
+                chosen = chosen.where(tuple_(at, identifier) < tuple_(float(before), last))
+            except ValueError:
+                raise InputError(
+                    "cursor",
+                    "is not a cursor of this service.",
+                    "Send next_cursor of the page before.",
+                ) from None
+        with self.read() as connection:
+            ordered = chosen.order_by(at.desc(), identifier.desc()).limit(limit + 1)
+            rows = connection.execute(ordered).all()
+        if len(rows) <= limit:
+            return rows, None
+        last_row = rows[limit - 1]._mapping
+        return rows[:limit], f"{last_row[at.name]!r}_{last_row[identifier.name]}"
+
     @contextlib.contextmanager
     def snapshot(self) -> Iterator[Connection]:
         """A connection whose later reads see the same state as its first."""
         with self.read() as connection:
-            if not self.is_sqlite:  # where every transaction is one already
-                connection.execution_options(isolation_level="REPEATABLE READ")
+            connection.execution_options(**self.backend.snapshot)
             yield connection
 
     def write(self, action: Callable[[Connection], T]) -> T:
@@ -162,8 +203,7 @@ class Database:
             If it could not be made durable; then nothing of it is kept.
         """
         if self._writer is None:
-            if self.name_lock is not None:
-                self.name_lock.check()
+            self.backend.check_writable()
             with self.failures(), self.engine.begin() as connection:
                 return action(connection)
         with self.failures():
@@ -188,26 +228,17 @@ class Database:
             self._waiting.put(None)
             self._writer.join()
             self._writer = None
-        self.engine.dispose()
-        if self.file is not None:
-            self.file.close()
+        self.backend.close()
 
     @contextlib.contextmanager
     def failures(self) -> Iterator[None]:
         """Turn errors of the database itself into a StoreError."""
         try:
-            yield
-        except DatabaseError as error:
-            reason = str(error).splitlines()[0]
-            if any(words in reason for words in DAMAGED):
-                self._damaged = True
-                log.error("the database is damaged: %s", reason)
-                raise _damaged() from error
-            if not isinstance(error, FAILURES):
-                raise
-            raise _failed(reason) from error
-        except FAILURES as error:
-            raise _failed(str(error).splitlines()[0]) from error
+            with _failures():
+                yield
+        except DamagedError:
+            self._is_damaged = True
+            raise
 
     def _hand_in(self, action: Callable[[Connection], T]) -> Future[T]:
         done: Future[T] = Future()
@@ -255,10 +286,40 @@ class Database:
                 done.set_exception(refused)
 
 
-def sqlite_file(url: str) -> Path | None:
-    """The file that a URL names; None for a database server."""
+def backend_of(url: str) -> Backend:
+    """The database that a URL names, unopened."""
     parts = make_url(url)
-    return Path(parts.database or "") if parts.get_backend_name() == "sqlite" else None
+    if parts.get_backend_name() == "sqlite":
+        return SqliteFile(Path(parts.database or ""))
+    return PostgresqlServer(url)
+
+
+def holder(url: str, process: str) -> str | None:
+    """The service that has the data of a URL now, in words; None if there is none.
+
+    Raises
+    ------
+    StoreError
+        If the database cannot be reached.
+    """
+    with _failures():
+        return backend_of(url).holder(process)
+
+
+@contextlib.contextmanager
+def _failures() -> Iterator[None]:
+    try:
+        yield
+    except DatabaseError as error:
+        reason = str(error).splitlines()[0]
+        if any(words in reason for words in DAMAGED):
+            log.error("the database is damaged: %s", reason)
+            raise _damaged() from error
+        if not isinstance(error, FAILURES):
+            raise
+        raise _failed(reason) from error
+    except FAILURES as error:
+        raise _failed(str(error).splitlines()[0]) from error
 
 
 def _do(connection: Connection, action: Action) -> tuple[Any, Exception | None]:
@@ -296,37 +357,3 @@ def _public(reason: str) -> str:
         if known in reason:
             return known
     return "the database does not answer"
-
-
-def _sqlite_engine(file: DatabaseFile) -> Engine:
-    engine = create_engine("sqlite://", creator=file.connect, poolclass=QueuePool)
-
-    @event.listens_for(engine, "connect")
-    def _(connection: Any, _record: Any) -> None:
-        connection.isolation_level = None  # BEGIN is ours, below
-        for pragma in (
-            "journal_mode=WAL",
-            "synchronous=FULL",  # a commit is on disk, not only in the system's memory
-            "foreign_keys=ON",
-            f"busy_timeout={BUSY_TIMEOUT_MS}",
-        ):
-            connection.execute(f"PRAGMA {pragma}")
-
-    @event.listens_for(engine, "begin")
-    def _(connection: Connection) -> None:
-        file.check()
-        write = connection.get_execution_options().get("knitcore_write")
-        connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN")
-
-    return engine
-
-
-def _server_engine(url: str) -> Engine:
-    return create_engine(
-        url,
-        pool_pre_ping=True,  # a database that went away and came back is found again
-        pool_size=10,
-        max_overflow=10,
-        pool_timeout=5,
-        connect_args={"connect_timeout": 3, "tcp_user_timeout": 10_000},  # s, ms
-    )

@@ -39,11 +39,9 @@ def migrate(database: Database, target: str = "head") -> None:
     version = check_schema(database, target)
     config = _config()
     head = ScriptDirectory.from_config(config).get_current_head()
-    if database.file is not None and version not in (None, head) and target == "head":
-        file = database.file.path
-        copy = file.with_name(f"{file.name}.before-{head}")
-        if not copy.exists():
-            database.copy_to(copy)
+    if version not in (None, head) and target == "head":
+        with database.failures():
+            database.backend.keep_copy(f"before-{head}")
 
     def upgrade(connection: object) -> None:
         config.attributes["connection"] = connection

@@ -15,12 +15,12 @@ from typing import Any
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
 from pydantic import ValidatorFunctionWrapHandler, WrapValidator
-from starlette.exceptions import HTTPException
 from starlette.types import Message, Receive
 
 from ...requests.charts import MAX_FIELD
 from ..identity import current_user
-from ..limits.turns import Gate
+from ..limits.fair_queue import FairLock
+from ..problems import TooLargeError
 
 SMALL_BYTES = 64_000
 """Largest body that is decoded without waiting for a turn."""
@@ -67,8 +67,8 @@ class BoundedRoute(APIRoute):
                 return await handle(_Uncut(request.scope, request.receive, content))
             if len(content) > MAX_DECODED_BYTES:
                 raise _too_large(MAX_DECODED_BYTES)
-            gate: Gate = request.app.state.large_bodies
-            async with gate.turn(current_user.get()):
+            lock: FairLock = request.app.state.large_bodies
+            async with lock.turn(current_user.get()):
                 return await handle(request)
 
         return bounded
@@ -116,6 +116,6 @@ def limited(receive: Receive, most_bytes: int, count: Callable[[int], None]) -> 
     return receive_some
 
 
-def _too_large(most_bytes: int) -> HTTPException:
+def _too_large(most_bytes: int) -> TooLargeError:
     detail = f"A request has at most {most_bytes} bytes and {MAX_VALUES} values here."
-    return HTTPException(413, detail)
+    return TooLargeError(detail, field="body", remedy="Send less at once.")

@@ -32,6 +32,7 @@ from ..problems import (
     NotFoundError,
     Problem,
     ServiceError,
+    UnsolvedError,
 )
 
 MAX_BYTES = 10_000
@@ -98,24 +99,15 @@ def problem_of(error: Exception) -> Problem:
     if isinstance(error, InputError):
         return _unusable([*map(_of_library, (error, *error.others))], error.most)
     if isinstance(error, ConvergenceError | UnravelledError | CancelledError):
-        return Problem(
-            type="unsolved",
-            title="No result was reached",
-            status=422,
-            detail=str(error),
-            remedy="Ask for less: a smaller strain, a smaller chart or more steps.",
-        )
+        return UnsolvedError(str(error)).problem
     if isinstance(error, RequestValidationError | InvalidRequestError):
         return _invalid(error.errors())
     if isinstance(error, HTTPException):
         return _of_http(error)
-    return Problem(
-        type="internal",
-        title="Something went wrong in the service",
-        status=500,
-        detail="An unexpected error occurred in the service; its log has the details.",
+    return ServiceError(
+        "An unexpected error occurred in the service; its log has the details.",
         remedy="Nothing you painted is lost. Try again, or report it with the log.",
-    )
+    ).problem
 
 
 def _of_library(error: InputError) -> Fault:
@@ -125,15 +117,6 @@ def _of_library(error: InputError) -> Fault:
 
 def _of_http(error: HTTPException) -> Problem:
     detail = str(error.detail)
-    if error.status_code == 413:
-        return Problem(
-            type="refused",
-            title="The request is too large",
-            status=413,
-            detail=detail,
-            field="body",
-            remedy="Send less at once.",
-        )
     remedy = "Compare address and method with /docs." if error.status_code < 500 else None
     return Problem(
         type="http", title=detail, status=error.status_code, detail=detail, remedy=remedy

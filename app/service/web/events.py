@@ -9,7 +9,7 @@ from fastapi import Request
 from fastapi.responses import StreamingResponse
 
 from ..identity import current_user
-from ..limits.budgets import InUse
+from ..limits.user_limits import ConcurrencyLimit
 from ..problems import StoppingError
 
 QUIET_S = 15.0
@@ -32,23 +32,23 @@ def event_stream(
 
     Raises
     ------
-    OverBudgetError
+    OverLimitError
         If the user follows too many streams already.
     """
-    in_use: InUse = request.app.state.in_use
-    in_use.check("streams", current_user.get())
+    concurrency: ConcurrencyLimit = request.app.state.concurrency
+    concurrency.check("streams", current_user.get())
     return StreamingResponse(
-        _lines(in_use, current_user.get(), events, round(quiet_s / period_s)),
+        _lines(concurrency, current_user.get(), events, round(quiet_s / period_s)),
         media_type="text/event-stream",
         headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
     )
 
 
 async def _lines(
-    in_use: InUse, owner: str, events: AsyncGenerator[str | None], most_quiet: int
+    concurrency: ConcurrencyLimit, owner: str, events: AsyncGenerator[str | None], most_quiet: int
 ) -> AsyncIterator[bytes]:
     quiet = 0
-    with in_use.hold("streams", owner):
+    with concurrency.hold("streams", owner):
         async with aclosing(events):
             async for text in events:
                 quiet = 0 if text else quiet + 1

@@ -25,14 +25,14 @@ MAX_PASSES = 10_000
 
 @dataclass(frozen=True)
 class Opener:
-    """Holder of a pass: user, session, and token and session as the guard notes them."""
+    """Holder of a pass: user, session, and token and session as access control notes them."""
 
     user: str
     session: str
     opened_by: tuple[str, str] | None
 
 
-class Passes:
+class ViewPasses:
     """The passes given since the service started."""
 
     def __init__(self, most: int = MAX_PASSES) -> None:

@@ -18,13 +18,20 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
 from ..identity import NOBODY, current_session, current_user
-from ..limits.budgets import InUse, RateLimit
-from ..problems import RefusedError, ServiceError, StoppingError, StoreError, TooManyError
+from ..limits.user_limits import ConcurrencyLimit, RateLimit
+from ..problems import (
+    RefusedError,
+    ServiceError,
+    StoppingError,
+    StoreError,
+    TooLargeError,
+    TooManyError,
+)
 from ..settings import Settings
 from .answer import Answer
 from .bodies import limited
 from .errors import answer_to, unexpected
-from .passes import Opener, Passes
+from .passes import Opener, ViewPasses
 from .reference import PAGES
 from .sessions import SESSION_S
 from .sign_in import PATH, sign_in_form, sign_in_page, token_page
@@ -81,12 +88,6 @@ class StrangeHostError(RefusedError):
     status = 400
 
 
-class TooLargeError(RefusedError):
-    """Error: the request is too large."""
-
-    status = 413
-
-
 class UnknownUserError(ServiceError):
     """Error: a token is needed."""
 
@@ -94,7 +95,7 @@ class UnknownUserError(ServiceError):
     headers: Mapping[str, str] = {"WWW-Authenticate": 'Bearer realm="Knitcore"'}
 
 
-class Guard:
+class AccessControl:
     """ASGI middleware that refuses what must not reach the application.
 
     Parameters
@@ -133,14 +134,14 @@ class Guard:
     async def _admitted(
         self, scope: Scope, receive: Receive, limits: dict[str, str]
     ) -> Response | None:
-        """Let a connection in and note whose it is; a response where the guard itself answers.
+        """Let a connection in and note whose it is; a response where the application is not asked.
 
         Raises
         ------
         ServiceError
             If it is refused.
         """
-        passes: Passes = scope["app"].state.passes
+        passes: ViewPasses = scope["app"].state.passes
         opener = passes.holder(scope)
         self._check(scope, has_pass=opener is not None)
         if opener is not None:
@@ -191,8 +192,8 @@ class Guard:
             return
         answered = Answer(send_with_headers)
         try:
-            in_use: InUse = scope["app"].state.in_use
-            with in_use.growing("body_bytes", current_user.get()) as count:
+            concurrency: ConcurrencyLimit = scope["app"].state.concurrency
+            with concurrency.growing("body_bytes", current_user.get()) as count:
                 received = limited(receive, self.settings.max_body_bytes, count)
                 if not await self._run_while_open(scope, received, answered):
                     await answered.end(answer_to(_signed_out()), scope, receive)
@@ -290,8 +291,8 @@ class Guard:
         limits["RateLimit-Remaining"] = str(left)
         if wait:
             raise TooManyError("You are sending requests too often.", wait)
-        in_use: InUse = scope["app"].state.in_use
-        in_use.check("connections", user)
+        concurrency: ConcurrencyLimit = scope["app"].state.concurrency
+        concurrency.check("connections", user)
 
     async def _by_link(self, scope: Scope, identifier: str, user: str, link: str) -> Response:
         """Keep a session in a cookie, and the token out of the address; after a click, if another
@@ -338,8 +339,8 @@ class Guard:
         if OPENED_BY not in scope:
             await self.app(scope, receive, answered.send)
             return True
-        in_use: InUse = scope["app"].state.in_use
-        with in_use.hold("connections", current_user.get()):
+        concurrency: ConcurrencyLimit = scope["app"].state.concurrency
+        with concurrency.hold("connections", current_user.get()):
             working = asyncio.ensure_future(self.app(scope, receive, answered.send))
             try:
                 while not (await asyncio.wait({working}, timeout=REMEMBERED_S))[0]:

@@ -7,7 +7,7 @@ import secrets
 from pydantic import AwareDatetime, BaseModel, Field
 from sqlalchemy import delete, insert, select
 
-from ..limits.budgets import Use
+from ..limits.user_limits import Use
 from ..store.database import Database
 from ..store.tables import now, sessions
 

@@ -137,7 +137,7 @@ class Tokens:
         def action(connection: Connection) -> str:
             query = select(service_keys.c.value).where(service_keys.c.name == "session")
             if connection.execute(query).scalar_one_or_none() is None:
-                new = self._database.insert_new(service_keys)
+                new = self._database.backend.insert_new(service_keys)
                 connection.execute(new.values(name="session", value=secrets.token_urlsafe(32)))
             return str(connection.execute(query).scalar_one())
 

@@ -16,6 +16,8 @@ from pathlib import Path
 import httpx2
 import pytest
 
+from tests.app.running import wait_until
+
 
 def test_it_starts_on_a_free_port_and_stops_on_request() -> None:
     process = subprocess.Popen(
@@ -61,10 +63,7 @@ def test_killed_it_leaves_no_worker_behind() -> None:
         check=False,
     )
     worker = Path(f"/proc/{int(result.stdout)}")
-    deadline = time.monotonic() + 60
-    while worker.exists() and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert not worker.exists()
+    wait_until(lambda: not worker.exists())
 
 
 @pytest.mark.slow
@@ -79,10 +78,7 @@ def test_killed_while_modules_are_loaded_it_leaves_no_process_behind() -> None:
         start_new_session=True,
     )
     assert process.wait(60) == -signal.SIGKILL
-    deadline = time.monotonic() + 60
-    while (left := _in_session(process.pid)) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert not left
+    wait_until(lambda: not _in_session(process.pid))
 
 
 def _in_session(leader: int) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import json
 import os
@@ -17,25 +16,19 @@ from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner, Result
-from fastapi.testclient import TestClient
 
 from app.cli import serve as serve_module
 from app.cli.main import main
 from app.service import doctor
 from app.service.compute import cluster as cluster_module
-from app.service.compute import compute as compute_module
 from app.service.compute.cluster import Cluster, ClusterError
-from app.service.compute.compute import Compute
-from app.service.compute.workers import NotBegunError
-from app.service.main import create_app
-from app.service.problems import DamagedError
 from app.service.settings import Settings
 from app.service.store import schema
 from app.service.store.database import Database
-from app.service.store.lock import held
 from app.service.store.schema import migrate, revision
 from app.service.web import observing
 from knitcore.base.errors import InputError
+from tests.app.clients import served, state_of
 
 
 def _database(folder: Path) -> Path:
@@ -43,7 +36,7 @@ def _database(folder: Path) -> Path:
     file = folder / "knitcore.sqlite3"
     database = Database(f"sqlite:///{file}")
     migrate(database)
-    with held(database, "main"):
+    with database.reserved("main"):
         pass
     database.close()
     with sqlite3.connect(file) as connection:
@@ -147,7 +140,9 @@ BROKEN = {
     "a lost database": Broken("database", "is gone", spoil=_lose),
     "an emptied database": Broken("database", "is empty", spoil=_empty),
     "a database without a table": Broken("database", "lacks sessions", spoil=_drop_a_table),
-    "a newer database": Broken("database", "9999", spoil=_make_newer),
+    "a newer database": Broken(
+        "database", "9999, which this program does not know", spoil=_make_newer
+    ),
     "files open to all": Broken(
         "file modes", "other users", spoil=_open_to_all, starts=True, ready=True
     ),
@@ -207,49 +202,35 @@ def test_doctor_start_and_readiness_say_the_same_in_one_line(
         (line,) = started.stderr.strip().splitlines()
         assert line.startswith("Error: ")
         assert problem.removesuffix(".") in line
+        if broken.spoil is _lose:  # nothing is put in its place
+            assert not (tmp_path / "knitcore.sqlite3").exists()
         return
-    with TestClient(create_app(Settings(workers=1)), base_url="http://127.0.0.1") as client:
+    with served() as client:
         answer = client.get("/readyz")
+        assert client.get("/healthz").status_code == 200
     if broken.ready:
         assert (answer.status_code, answer.json()["checks"][broken.check]) == (200, False)
     else:
         told = answer.json()
-        assert (answer.status_code, told["detail"], told["remedy"]) == (503, problem, remedy)
+        assert (answer.status_code, told["title"]) == (503, "Not ready")
+        assert (told["detail"], told["remedy"]) == (problem, remedy)
 
 
-def test_nothing_is_put_in_the_place_of_a_lost_database(
+def test_a_second_service_on_the_same_data_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = _database(tmp_path)
-    file.unlink()
-    monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
-    assert _serve(monkeypatch).exit_code != 0
-    assert not file.exists()
-
-
-def _start(folder: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
-        capture_output=True,
-        text=True,
-        timeout=150,
-        check=False,
-        env=os.environ | {"KNITCORE_DATA_DIR": str(folder)},
-    )
-
-
-def test_a_second_service_on_the_same_data_is_refused(tmp_path: Path) -> None:
-    file = _database(tmp_path)
     database = Database(f"sqlite:///{file}")
-    with held(database, "main", "http://127.0.0.1:8737/"):
-        done = _start(tmp_path)
-        assert done.returncode == 2
+    with database.reserved("main", "http://127.0.0.1:8737/"):
+        monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
+        done = _serve(monkeypatch)
+        assert done.exit_code == 2
         assert "another service (process" in done.stderr
         assert "Open http://127.0.0.1:8737/ in a browser" in done.stderr
         assert "KNITCORE_DATA_DIR" in done.stderr
-        with pytest.raises(InputError, match="another service"), held(database, "other"):
+        with pytest.raises(InputError, match="another service"), database.reserved("other"):
             pass
-    with held(database, "main"):  # free again
+    with database.reserved("main"):  # free again
         pass
     database.close()
 
@@ -257,7 +238,7 @@ def test_a_second_service_on_the_same_data_is_refused(tmp_path: Path) -> None:
 def test_doctor_names_the_service_that_runs(tmp_path: Path) -> None:
     database = Database(f"sqlite:///{_database(tmp_path)}")
     environment = {"KNITCORE_DATA_DIR": str(tmp_path)}
-    with held(database, "main", "http://127.0.0.1:8737/"):
+    with database.reserved("main", "http://127.0.0.1:8737/"):
         told = CliRunner().invoke(main, ["doctor"], env=environment)
         named = f"Process {os.getpid()} runs on it, at http://127.0.0.1:8737/."
         assert (told.exit_code, named in told.output) == (0, True)
@@ -269,16 +250,15 @@ def test_doctor_names_the_service_that_runs(tmp_path: Path) -> None:
 def test_two_services_of_one_name_are_refused_on_postgresql(postgres_url: str) -> None:
     database = Database(postgres_url)
     second = pytest.raises(InputError, match="KNITCORE_PROCESS_NAME")
-    with held(database, "main"), held(database, "other"), second, held(database, "main"):
+    with database.reserved("main"), database.reserved("other"), second, database.reserved("main"):
         pass
     database.close()
 
 
 def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
-    app = create_app(Settings(workers=1, data_dir=tmp_path))
-    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+    with served(data_dir=tmp_path) as client:
         assert client.get("/readyz").status_code == 200
-        database = app.state.database
+        database = state_of(client).database
         assert client.get("/api/v1/designs").status_code == 200
         file = tmp_path / "knitcore.sqlite3"
         with contextlib.closing(sqlite3.connect(file, timeout=30)) as own:  # log into the file
@@ -305,6 +285,7 @@ def test_a_copy_is_kept_before_a_migration(tmp_path: Path, monkeypatch: pytest.M
         f"revision, down_revision = 'next', {before!r}\n\ndef upgrade():\n    pass\n"
     )
     monkeypatch.setattr(schema, "MIGRATIONS", migrations)
+    file.with_name(f"{file.name}.before-next.partial").touch()  # an attempt that failed
     migrate(database)
     assert revision(database) == "next"
     database.close()
@@ -315,54 +296,6 @@ def test_a_copy_is_kept_before_a_migration(tmp_path: Path, monkeypatch: pytest.M
     assert revision(old) == before
     old.check_pages()
     old.close()
-
-
-def test_damage_is_found_page_by_page(tmp_path: Path) -> None:
-    file = _database(tmp_path)
-    _damage(file)
-    database = Database(f"sqlite:///{file}")
-    with pytest.raises(DamagedError):
-        database.check_pages()
-    database.close()
-
-
-class _Nobody:
-    """A place that takes jobs and never begins."""
-
-    share = None
-    cpu_s = None
-
-    async def submit(self, job: object) -> asyncio.Future[int]:
-        self.future: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        return self.future
-
-    def cancel(self) -> None:
-        self.future.cancel()
-
-    def replace(self) -> None:
-        self.future.cancel()
-
-    def close(self) -> None:
-        pass
-
-
-def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For a worker that never begins, and for a place that is never free."""
-    monkeypatch.setattr(compute_module, "START_S", 0.1)
-    monkeypatch.setattr(compute_module, "POLL_S", 0.02)
-
-    async def never() -> bool:
-        return False
-
-    async def scenario() -> None:
-        compute = Compute([_Nobody()], timeout_s=0.1)  # type: ignore[list-item]
-        with pytest.raises(NotBegunError, match="No worker began"):
-            await compute.run(never, print)
-        compute.turns.enter("ada", background=False)
-        with pytest.raises(NotBegunError, match="No worker was free"):
-            await compute.run(never, print)
-
-    asyncio.run(scenario())
 
 
 def test_a_cluster_without_workers_is_reported(
@@ -383,10 +316,10 @@ def test_a_cluster_without_workers_is_reported(
         with pytest.raises(ClusterError, match="accepts computations"):
             cluster.begin("a-job", print)
         cluster.close()
-        settings = Settings(data_dir=tmp_path / "data", scheduler=address)
-        failed = doctor.examine(settings).failed
+        settings = {"data_dir": tmp_path / "data", "scheduler": address}
+        failed = doctor.examine(Settings(**settings)).failed
         assert [check.name for check in failed] == ["cluster"]
-        with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+        with served(**settings) as client:
             assert client.get("/readyz").status_code == 503
             wish = {"chart": "KP", "material": "acrylic"}
             refused = client.post("/api/v1/relax", json=wish)

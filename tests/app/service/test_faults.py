@@ -13,7 +13,7 @@ import sqlite3
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx2 as httpx
@@ -21,45 +21,16 @@ import pytest
 import viser
 import websockets.sync.client
 
-from tests.app.databases import control
-from tests.app.running import Service
+from tests.app.clients import LONG
+from tests.app.databases import away
+from tests.app.painter import Painter
+from tests.app.running import Service, wait_until
 
 pytestmark = pytest.mark.slow
 
 OUTAGE_S = float(os.environ.get("KNITCORE_OUTAGE_S", "1"))
-SIDE = 60
 JOBS = "/api/v1/jobs"
-LONG = {
-    "chart": {"fabric": "garter", "columns": 150, "rows": 150},
-    "material": "acrylic",
-    "direction": "wale",
-    "strain": 0.5,
-    "steps": 60,
-}
 SHORT = LONG | {"chart": {"fabric": "garter", "columns": 20, "rows": 20}, "steps": 8}
-
-
-class Painter:
-    """Paints one stitch after the other and knows what was acknowledged."""
-
-    def __init__(self, client: httpx.Client) -> None:
-        self._client = client
-        body = {"name": "x", "material": "acrylic", "chart": "\n".join(["K" * SIDE] * SIDE)}
-        self.design = client.post("/api/v1/designs", json=body).json()["id"]
-        self.acknowledged = 0
-
-    def paint(self) -> httpx.Response:
-        row, column = divmod(self.acknowledged, SIDE)
-        runs = [{"row": row, "column": column, "stitches": "P"}]
-        body = {"rows": SIDE, "columns": SIDE, "runs": runs}
-        answer = self._client.post(f"/api/v1/designs/{self.design}/strokes", json=body)
-        self.acknowledged += answer.status_code == 200
-        return answer
-
-    def check(self) -> None:
-        found = self._client.get(f"/api/v1/designs/{self.design}").json()
-        assert found["document"]["chart"].count("P") == self.acknowledged
-        assert found["revision"] == self.acknowledged + 1
 
 
 @pytest.fixture
@@ -79,67 +50,58 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 
 def test_a_full_disk_refuses_clearly_and_loses_nothing(small_disk: Path, tmp_path: Path) -> None:
     service = Service(tmp_path, data_dir=str(small_disk))
-    client = service.start()
-    try:
-        painter = Painter(client)
-        assert painter.paint().status_code == 200
+    with service.running() as client:
+        painter = Painter.with_a_design(client, 1)
+        assert painter.paint(client).status_code == 200
         job = client.post(JOBS, json={"kind": "stretch", "request": SHORT}).json()["id"]
-        _until(lambda: client.get(f"{JOBS}/{job}").json()["state"] == "done")
+        wait_until(lambda: client.get(f"{JOBS}/{job}").json()["state"] == "done")
         with contextlib.suppress(OSError), (small_disk / "filler").open("wb", 0) as filler:
             while True:
                 filler.write(bytes(4096))
         for _ in range(1000):  # what is left in the log's pages
-            refused = painter.paint()
+            refused = painter.paint(client)
             if refused.status_code != 200:
                 break
         problem = refused.json()
         assert (refused.status_code, problem["type"]) == (507, "/problems/full"), problem
         assert "nothing was changed" in problem["detail"]
         assert "Make room" in problem["remedy"]
-        painter.check()
+        painter.check_over_http(client, unanswered=0)
         assert client.post(JOBS, json={"kind": "stretch", "request": LONG}).status_code == 507
         assert client.get(f"{JOBS}/{job}/result").status_code == 200
         assert client.get("/readyz").status_code == 503
 
         (small_disk / "filler").unlink()
-        assert painter.paint().status_code == 200
-        painter.check()
+        assert painter.paint(client).status_code == 200
+        painter.check_over_http(client, unanswered=0)
         service.kill()
         file = small_disk / "knitcore.sqlite3"
         with contextlib.closing(sqlite3.connect(file)) as database:
             assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-    finally:
-        client.close()
-        service.kill()
 
 
 @pytest.mark.postgres
 @pytest.mark.timeout(600 + 2 * OUTAGE_S)
 def test_a_database_outage_loses_nothing(postgres_url: str, tmp_path: Path) -> None:
     service = Service(tmp_path, database_url=postgres_url)
-    client = service.start()
-    away = False
-    try:
-        painter = Painter(client)
-        assert painter.paint().status_code == 200
+    with service.running() as client:
+        painter = Painter.with_a_design(client, 1)
+        assert painter.paint(client).status_code == 200
         job = client.post(JOBS, json={"kind": "stretch", "request": SHORT}).json()["id"]
-        _until(lambda: client.get(f"{JOBS}/{job}").json()["state"] != "waiting")
-        control(postgres_url, "-m", "immediate", "stop")
-        away = True
-        back = time.monotonic() + OUTAGE_S
-        while time.monotonic() < back:
-            refused = painter.paint()
-            assert refused.status_code == 503
-            assert "nothing was changed" in refused.json()["detail"]
-            assert refused.headers["retry-after"]
-            assert client.get("/healthz").status_code == 200
-            assert client.get("/readyz").status_code == 503
-            time.sleep(0.2)
-        control(postgres_url, "start")
-        away = False
-        assert painter.paint().status_code == 200
-        painter.check()
-        _until(lambda: client.get("/readyz").status_code == 200)
+        wait_until(lambda: client.get(f"{JOBS}/{job}").json()["state"] != "waiting")
+        with away(postgres_url):
+            back = time.monotonic() + OUTAGE_S
+            while time.monotonic() < back:
+                refused = painter.paint(client)
+                assert refused.status_code == 503
+                assert "nothing was changed" in refused.json()["detail"]
+                assert refused.headers["retry-after"]
+                assert client.get("/healthz").status_code == 200
+                assert client.get("/readyz").status_code == 503
+                time.sleep(0.2)
+        assert painter.paint(client).status_code == 200
+        painter.check_over_http(client, unanswered=0)
+        wait_until(lambda: client.get("/readyz").status_code == 200)
         second = subprocess.run(
             [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
             capture_output=True,
@@ -149,19 +111,13 @@ def test_a_database_outage_loses_nothing(postgres_url: str, tmp_path: Path) -> N
             env=service.environment,
         )
         assert (second.returncode, "KNITCORE_PROCESS_NAME" in second.stderr) == (2, True)
-        _until(lambda: client.get(f"{JOBS}/{job}").json()["state"] == "done")
+        wait_until(lambda: client.get(f"{JOBS}/{job}").json()["state"] == "done")
         assert len(client.get(f"{JOBS}/{job}/result").json()["strain"]) == SHORT["steps"]
-    finally:
-        client.close()
-        service.kill()
-        if away:
-            control(postgres_url, "start")
 
 
 def test_clients_that_vanish_leave_nothing_behind(tmp_path: Path) -> None:
     service = Service(tmp_path, viewer_idle_s="0.5")
-    client = service.start()
-    try:
+    with service.running() as client:
         address = httpx.URL(service.url)
         assert address.port is not None
         first = client.post("/api/v1/stretch", json=SHORT | {"steps": 2})
@@ -171,7 +127,7 @@ def test_clients_that_vanish_leave_nothing_behind(tmp_path: Path) -> None:
         # one who waits for a computation of minutes: its only worker is free for the next one
         with socket.create_connection((address.host, address.port)) as gone:
             gone.sendall(_request("POST", "/api/v1/stretch", LONG))
-            _until(lambda: _number(client, "knitcore_computations_running") == 1)
+            wait_until(lambda: _number(client, "knitcore_computations_running") == 1)
         assert client.post("/api/v1/stretch", json=SHORT).status_code == 200
 
         # one who follows a job: it goes on without them
@@ -192,18 +148,8 @@ def test_clients_that_vanish_leave_nothing_behind(tmp_path: Path) -> None:
         )
         assert view.recv()
         view.socket.shutdown(socket.SHUT_RDWR)
-        _until(lambda: _number(client, "knitcore_views_open") == 0)
-        _until(lambda: len(os.listdir(f"/proc/{service.pid}/fd")) <= handles)
-    finally:
-        client.close()
-        service.kill()
-
-
-def _until(true: Callable[[], bool], patience_s: float = 150.0) -> None:
-    deadline = time.monotonic() + patience_s
-    while not true():
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
+        wait_until(lambda: _number(client, "knitcore_views_open") == 0)
+        wait_until(lambda: len(os.listdir(f"/proc/{service.pid}/fd")) <= handles)
 
 
 def _number(client: httpx.Client, name: str) -> float:

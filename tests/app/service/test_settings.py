@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from fastapi.testclient import TestClient
 from pydantic import ValidationError
 
 from app.cli.main import main
 from app.service.compute.cluster import ClusterWorker
-from app.service.main import create_app
 from app.service.settings import Settings
+from knitcore.base.errors import InputError
+from tests.app.clients import served, state_of
 
 SERVING = Path(__file__).resolve().parents[3] / "docs" / "serving.md"
 
@@ -28,6 +28,22 @@ def test_settings_come_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> 
     assert settings.allowed_hosts == ("knit.example",)
 
 
+def test_settings_come_from_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "knitcore.toml"
+    monkeypatch.setenv("KNITCORE_CONFIG", str(file))
+    with pytest.raises(InputError, match="not a TOML"):
+        Settings()
+    file.write_text('port = 9001\nworkers = 3\nlog_format = "json"\n')
+    monkeypatch.setenv("KNITCORE_WORKERS", "1")
+    assert (Settings().port, Settings().workers, Settings().log_format) == (9001, 1, "json")
+    file.write_text("porrt = 9001\n")
+    with pytest.raises(ValueError, match="porrt"):
+        Settings()
+    file.write_text("not toml at all")
+    with pytest.raises(InputError, match="not a TOML"):
+        Settings()
+
+
 @pytest.mark.parametrize(
     ("host", "loopback"),
     [("127.0.0.1", True), ("::1", True), ("localhost", True), ("0.0.0.0", False), ("::", False)],
@@ -41,9 +57,9 @@ def test_logs_hold_no_token() -> None:
 
 
 def test_a_scheduler_takes_the_work_away_from_this_machine(tmp_path: Path) -> None:
-    app = create_app(Settings(scheduler="tcp://127.0.0.1:9", workers=3, data_dir=tmp_path))
-    with TestClient(app, base_url="http://127.0.0.1") as client:  # it need not be there yet
-        workers = app.state.compute.workers
+    # it need not be there yet
+    with served(scheduler="tcp://127.0.0.1:9", workers=3, data_dir=tmp_path) as client:
+        workers = state_of(client).compute.workers
         assert [type(worker) for worker in workers] == [ClusterWorker] * 3
         assert client.get("/healthz").status_code == 200
         assert client.get("/readyz").status_code == 503
@@ -54,14 +70,7 @@ def test_a_scheduler_has_an_address() -> None:
         Settings(scheduler="somewhere")
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "says"),
-    [("ALLOWED_HOSTS", "knit.example", "as JSON"), ("DATA_DIR", "/proc/x", "cannot be created")],
-)
-def test_a_wrong_setting_is_reported_in_one_line(
-    monkeypatch: pytest.MonkeyPatch, name: str, value: str, says: str
-) -> None:
-    monkeypatch.setenv(f"KNITCORE_{name}", value)
+def test_a_folder_that_cannot_be_made_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("KNITCORE_DATA_DIR", "/proc/x")
     result = CliRunner().invoke(main, ["serve", "--port", "0"])
-    assert result.exit_code == 2
-    assert says in result.stderr
+    assert (result.exit_code, "cannot be created" in result.stderr) == (2, True)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import io
-import time
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import msgspec
 import pytest
-import viser
 import zstandard
 from fastapi.testclient import TestClient
 from PIL import Image
@@ -24,6 +22,8 @@ from app.viewer.incoming import (
     WantedPicture,
     passed_on,
 )
+from tests.app.clients import state_of, watching
+from tests.app.running import wait_until
 
 CAMERA = {
     "type": "ViewerCameraMessage",
@@ -122,9 +122,7 @@ def test_a_picture_of_another_size_is_refused_by_its_header(content: bytes) -> N
 def _shown(client: TestClient, design: str) -> Any:
     body = {"chart": "KP\nPK", "material": "cotton"}
     assert client.put(f"/api/v1/views/{design}", json=body).status_code == 200
-    return client.websocket_connect(
-        f"ws://127.0.0.1/view/{design}", subprotocols=[f"viser-v{viser.__version__}"]
-    )
+    return watching(client, f"/view/{design}")
 
 
 def _drain(socket: Any) -> None:
@@ -150,10 +148,8 @@ def test_a_picture_is_requested_from_a_browser(
     design = f"a-picture-{status}"
     with _shown(client, design) as socket, ThreadPoolExecutor(1) as thread:
         socket.send_bytes(_packed(**CAMERA))
-        view = client.app.state.views.get(f"local/{design}")  # type: ignore[attr-defined]
-        deadline = time.monotonic() + 60
-        while not view.server.get_clients() and time.monotonic() < deadline:
-            time.sleep(0.01)
+        view = state_of(client).views.get(f"local/{design}")
+        wait_until(view.server.get_clients)
         address = f"/api/v1/views/{design}/picture?width=40&height=30"
         answer = thread.submit(client.get, address)
         uuid = _asked_for(socket)

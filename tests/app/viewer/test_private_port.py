@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import threading
+import urllib.error
+import urllib.request
+from functools import partial
 from pathlib import Path
 
+import pytest
 import viser
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+from websockets.typing import Subprotocol
 
-from app.viewer.private_port import TESTED_VISER, NewsEvent, private_server
+from app.viewer.private_port import RELAY_HEADERS, TESTED_VISER, NewsEvent, private_server
+from app.viewer.views import Views
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -42,3 +50,35 @@ def test_views_have_such_a_queue() -> None:
         assert isinstance(queue.message_event, NewsEvent)
     finally:
         server.stop()
+
+
+def test_the_raw_port_of_a_view_is_closed_to_others() -> None:
+    """As another page or user of this machine would try it."""
+    views = Views(most=1, idle_s=60)
+    port = views.open("a-design").port
+    try:
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=60)
+        assert refused.value.code == 403
+        refused.value.close()
+        subprotocols = [Subprotocol(f"viser-v{viser.__version__}")]
+        opened = partial(
+            connect, f"ws://127.0.0.1:{port}", subprotocols=subprotocols, open_timeout=60
+        )
+        for headers in ({}, {"X-Knitcore-Relay": "a guess"}, {"Origin": "http://evil.example"}):
+            with pytest.raises(InvalidStatus) as denied, opened(additional_headers=headers):
+                pass
+            assert denied.value.response.status_code == 403
+        with opened(additional_headers=RELAY_HEADERS) as socket:
+            assert socket.recv(timeout=60)
+    finally:
+        views.close()
+
+
+def test_no_view_is_opened_if_the_port_cannot_be_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    import viser.infra._infra as infra
+    import websockets
+
+    monkeypatch.setitem(vars(infra), "websockets", websockets)
+    with pytest.raises(RuntimeError, match="could not be closed"):
+        private_server()

@@ -50,24 +50,19 @@ async def _carrying(browser: _Browser) -> asyncio.Task[None]:
     return asyncio.create_task(_carry(browser.socket, inner, view))
 
 
-def test_a_cancelled_connection_leaves_no_sender() -> None:
-    async def scenario() -> None:
-        browser = _Browser()
-        carrying = await _carrying(browser)
-        await browser.has_scene.wait()
-        carrying.cancel()
-        with pytest.raises(asyncio.CancelledError):
-            await carrying
-        assert asyncio.all_tasks() == {asyncio.current_task()}
-        assert browser.heard == ["websocket.accept", "websocket.send"]
-
-    asyncio.run(scenario())
+async def test_a_cancelled_connection_leaves_no_sender() -> None:
+    before = asyncio.all_tasks()
+    browser = _Browser()
+    carrying = await _carrying(browser)
+    await browser.has_scene.wait()
+    carrying.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await carrying
+    assert asyncio.all_tasks() == before
+    assert browser.heard == ["websocket.accept", "websocket.send"]
 
 
-def test_a_connection_that_the_browser_closed_is_not_closed_again() -> None:
-    async def scenario() -> None:
-        browser = _Browser({"type": "websocket.disconnect", "code": 1001})
-        await (await _carrying(browser))
-        assert "websocket.close" not in browser.heard
-
-    asyncio.run(scenario())
+async def test_a_connection_that_the_browser_closed_is_not_closed_again() -> None:
+    browser = _Browser({"type": "websocket.disconnect", "code": 1001})
+    await (await _carrying(browser))
+    assert "websocket.close" not in browser.heard

@@ -13,7 +13,7 @@ from app.service.designs.document import DesignDocument, DesignPatch, Run, Share
 from app.service.designs.idempotency import KEPT_S, Retry, ReusedKeyError, forget_old_keys
 from app.service.designs.sharing import NotAllowedError, Sharing
 from app.service.designs.store import DesignStore
-from app.service.limits.budgets import Budgets, OverBudgetError
+from app.service.limits.user_limits import OverLimitError, UserLimits
 from app.service.problems import NotFoundError
 from app.service.store.database import Database
 from knitcore.base.errors import InputError
@@ -197,14 +197,14 @@ def test_a_copy_is_an_independent_design(designs: DesignStore) -> None:
 def test_the_designs_of_one_owner_are_limited(
     designs: DesignStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(store_module, "BUDGETS", Budgets(designs=2, versions=1))
+    monkeypatch.setattr(store_module, "USER_LIMITS", UserLimits(designs=2, versions=1))
     made = designs.create("ada", RIB)
     designs.create("ada", RIB)
     designs.create("bob", RIB)
-    with pytest.raises(OverBudgetError, match="the most allowed"):
+    with pytest.raises(OverLimitError, match="the most allowed"):
         designs.create("ada", RIB)
     designs.keep_version("ada", made.id, "first")
-    with pytest.raises(OverBudgetError, match="the most allowed"):
+    with pytest.raises(OverLimitError, match="the most allowed"):
         designs.keep_version("ada", made.id, "second")
 
 

@@ -12,7 +12,7 @@ from app.service.store.database import Database
 RIB = DesignDocument(name="Cuff", material="acrylic", chart="KPKP\nKPKP")
 
 
-def test_those_who_follow_a_design_hear_of_each_other_and_of_its_changes(
+async def test_those_who_follow_a_design_hear_of_each_other_and_of_its_changes(
     database: Database,
 ) -> None:
     watched = Watched()
@@ -29,27 +29,24 @@ def test_those_who_follow_a_design_hear_of_each_other_and_of_its_changes(
 
         return heard, asyncio.create_task(read())
 
-    async def scene() -> None:
-        first, reads = follow("ada")
-        assert await first.get() == "event: others\ndata: 0\n\n"
-        second, leaves = follow("ada")
-        stranger, strays = follow("bob")
-        assert await stranger.get() == "event: others\ndata: 0\n\n"
+    first, reads = follow("ada")
+    assert await first.get() == "event: others\ndata: 0\n\n"
+    second, leaves = follow("ada")
+    stranger, strays = follow("bob")
+    assert await stranger.get() == "event: others\ndata: 0\n\n"
+    for one in (first, second):
+        assert await one.get() == "event: others\ndata: 1\n\n"
+    await asyncio.to_thread(store.patch, "ada", design, DesignPatch(name="Hem"), '"1"')
+    runs = [Run(row=0, column=0, stitches="P")]
+    await store.paint("ada", design, Strokes(rows=2, columns=4, runs=runs))
+    for revision in ("2", "3"):
         for one in (first, second):
-            assert await one.get() == "event: others\ndata: 1\n\n"
-        await asyncio.to_thread(store.patch, "ada", design, DesignPatch(name="Hem"), '"1"')
-        runs = [Run(row=0, column=0, stitches="P")]
-        await store.paint("ada", design, Strokes(rows=2, columns=4, runs=runs))
-        for revision in ("2", "3"):
-            for one in (first, second):
-                assert await one.get() == "event: changed\ndata: " + revision + "\n\n"
-        leaves.cancel()
-        assert await first.get() == "event: others\ndata: 0\n\n"
-        assert stranger.empty()
-        for task in (reads, strays):
-            task.cancel()
-
-    asyncio.run(scene())
+            assert await one.get() == "event: changed\ndata: " + revision + "\n\n"
+    leaves.cancel()
+    assert await first.get() == "event: others\ndata: 0\n\n"
+    assert stranger.empty()
+    for task in (reads, strays):
+        task.cancel()
 
 
 def test_only_designs_of_ones_own_can_be_followed(client: TestClient) -> None:

@@ -12,17 +12,16 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.service.main import create_app
 from app.service.results.own_materials import (
     added_by,
     keep_material,
     own_materials,
     remove_material,
 )
-from app.service.settings import Settings
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import MeasuredCurve, material, save_material_file
 from knitcore.materials.material_document import MaterialDocument
+from tests.app.clients import served
 
 CURVE = MeasuredCurve((0.0, 0.2, 0.4), (0.0, 0.01, 0.03), pulls=4)
 CHART = {"fabric": "garter", "columns": 6, "rows": 6}
@@ -51,7 +50,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def own(folder: Path) -> Iterator[TestClient]:
     """A service with one material of its own; its workers read the same folder."""
     save_mine(folder)
-    with TestClient(create_app(Settings()), base_url="http://localhost") as client:
+    with served() as client:
         yield client
 
 

@@ -12,18 +12,18 @@ from typing import Any
 
 import httpx2 as httpx
 import pytest
-from fastapi import FastAPI, Request
-from fastapi.testclient import TestClient
+from fastapi import FastAPI
+from starlette.background import BackgroundTask
 from starlette.requests import ClientDisconnect
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Message, Receive, Scope, Send
 
-from app.service.limits.budgets import InUse
+from app.service.limits.user_limits import ConcurrencyLimit
 from app.service.main import create_app
 from app.service.problems import StoreError
 from app.service.settings import Settings
 from app.service.web import security, tokens
-from app.service.web.security import PAGE_POLICY, Guard
+from app.service.web.security import PAGE_POLICY, AccessControl
 from app.service.web.tokens import Tokens
 from tests.app.running import serving
 
@@ -35,21 +35,41 @@ def _head(length: int | None = None) -> Message:
     return {"type": "http.response.start", "status": 200, "headers": headers}
 
 
+def _without_headers(message: Message) -> Message:
+    return {**message, "headers": []} if "headers" in message else message
+
+
 def _part(content: bytes, more: bool = True) -> Message:
     return {"type": "http.response.body", "body": content, "more_body": more}
 
 
 class Login:
-    """A login whose session ends when the application says so."""
+    """A login that a test ends, and that is noticed to be looked at."""
 
     def __init__(self) -> None:
-        self.ended = threading.Event()
+        self.has_ended = False
+        self.looked = threading.Event()
+        self.failure: Exception | None = None
 
     def by_token(self, _token: str) -> tuple[str, str]:
         return "an-id", "ada"
 
     def is_open(self, _identifier: str, _session: str) -> bool:
-        return not self.ended.is_set()
+        self.looked.set()
+        if self.failure is not None:
+            raise self.failure
+        return not self.has_ended
+
+    async def until_looked(self, times: int = 1) -> None:
+        """Wait until the guard has looked so many times more."""
+        for _ in range(times):
+            self.looked.clear()
+            assert await asyncio.to_thread(self.looked.wait, 60)
+
+    async def until_stopped(self) -> None:
+        """End, and wait for the guard to cancel this."""
+        self.has_ended = True
+        await asyncio.Event().wait()
 
 
 @pytest.fixture(autouse=True)
@@ -72,7 +92,9 @@ def _sent(
     told: list[Message] = []
     waiting = list(heard)
     passes = SimpleNamespace(holder=lambda _: None)
-    state = SimpleNamespace(passes=passes, login=login, in_use=InUse(), stopping=False)
+    state = SimpleNamespace(
+        passes=passes, login=login, concurrency=ConcurrencyLimit(), stopping=False
+    )
     scope: Scope = {
         "type": kind,
         "method": "GET",
@@ -88,140 +110,97 @@ def _sent(
     async def send(message: Message) -> None:
         if slowly is not None:
             await slowly(message)
-        told.append({**message, "headers": []} if "headers" in message else message)
+        told.append(_without_headers(message))
 
     async def scenario() -> None:
         async with asyncio.timeout(60):
-            await Guard(application, Settings(require_login=True))(scope, receive, send)
+            await AccessControl(application, Settings(require_login=True))(scope, receive, send)
 
     asyncio.run(scenario())
     return told
 
 
-async def _until_stopped(login: Login) -> None:
-    login.ended.set()
-    await asyncio.Event().wait()
+END: Message = {"type": "http.response.body", "body": b""}
 
 
-def test_before_its_start_the_answer_is_a_problem() -> None:
+@pytest.mark.parametrize(
+    ("said", "ended"),
+    [
+        ([_head(), _part(b"some")], [END]),
+        ([_head(4), _part(b"some")], [END]),
+        ([_head(4), _part(b"so")], []),  # the server closes the connection
+    ],
+    ids=["a stream", "all bytes", "bytes are missing"],
+)
+def test_in_its_middle_an_answer_ends_as_far_as_it_is_whole(
+    said: list[Message], ended: list[Message]
+) -> None:
+    login = Login()
+
+    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
+        for message in said:
+            await send(message)
+        try:
+            await login.until_stopped()
+        finally:
+            await send(_part(b"a last word", more=False))  # which is dropped
+
+    assert _sent(application, login) == [*map(_without_headers, said), *ended]
+
+
+def test_before_its_start_the_answer_is_a_problem_and_what_fails_then_is_logged(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     login = Login()
 
     async def application(_scope: Scope, _receive: Receive, _send: Send) -> None:
-        await _until_stopped(login)
+        try:
+            await login.until_stopped()
+        finally:
+            raise ZeroDivisionError
 
     head, body = _sent(application, login)
     assert (head["status"], b"/problems/sign-in" in body["body"]) == (401, True)
-
-
-def test_in_its_middle_a_stream_ends() -> None:
-    login = Login()
-
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
-        await send(_head())
-        await send(_part(b"some"))
-        await _until_stopped(login)
-
-    told = _sent(application, login)
-    assert told == [_head(), _part(b"some"), {"type": "http.response.body", "body": b""}]
-
-
-@pytest.mark.parametrize(("content", "is_whole"), [(b"so", False), (b"some", True)])
-def test_an_answer_that_lacks_bytes_is_not_ended(content: bytes, is_whole: bool) -> None:
-    login = Login()
-
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
-        await send(_head(4))
-        await send(_part(content))
-        await _until_stopped(login)
-
-    told = _sent(application, login)
-    end = [{"type": "http.response.body", "body": b""}] if is_whole else []
-    assert told == [_head(), _part(content), *end]
+    assert "ZeroDivisionError" in caplog.text
 
 
 def test_what_is_complete_is_neither_cancelled_nor_added_to() -> None:
-    login, asked, went_on = Login(), asyncio.Event(), []
-
-    def is_open(*_: str) -> bool:
-        loop.call_soon_threadsafe(asked.set)
-        return False
+    login, went_on = Login(), []
 
     async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
-        nonlocal loop
-        loop = asyncio.get_running_loop()
         await send(_head())
         await send(_part(b"all", more=False))
-        login.is_open = is_open  # type: ignore[method-assign]
-        for _ in range(2):  # the second time, the guard has seen the first answer
-            asked.clear()
-            await asked.wait()
+        login.has_ended = True
+        await login.until_looked(2)  # the second time, the guard has seen the first answer
         went_on.append(True)
 
-    loop: asyncio.AbstractEventLoop
     assert _sent(application, login) == [_head(), _part(b"all", more=False)]
     assert went_on == [True]
 
 
 def test_a_message_that_the_server_takes_is_not_cut() -> None:
-    login, asked = Login(), asyncio.Event()
+    login = Login()
 
     async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
-        loop = asyncio.get_running_loop()
-
-        def is_open(*_: str) -> bool:
-            loop.call_soon_threadsafe(asked.set)
-            return False
-
         await send(_head())
-        login.is_open = is_open  # type: ignore[method-assign]
+        login.has_ended = True
         await send(_part(b"slow"))
         await asyncio.Event().wait()
 
     async def slowly(message: Message) -> None:
         if message.get("body") == b"slow":
-            await asked.wait()
+            await login.until_looked()
             await asyncio.sleep(security.REMEMBERED_S)  # the guard would cancel it
 
-    told = _sent(application, login, slowly=slowly)
-    assert told == [_head(), _part(b"slow"), {"type": "http.response.body", "body": b""}]
-
-
-def test_what_an_application_says_after_the_end_is_dropped() -> None:
-    login = Login()
-
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
-        await send(_head())
-        try:
-            await _until_stopped(login)
-        finally:
-            await send(_part(b"a last word", more=False))
-
-    assert _sent(application, login) == [_head(), {"type": "http.response.body", "body": b""}]
-
-
-def test_an_error_while_it_is_stopped_is_logged(caplog: pytest.LogCaptureFixture) -> None:
-    login = Login()
-
-    async def application(_scope: Scope, _receive: Receive, _send: Send) -> None:
-        try:
-            await _until_stopped(login)
-        finally:
-            raise ZeroDivisionError
-
-    assert _sent(application, login)[0]["status"] == 401
-    assert "ZeroDivisionError" in caplog.text
+    assert _sent(application, login, slowly=slowly) == [_head(), _part(b"slow"), END]
 
 
 def test_a_request_outlasts_a_lost_database() -> None:
-    login, asked = Login(), threading.Event()
-
-    def is_open(*_: str) -> bool:
-        asked.set()
-        raise StoreError("away")
+    login = Login()
 
     async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
-        login.is_open = is_open  # type: ignore[method-assign]
-        await asyncio.to_thread(asked.wait, 60)
+        login.failure = StoreError("away")
+        await login.until_looked()
         await send(_head())
         await send(_part(b"all", more=False))
 
@@ -246,10 +225,10 @@ def test_a_request_that_ends_its_own_session_is_answered() -> None:
 def test_a_client_that_leaves_gets_no_second_start(before: list[Message]) -> None:
     async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
         for message in before:
-            await send({**message, "headers": []})
+            await send(_without_headers(message))
         raise ClientDisconnect
 
-    assert _types(_sent(application, Login())) == _types(before)
+    assert _sent(application, Login()) == before
 
 
 def test_a_client_that_leaves_early_is_noted() -> None:
@@ -260,10 +239,6 @@ def test_a_client_that_leaves_early_is_noted() -> None:
     assert (head["status"], body["body"]) == (security.GONE, b"")
 
 
-def _types(messages: list[Message]) -> list[str]:
-    return [message["type"] for message in messages]
-
-
 @pytest.mark.parametrize("accepts", [False, True])
 def test_a_websocket_is_closed(accepts: bool) -> None:
     login = Login()
@@ -272,31 +247,23 @@ def test_a_websocket_is_closed(accepts: bool) -> None:
     async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
         for message in accept:
             await send(message)
-        await _until_stopped(login)
+        await login.until_stopped()
 
     assert _sent(application, login, "websocket") == [*accept, CLOSE]
 
 
 @pytest.mark.parametrize("by", ["application", "client"])
 def test_a_closed_websocket_is_not_closed_again(by: str) -> None:
-    login, asked = Login(), asyncio.Event()
+    login = Login()
     closed: Message = {"type": "websocket.close", "code": 1000}
 
     async def application(_scope: Scope, receive: Receive, send: Send) -> None:
-        loop = asyncio.get_running_loop()
         if by == "client":
             await receive()
         else:
             await send(closed)
-
-        def is_open(*_: str) -> bool:
-            loop.call_soon_threadsafe(asked.set)
-            return False
-
-        login.is_open = is_open  # type: ignore[method-assign]
-        for _ in range(2):
-            asked.clear()
-            await asked.wait()
+        login.has_ended = True
+        await login.until_looked(2)
 
     left: Message = {"type": "websocket.disconnect", "code": 1001}
     told = _sent(application, login, "websocket", (left,))
@@ -313,28 +280,19 @@ def _with_slow_answers(folder: Path) -> tuple[FastAPI, threading.Event]:
         begun.set()
         await asyncio.Event().wait()
 
-    @app.get("/api/v1/slow/none")
-    async def none() -> Response:
+    async def after() -> None:
         begun.set()
-        await asyncio.Event().wait()
-        raise AssertionError
+        await asyncio.sleep(20 * security.REMEMBERED_S)
 
-    @app.get("/api/v1/slow/stream")
-    async def stream() -> Response:
-        return StreamingResponse(parts())
-
-    @app.get("/api/v1/slow/sized")
-    async def sized() -> Response:
-        return StreamingResponse(parts(), headers={"Content-Length": "100"})
-
-    @app.get("/api/v1/slow/complete")
-    async def complete(request: Request) -> Response:
-        async def after() -> None:
+    @app.get("/api/v1/slow/{kind}")
+    async def slow(kind: str) -> Response:
+        if kind == "none":
             begun.set()
-            await asyncio.sleep(20 * security.REMEMBERED_S)
-
-        del request
-        return Response(b"all", background=after)  # type: ignore[arg-type]
+            await asyncio.Event().wait()
+        if kind == "complete":
+            return Response(b"all", background=BackgroundTask(after))
+        headers = {"Content-Length": "100"} if kind == "sized" else None
+        return StreamingResponse(parts(), headers=headers)
 
     return app, begun
 
@@ -356,30 +314,15 @@ def _revoked_when(app: FastAPI, begun: threading.Event) -> Iterator[dict[str, st
     begun.clear()
 
 
-def _problem(answer: httpx.Response) -> None:
-    assert answer.status_code == 401
-    assert answer.json()["type"] == "/problems/sign-in"
-    assert answer.headers["content-type"] == "application/problem+json"
-    assert answer.headers["Content-Security-Policy"] == PAGE_POLICY
-    assert answer.headers["X-Request-ID"]
-
-
-def test_every_moment_with_the_test_client(tmp_path: Path) -> None:
-    app, begun = _with_slow_answers(tmp_path)
-    with TestClient(app, base_url="http://127.0.0.1") as client:
-        with _revoked_when(app, begun) as bearer:
-            _problem(client.get("/api/v1/slow/none", headers=bearer))
-        for path, content in (("stream", b"some"), ("sized", b"some"), ("complete", b"all")):
-            with _revoked_when(app, begun) as bearer:
-                answer = client.get(f"/api/v1/slow/{path}", headers=bearer)
-            assert (answer.status_code, answer.content) == (200, content)
-
-
-def test_every_moment_with_a_server(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_every_moment_of_an_answer(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     app, begun = _with_slow_answers(tmp_path)
     with serving(app) as url, httpx.Client(base_url=url, timeout=60.0) as client:
         with _revoked_when(app, begun) as bearer:
-            _problem(client.get("/api/v1/slow/none", headers=bearer))
+            answer = client.get("/api/v1/slow/none", headers=bearer)
+        assert (answer.status_code, answer.json()["type"]) == (401, "/problems/sign-in")
+        assert answer.headers["content-type"] == "application/problem+json"
+        assert answer.headers["Content-Security-Policy"] == PAGE_POLICY
+        assert answer.headers["X-Request-ID"]
         for path, content in (("stream", b"some"), ("complete", b"all")):
             with _revoked_when(app, begun) as bearer:
                 answer = client.get(f"/api/v1/slow/{path}", headers=bearer)

@@ -14,8 +14,9 @@ from app.requests.base import RequestModel
 from app.requests.charts import MAX_FIELD
 from app.service.api import routers
 from app.service.identity import LOCAL_USER
-from app.service.limits.budgets import BUDGETS, Budgets, InUse
+from app.service.limits.user_limits import USER_LIMITS, ConcurrencyLimit, UserLimits
 from app.service.web.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
+from tests.app.clients import state_of
 
 PADDING = " " * SMALL_BYTES
 WISH = {"chart": "KP\nPK", "material": "acrylic"}
@@ -38,27 +39,13 @@ def test_every_address_with_a_body_keeps_the_rule() -> None:
     assert [route.path for route in bodies if not isinstance(route, BoundedRoute)] == []
 
 
-@pytest.fixture
-def sent(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What workers are given."""
-    compute = client.app.state.compute  # type: ignore[attr-defined]
-    given: list[Any] = []
-    run = compute.run
-
-    async def noted(abandoned: Any, job: Any, *args: Any, **turn: Any) -> Any:
-        given.extend(args)
-        return await run(abandoned, job, *args, **turn)
-
-    monkeypatch.setattr(compute, "run", noted)
-    return given
-
-
-def test_a_worker_decodes_a_large_request(client: TestClient, sent: list[Any]) -> None:
+def test_a_worker_decodes_a_large_request(client: TestClient, computed: list[Any]) -> None:
     small = client.post("/api/v1/predict", json=WISH)
     content = _padded(WISH)
     large = _post(client, "predict", content)
-    assert content in sent
-    assert not [one for one in sent if isinstance(one, RequestModel)]
+    (job,) = computed
+    assert content in job
+    assert not [argument for argument in job if isinstance(argument, RequestModel)]
     assert (large.status_code, large.json()) == (200, small.json())
 
 
@@ -90,22 +77,22 @@ def test_what_is_no_request_is_told_by_the_worker_too(client: TestClient) -> Non
     assert "not valid JSON" in problem["detail"]
 
 
-def test_a_worker_decodes_a_large_job(client: TestClient, sent: list[Any]) -> None:
+def test_a_worker_decodes_a_large_job(client: TestClient, computed: list[Any]) -> None:
     file = {"name": "a.csv", "content": ""}
     wish = {"kind": "compression", "request": {"file": file}}
     content = _padded(wish)
     made = _post(client, "jobs", content)
     assert made.status_code == 202
-    assert content in sent
+    assert content in computed[0]
     assert client.get(made.headers["location"]).json()["kind"] == "compression"
     wrong = _post(client, "jobs", _padded(wish | {"request": {}}))
     assert (wrong.status_code, wrong.json()["field"]) == (422, "request.file")
 
 
-def test_a_large_design_is_decoded_in_its_turn(client: TestClient, sent: list[Any]) -> None:
+def test_a_large_design_is_decoded_in_its_turn(client: TestClient, computed: list[Any]) -> None:
     body = {"name": "a", "material": "acrylic", "chart": "\n".join(["KP" * 200] * 200)}
     made = _post(client, "designs", _padded(body))
-    assert (made.status_code, sent) == (201, [])
+    assert (made.status_code, computed) == (201, [])
     assert client.delete(f"/api/v1/designs/{made.json()['id']}").status_code == 204
 
 
@@ -141,16 +128,19 @@ def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
 
 
 def test_open_bodies_of_one_user_are_bounded(client: TestClient) -> None:
-    state = client.app.state  # type: ignore[attr-defined]
-    usual, state.in_use = state.in_use, InUse(Budgets(body_bytes=SMALL_BYTES))
+    state = state_of(client)
+    usual, state.concurrency = (
+        state.concurrency,
+        ConcurrencyLimit(UserLimits(body_bytes=SMALL_BYTES)),
+    )
     try:
         refused = _post(client, "predict", _padded(WISH))
         assert (refused.status_code, refused.json()["field"]) == (429, "body_bytes")
-        assert state.in_use.held("body_bytes", LOCAL_USER) == 0
+        assert state.concurrency.held("body_bytes", LOCAL_USER) == 0
         assert client.post("/api/v1/predict", json=WISH).status_code == 200
     finally:
-        state.in_use = usual
-    assert BUDGETS.body_bytes >= 2 * state.settings.max_body_bytes
+        state.concurrency = usual
+    assert USER_LIMITS.body_bytes >= 2 * state.settings.max_body_bytes
 
 
 def test_a_client_that_goes_in_the_middle_of_a_body_is_no_error_of_the_service(

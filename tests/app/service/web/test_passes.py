@@ -5,42 +5,39 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-import viser
 from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from app.service.identity import current_user
 from app.service.web import tokens
-from app.service.web.passes import Passes
-from tests.app.service.web.test_security import bearing, guarded_service, tokens_of
+from app.service.web.passes import ViewPasses
+from tests.app.clients import bearing, tokens_of, watching
+from tests.app.service.web.test_security import guarded_service
 
 BODY = {"chart": "KP", "material": "acrylic"}
 FRAME = {"Origin": "null"}
 """What browsers say of a sandboxed frame, of any site."""
 
 
-def _watch(client: TestClient, host: str, path: str) -> None:
-    address = f"ws://{host}{path}"
-    protocol = [f"viser-v{viser.__version__}"]
-    with client.websocket_connect(address, headers=FRAME, subprotocols=protocol) as socket:
+def _watch(client: TestClient, path: str) -> None:
+    with watching(client, path, **FRAME) as socket:
         assert socket.receive_bytes()
 
 
-def _refused(client: TestClient, host: str, path: str) -> None:
+def _refused(client: TestClient, path: str) -> None:
     with pytest.raises(WebSocketDisconnect) as closed:
-        _watch(client, host, path)
+        _watch(client, path)
     assert closed.value.code == 1008
 
 
 def test_a_frame_watches_with_the_pass_of_its_view_only(client: TestClient) -> None:
-    host = "127.0.0.1"
     url = client.put("/api/v1/views/with-pass", json=BODY).json()["url"]
     path, code = url.split("/#")
     assert path == "/view/with-pass"
-    _watch(client, host, f"{path}?pass={code}")
+    _watch(client, f"{path}?pass={code}")
     for wrong in ("", f"?pass={code[:-1]}", "?pass=", f"?pass={'0' * 64}"):
-        _refused(client, host, path + wrong)
-    _refused(client, host, f"/view/another?pass={code}")
+        _refused(client, path + wrong)
+    _refused(client, f"/view/another?pass={code}")
     body = {"chart": "KP"}
     asked = client.post(f"/api/v1/charts/parse?pass={code}", json=body, headers=FRAME)
     assert asked.status_code == 403
@@ -54,13 +51,13 @@ def test_a_pass_ends_with_the_token_it_was_asked_with(
         made = tokens_of(lab).create("ada")
         url = lab.put("/api/v1/views/of-ada", json=BODY, headers=bearing(made.token)).json()["url"]
         path = url.replace("/#", "?pass=")
-        _watch(lab, "knit.example", path)
+        _watch(lab, path)
         tokens_of(lab).revoke(made.id)
-        _refused(lab, "knit.example", path)
+        _refused(lab, path)
 
 
 def test_passes_are_the_same_for_one_user_and_forgotten_in_turn() -> None:
-    passes = Passes(most=2)
+    passes = ViewPasses(most=2)
     first = passes.give("/view/a", None)
     assert passes.give("/view/a", None) == first != passes.give("/view/b", None)
     scope = {"type": "websocket", "path": "/view/a", "query_string": f"pass={first}".encode()}

@@ -1,15 +1,11 @@
 from __future__ import annotations
 
-import contextlib
 import json
 import logging
-import urllib.error
-import urllib.request
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 import viser
@@ -17,32 +13,22 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 from itsdangerous import URLSafeTimedSerializer
 from starlette.websockets import WebSocketDisconnect
-from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
-from websockets.typing import Subprotocol
 
 from app.cli.main import main
-from app.service.limits.budgets import RateLimit
 from app.service.main import create_app
 from app.service.settings import Settings
 from app.service.web.bodies import MAX_VALUES
 from app.service.web.security import LOGIN_FAILURES, PAGE_POLICY, with_own_cookie_only
-from app.service.web.tokens import Tokens
 from app.viewer import relay
-from app.viewer.private_port import RELAY_HEADERS, private_server
-from app.viewer.views import Views
 from knitcore import InputError
+from tests.app.clients import bearing, served, state_of, tokens_of
 
 TOKEN = "a-long-enough-token"
 
 
-@contextlib.contextmanager
-def guarded_service(**settings: Any) -> Iterator[TestClient]:
-    chosen = Settings(
-        **{"host": "0.0.0.0", "allowed_hosts": ("knit.example",), "workers": 1} | settings
-    )
-    with TestClient(create_app(chosen), base_url="http://knit.example") as client:
-        yield client
+guarded_service = partial(
+    served, "http://knit.example", host="0.0.0.0", allowed_hosts=("knit.example",)
+)
 
 
 @pytest.fixture(scope="module")
@@ -56,14 +42,6 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A service where everybody has a token of their own."""
     with guarded_service(require_login=True, data_dir=tmp_path_factory.mktemp("lab")) as client:
         yield client
-
-
-def tokens_of(client: TestClient) -> Tokens:
-    return Tokens(client.app.state.database)  # type: ignore[attr-defined]
-
-
-def bearing(token: str) -> dict[str, str]:
-    return {"Authorization": f"Bearer {token}"}
 
 
 def test_beyond_loopback_a_token_is_demanded() -> None:
@@ -229,7 +207,7 @@ def test_tokens_are_revoked_expire_and_are_kept_as_hashes(
     assert lab.get("/api/v1/patterns", headers=bearing(made.token)).status_code == 401
     assert lab.get("/api/v1/patterns").status_code == 401  # the session ends with its token
     lab.cookies.clear()
-    with lab.app.state.database.read() as connection:  # type: ignore[attr-defined]
+    with state_of(lab).database.read() as connection:
         kept = str(connection.exec_driver_sql("SELECT * FROM access_tokens").all())
     assert "laptop" in kept
     assert made.token not in kept
@@ -251,7 +229,9 @@ def test_the_token_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_client_over_its_rate_learns_when_to_retry(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.service.limits.budgets.time", SimpleNamespace(monotonic=lambda: 100.0))
+    monkeypatch.setattr(
+        "app.service.limits.user_limits.time", SimpleNamespace(monotonic=lambda: 100.0)
+    )
     with guarded_service(require_login=True, data_dir=tmp_path, requests_per_s=0.5) as client:
         ada, bob = (bearing(tokens_of(client).create(name).token) for name in ("ada", "bob"))
         first = client.get("/api/v1/patterns", headers=ada)
@@ -264,46 +244,6 @@ def test_a_client_over_its_rate_learns_when_to_retry(
         assert (late.status_code, late.json()["type"]) == (429, "/problems/too-many")
         assert late.headers["retry-after"] == "2"
         assert client.get("/api/v1/patterns", headers=bob).status_code == 200
-
-
-def test_a_bucket_fills_again() -> None:
-    limit = RateLimit(per_s=2.0, burst=3)
-    assert [limit.take("ada", at=0.0) for _ in range(4)] == [(2, 0), (1, 0), (0, 0), (0, 0.5)]
-    assert limit.take("bob", at=0.0) == (2, 0)
-    assert limit.take("ada", at=0.5) == (0, 0)
-    assert limit.left("ada", at=100.0) == 3
-
-
-def test_the_raw_port_of_a_view_is_closed_to_others() -> None:
-    """As another page or user of this machine would try it."""
-    views = Views(most=1, idle_s=60)
-    port = views.open("a-design").port
-    try:
-        with pytest.raises(urllib.error.HTTPError) as refused:
-            urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=60)
-        assert refused.value.code == 403
-        refused.value.close()
-        subprotocols = [Subprotocol(f"viser-v{viser.__version__}")]
-        opened = partial(
-            connect, f"ws://127.0.0.1:{port}", subprotocols=subprotocols, open_timeout=60
-        )
-        for headers in ({}, {"X-Knitcore-Relay": "a guess"}, {"Origin": "http://evil.example"}):
-            with pytest.raises(InvalidStatus) as denied, opened(additional_headers=headers):
-                pass
-            assert denied.value.response.status_code == 403
-        with opened(additional_headers=RELAY_HEADERS) as socket:
-            assert socket.recv(timeout=60)
-    finally:
-        views.close()
-
-
-def test_no_view_is_opened_if_the_port_cannot_be_closed(monkeypatch: pytest.MonkeyPatch) -> None:
-    import viser.infra._infra as infra
-    import websockets
-
-    monkeypatch.setitem(vars(infra), "websockets", websockets)
-    with pytest.raises(RuntimeError, match="could not be closed"):
-        private_server()
 
 
 def test_two_hosts_are_refused(client: TestClient) -> None:

@@ -9,16 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import viser
 from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from app.service import main as main_module
-from app.service.main import create_app
-from app.service.settings import Settings
 from app.service.web import security, tokens
 from app.service.web.sessions import Sessions
-from app.service.web.tokens import Tokens
+from tests.app.clients import LONG, bearing, served, state_of, tokens_of, watching
+from tests.app.running import wait_until
 
 SESSION = "/api/v1/session"
 
@@ -28,27 +26,14 @@ def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]
     """A service with logins that looks every instant whether they still hold."""
     for module in (security, tokens, main_module):
         monkeypatch.setattr(module, "REMEMBERED_S", 0.05)
-    settings = Settings(require_login=True, workers=1, data_dir=tmp_path)
-    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+    with served(require_login=True, data_dir=tmp_path) as client:
         yield client
-
-
-def _token(lab: TestClient, user: str) -> Any:
-    return Tokens(lab.app.state.database).create(user)  # type: ignore[attr-defined]
-
-
-def _revoke(lab: TestClient, token: Any) -> None:
-    Tokens(lab.app.state.database).revoke(token.id)  # type: ignore[attr-defined]
-
-
-def _bearer(token: Any) -> dict[str, str]:
-    return {"Authorization": f"Bearer {token.token}"}
 
 
 def test_a_signed_in_user_is_seen_and_signs_out(
     lab: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    lab.get(f"/?token={_token(lab, 'ada').token}")
+    lab.get(f"/?token={tokens_of(lab).create('ada').token}")
     seen = lab.get(SESSION).json()
     assert seen["user"] == "ada"
     assert [session["is_this"] for session in seen["sessions"]] == [True]
@@ -68,21 +53,23 @@ def test_a_signed_in_user_is_seen_and_signs_out(
 
 
 def test_sessions_are_ended_one_by_one_and_by_their_user_only(lab: TestClient) -> None:
-    ada, bob = _token(lab, "ada"), _token(lab, "bob")
+    ada, bob = tokens_of(lab).create("ada"), tokens_of(lab).create("bob")
     for _ in range(2):
         lab.get(f"/?token={ada.token}")
         lab.cookies.clear()
-    first, second = (s["id"] for s in lab.get(SESSION, headers=_bearer(ada)).json()["sessions"])
+    first, second = (
+        s["id"] for s in lab.get(SESSION, headers=bearing(ada.token)).json()["sessions"]
+    )
     address = f"/api/v1/sessions/{first}"
-    assert lab.delete(address, headers=_bearer(bob)).status_code == 404
-    assert lab.delete(address, headers=_bearer(ada)).status_code == 204
-    left = lab.get(SESSION, headers=_bearer(ada)).json()["sessions"]
+    assert lab.delete(address, headers=bearing(bob.token)).status_code == 404
+    assert lab.delete(address, headers=bearing(ada.token)).status_code == 204
+    left = lab.get(SESSION, headers=bearing(ada.token)).json()["sessions"]
     assert [session["id"] for session in left] == [second]
 
 
 @pytest.mark.parametrize("led_by", ["cross-site", "same-site"])
 def test_a_link_from_another_site_needs_a_click_to_sign_in(lab: TestClient, led_by: str) -> None:
-    mallory = _token(lab, "mallory")
+    mallory = tokens_of(lab).create("mallory")
     headers = {"Sec-Fetch-Site": led_by}
     page = lab.get(f"/?token={mallory.token}", headers=headers)
     assert page.status_code == 200
@@ -93,7 +80,7 @@ def test_a_link_from_another_site_needs_a_click_to_sign_in(lab: TestClient, led_
 
 
 def test_a_session_is_replaced_by_a_click_only(lab: TestClient) -> None:
-    alice, mallory = _token(lab, "alice"), _token(lab, "mallory")
+    alice, mallory = tokens_of(lab).create("alice"), tokens_of(lab).create("mallory")
     lab.get(f"/?token={alice.token}")
     page = lab.get(f"/?token={mallory.token}")
     assert "instead of <strong>alice</strong>" in page.text
@@ -116,7 +103,9 @@ def test_a_person_without_a_session_is_asked_for_a_token(lab: TestClient) -> Non
     assert re.search(r'<input type="password" name="token"', page.text)
     wrong = lab.post("/sign-in", data={"token": "x" * 43})
     assert "This token is unknown" in wrong.text
-    right = lab.post("/sign-in", data={"token": _token(lab, "ada").token}, follow_redirects=False)
+    right = lab.post(
+        "/sign-in", data={"token": tokens_of(lab).create("ada").token}, follow_redirects=False
+    )
     assert (right.status_code, right.headers["location"]) == (303, "/")
     assert lab.get(SESSION).json()["user"] == "ada"
     lab.cookies.clear()
@@ -128,34 +117,28 @@ def test_a_form_with_a_wrong_token_does_not_sign_in(lab: TestClient) -> None:
 
 
 def test_a_revoked_token_ends_streams_views_and_jobs(lab: TestClient) -> None:
-    ada = _token(lab, "ada")
-    lab.headers.update(_bearer(ada))
+    ada = tokens_of(lab).create("ada")
+    lab.headers.update(bearing(ada.token))
     body = {"chart": "KP", "material": "cotton"}
     assert lab.put("/api/v1/views/a-view", json=body).status_code == 200
-    chart = {"fabric": "garter", "columns": 150, "rows": 150}
-    wish = {"chart": chart, "material": "acrylic", "direction": "wale", "strain": 0.3, "steps": 60}
-    job = lab.post("/api/v1/jobs", json={"kind": "stretch", "request": wish}).json()["id"]
-    address = "ws://127.0.0.1/view/a-view"
-    with lab.websocket_connect(address, subprotocols=[f"viser-v{viser.__version__}"]) as socket:
-        _revoke(lab, ada)
+    job = lab.post("/api/v1/jobs", json={"kind": "stretch", "request": LONG}).json()["id"]
+    with watching(lab, "/view/a-view") as socket:
+        tokens_of(lab).revoke(ada.id)
         with pytest.raises(WebSocketDisconnect) as closed:
             _drain(socket)
     assert closed.value.code == 1008
-    runner = lab.app.state.jobs  # type: ignore[attr-defined]
-    deadline = time.monotonic() + 60
-    while runner.store.get("ada", job).state != "cancelled" and time.monotonic() < deadline:
-        time.sleep(0.02)
-    assert runner.store.get("ada", job).state == "cancelled"
+    runner = state_of(lab).jobs
+    wait_until(lambda: runner.store.get("ada", job).state == "cancelled")
     assert lab.get(SESSION).status_code == 401
 
 
 def test_a_revoked_token_ends_an_event_stream(lab: TestClient) -> None:
-    ada = _token(lab, "ada")
-    lab.headers.update(_bearer(ada))
+    ada = tokens_of(lab).create("ada")
+    lab.headers.update(bearing(ada.token))
     body = {"chart": "KP", "material": "cotton"}
     assert lab.put("/api/v1/views/a-view", json=body).status_code == 200
     with lab.stream("GET", "/api/v1/views/a-view/events") as stream:
-        _revoke(lab, ada)
+        tokens_of(lab).revoke(ada.id)
         assert "retry" in "".join(stream.iter_text())  # and then it ended
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
-from collections.abc import Iterator
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 
@@ -18,27 +16,24 @@ from app.service.compute.processes import processes
 from app.service.jobs import runner as runner_module
 from app.service.jobs.document import JobState
 from app.service.jobs.kinds import KINDS
-from app.service.jobs.runner import JobRunner
-from app.service.jobs.store import JobStore
 from app.service.main import create_app
 from app.service.problems import DispossessedError, StoreError
 from app.service.settings import Settings
-from app.service.store import name_lock
-from app.service.store.database import Database
-from app.service.store.lock import held, holder
-from app.service.store.schema import migrate
+from app.service.store import postgresql
+from app.service.store.database import Database, holder
+from app.service.store.postgresql import NameLock, PostgresqlServer
 from knitcore.base.errors import InputError
-from tests.app.databases import control
-from tests.app.jobs import WORK, Task, answers
+from tests.app.databases import away, control
+from tests.app.jobs import WORK
+from tests.app.running import wait_until
+from tests.app.service.jobs.helpers import counted, runner_of, running, task
 
 pytestmark = pytest.mark.postgres
 
 
 @pytest.fixture
-def database(postgres_url: str) -> Iterator[Database]:
-    with closing(Database(postgres_url)) as database:
-        migrate(database)
-        yield database
+def database(postgres_database: Database) -> Database:
+    return postgres_database
 
 
 def _restart(url: str) -> None:
@@ -55,15 +50,13 @@ def _end_lock_of(database: Database) -> None:
 
 
 def test_a_restart_of_the_database_frees_no_name(database: Database, postgres_url: str) -> None:
-    with held(database, "main"):
+    with database.reserved("main"):
         _restart(postgres_url)
-        deadline = time.monotonic() + 60
-        while holder(postgres_url, "main") is None:  # until the watch takes it again
-            assert time.monotonic() < deadline
+        wait_until(lambda: holder(postgres_url, "main"))  # the watch takes it again
         with (
             closing(Database(postgres_url)) as second,
             pytest.raises(InputError, match="KNITCORE_PROCESS_NAME"),
-            held(second, "main"),
+            second.reserved("main"),
         ):
             pass
         database.check()
@@ -74,8 +67,8 @@ def test_who_only_asks_takes_no_name(
     database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A command that took it for a moment could be taken for another service."""
-    with held(database, "main"):
-        monkeypatch.setattr(name_lock.NameLock, "take", lambda _: pytest.fail("took it"))
+    with database.reserved("main"):
+        monkeypatch.setattr(NameLock, "take", lambda _: pytest.fail("took it"))
         assert holder(postgres_url, "main") == "A service called 'main' runs on this database."
         assert holder(postgres_url, "another") is None
 
@@ -83,14 +76,10 @@ def test_who_only_asks_takes_no_name(
 def test_readiness_takes_the_name_again(
     database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(name_lock, "PING_S", 3600.0)
-    with held(database, "main"):
-        control(postgres_url, "-m", "fast", "stop")
-        try:
-            with pytest.raises(StoreError):
-                database.check()
-        finally:
-            control(postgres_url, "start")
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
+    with database.reserved("main"):
+        with away(postgres_url), pytest.raises(StoreError):
+            database.check()
         assert holder(postgres_url, "main") is None
         database.check()
         assert holder(postgres_url, "main") is not None
@@ -100,15 +89,18 @@ def test_a_lost_connection_of_our_own_is_no_other_service(
     database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The server may go on holding the lock for a connection that this side has lost."""
-    monkeypatch.setattr(name_lock, "PING_S", 3600.0)
-    with held(database, "main"):
-        lock = database.name_lock
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
+    with database.reserved("main"):
+        assert isinstance(database.backend, PostgresqlServer)
+        lock = database.backend.name_lock
         assert lock is not None
         forgotten, lock._connection = lock._connection, None
-        deadline = time.monotonic() + 60
-        while lock._connection is None:
-            assert time.monotonic() < deadline
+
+        def is_taken_again() -> bool:
             database.check()
+            return lock._connection is not None
+
+        wait_until(is_taken_again)
         assert holder(postgres_url, "main") is not None
         assert forgotten is not None
         with suppress(DBAPIError):  # which the server has ended
@@ -118,16 +110,16 @@ def test_a_lost_connection_of_our_own_is_no_other_service(
 def test_a_service_whose_name_was_taken_stops(
     database: Database, postgres_url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(name_lock, "PING_S", 3600.0)
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
     with ExitStack() as stack:
-        stack.enter_context(held(database, "main"))
+        stack.enter_context(database.reserved("main"))
         settings = Settings(data_dir=tmp_path, workers=1)
         app = create_app(settings, database)
         client = stack.enter_context(TestClient(app, base_url="http://127.0.0.1"))
         assert client.get("/readyz").status_code == 200
         _end_lock_of(database)
         second = stack.enter_context(closing(Database(postgres_url)))
-        stack.enter_context(held(second, "main"))
+        stack.enter_context(second.reserved("main"))
         told = client.get("/readyz")
         assert (told.status_code, "taken over" in told.json()["detail"]) == (503, True)
         assert "KNITCORE_PROCESS_NAME" in told.json()["remedy"]
@@ -140,31 +132,27 @@ def test_a_service_whose_name_was_taken_stops(
 def test_jobs_stop_where_the_name_was_taken(
     database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(name_lock, "PING_S", 3600.0)
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
     monkeypatch.setattr(runner_module, "BEAT_S", 0.05)
     monkeypatch.setitem(KINDS, "work", WORK)
 
     async def scenario(compute: Compute) -> None:
-        runner = JobRunner(JobStore(database, "main"), answers(compute, Path()), 60.0)
+        runner = runner_of(database, compute)
         await runner.resume()
-        wish = Task(what="wait", mark="/nonexistent").model_dump_json()
-        job = (await runner.submit("ada", "work", wish)).id
-        async with asyncio.timeout(150):
-            while (await runner.status("ada", job)).state is not JobState.RUNNING:
-                await asyncio.sleep(0.02)
-            await asyncio.to_thread(_end_lock_of, database)
-            stack.enter_context(held(second, "main"))
-            with pytest.raises(DispossessedError):
-                await asyncio.to_thread(database.check)
-            while runner.counts() != {"waiting": 0, "running": 0}:
-                await asyncio.sleep(0.02)
+        job = (await runner.submit("ada", "work", task("wait"))).id
+        await running(runner, job)
+        await asyncio.to_thread(_end_lock_of, database)
+        stack.enter_context(second.reserved("main"))
+        with pytest.raises(DispossessedError):
+            await asyncio.to_thread(database.check)
+        await counted(runner, "running", 0)
         assert (await runner.status("ada", job)).state is JobState.RUNNING  # nothing was written
         with pytest.raises(DispossessedError):
-            await runner.submit("ada", "work", wish)
+            await runner.submit("ada", "work", task("wait"))
         await runner.close()
 
     with ExitStack() as stack:
         compute = stack.enter_context(closing(Compute(processes(1), timeout_s=60)))
-        stack.enter_context(held(database, "main"))
+        stack.enter_context(database.reserved("main"))
         second = stack.enter_context(closing(Database(postgres_url)))
         asyncio.run(scenario(compute))

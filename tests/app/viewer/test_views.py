@@ -1,4 +1,4 @@
-"""Views that were opened, looked at and dropped leave nothing behind."""
+"""Views make room for each other, and leave nothing behind."""
 
 from __future__ import annotations
 
@@ -10,13 +10,12 @@ from pathlib import Path
 
 import pytest
 import viser
-from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
 from app.service import memory
-from app.service.main import create_app
-from app.service.settings import Settings
 from app.viewer.views import Views
+from tests.app.clients import served, state_of, watching
+from tests.app.running import wait_until
 from tests.app.threads import threads_of_no_pool
 
 ROUNDS, VIEWS = 3, 3
@@ -42,31 +41,25 @@ def _look(client: TestClient) -> None:
     for number in range(VIEWS):
         body = {"chart": CHART, "material": "acrylic"}
         assert client.put(f"/api/v1/views/dropped-{number}", json=body).status_code == 200
-        protocol = [f"viser-v{viser.__version__}"]
-        address = f"ws://127.0.0.1/view/dropped-{number}"
-        with client.websocket_connect(address, subprotocols=protocol) as socket:
+        with watching(client, f"/view/dropped-{number}") as socket:
             assert socket.receive_bytes()
 
 
-def _dropped(app: FastAPI, most: tuple[int, int]) -> None:
+def _dropped(client: TestClient, most: tuple[int, int]) -> None:
     """Close all views, and wait until no more is held than ``most``."""
-    app.state.views.close()
-    deadline = time.monotonic() + 60
-    while any(now > m for now, m in zip(_held(), most, strict=True)):
-        assert time.monotonic() < deadline, _held()
-        time.sleep(0.01)
+    state_of(client).views.close()
+    wait_until(lambda: all(now <= m for now, m in zip(_held(), most, strict=True)))
 
 
 def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None:
     memory.give_back()
     others = _servers()  # of services that other tests use
-    app = create_app(Settings(workers=1, data_dir=tmp_path))
-    with TestClient(app, base_url="http://127.0.0.1") as client:
+    with served(data_dir=tmp_path) as client:
         assert client.get("/readyz").status_code == 200
         start = _held()
         for _ in range(ROUNDS):
             _look(client)
-            _dropped(app, start)
+            _dropped(client, start)
     memory.give_back()
     assert _servers() <= others
 
@@ -76,3 +69,34 @@ def test_a_view_prints_nothing_to_stdout(capsys: pytest.CaptureFixture[str]) -> 
     views.open("a-quiet-one")
     views.close()
     assert capsys.readouterr().out == ""
+
+
+def test_views_make_room_for_each_other() -> None:
+    views = Views(most=2, idle_s=0.0)
+    first = views.open("design-1")
+    views.open("design-2")
+    views.watch("design-1", +1)
+    views.open("design-3")
+    assert views.get("design-2") is None
+    assert views.open("design-1") is first
+    views.watch("design-1", -1)
+    time.sleep(0.01)
+    assert views.close_idle() == 2
+    assert len(views) == 0
+
+
+def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
+    views = Views(most=4, idle_s=60)
+    try:
+        first = views.open("ada/a")
+        views.watch("ada/a", +1)
+        assert not first.writer.coarse
+        views.watch("ada/a", +1, coarse=True)
+        assert first.writer.coarse
+        assert views.open("ada/b").writer.coarse  # who has no GPU here has none there
+        assert not views.open("bob/a").writer.coarse
+        views.watch("ada/a", -1, coarse=True)
+        assert not first.writer.coarse
+        assert views.open("ada/c").writer.coarse  # the same browser comes back
+    finally:
+        views.close()

@@ -1,4 +1,4 @@
-"""The name of a service process, reserved on PostgreSQL by an advisory lock."""
+"""PostgreSQL: a server of several services, each of which reserves its name by an advisory lock."""
 
 from __future__ import annotations
 
@@ -7,11 +7,16 @@ import logging
 import secrets
 import threading
 from collections.abc import Iterator
+from types import MappingProxyType
 
-from sqlalchemy import Connection, Engine, text
+from sqlalchemy import Connection, Engine, Insert, Table, create_engine, text
+from sqlalchemy.dialects.postgresql import insert
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
+from knitcore.base.errors import InputError
+
 from ..problems import DispossessedError
+from .backend import Backend
 
 log = logging.getLogger("knitcore.store")
 
@@ -28,6 +33,79 @@ END_MARKED = text(
     "SELECT pg_terminate_backend(pid) FROM pg_stat_activity"
     " WHERE application_name = :mark AND pid <> pg_backend_pid()"
 )
+
+
+class PostgresqlServer(Backend):
+    """A database on a server.
+
+    Parameters
+    ----------
+    url : ``postgresql+psycopg://…``.
+
+    Attributes
+    ----------
+    name_lock : of the name that this process has reserved.
+    """
+
+    one_writer = False
+    clock = "CAST(EXTRACT(EPOCH FROM clock_timestamp()) AS double precision)"
+    snapshot = MappingProxyType({"isolation_level": "REPEATABLE READ"})
+
+    def __init__(self, url: str) -> None:
+        self._url = url
+        self.name_lock: NameLock | None = None
+
+    def open(self) -> None:
+        """Make the engine, which connects when it is used."""
+        self.engine = create_engine(
+            self._url,
+            pool_pre_ping=True,  # a database that went away and came back is found again
+            pool_size=10,
+            max_overflow=10,
+            pool_timeout=5,
+            connect_args={"connect_timeout": 3, "tcp_user_timeout": 10_000},  # s, ms
+        )
+
+    def insert_new(self, table: Table) -> Insert:
+        """An insertion that leaves existing rows unchanged."""
+        return insert(table).on_conflict_do_nothing()
+
+    def check(self) -> None:
+        """Ask whether the name is still reserved for this process."""
+        if self.name_lock is not None:
+            self.name_lock.keep()
+
+    def check_writable(self) -> None:
+        """Refuse to write after another process has taken the name."""
+        if self.name_lock is not None:
+            self.name_lock.check()
+
+    @contextlib.contextmanager
+    def reserved(self, process: str, at: str) -> Iterator[None]:
+        """Reserve the name of a process."""
+        del at
+        lock = NameLock(self.engine, process)
+        if not lock.take():
+            raise InputError(
+                "process_name",
+                f"another service on this database is called {process!r}.",
+                "Stop that one, or give each its own KNITCORE_PROCESS_NAME.",
+            )
+        self.name_lock = lock
+        try:
+            with lock.watched():
+                yield
+        finally:
+            self.name_lock = None
+
+    def holder(self, process: str) -> str | None:
+        """Name the service that has reserved the name now."""
+        self.open()
+        try:
+            is_taken = NameLock(self.engine, process).is_taken()
+        finally:
+            self.close()
+        return f"A service called {process!r} runs on this database." if is_taken else None
 
 
 class NameLock:

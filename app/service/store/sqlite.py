@@ -1,4 +1,4 @@
-"""An SQLite file and the files beside it: made once, watched, and reserved by one service.
+"""SQLite: a file and those beside it, made once, watched, and reserved by one service.
 
 SQLite holds its locks by process, not by descriptor: closing *any* descriptor of the file drops the
 locks of every connection that the process has to it (POSIX). Other programs then take themselves
@@ -15,12 +15,18 @@ import sqlite3
 import threading
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, Insert, Table, create_engine, event
+from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy.pool import QueuePool
 
 from knitcore.base.errors import InputError
 
 from ..problems import DispossessedError, VanishedError
+from .backend import Backend
 
+BUSY_TIMEOUT_MS = 10_000
 BESIDE = ("-wal", "-shm")
 """Files that SQLite keeps beside its own while it is open: the newest changes, and their index."""
 STOP_FIRST = (
@@ -53,8 +59,8 @@ class Holder(NamedTuple):
         return cls(process or "unknown", address, inodes)
 
 
-class DatabaseFile:
-    """An SQLite file, made here if it is not there, and never again.
+class SqliteFile(Backend):
+    """An SQLite file, made when it is first opened, and never again.
 
     SQLite would create an empty database in place of a lost one, and would go on writing into
     deleted files.
@@ -62,22 +68,47 @@ class DatabaseFile:
     Parameters
     ----------
     path : the file.
-
-    Raises
-    ------
-    InputError
-        If it can be neither opened nor made, was lost, or a service has it that lost files.
     """
+
+    one_writer = True
+    clock = "(julianday('now') - 2440587.5) * 86400.0"
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.lock = _lock_of(path)
-        check_not_lost(path)
-        check_whole(path)
-        _make(path)
-        self._ours = {path: _identity(path)}
+        self._ours: dict[Path, tuple[int, int] | None] = {}
         self._opening = threading.Lock()
         self._kept: sqlite3.Connection | None = None
+
+    def open(self) -> None:
+        """Make the file if it is not there; refuse one that was lost, or beside which a service
+        lost files."""
+        self._check_not_lost()
+        self._check_whole()
+        _make(self.path)
+        self._ours[self.path] = _identity(self.path)
+        self.engine = create_engine("sqlite://", creator=self.connect, poolclass=QueuePool)
+
+        @event.listens_for(self.engine, "connect")
+        def _(connection: Any, _record: Any) -> None:
+            connection.isolation_level = None  # BEGIN is ours, below
+            for pragma in (
+                "journal_mode=WAL",
+                "synchronous=FULL",  # a commit is on disk, not only in the system's memory
+                "foreign_keys=ON",
+                f"busy_timeout={BUSY_TIMEOUT_MS}",
+            ):
+                connection.execute(f"PRAGMA {pragma}")
+
+        @event.listens_for(self.engine, "begin")
+        def _(connection: Connection) -> None:
+            self.check()
+            write = connection.get_execution_options().get("knitcore_write")
+            connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN")
+
+    def insert_new(self, table: Table) -> Insert:
+        """An insertion that leaves existing rows unchanged."""
+        return insert(table).on_conflict_do_nothing()
 
     def connect(self) -> sqlite3.Connection:
         """A connection to the file; a missing one is not created.
@@ -124,8 +155,41 @@ class DatabaseFile:
                     remedy=STOP_FIRST,
                 )
 
+    def check_unopened(self) -> bool:
+        """Refuse a file that was lost, or is open although the lock of its service is gone; False
+        if the first start has yet to make it."""
+        self._check_not_lost()
+        if not self.path.exists():
+            return False
+        log = self.path.with_name(self.path.name + BESIDE[0])
+        if log.exists() and not self.lock.exists():
+            raise InputError(
+                "data_dir",
+                f"{self.path} is open, or a command on it was killed, but {self.lock.name} is not "
+                "there.",
+                STOP_FIRST,
+            )
+        return True
+
+    def is_whole(self, connection: Connection) -> bool:
+        """Look through all pages for damage, about a second for a gigabyte."""
+        return bool(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar() == "ok")
+
+    def keep_copy(self, name: str) -> None:
+        """Copy the database to a file beside it, readable by this user only."""
+        copy = self.path.with_name(f"{self.path.name}.{name}")
+        if copy.exists():
+            return
+        partial = copy.with_name(f"{copy.name}.partial")
+        partial.unlink(missing_ok=True)  # of a disk that was full
+        os.close(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
+        with contextlib.closing(self.engine.raw_connection()) as connection:
+            connection.cursor().execute("VACUUM INTO ?", (str(partial),))
+        partial.rename(copy)
+
     def close(self) -> None:
-        """Close the connection that was kept; doing so again has no effect."""
+        """Close all connections, the last one, which was kept, too."""
+        super().close()
         if self._kept is not None:
             self._kept.close()
             self._kept = None
@@ -133,14 +197,9 @@ class DatabaseFile:
             self._ours.pop(place, None)
 
     @contextlib.contextmanager
-    def reserved(self, at: str) -> Iterator[None]:
-        """Reserve the file for this process, which is reached at an address.
-
-        Raises
-        ------
-        InputError
-            If another process has it.
-        """
+    def reserved(self, process: str, at: str) -> Iterator[None]:
+        """Reserve the file, which one service may use, whatever its name."""
+        del process
         handle = os.open(self.lock, os.O_RDWR | os.O_CREAT, 0o600)
         try:
             try:
@@ -164,6 +223,53 @@ class DatabaseFile:
             self._ours.pop(self.lock, None)
             os.close(handle)  # which unlocks it, as the end of a killed process does
 
+    def holder(self, process: str) -> str | None:
+        """Name the service that has the file now."""
+        del process
+        service = holder_of(self.path)
+        if service is None:
+            return None
+        at = f", at {service.address}" if service.address else ""
+        return f"Process {service.process} runs on it{at}."
+
+    def _check_not_lost(self) -> None:
+        """Refuse to make a database where a service had one before.
+
+        Raises
+        ------
+        InputError
+        """
+        path = self.path
+        if self.lock.exists() and not (path.exists() and path.stat().st_size):
+            raise InputError(
+                "data_dir",
+                f"{path} is {'empty' if path.exists() else 'gone'}, although a service used it "
+                "before.",
+                f"Put it back; or remove it and {self.lock}, to begin with none or to restore a "
+                "backup.",
+            )
+
+    def _check_whole(self) -> None:
+        """Refuse a file beside which a running service lost what it works with.
+
+        What was written into it would not reach the service, and what the service wrote last would
+        not be read.
+
+        Raises
+        ------
+        InputError
+        """
+        service = holder_of(self.path)
+        for name, inode in service.files.items() if service is not None else ():
+            identity = _identity(self.path.with_name(name))
+            if service is not None and (identity is None or identity[1] != inode):
+                raise InputError(
+                    "data_dir",
+                    f"{name} was removed or replaced under the service that runs (process "
+                    f"{service.process}).",
+                    STOP_FIRST,
+                )
+
     @property
     def _beside(self) -> list[Path]:
         return [self.path.with_name(self.path.name + end) for end in BESIDE]
@@ -178,7 +284,7 @@ def holder_of(path: Path) -> Holder | None:
     """The service that has reserved an SQLite file now; None if there is none."""
     try:
         handle = os.open(_lock_of(path), os.O_RDONLY)
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     try:
         fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -187,62 +293,6 @@ def holder_of(path: Path) -> Holder | None:
     finally:
         os.close(handle)
     return None
-
-
-def check_not_lost(path: Path) -> None:
-    """Refuse to make a database where a service had one before.
-
-    Raises
-    ------
-    InputError
-    """
-    lock = _lock_of(path)
-    if lock.exists() and not (path.exists() and path.stat().st_size):
-        raise InputError(
-            "data_dir",
-            f"{path} is {'empty' if path.exists() else 'gone'}, although a service used it before.",
-            f"Put it back; or remove it and {lock}, to begin with none or to restore a backup.",
-        )
-
-
-def check_whole(path: Path) -> None:
-    """Refuse a file beside which a running service lost what it works with.
-
-    What was written into it would not reach the service, and what the service wrote last would not
-    be read.
-
-    Raises
-    ------
-    InputError
-    """
-    service = holder_of(path)
-    if service is None:
-        return
-    for name, inode in service.files.items():
-        identity = _identity(path.with_name(name))
-        if identity is None or identity[1] != inode:
-            raise InputError(
-                "data_dir",
-                f"{name} was removed or replaced under the service that runs (process "
-                f"{service.process}).",
-                STOP_FIRST,
-            )
-
-
-def check_reserved(path: Path) -> None:
-    """Refuse a file that is open although the lock of its service is gone.
-
-    Raises
-    ------
-    InputError
-    """
-    log, lock = path.with_name(path.name + BESIDE[0]), _lock_of(path)
-    if log.exists() and not lock.exists():
-        raise InputError(
-            "data_dir",
-            f"{path} is open, or a command on it was killed, but {lock.name} is not there.",
-            STOP_FIRST,
-        )
 
 
 def _lock_of(path: Path) -> Path:

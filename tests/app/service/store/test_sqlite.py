@@ -17,13 +17,12 @@ from sqlalchemy import text
 from app.cli.main import main
 from app.service.doctor import examine, examine_running, examine_start
 from app.service.main import create_app
-from app.service.problems import DispossessedError, StoreError, VanishedError
+from app.service.problems import DispossessedError, StoreError
 from app.service.settings import Settings
 from app.service.store.backup import back_up
 from app.service.store.database import Database
-from app.service.store.file import STOP_FIRST, Holder, check_reserved, holder_of
-from app.service.store.lock import held
 from app.service.store.schema import migrate
+from app.service.store.sqlite import STOP_FIRST, Holder, SqliteFile, holder_of
 from knitcore.base.errors import InputError
 
 LOCK_ALONE = """
@@ -52,7 +51,7 @@ def database(file: Path) -> Iterator[Database]:
     """A database of a service that runs in this process."""
     database = Database(f"sqlite:///{file}")
     migrate(database)
-    with held(database, "main", "http://127.0.0.1:8737/"):
+    with database.reserved("main", "http://127.0.0.1:8737/"):
         yield database
     database.close()
 
@@ -80,7 +79,7 @@ def test_nothing_that_a_service_does_drops_its_locks(
         "a read": database.check,
         "a write": lambda: _write(database),
         "its pages": database.check_pages,
-        "a copy": lambda: database.copy_to(tmp_path / "copy"),
+        "a copy": lambda: database.backend.keep_copy("copy"),
         "a backup": lambda: back_up(database, tmp_path / "backup.gz"),
         "a migration": lambda: migrate(database),
         "the start": lambda: examine_start(settings, database),
@@ -138,7 +137,7 @@ def test_a_service_without_its_files_stops_writing(
 def test_a_stop_saves_what_was_acknowledged_before_its_files_vanished(file: Path, end: str) -> None:
     database = Database(f"sqlite:///{file}")
     migrate(database)
-    with held(database, "main"):
+    with database.reserved("main"):
         _write(database)
         _beside(file, end).unlink()
         with pytest.raises(StoreError):
@@ -169,20 +168,12 @@ def test_commands_are_refused_while_a_service_lacks_its_files(
 
 
 def test_the_doctor_misses_the_lock_of_an_open_database(database: Database, file: Path) -> None:
-    check_reserved(file)
+    assert SqliteFile(file).check_unopened()
     kept = _beside(file, ".lock").rename(file.parent / "kept")
     doctor = CliRunner().invoke(main, ["doctor"], env={"KNITCORE_DATA_DIR": str(file.parent)})
     assert doctor.exit_code == 1
     assert "knitcore.sqlite3.lock is not there" in doctor.output
     kept.rename(_beside(file, ".lock"))
-
-
-def test_a_service_without_its_database_stops(database: Database, file: Path) -> None:
-    kept = file.rename(file.parent / "kept")
-    with pytest.raises(VanishedError, match="is gone"):
-        _write(database)
-    kept.rename(file)
-    _write(database)
 
 
 def test_files_are_made_for_this_user_only(database: Database, file: Path) -> None:

@@ -65,7 +65,7 @@ MIN_S = 60.0
 
 
 @dataclass(frozen=True)
-class Budgets:
+class UserLimits:
     """Limits of one user.
 
     Attributes
@@ -107,7 +107,7 @@ class Budgets:
     body_bytes: int = 128_000_000
 
 
-BUDGETS = Budgets()
+USER_LIMITS = UserLimits()
 
 
 class Use(BaseModel):
@@ -117,19 +117,19 @@ class Use(BaseModel):
     most: float
 
 
-class OverBudgetError(ServiceError):
+class OverLimitError(ServiceError):
     """A limit of the user is reached."""
 
     status, type, title = 429, "too-many", "You have reached a limit of one user"
     default_remedy = "Close one you do not need."
 
     @classmethod
-    def of(cls, what: str, held: int, most: int) -> OverBudgetError:
+    def of(cls, what: str, held: int, most: int) -> OverLimitError:
         """All of them are held."""
         return cls(f"You have {held} of {most} {what}.", field=what)
 
 
-class SpentError(OverBudgetError):
+class CpuTimeSpentError(OverLimitError):
     """The user's computing time of the day is spent."""
 
     title = "Your computing time is used up"
@@ -144,18 +144,18 @@ class SpentError(OverBudgetError):
         self.headers = {"Retry-After": str(wait)}
 
 
-class ComputingTime:
+class CpuTimeLimit:
     """CPU seconds that users' computations have used, given back evenly over a day.
 
     The user of this machine, who has no login, is not counted.
     """
 
-    def __init__(self, budgets: Budgets = BUDGETS) -> None:
-        self._most_s = budgets.cpu_s
-        self._left = RateLimit(budgets.cpu_s / DAY_S, budgets.cpu_s)
+    def __init__(self, limits: UserLimits = USER_LIMITS) -> None:
+        self._most_s = limits.cpu_s
+        self._left = RateLimit(limits.cpu_s / DAY_S, limits.cpu_s)
 
     def used_s(self, owner: str) -> float:
-        """CPU seconds that count against a user's budget now."""
+        """CPU seconds that count against a user's limit now."""
         return self._most_s - self._left.left(owner)
 
     def check(self, owner: str) -> None:
@@ -163,11 +163,11 @@ class ComputingTime:
 
         Raises
         ------
-        SpentError
+        CpuTimeSpentError
         """
         left = self._left.left(owner)
         if left <= 0:
-            raise SpentError(self._most_s, (MIN_S - left) / self._left.per_s)
+            raise CpuTimeSpentError(self._most_s, (MIN_S - left) / self._left.per_s)
 
     def spend(self, owner: str, seconds: float) -> None:
         """Count a computation, which may have taken more than was left."""
@@ -175,11 +175,11 @@ class ComputingTime:
             self._left.spend(owner, seconds)
 
 
-class InUse:
+class ConcurrencyLimit:
     """Counts what users hold while requests last."""
 
-    def __init__(self, budgets: Budgets = BUDGETS) -> None:
-        self._budgets = budgets
+    def __init__(self, limits: UserLimits = USER_LIMITS) -> None:
+        self._limits = limits
         self._held: Counter[tuple[str, str]] = Counter()
 
     def held(self, what: str, owner: str) -> int:
@@ -191,11 +191,11 @@ class InUse:
 
         Raises
         ------
-        OverBudgetError
+        OverLimitError
         """
-        held, most = self._held[what, owner], getattr(self._budgets, what)
+        held, most = self._held[what, owner], getattr(self._limits, what)
         if held >= most:
-            raise OverBudgetError.of(what, held, most)
+            raise OverLimitError.of(what, held, most)
 
     @contextlib.contextmanager
     def hold(self, what: str, owner: str) -> Iterator[None]:
@@ -203,7 +203,7 @@ class InUse:
 
         Raises
         ------
-        OverBudgetError
+        OverLimitError
         """
         with self.growing(what, owner) as count:
             count(1)
@@ -213,14 +213,14 @@ class InUse:
     def growing(self, what: str, owner: str) -> Iterator[Callable[[int], None]]:
         """Yields a function that counts more of what is held until the block ends.
 
-        It raises OverBudgetError beyond the limit.
+        It raises OverLimitError beyond the limit.
         """
-        mine, most = 0, getattr(self._budgets, what)
+        mine, most = 0, getattr(self._limits, what)
 
         def count(more: int) -> None:
             nonlocal mine
             if self._held[what, owner] + more > most:
-                raise OverBudgetError.of(what, self._held[what, owner], most)
+                raise OverLimitError.of(what, self._held[what, owner], most)
             mine += more
             self._held[what, owner] += more
 

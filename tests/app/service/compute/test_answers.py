@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from app.service.results.recent import RecentResults
+from app.service.compute.answers import RecentResults
 
 
 def test_the_longest_unused_results_make_room() -> None:

@@ -2,32 +2,26 @@ from __future__ import annotations
 
 import os
 import threading
-import time
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-import viser
 import zstandard
 from fastapi.testclient import TestClient
 
 from app.drawing.colours import diverging, fabric_mix, sequential
 from app.service.api import views as views_api
-from app.service.limits.budgets import BUDGETS
-from app.viewer.views import Views
+from app.service.limits.user_limits import USER_LIMITS
+from tests.app.clients import state_of, watching
 from tests.app.operations.cloth.test_stretch import ASKED, GARTER
-from tests.app.threads import threads_of_no_pool
 
 DESIGN = "a-design-of-mine"
-SUBPROTOCOL = f"viser-v{viser.__version__}"
 
 
 def _messages(client: TestClient, design: str, enough: bytes) -> bytes:
     """What a browser gets when it opens the view, until ``enough`` is among it."""
     seen = b""
-    with client.websocket_connect(
-        f"ws://127.0.0.1/view/{design}", subprotocols=[SUBPROTOCOL]
-    ) as socket:
+    with watching(client, f"/view/{design}") as socket:
         while enough not in seen:
             frame = socket.receive_bytes()
             size = int.from_bytes(frame[8:16], "little")
@@ -56,7 +50,7 @@ def test_two_designs_are_two_scenes(client: TestClient) -> None:
         chart = {"fabric": "rib", "columns": columns, "rows": 2}
         body = {"chart": chart, "material": "cotton"}
         assert client.put(f"/api/v1/views/{design}", json=body).json()["stitches"] == 2 * columns
-    views = client.app.state.views  # type: ignore[attr-defined]
+    views = state_of(client).views
     assert views.open("local/first-design").port != views.open("local/second-design").port
 
 
@@ -71,7 +65,7 @@ def test_the_same_design_twice_is_one_scene(client: TestClient) -> None:
 def test_a_closed_view_is_drawn_again_by_the_next_request(client: TestClient) -> None:
     body = {"chart": "KP\nPK", "material": "cotton"}
     client.put("/api/v1/views/design-that-slept", json=body)
-    client.app.state.views.close()  # type: ignore[attr-defined]
+    state_of(client).views.close()
     assert client.put("/api/v1/views/design-that-slept", json=body).json()["stitches"] == 4
     assert b"/fabric/" in _messages(client, "design-that-slept", b"/fabric/")
 
@@ -102,49 +96,11 @@ def test_the_view_page_comes_from_here(client: TestClient) -> None:
     assert client.get("/view/a b/").status_code == 404
 
 
-def test_views_make_room_and_leave_nothing_behind() -> None:
-    before = len(threads_of_no_pool())
-    views = Views(most=2, idle_s=0.0)
-    first = views.open("design-1")
-    views.open("design-2")
-    views.watch("design-1", +1)
-    views.open("design-3")
-    assert views.get("design-2") is None
-    assert views.open("design-1") is first
-    views.watch("design-1", -1)
-    time.sleep(0.01)
-    assert views.close_idle() == 2
-    deadline = time.monotonic() + 60
-    while len(threads_of_no_pool()) > before:
-        assert time.monotonic() < deadline, threads_of_no_pool()
-        time.sleep(0.05)
-    assert len(views) == 0
-
-
-def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
-    views = Views(most=4, idle_s=60)
-    try:
-        first = views.open("ada/a")
-        views.watch("ada/a", +1)
-        assert not first.writer.coarse
-        views.watch("ada/a", +1, coarse=True)
-        assert first.writer.coarse
-        assert views.open("ada/b").writer.coarse  # who has no GPU here has none there
-        assert not views.open("bob/a").writer.coarse
-        views.watch("ada/a", -1, coarse=True)
-        assert not first.writer.coarse
-        assert views.open("ada/c").writer.coarse  # the same browser comes back
-    finally:
-        views.close()
-
-
 def test_a_browser_says_that_it_has_no_gpu(client: TestClient) -> None:
     client.put("/api/v1/views/a-coarse-view", json={"chart": GARTER, "material": "acrylic"})
-    view = client.app.state.views.get("local/a-coarse-view")  # type: ignore[attr-defined]
-    address = "ws://127.0.0.1/view/a-coarse-view"
-    protocol = [f"viser-v{viser.__version__}"]
+    view = state_of(client).views.get("local/a-coarse-view")
     for query, coarse in (("", False), ("?coarse=1", True)):
-        with client.websocket_connect(address + query, subprotocols=protocol):
+        with watching(client, f"/view/a-coarse-view{query}"):
             assert view.writer.coarse is coarse
 
 
@@ -164,11 +120,6 @@ def test_every_colour_field_works(client: TestClient, colour: str) -> None:
     assert client.put(f"/api/v1/views/{DESIGN}", json=body).status_code == 200
 
 
-def test_strain_needs_a_test(client: TestClient) -> None:
-    body = {"chart": "KKP", "material": "acrylic", "colour": "strain"}
-    assert client.put(f"/api/v1/views/{DESIGN}", json=body).json()["field"] == "colour"
-
-
 def test_pictures_that_no_browser_sends_do_not_delay_others(
     client: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -186,7 +137,7 @@ def test_pictures_that_no_browser_sends_do_not_delay_others(
         try:
             for _ in range(count):
                 browsers.submit(client.get, "/api/v1/views/hidden-tab/picture")
-            for _ in range(BUDGETS.pictures):  # the others are refused
+            for _ in range(USER_LIMITS.pictures):  # the others are refused
                 assert waiting.acquire(timeout=60)
             jobs = ThreadPoolExecutor(1).submit(client.get, "/api/v1/jobs")
             assert jobs.result(60).status_code == 200

@@ -1,4 +1,4 @@
-"""Turns: a few places, which many users get one after the other."""
+"""A queue for a few places, which many users get one after the other."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from ..problems import UnavailableError
-from .budgets import OverBudgetError
+from .user_limits import OverLimitError
 
 Place = TypeVar("Place")
-MAX_AT_A_GATE = 100
-Lane = OrderedDict[str, deque["Ticket[Place]"]]
+MAX_WAITING = 100
+Lane = OrderedDict[str, deque["QueuedRequest[Place]"]]
 
 
 @dataclass(eq=False)
-class Ticket(Generic[Place]):
+class QueuedRequest(Generic[Place]):
     """A request that waits for a place."""
 
     owner: str
@@ -26,7 +26,7 @@ class Ticket(Generic[Place]):
     place: asyncio.Future[Place]
 
 
-class Turns(Generic[Place]):
+class FairQueue(Generic[Place]):
     """Gives places to users in turn; requests that a browser waits for come first.
 
     Parameters
@@ -59,20 +59,20 @@ class Turns(Generic[Place]):
         self._background = 0
         self._lanes: dict[bool, Lane[Place]] = {False: OrderedDict(), True: OrderedDict()}
 
-    def enter(self, owner: str, *, background: bool) -> Ticket[Place]:
+    def enter(self, owner: str, *, background: bool) -> QueuedRequest[Place]:
         """Join the queue.
 
         Raises
         ------
-        UnavailableError, OverBudgetError
+        UnavailableError, OverLimitError
             If the queue is full.
         """
         self.check_room(owner, background=background)
         lane = self._lanes[background]
-        ticket = Ticket(owner, background, asyncio.get_running_loop().create_future())
-        lane.setdefault(owner, deque()).append(ticket)
+        queued = QueuedRequest(owner, background, asyncio.get_running_loop().create_future())
+        lane.setdefault(owner, deque()).append(queued)
         self._hand_out()
-        return ticket
+        return queued
 
     def check_room(self, owner: str, *, background: bool) -> None:
         """Refuse a request that may not join the queue.
@@ -81,27 +81,27 @@ class Turns(Generic[Place]):
         ------
         UnavailableError
             If the queue is full.
-        OverBudgetError
+        OverLimitError
             If too many of this user wait in the background.
         """
         if background and self.waiting_of(owner) >= self._most_waiting_each:
-            raise OverBudgetError.of("jobs", self.waiting_of(owner), self._most_waiting_each)
+            raise OverLimitError.of("jobs", self.waiting_of(owner), self._most_waiting_each)
         full = self.waiting(background=False) >= self._most_waiting
         if not background and full and owner in self._lanes[False]:
             raise UnavailableError("Too many computations are waiting.")
 
-    def leave(self, ticket: Ticket[Place]) -> None:
+    def leave(self, queued: QueuedRequest[Place]) -> None:
         """Give the place back, or leave the queue without one."""
-        if ticket.place.done():
-            self._free.append(ticket.place.result())
-            self._background -= ticket.background
-            self._held -= Counter([ticket.owner])
+        if queued.place.done():
+            self._free.append(queued.place.result())
+            self._background -= queued.background
+            self._held -= Counter([queued.owner])
         else:
-            ticket.place.cancel()
-            lane = self._lanes[ticket.background]
-            lane[ticket.owner].remove(ticket)
-            if not lane[ticket.owner]:
-                del lane[ticket.owner]
+            queued.place.cancel()
+            lane = self._lanes[queued.background]
+            lane[queued.owner].remove(queued)
+            if not lane[queued.owner]:
+                del lane[queued.owner]
         self._hand_out()
 
     @property
@@ -115,44 +115,44 @@ class Turns(Generic[Place]):
 
     def waiting(self, *, background: bool) -> int:
         """Number of requests that wait."""
-        return sum(len(tickets) for tickets in self._lanes[background].values())
+        return sum(len(requests) for requests in self._lanes[background].values())
 
     def waiting_of(self, owner: str) -> int:
         """Number of background jobs of a user that wait."""
         return len(self._lanes[True].get(owner, ()))
 
     def _hand_out(self) -> None:
-        while self._free and (ticket := self._next()) is not None:
-            self._held[ticket.owner] += 1
-            self._background += ticket.background
-            ticket.place.set_result(self._free.pop())
+        while self._free and (queued := self._next()) is not None:
+            self._held[queued.owner] += 1
+            self._background += queued.background
+            queued.place.set_result(self._free.pop())
 
-    def _next(self) -> Ticket[Place] | None:
+    def _next(self) -> QueuedRequest[Place] | None:
         """Take the next in turn out of the queue; None if none of them may have a place now."""
         for background, lane in self._lanes.items():
             if background and self._background >= self._most_background:
                 continue
-            for owner, tickets in lane.items():
+            for owner, requests in lane.items():
                 if self._held[owner] < self.most_each:
-                    ticket = tickets.popleft()
-                    if tickets:
+                    queued = requests.popleft()
+                    if requests:
                         lane.move_to_end(owner)
                     else:
                         del lane[owner]
-                    return ticket
+                    return queued
         return None
 
 
-class Gate:
-    """Gate that lets one caller through at a time; users take turns.
+class FairLock:
+    """A lock that one caller holds at a time; users take turns.
 
-    It guards the threads of the service that compute: Python runs one at a time, so that two would
-    be no faster, and the event loop would wait for both.
+    It keeps the threads of the service that compute to one: Python runs one at a time, so that two
+    would be no faster, and the event loop would wait for both.
     """
 
     def __init__(self) -> None:
-        self._turns = Turns(
-            [None], most_background=1, most_waiting=MAX_AT_A_GATE, most_waiting_each=0
+        self._queue = FairQueue(
+            [None], most_background=1, most_waiting=MAX_WAITING, most_waiting_each=0
         )
 
     @contextlib.asynccontextmanager
@@ -164,9 +164,9 @@ class Gate:
         UnavailableError
             If too many wait.
         """
-        ticket = self._turns.enter(owner, background=False)
+        queued = self._queue.enter(owner, background=False)
         try:
-            await asyncio.wait([ticket.place])
+            await asyncio.wait([queued.place])
             yield
         finally:
-            self._turns.leave(ticket)
+            self._queue.leave(queued)

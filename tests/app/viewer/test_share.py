@@ -18,8 +18,9 @@ from app.drawing.colours import MAKERS_COLOURS, rgb
 from app.drawing.design_view import ViewRequest, build_scene
 from app.drawing.fabric import RECTANGLE, Box
 from app.service.listeners import Listeners
-from app.viewer.clicks import Cell, clicked_stitch
+from app.viewer.views import Cell, clicked_stitch
 from knitcore.base.errors import InputError
+from tests.app.clients import state_of
 from tests.app.operations.cloth.test_stretch import ASKED, GARTER
 from tests.app.threads import threads_of_no_pool
 
@@ -60,7 +61,7 @@ def test_sharing_leaves_the_watched_view_alone(
     client: TestClient, stretched: dict[str, object]
 ) -> None:
     client.put(f"/api/v1/views/{DESIGN}", json=SMALL)
-    views = client.app.state.views  # type: ignore[attr-defined]
+    views = state_of(client).views
     view = views.get(f"local/{DESIGN}")
     before, threads, count = view.writer.drawing, len(threads_of_no_pool()), len(views)
     client.post("/api/v1/views/recording", json=stretched | {"animated": True})
@@ -84,7 +85,7 @@ def test_an_empty_cell_is_not_drawn_clicked_or_exported(client: TestClient) -> N
     shaped = SMALL | {"outline": "xx..\nxxxx\nxxxx", "rectangles": True}
     answer = client.put(f"/api/v1/views/{DESIGN}", json=shaped).json()
     assert answer["stitches"] == 10
-    view = client.app.state.views.get(f"local/{DESIGN}")  # type: ignore[attr-defined]
+    view = state_of(client).views.get(f"local/{DESIGN}")
     part, ground = view.writer.drawing.part, view.writer.drawing.ground
     assert len(part.rectangles_mm) == 10
     x, y = ground.centres_mm[2, 3] - ground.middle_mm
@@ -168,7 +169,7 @@ def test_clicks_reach_only_listeners_of_the_design() -> None:
 def test_a_click_in_the_view_is_an_event_of_the_page(client: TestClient) -> None:
     assert client.get("/api/v1/views/a-design-unknown/events").status_code == 404
     client.put(f"/api/v1/views/{DESIGN}", json=SMALL)
-    state = client.app.state  # type: ignore[attr-defined]
+    state = state_of(client)
     with client.stream("GET", f"/api/v1/views/{DESIGN}/events") as stream:
         lines = stream.iter_lines()
         assert next(lines).startswith("retry")  # from now on the page listens

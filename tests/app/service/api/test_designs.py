@@ -147,11 +147,3 @@ def test_a_file_that_is_not_a_design_is_refused(
 ) -> None:
     answer = client.post(DESIGNS, json=RIB | change)
     assert (answer.status_code, answer.json()["field"]) == (422, field)
-
-
-@pytest.mark.parametrize(
-    "address", ["designs/a", "designs/a/versions", "jobs/b", "shared/c", "designs/a/versions/1"]
-)
-def test_unknown_names_are_not_found_however_short(client: TestClient, address: str) -> None:
-    answer = client.get(f"/api/v1/{address}")
-    assert (answer.status_code, answer.json()["type"]) == (404, "/problems/not-found")

@@ -1,4 +1,4 @@
-"""What operators rely on: logs, health, metrics, settings in a file, shutdown."""
+"""What operators rely on: logs, health, metrics, shutdown."""
 
 from __future__ import annotations
 
@@ -6,26 +6,20 @@ import json
 import logging
 import sqlite3
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace
 
 import httpx2 as httpx
 import pytest
-from anyio.to_thread import current_default_thread_limiter
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from starlette.websockets import WebSocketDisconnect
 
 from app.service import VERSION, doctor
-from app.service.main import THREADS, create_app
 from app.service.settings import Settings
-from app.service.store.lock import held
 from app.service.web.observing import JsonLines, TextLines, configure_logging
-from app.service.web.tokens import Tokens
-from knitcore.base.errors import InputError
-from tests.app.running import Service
+from tests.app.clients import LONG, bearing, served, state_of, tokens_of
+from tests.app.running import Service, wait_until
 
 
 @pytest.fixture
@@ -104,19 +98,16 @@ def test_metrics_count_by_route_and_not_by_address(client: TestClient) -> None:
 
 
 def test_metrics_are_for_the_operator(tmp_path: Path) -> None:
-    settings = Settings(require_login=True, token="operator" * 4, workers=1, data_dir=tmp_path)
-    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
-        user = Tokens(client.app.state.database).create("ada").token  # type: ignore[attr-defined]
+    with served(require_login=True, token="operator" * 4, data_dir=tmp_path) as client:
+        user = tokens_of(client).create("ada").token
         for token, status in ((user, 403), ("operator" * 4, 200)):
-            headers = {"Authorization": f"Bearer {token}"}
-            assert client.get("/metrics", headers=headers).status_code == status
+            assert client.get("/metrics", headers=bearing(token)).status_code == status
 
 
 def test_a_websocket_is_a_line_too_and_refused_users_have_no_name(
     tmp_path: Path, lines: list[dict[str, object]]
 ) -> None:
-    settings = Settings(require_login=True, workers=1, data_dir=tmp_path)
-    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+    with served(require_login=True, data_dir=tmp_path) as client:
         with pytest.raises(WebSocketDisconnect), client.websocket_connect("/view/a-view"):
             pass
         client.get("/api/v1/designs")
@@ -126,26 +117,18 @@ def test_a_websocket_is_a_line_too_and_refused_users_have_no_name(
     ]
 
 
-def test_readyz_checks_database_and_disk(
-    client: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_readyz_makes_the_checks_of_the_doctor(client: TestClient) -> None:
     ready = client.get("/readyz").json()
     assert ready["status"] == "ok"
-    with held(client.app.state.database, "main"):  # type: ignore[attr-defined]
+    with state_of(client).database.reserved("main"):
         told = doctor.examine(Settings()).checks
     assert ready["checks"] | {"service": True} == {check.name: check.ok for check in told}
-    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=3_000_000))
-    full = client.get("/readyz")
-    assert (full.status_code, full.json()["title"]) == (503, "Not ready")
-    assert "3 MB left" in full.json()["detail"]
-    assert client.get("/healthz").status_code == 200
 
 
 def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
-    app = create_app(Settings(workers=1, data_dir=tmp_path))
     design = {"name": "a", "material": "acrylic", "chart": "KP"}
     file, away = tmp_path / "knitcore.sqlite3", tmp_path / "away"
-    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+    with served(data_dir=tmp_path) as client:
 
         def unavailable(words: str) -> None:
             for answer in (client.get("/readyz"), client.post("/api/v1/designs", json=design)):
@@ -167,28 +150,10 @@ def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
         assert client.post("/api/v1/designs", json=design).status_code == 201
 
 
-def test_settings_come_from_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = tmp_path / "knitcore.toml"
-    monkeypatch.setenv("KNITCORE_CONFIG", str(file))
-    with pytest.raises(InputError, match="not a TOML"):
-        Settings()
-    file.write_text('port = 9001\nworkers = 3\nlog_format = "json"\n')
-    monkeypatch.setenv("KNITCORE_WORKERS", "1")
-    assert (Settings().port, Settings().workers, Settings().log_format) == (9001, 1, "json")
-    file.write_text("porrt = 9001\n")
-    with pytest.raises(ValueError, match="porrt"):
-        Settings()
-    file.write_text("not toml at all")
-    with pytest.raises(InputError, match="not a TOML"):
-        Settings()
-
-
 def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
     service = Service(tmp_path, log_format="json")
     client = service.start()
-    chart = {"fabric": "garter", "columns": 150, "rows": 150}
-    wish = {"chart": chart, "material": "acrylic", "direction": "wale", "strain": 0.3, "steps": 60}
-    job = client.post("/api/v1/jobs", json={"kind": "stretch", "request": wish}).json()["id"]
+    job = client.post("/api/v1/jobs", json={"kind": "stretch", "request": LONG}).json()["id"]
     heard: list[str] = []
 
     def listen() -> None:
@@ -201,16 +166,13 @@ def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
     answers: list[httpx.Response] = []
 
     def stretch() -> None:
-        answers.append(client.post("/api/v1/stretch", json=wish))
+        answers.append(client.post("/api/v1/stretch", json=LONG))
 
     threads = [threading.Thread(target=run, daemon=True) for run in (listen, stretch)]
     for thread in threads:
         thread.start()
-    deadline = time.monotonic() + 60
-    metrics = ""
-    while not heard or "knitcore_computations_waiting 1.0" not in metrics:
-        assert time.monotonic() < deadline
-        metrics = client.get("/metrics").text
+    waits = "knitcore_computations_waiting 1.0"
+    wait_until(lambda: heard and waits in client.get("/metrics").text)
     code = service.stop()
     for thread in threads:
         thread.join(60)
@@ -225,13 +187,3 @@ def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
     log = [json.loads(line) for line in service.log.read_text().splitlines()]
     assert {"request", "job waits"} <= {line["message"] for line in log}
     assert not [line for line in log if line["level"] == "error"]
-
-
-def test_the_service_has_few_threads(client: TestClient) -> None:
-    """The event loop waits for each of them that computes."""
-
-    async def threads() -> float:
-        return current_default_thread_limiter().total_tokens
-
-    assert client.portal is not None
-    assert client.portal.call(threads) == THREADS

@@ -138,6 +138,11 @@ def test_a_form_is_refused_with_a_request_for_json(client: TestClient) -> None:
     "path",
     [
         "/designs/no.such",
+        "/designs/a",  # unknown, however short
+        "/designs/a/versions",
+        "/designs/a/versions/1",
+        "/jobs/b",
+        "/shared/c",
         "/designs/abc/versions/0",
         "/designs/abc/versions/two",
         f"/jobs/{'j' * 65}",
@@ -146,7 +151,7 @@ def test_a_form_is_refused_with_a_request_for_json(client: TestClient) -> None:
         "/materials/steel",
     ],
 )
-def test_impossible_addresses_are_not_found(client: TestClient, path: str) -> None:
+def test_impossible_and_unknown_addresses_are_not_found(client: TestClient, path: str) -> None:
     answer = client.get(f"{API}{path}")
     assert (answer.status_code, answer.json()["type"]) == (404, "/problems/not-found")
     assert answer.json()["remedy"]

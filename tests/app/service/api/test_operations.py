@@ -10,54 +10,41 @@ from fastapi.testclient import TestClient
 from app.operations.chart.predict import PredictRequest
 from app.requests.charts import size_of
 from app.service.api.operations import MAX_LIGHT
+from tests.app.clients import state_of
 
 SMALL = {"fabric": "garter", "columns": 10, "rows": MAX_LIGHT // 10 - 10}
 LARGE = {"fabric": "garter", "columns": 101, "rows": MAX_LIGHT // 100}
 TEXT = "\n".join(["KP" * 60] * 90)
 
 
-@pytest.fixture
-def asked(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What workers were asked to do."""
-    compute = client.app.state.compute  # type: ignore[attr-defined]
-    found, run = list[Any](), compute.run
-
-    async def counted(*args: Any, **turn: Any) -> Any:
-        found.append(args)
-        return await run(*args, **turn)
-
-    monkeypatch.setattr(compute, "run", counted)
-    return found
-
-
-@pytest.mark.parametrize(("chart", "computed"), [(SMALL, 0), (LARGE, 1), (TEXT, 1)])
+@pytest.mark.parametrize(("chart", "count"), [(SMALL, 0), (LARGE, 1), (TEXT, 1)])
 def test_a_large_chart_is_predicted_in_a_worker(
-    client: TestClient, asked: list[Any], chart: Any, computed: int
+    client: TestClient, computed: list[Any], chart: Any, count: int
 ) -> None:
     answer = client.post("/api/v1/predict", json={"chart": chart, "material": "acrylic"})
     assert answer.status_code == 200
     assert answer.json()["modulus_course_n_per_mm"] > 0
-    assert len(asked) == computed
+    assert len(computed) == count
 
 
-@pytest.mark.parametrize(("columns", "computed"), [(200, 0), (206, 1)])
+@pytest.mark.parametrize(("columns", "count"), [(200, 0), (206, 1)])
 def test_a_large_chart_is_laid_in_a_worker(
-    client: TestClient, asked: list[Any], columns: int, computed: int
+    client: TestClient, computed: list[Any], columns: int, count: int
 ) -> None:
     chart = {"fabric": "garter", "columns": columns, "rows": 200}
     answer = client.put("/api/v1/views/large-or-not", json={"chart": chart, "material": "acrylic"})
     assert answer.json()["stitches"] == 40_000
-    assert len(asked) == computed
-    view = client.app.state.views.get("local/large-or-not")  # type: ignore[attr-defined]
+    assert len(computed) == count
+    view = state_of(client).views.get("local/large-or-not")
     assert view.writer.drawing.ground.shape == (200, columns)
 
 
 def test_what_is_given_away_of_a_view_is_made_in_a_worker(
-    client: TestClient, asked: list[Any]
+    client: TestClient, computed: list[Any]
 ) -> None:
     body = {"chart": "KP", "material": "acrylic"}
     assert client.post("/api/v1/views/solid", json=body).status_code == 200
-    assert len(asked) == 1
+    assert len(computed) == 1
 
 
 def test_the_size_of_a_request_counts_texts_and_named_fabrics() -> None:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 from collections.abc import Callable, Iterator
 from dataclasses import fields
 from pathlib import Path
 
 import pytest
-import viser
 from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
@@ -23,33 +21,41 @@ from app.service.identity import LOCAL_USER
 from app.service.jobs import store as job_store_module
 from app.service.jobs.document import JobState
 from app.service.jobs.store import JobStore
-from app.service.limits.budgets import (
-    BUDGETS,
-    Budgets,
-    ComputingTime,
-    InUse,
-    OverBudgetError,
-    SpentError,
+from app.service.limits.user_limits import (
+    USER_LIMITS,
+    ConcurrencyLimit,
+    CpuTimeLimit,
+    CpuTimeSpentError,
+    OverLimitError,
+    RateLimit,
+    UserLimits,
 )
-from app.service.main import create_app
-from app.service.settings import Settings
 from app.service.store.database import Database
-from app.service.web.tokens import Tokens
 from app.viewer import views as views_module
 from app.viewer.views import Views
+from tests.app.clients import bearing, served, state_of, tokens_of, watching
+from tests.app.jobs import never
 
 RIB = DesignDocument(name="Cuff", material="acrylic", chart="\n".join(["KP" * 50] * 100))
 SIZE = 100 * 101 - 1 + len(RIB.model_dump_json(include={"outline", "regions", "repeats", "shelf"}))
 
 
 def test_what_users_hold_is_counted_and_released() -> None:
-    uses = InUse(Budgets(streams=2))
+    uses = ConcurrencyLimit(UserLimits(streams=2))
     with uses.hold("streams", "ada"), uses.hold("streams", "ada"):
-        with pytest.raises(OverBudgetError, match="2 of 2 streams"):
+        with pytest.raises(OverLimitError, match="2 of 2 streams"):
             uses.check("streams", "ada")
         uses.check("streams", "bob")
         uses.check("watchers", "ada")
     assert uses.held("streams", "ada") == 0
+
+
+def test_a_bucket_fills_again() -> None:
+    limit = RateLimit(per_s=2.0, burst=3)
+    assert [limit.take("ada", at=0.0) for _ in range(4)] == [(2, 0), (1, 0), (0, 0), (0, 0.5)]
+    assert limit.take("bob", at=0.0) == (2, 0)
+    assert limit.take("ada", at=0.5) == (0, 0)
+    assert limit.left("ada", at=100.0) == 3
 
 
 class _Finished:
@@ -63,69 +69,67 @@ class _Finished:
         return done
 
 
-async def _never() -> bool:
-    return False
-
-
 def test_computing_time_is_spent_and_restored() -> None:
     compute = Compute([_Finished()], timeout_s=30.0)  # type: ignore[list-item]
-    compute.spent = ComputingTime(Budgets(cpu_s=0.1))
+    compute.cpu_time = CpuTimeLimit(UserLimits(cpu_s=0.1))
 
     def run(owner: str) -> int:
-        return asyncio.run(compute.run(_never, print, owner=owner))
+        return asyncio.run(compute.run(never, print, owner=owner))
 
     assert run("ada") == 1
-    assert compute.spent.used_s("ada") == pytest.approx(0.2, abs=1e-3)
-    with pytest.raises(SpentError, match="computing time of a day") as refused:
+    assert compute.cpu_time.used_s("ada") == pytest.approx(0.2, abs=1e-3)
+    with pytest.raises(CpuTimeSpentError, match="computing time of a day") as refused:
         run("ada")
     assert int(refused.value.headers["Retry-After"]) > 60
     assert run("bob") == 1
     assert [run(LOCAL_USER) for _ in range(2)] == [1, 1]
-    assert compute.spent.used_s(LOCAL_USER) == 0
+    assert compute.cpu_time.used_s(LOCAL_USER) == 0
 
 
 def test_computations_of_a_user_share_the_memory_of_the_machine(tmp_path: Path) -> None:
     """With the default limit of a worker, half of the machine's memory, that is two at once."""
-    settings = Settings(require_login=True, workers=3, data_dir=tmp_path)
-    with TestClient(create_app(settings)) as client:
-        turns = client.app.state.compute.turns  # type: ignore[attr-defined]
-        most = BUDGETS.memory_bytes // settings.worker_memory_bytes
-        assert turns.most_each == max(1, most)
+    with served(require_login=True, workers=3, data_dir=tmp_path) as client:
+        settings = state_of(client).settings
+        queue = state_of(client).compute.queue
+        most = USER_LIMITS.memory_bytes // settings.worker_memory_bytes
+        assert queue.most_each == max(1, most)
 
 
 def test_a_user_has_so_many_connections(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    settings = Settings(require_login=True, workers=1, data_dir=tmp_path)
-    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
-        state = client.app.state  # type: ignore[attr-defined]
-        state.in_use = InUse(Budgets(connections=2, streams=2))
-        headers = {"Authorization": f"Bearer {Tokens(state.database).create('ada').token}"}
+    with served(require_login=True, data_dir=tmp_path) as client:
+        state = state_of(client)
+        state.concurrency = ConcurrencyLimit(UserLimits(connections=2, streams=2))
+        headers = bearing(tokens_of(client).create("ada").token)
         client.put(
             "/api/v1/views/a-view", json={"chart": "K", "material": "cotton"}, headers=headers
         )
         told = client.get("/api/v1/session", headers=headers).json()["use"]
-        assert set(told) == {limit.name for limit in fields(Budgets)}
+        assert set(told) == {limit.name for limit in fields(UserLimits)}
         for name in ("connections", "views", "view_stitches"):
-            assert told[name] == {"used": 1, "most": getattr(BUDGETS, name)}
-        with state.in_use.hold("connections", "ada"), state.in_use.hold("connections", "ada"):
+            assert told[name] == {"used": 1, "most": getattr(USER_LIMITS, name)}
+        with (
+            state.concurrency.hold("connections", "ada"),
+            state.concurrency.hold("connections", "ada"),
+        ):
             refused = client.get("/api/v1/session", headers=headers)
             assert (refused.status_code, refused.json()["field"]) == (429, "connections")
             assert "2 of 2" in refused.json()["detail"]
-            other = {"Authorization": f"Bearer {Tokens(state.database).create('bob').token}"}
+            other = bearing(tokens_of(client).create("bob").token)
             assert client.get("/api/v1/session", headers=other).status_code == 200
-        assert state.in_use.held("connections", "ada") == 0
+        assert state.concurrency.held("connections", "ada") == 0
 
 
 def test_requests_of_jobs_have_a_size_together(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store = JobStore(database, "here")
-    monkeypatch.setattr(job_store_module, "BUDGETS", Budgets(job_bytes=100))
+    monkeypatch.setattr(job_store_module, "USER_LIMITS", UserLimits(job_bytes=100))
 
     def add(owner: str) -> str:
         return store.add(owner, "relax", "x" * 40, "key", JobState.WAITING).id
 
     first, second = add("ada"), add("ada")
-    with pytest.raises(OverBudgetError) as refused:
+    with pytest.raises(OverLimitError) as refused:
         add("ada")
     assert refused.value.field == "job_bytes"
     assert add("bob")
@@ -139,7 +143,7 @@ def test_bytes_kept_are_counted_with_versions(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store = DesignStore(database)
-    monkeypatch.setattr(store_module, "BUDGETS", Budgets(kept_bytes=3 * SIZE))
+    monkeypatch.setattr(store_module, "USER_LIMITS", UserLimits(kept_bytes=3 * SIZE))
     first = store.create("ada", RIB)
     store.keep_version("ada", first.id, "one")
     assert (store.most_versions("ada"), store.most_versions("bob")) == (1, 0)
@@ -150,7 +154,7 @@ def test_bytes_kept_are_counted_with_versions(
         lambda: store.keep_version("ada", first.id, "two"),
         lambda: store.replace("ada", second.id, larger, "*"),
     ):
-        with pytest.raises(OverBudgetError, match="of 0 MB"):
+        with pytest.raises(OverLimitError, match="of 0 MB"):
             refused()
     small = RIB.model_copy(update={"chart": "KP"})
     assert store.replace("ada", second.id, small, "*").columns == 2  # smaller is always taken
@@ -159,12 +163,12 @@ def test_bytes_kept_are_counted_with_versions(
 
 
 def test_links_to_a_design_are_bounded(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sharing_module, "BUDGETS", Budgets(links=2))
+    monkeypatch.setattr(sharing_module, "USER_LIMITS", UserLimits(links=2))
     design = DesignStore(database).create("ada", RIB).id
     links = Sharing(database)
     first = links.give("ada", design, ShareMode.READ)
     links.give("ada", design, ShareMode.COPY)
-    with pytest.raises(OverBudgetError, match="2 open links"):
+    with pytest.raises(OverLimitError, match="2 open links"):
         links.give("ada", design, ShareMode.READ)
     assert links.most_given("ada") == 2
     links.revoke("ada", design, first.id)
@@ -173,13 +177,13 @@ def test_links_to_a_design_are_bounded(database: Database, monkeypatch: pytest.M
 
 
 def test_one_user_does_not_take_all_views(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(views_module, "BUDGETS", Budgets(views=2))
+    monkeypatch.setattr(views_module, "USER_LIMITS", UserLimits(views=2))
     views = Views(most=3, idle_s=60)
     try:
         for name in ("ada/a", "ada/b"):
             views.open(name)
             views.watch(name, +1)
-        with pytest.raises(OverBudgetError, match="2 of 2"):
+        with pytest.raises(OverLimitError, match="2 of 2"):
             views.open("ada/c")
         views.open("bob/a")
         views.watch("ada/a", -1)
@@ -191,7 +195,7 @@ def test_one_user_does_not_take_all_views(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_large_charts_in_views_make_room_for_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(views_module, "BUDGETS", Budgets(view_stitches=100))
+    monkeypatch.setattr(views_module, "USER_LIMITS", UserLimits(view_stitches=100))
     views = Views(most=9, idle_s=60)
     try:
         views.open("ada/a", 60)
@@ -200,7 +204,7 @@ def test_large_charts_in_views_make_room_for_each_other(monkeypatch: pytest.Monk
         assert views.get("ada/a") is None
         assert views.get("bob/a") is not None
         views.watch("ada/b", +1)
-        with pytest.raises(OverBudgetError, match="60 of 100"):
+        with pytest.raises(OverLimitError, match="60 of 100"):
             views.open("ada/c", 60)
         assert views.open("ada/b", 90).stitches == 90  # the same view, with a larger chart
     finally:
@@ -209,13 +213,16 @@ def test_large_charts_in_views_make_room_for_each_other(monkeypatch: pytest.Monk
 
 @pytest.fixture
 def narrow(client: TestClient) -> Iterator[TestClient]:
-    state = client.app.state  # type: ignore[attr-defined]
-    before, uses = state.in_use, InUse(Budgets(watchers=1, streams=0, pictures=0))
-    state.in_use = uses
+    state = state_of(client)
+    before, uses = (
+        state.concurrency,
+        ConcurrencyLimit(UserLimits(watchers=1, streams=0, pictures=0)),
+    )
+    state.concurrency = uses
     body = {"chart": "KP", "material": "cotton"}
     assert client.put("/api/v1/views/a-view", json=body).status_code == 200
     yield client
-    state.in_use = before
+    state.concurrency = before
     assert not any(uses.held(what, "local") for what in ("watchers", "streams", "pictures"))
 
 
@@ -225,11 +232,7 @@ def test_streams_pictures_and_watchers_are_bounded(narrow: TestClient, tmp_path:
         assert (answer.status_code, answer.json()["type"]) == (429, "/problems/too-many")
         assert answer.json()["remedy"]
 
-    def watch() -> contextlib.AbstractContextManager[object]:
-        address = "ws://127.0.0.1/view/a-view"
-        return narrow.websocket_connect(address, subprotocols=[f"viser-v{viser.__version__}"])
-
-    with watch():
-        with pytest.raises(WebSocketDisconnect) as refused, watch():
+    with watching(narrow, "/view/a-view"):
+        with pytest.raises(WebSocketDisconnect) as refused, watching(narrow, "/view/a-view"):
             pass
         assert refused.value.code == 1013

@@ -1,0 +1,86 @@
+"""Every kind of job: it answers, and a worker killed in the middle of it costs that job only."""
+
+from __future__ import annotations
+
+import asyncio
+import gzip
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.service.compute import answers as answers_module
+from app.service.compute.compute import Compute
+from app.service.jobs.document import JobState
+from app.service.jobs.kinds import KINDS
+from app.service.jobs.runner import JobRunner
+from app.service.store.database import Database
+from tests.app.jobs import killed_in_the_middle
+from tests.app.service.jobs.helpers import ended, runner_of
+
+SLOW = frozenset({"relax", "sweep", "whole", "characterise"})
+"""Their own tests wait for what they answer."""
+SMALLER: dict[str, dict[str, Any]] = {
+    "stretch": {"steps": 2},
+    "piece": {"steps": 1},
+    "bias": {"mesh_mm": 20, "steps": 1},
+    "biaxial": {"mesh_mm": 50, "steps": 1},
+    "trellis": {"mesh_mm": 50, "steps": 1},
+}
+"""What their examples are given besides, so that there is less to compute."""
+
+
+@pytest.fixture(scope="module")
+def requests() -> dict[str, dict[str, Any]]:
+    """The examples, by kind."""
+    return {
+        kind: {**(operation.example or {}), **SMALLER.get(kind, {})}
+        for kind, operation in KINDS.items()
+    }
+
+
+@pytest.fixture
+def runner(sqlite_database: Database, tmp_path: Path, compute: Compute) -> JobRunner:
+    return runner_of(sqlite_database, compute, folder=tmp_path)
+
+
+def test_every_kind_has_an_example() -> None:
+    without = [kind for kind, operation in KINDS.items() if not operation.example]
+    assert without == ["work"]  # which tests add
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [kind if kind == "bend" else pytest.param(kind, marks=pytest.mark.slow) for kind in KINDS],
+)
+async def test_a_killed_worker_loses_only_its_own_job(
+    runner: JobRunner,
+    requests: dict[str, dict[str, Any]],
+    kind: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    described = KINDS[kind]
+    request = described.request.model_validate(requests[kind]).model_dump_json()
+
+    with monkeypatch.context() as patch:
+        patch.setattr(answers_module, "perform", partial(killed_in_the_middle, kind))
+        job = await runner.submit("ada", kind, request)
+        other = await runner.submit("ada", "curve", _curve(requests))
+        failed = await ended(runner, job.id)
+    assert failed.state is JobState.FAILED
+    assert failed.problem is not None
+    assert "died" in failed.problem.detail
+    assert (await ended(runner, other.id)).state is (
+        JobState.FAILED if kind == "curve" else JobState.DONE
+    )
+    if kind not in SLOW:
+        again = await runner.again("ada", job.id)
+        assert (await ended(runner, again.id)).state is JobState.DONE
+        answer = await asyncio.to_thread(runner.store.result, "ada", again.id)
+        assert answer is not None
+        described.result.model_validate_json(gzip.decompress(answer))
+
+
+def _curve(requests: dict[str, dict[str, Any]]) -> str:
+    return KINDS["curve"].request.model_validate(requests["curve"]).model_dump_json()
