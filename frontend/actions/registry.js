@@ -62,10 +62,7 @@ export function shown(shortcut = "") {
   return shortcut.replace("Mod+", mac ? "⌘" : "Ctrl+").replace("Escape", "Esc");
 }
 
-/**
- * @param {ActionContext} context
- * @param {() => boolean} isTyping
- */
+/** @param {ActionContext} context @param {() => boolean} isTyping */
 export function listenToKeys(context, isTyping) {
   window.addEventListener("keydown", (event) => {
     if (isTyping() || document.querySelector("dialog[open]") || event.defaultPrevented) return;
