@@ -40,10 +40,7 @@ const UNREACHABLE = {
   remedy: "Your chart is saved in this browser. Continue painting; the numbers return when the service does.",
 };
 
-/**
- * @param {Response} response
- * @returns {Promise<Problem>}
- */
+/** @param {Response} response @returns {Promise<Problem>} */
 async function problemOf(response) {
   /** @type {Problem} */
   const plain = {

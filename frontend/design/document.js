@@ -28,19 +28,13 @@ export class ChartDocument extends ChartState {
   /** @type {Set<(names: string[]) => void>} */ #torn = new Set();
   /** @type {{target: Target, layers: Map<string, Layer>, refused: number} | null} */ #stroke = null;
 
-  /**
-   * @param {Grid} grid
-   * @param {History} [history]
-   */
+  /** @param {Grid} grid @param {History} [history] */
   constructor(grid, history = new History()) {
     super(grid);
     this.history = history;
   }
 
-  /**
-   * @param {Content} content
-   * @param {History} [history]
-   */
+  /** @param {Content} content @param {History} [history] */
   static read(content, history = new History()) {
     const chart = new ChartDocument(new Grid(1, 1), history);
     chart.become(snapshotFrom(content));
@@ -407,11 +401,7 @@ export class ChartDocument extends ChartState {
     });
   }
 
-  /**
-   * @param {string} on
-   * @param {Brush} wanted
-   * @param {boolean} fresh
-   */
+  /** @param {string} on @param {Brush} wanted @param {boolean} fresh */
   #lay(on, wanted, fresh) {
     const stroke = this.#stroke;
     const bitmap = this.bitmap(on);
@@ -431,10 +421,7 @@ export class ChartDocument extends ChartState {
     for (const listener of this.#refused) listener(names);
   }
 
-  /**
-   * @param {string} label
-   * @param {Patch[]} patches
-   */
+  /** @param {string} label @param {Patch[]} patches */
   #keep(label, patches) {
     if (!patches.length) return false;
     this.history.push({ label, patches });
@@ -447,10 +434,7 @@ export class ChartDocument extends ChartState {
   }
 }
 
-/**
- * @param {string} prefix
- * @param {readonly {id: string}[]} items
- */
+/** @param {string} prefix @param {readonly {id: string}[]} items */
 function freeId(prefix, items) {
   let number = items.length + 1;
   while (items.some(({ id }) => id === `${prefix}-${number}`)) number++;

@@ -20,10 +20,7 @@ export class Clip {
     this.mask = mask;
   }
 
-  /**
-   * @param {Grid} grid
-   * @param {Selection} selection
-   */
+  /** @param {Grid} grid @param {Selection} selection */
   static of(grid, selection) {
     return new Clip(grid.region(selection), selection.mask ?? null);
   }

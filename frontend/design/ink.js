@@ -107,10 +107,7 @@ export function inked(grid, spans, ink, origin, symmetry) {
   return brush;
 }
 
-/**
- * @param {number} a
- * @param {number} n
- */
+/** @param {number} a @param {number} n */
 function modulo(a, n) {
   return ((a % n) + n) % n;
 }

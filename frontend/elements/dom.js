@@ -27,10 +27,7 @@ export function h(tag, properties = {}, ...children) {
   return element;
 }
 
-/**
- * @param {Child} child
- * @returns {child is Node | string | number}
- */
+/** @param {Child} child @returns {child is Node | string | number} */
 function isShown(child) {
   return child !== null && child !== undefined && child !== false;
 }

@@ -17,11 +17,7 @@ export class Grid {
     this.purl = purl;
   }
 
-  /**
-   * From K/P lines, top row first.
-   *
-   * @param {string} text well-formed: {@link isChartText} holds
-   */
+  /** From K/P lines, top row first. @param {string} text well-formed: {@link isChartText} holds */
   static fromText(text) {
     const lines = text.trim().split("\n").reverse();
     const grid = new Grid(lines.length, lines[0].length);
@@ -50,18 +46,12 @@ export class Grid {
     return { row0: 0, column0: 0, row1: this.rows, column1: this.columns };
   }
 
-  /**
-   * @param {number} row
-   * @param {number} column
-   */
+  /** @param {number} row @param {number} column */
   index(row, column) {
     return row * this.columns + column;
   }
 
-  /**
-   * @param {number} row
-   * @param {number} column
-   */
+  /** @param {number} row @param {number} column */
   has(row, column) {
     return row >= 0 && column >= 0 && row < this.rows && column < this.columns;
   }
@@ -163,11 +153,7 @@ export class Grid {
   }
 }
 
-/**
- * Whether a text is K/P lines of one length within the page's limits.
- *
- * @param {string} text
- */
+/** Whether a text is K/P lines of one length within the page's limits. @param {string} text */
 export function isChartText(text) {
   const lines = text.trim().split("\n");
   const columns = lines[0].length;

@@ -112,10 +112,7 @@ export function stitchesOf(values, width, height, { columns, rows, threshold, in
   });
 }
 
-/**
- * @param {number} from
- * @param {number} size
- */
+/** @param {number} from @param {number} size */
 function middle(from, size) {
   const first = Math.floor(from + size / 4);
   return [first, Math.max(first + 1, Math.floor(from + (3 * size) / 4))];

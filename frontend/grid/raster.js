@@ -36,26 +36,14 @@ export function line([row, column], [toRow, toColumn]) {
   }
 }
 
-/**
- * Filled rectangle between two corners.
- *
- * @param {Cell} a
- * @param {Cell} b
- * @returns {Span[]}
- */
+/** Filled rectangle between two corners. @param {Cell} a @param {Cell} b @returns {Span[]} */
 export function rectangle(a, b) {
   const bottom = Math.min(a[0], b[0]);
   const [from, to] = [Math.min(a[1], b[1]), Math.max(a[1], b[1]) + 1];
   return Array.from({ length: Math.abs(a[0] - b[0]) + 1 }, (_, k) => [bottom + k, from, to]);
 }
 
-/**
- * Filled ellipse within two corners.
- *
- * @param {Cell} a
- * @param {Cell} b
- * @returns {Span[]}
- */
+/** Filled ellipse within two corners. @param {Cell} a @param {Cell} b @returns {Span[]} */
 export function ellipse(a, b) {
   const middleRow = (a[0] + b[0]) / 2;
   const middle = (a[1] + b[1]) / 2;

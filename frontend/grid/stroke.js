@@ -30,10 +30,7 @@ export class Brush {
     return brush;
   }
 
-  /**
-   * @param {number} i
-   * @param {number} value
-   */
+  /** @param {number} i @param {number} value */
   set(i, value) {
     if (this.values[i] === UNTOUCHED) this.#list[this.count++] = i;
     this.values[i] = value;
@@ -55,10 +52,7 @@ export class Layer {
   /** @type {Uint8Array} */ #flipped;
   /** Holds all that was flipped. @type {Box | null} */ #reach = null;
 
-  /**
-   * @param {Uint8Array} bitmap changed in place
-   * @param {number} columns
-   */
+  /** @param {Uint8Array} bitmap changed in place @param {number} columns */
   constructor(bitmap, columns) {
     this.bitmap = bitmap;
     this.columns = columns;
@@ -127,11 +121,7 @@ export class Layer {
   }
 }
 
-/**
- * @param {Box} a
- * @param {Box} b
- * @returns {Box}
- */
+/** @param {Box} a @param {Box} b @returns {Box} */
 export function union(a, b) {
   return {
     row0: Math.min(a.row0, b.row0),

@@ -14,7 +14,7 @@ const PAD = { left: 40, right: 8, top: 8, bottom: 34 };
 export function pressurePlot(places) {
   const svg = document.createElementNS(SVG, "svg");
   svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
-  svg.setAttribute("class", "pressure-plot");
+  svg.setAttribute("class", "pressure-plot full-width");
   svg.setAttribute("role", "img");
   svg.setAttribute("aria-label", "Pressure along the limb, mmHg, with its 90 % interval");
   /** @param {string} tag @param {Record<string, string | number>} attributes @param {string} [text] */

@@ -12,11 +12,7 @@ import { FABRICS } from "../grid/segments.js";
 const SVG = "http://www.w3.org/2000/svg";
 const PAD = { left: 50, right: 10, top: 8, bottom: 40 };
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @returns {() => void} draws anew
- */
+/** @param {HTMLElement} host @param {Studio} studio @returns {() => void} draws anew */
 export function rigidityPlot(host, studio) {
   const svg = document.createElementNS(SVG, "svg");
   svg.setAttribute("role", "img");

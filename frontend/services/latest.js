@@ -1,3 +1,5 @@
+import { ApiError, isAbort } from "../api.js";
+
 /** Runs only the newest of many requests: waits a little, gives up what is under way. */
 export class Latest {
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #timer;
@@ -9,13 +11,22 @@ export class Latest {
   }
 
   /**
-   * @param {(signal: AbortSignal) => Promise<void>} work must handle its own errors
+   * @param {(signal: AbortSignal) => Promise<void>} work
+   * @param {(error: ApiError) => void} refused called if the service refuses, not if it was given up
    */
-  run(work) {
+  run(work, refused) {
     this.cancel();
-    const controller = new AbortController();
-    this.#controller = controller;
-    this.#timer = setTimeout(() => void work(controller.signal), this.delay);
+    this.#controller = new AbortController();
+    const { signal } = this.#controller;
+    this.#timer = setTimeout(async () => {
+      try {
+        await work(signal);
+      } catch (error) {
+        if (signal.aborted || isAbort(error)) return;
+        if (!(error instanceof ApiError)) throw error;
+        refused(error);
+      }
+    }, this.delay);
   }
 
   cancel() {

@@ -28,13 +28,7 @@ import { Seeing } from "./seeing.js";
 import { Gauges } from "./gauges.js";
 import { TOOLS } from "../tools/registry.js";
 
-const SETTINGS = {
-  overlay: "fabrics",
-  rectangles: false,
-  tool: "pencil",
-  size: 1,
-  weight: 0.5,
-};
+const SETTINGS = { overlay: "fabrics", rectangles: false, tool: "pencil", size: 1, weight: 0.5 };
 
 /** Girths of a limb that a tube of the chart sits on firmly, over its size at rest. */
 const SNUG = [1.12, 1.25];
@@ -241,11 +235,7 @@ export class Studio {
     return fields?.[this.stretchDirection() === "course" ? "strain_course_interval" : "strain_wale_interval"];
   }
 
-  /**
-   * Show a message to the user.
-   *
-   * @param {Problem} problem
-   */
+  /** Show a message to the user. @param {Problem} problem */
   tellProblem(problem) {
     this.message.value = { kind: "error", ...problem };
   }

@@ -387,11 +387,7 @@ export class Keeper {
     }
   }
 
-  /**
-   * Deliver designs that were left before the service had them.
-   *
-   * @param {string[]} [only]
-   */
+  /** Deliver designs that were left before the service had them. @param {string[]} [only] */
   async deliverOthers(only) {
     for (let parcel of drafts.all()) {
       if (parcel.id === this.#parcel.id || (only && !only.includes(parcel.id))) continue;

@@ -16,7 +16,7 @@ const PRESSED = ["button", "checkbox", "file", "radio"];
 export function dialog(id, title, ...content) {
   const element = h(
     "dialog",
-    { id, class: "dialog", "aria-labelledby": `${id}-title` },
+    { id, class: "dialog panelled shadowed", "aria-labelledby": `${id}-title` },
     h(
       "header",
       {},

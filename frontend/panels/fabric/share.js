@@ -26,12 +26,7 @@ export async function savePicture(studio, width) {
 /** Whether the view shows a cloth, of which a picture can be made. */
 export const isKnitted = () => document.querySelector(".fabric[data-live]") !== null;
 
-/**
- * A picture (PNG) as this browser sees the fabric.
- *
- * @param {Studio} studio
- * @param {number} width
- */
+/** A picture (PNG) as this browser sees the fabric. @param {Studio} studio @param {number} width */
 export async function viewPicture(studio, width) {
   const frame = document.querySelector(".fabric-frame");
   const height = Math.round((width * (frame?.clientHeight ?? 3)) / (frame?.clientWidth ?? 4));
@@ -50,11 +45,7 @@ export async function saveFile(studio, request, kind, animated) {
   await save(studio, ENDINGS[kind], async () => (await fetched(`/views/${kind}`, { method: "POST", body })).blob());
 }
 
-/**
- * @param {Studio} studio
- * @param {string} ending
- * @param {() => Promise<Blob>} made
- */
+/** @param {Studio} studio @param {string} ending @param {() => Promise<Blob>} made */
 async function save(studio, ending, made) {
   studio.tell("The file is being made …");
   try {

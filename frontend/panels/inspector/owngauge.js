@@ -29,7 +29,7 @@ export function ownGauge(studio) {
   const rows = field("own-gauge-rows", "Rows per 10 cm of your knitted cloth");
   const element = h(
     "div",
-    { class: "own-gauge", title: "Counted on cloth of this chart at rest: it makes the numbers more certain" },
+    { class: "own-gauge line", title: "Counted on cloth of this chart at rest: it makes the numbers more certain" },
     "Your gauge, 10 cm:",
     stitches,
     "×",

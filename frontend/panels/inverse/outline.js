@@ -9,10 +9,10 @@
 import { figure, percent } from "../../core/format.js";
 import { Grid } from "../../grid/grid.js";
 import { h } from "../../elements/dom.js";
-import { icon } from "../../elements/icons.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
-import { field } from "./find.js";
+import { field, form, verdict } from "./form.js";
+import { segmented } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
 import { textButton } from "../../widgets/buttons.js";
 
@@ -39,7 +39,7 @@ export function fromOutline(studio) {
 
   const svg = document.createElementNS(SVG, "svg");
   svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
-  svg.setAttribute("class", "outline-plot");
+  svg.setAttribute("class", "outline-plot full-width");
   svg.setAttribute("role", "group");
   svg.setAttribute("aria-label", "Target width of the stretched swatch over its width at rest");
   const x = (/** @type {number} */ share) => PAD.left + share * (WIDTH - PAD.left - PAD.right);
@@ -173,23 +173,17 @@ export function fromOutline(studio) {
     const filled = Grid.fromText(found.chart);
     const good = found.largest <= 0.03;
     answer.replaceChildren(
-      h(
-        "p",
-        { class: good ? "inverse-verdict good" : "inverse-verdict" },
-        icon(good ? "check" : "info"),
-        h(
-          "span",
-          {},
-          `Stretched, the widths are ${percent(found.rms, 1)} off on average and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`,
-        ),
+      verdict(
+        good,
+        `Stretched, the widths are ${percent(found.rms, 1)} off on average and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`,
       ),
       h(
         "div",
-        { class: "inverse-preview" },
+        { class: "inverse-preview flex" },
         thumbnail({ chart: found.chart }, { side: 150, label: "The filled chart" }),
         h(
           "div",
-          { class: "preview-words" },
+          { class: "preview-words stack small shrinks-x grows gap-6" },
           h(
             "p",
             {},
@@ -208,18 +202,11 @@ export function fromOutline(studio) {
               },
               { class: "button primary", id: "outline-apply" },
             ),
-            h(
-              "button",
-              {
-                class: "button",
-                onclick: () => {
-                  reached = null;
-                  draw();
-                  answer.replaceChildren();
-                },
-              },
-              "Discard",
-            ),
+            textButton(null, "Discard", () => {
+              reached = null;
+              draw();
+              answer.replaceChildren();
+            }),
             textButton("wand", "Another try", () => {
               seed += 1;
               void fill();
@@ -230,43 +217,25 @@ export function fromOutline(studio) {
     );
   };
 
-  const pulls = h(
-    "div",
-    { class: "segmented", role: "radiogroup", "aria-label": "Pulled along" },
-    ...[
+  const pulls = segmented(
+    "Pulled along",
+    [
       ["wale", "Columns"],
       ["course", "Rows"],
-    ].map(([id, label]) =>
-      h(
-        "button",
-        {
-          class: "segment",
-          role: "radio",
-          "aria-checked": String(id === direction),
-          onclick: (/** @type {Event} */ { currentTarget }) => {
-            direction = /** @type {Direction} */ (id);
-            for (const other of pulls.children) other.setAttribute("aria-checked", String(other === currentTarget));
-            reached = null;
-            draw();
-          },
-        },
-        label,
-      ),
-    ),
+    ],
+    direction,
+    (way) => {
+      direction = /** @type {Direction} */ (way);
+      reached = null;
+      draw();
+    },
   );
   draw();
   const element = h(
     "div",
     { class: "inverse-section" },
-    h(
-      "form",
-      {
-        class: "inverse-form",
-        onsubmit: (/** @type {Event} */ event) => {
-          event.preventDefault();
-          void fill();
-        },
-      },
+    form(
+      fill,
       h(
         "p",
         { class: "muted inverse-hint" },
@@ -277,7 +246,7 @@ export function fromOutline(studio) {
         "div",
         { class: "inverse-bar" },
         h("span", { class: "muted" }, "Pulled along"),
-        pulls,
+        pulls.element,
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
         h("label", { class: "check" }, "bands of at least", band, "lines"),
       ),
