@@ -9,10 +9,7 @@
 
 /** A refused or failed call. */
 export class ApiError extends Error {
-  /**
-   * @param {Problem} problem
-   * @param {boolean} [passing] whether the service asks to try again later
-   */
+  /** @param {Problem} problem @param {boolean} [passing] whether the service asks to try again later */
   constructor(problem, passing = false) {
     super(problem.detail || problem.title);
     this.name = "ApiError";

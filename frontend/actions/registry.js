@@ -52,11 +52,7 @@ export function matches(shortcut, event) {
   );
 }
 
-/**
- * Shortcut as this computer's keys are called.
- *
- * @param {string} [shortcut] empty for what has none
- */
+/** Shortcut as this computer's keys are called. @param {string} [shortcut] empty for what has none */
 export function shown(shortcut = "") {
   const mac = navigator.platform.startsWith("Mac");
   return shortcut.replace("Mod+", mac ? "⌘" : "Ctrl+").replace("Escape", "Esc");

@@ -90,11 +90,7 @@ export class Painter {
     view.flush();
   }
 
-  /**
-   * @param {Cell} cell
-   * @param {boolean} opposite
-   * @param {{shiftKey: boolean, altKey: boolean}} keys
-   */
+  /** @param {Cell} cell @param {boolean} opposite @param {{shiftKey: boolean, altKey: boolean}} keys */
   #begin(cell, opposite, { shiftKey, altKey }) {
     const { studio } = this;
     const { document: chart, tool } = studio;

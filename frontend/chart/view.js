@@ -99,11 +99,7 @@ export class ChartView {
     this.redraw();
   }
 
-  /**
-   * @param {number} factor
-   * @param {number} [x] CSS pixels; the middle if left out
-   * @param {number} [y]
-   */
+  /** @param {number} factor @param {number} [x] CSS pixels; the middle if left out @param {number} [y] */
   zoom(factor, x = this.viewport.width / 2, y = this.viewport.height / 2) {
     this.viewport.zoom(factor, x, y, this.studio.document.grid);
     this.redraw();

@@ -9,11 +9,7 @@ export function figure(value, digits = 3) {
   return value.toFixed(decimals).replace("-", "−");
 }
 
-/**
- * Both ends with as many decimals as the larger one needs.
- *
- * @param {readonly number[] | null | undefined} interval
- */
+/** Both ends with as many decimals as the larger one needs. @param {readonly number[] | null | undefined} interval */
 export function range(interval) {
   if (!interval || !interval.every(Number.isFinite)) return "";
   const [low, high] = interval;

@@ -33,13 +33,7 @@ export function contentOf(chart, more = {}) {
   return { chart, outline: null, regions: [], repeats: [], shelf: [], ...more };
 }
 
-/**
- * A document from the content of a file.
- *
- * @param {unknown} value
- * @returns {DesignDocument}
- * @throws {DesignError}
- */
+/** A document from the content of a file. @param {unknown} value @returns {DesignDocument} @throws {DesignError} */
 export function readDesign(value) {
   if (!isObject(value) || value.format !== FORMAT) {
     throw new DesignError("It is not a design.", `A design says "format": "${FORMAT}".`);

@@ -43,11 +43,7 @@ export class ChartDocument extends ChartState {
 
   // --- listening ------------------------------------------------------------------------------
 
-  /**
-   * After a whole step: a stroke ended, a region was renamed, an undo, a new chart.
-   *
-   * @param {() => void} listener
-   */
+  /** After a whole step: a stroke ended, a region was renamed, an undo, a new chart. @param {() => void} listener */
   onSettle(listener) {
     this.#settled.add(listener);
   }
@@ -110,12 +106,7 @@ export class ChartDocument extends ChartState {
     }
   }
 
-  /**
-   * End the stroke and remember it as one step.
-   *
-   * @param {string} label
-   * @returns {boolean} whether anything changed
-   */
+  /** End the stroke and remember it as one step. @param {string} label @returns {boolean} whether anything changed */
   commit(label) {
     const stroke = this.#stroke;
     if (!stroke) return false;
@@ -172,12 +163,7 @@ export class ChartDocument extends ChartState {
     this.#keep(label, patches);
   }
 
-  /**
-   * Become another document, as one step that can be undone.
-   *
-   * @param {Content} content
-   * @param {string} label
-   */
+  /** Become another document, as one step that can be undone. @param {Content} content @param {string} label */
   load(content, label) {
     this.cancel();
     const before = { ...snapshotOf(this), shelf: [...this.shelf] };
@@ -186,12 +172,7 @@ export class ChartDocument extends ChartState {
     this.#keep(label, [{ before, after }]);
   }
 
-  /**
-   * Become another document with a history of its own.
-   *
-   * @param {Content} content
-   * @param {History} [history]
-   */
+  /** Become another document with a history of its own. @param {Content} content @param {History} [history] */
   open(content, history = new History()) {
     this.cancel();
     this.history = history;

@@ -27,12 +27,7 @@ export class Ink {
     this.target = target;
   }
 
-  /**
-   * The stitch that this ink puts at a place.
-   *
-   * @param {Cell} cell
-   * @param {Cell} origin where the repeat begins
-   */
+  /** The stitch that this ink puts at a place. @param {Cell} cell @param {Cell} origin where the repeat begins */
   at([row, column], [originRow, originColumn]) {
     const repeat = /** @type {Grid} */ (this.repeat);
     const r = modulo(row - originRow, repeat.rows);

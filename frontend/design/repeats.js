@@ -118,12 +118,7 @@ export function withPlace({ placements }, place) {
   return [...seen, place];
 }
 
-/**
- * Repeats with only those placements that a chart shows.
- *
- * @param {readonly Repeat[]} repeats
- * @param {Grid} grid
- */
+/** Repeats with only those placements that a chart shows. @param {readonly Repeat[]} repeats @param {Grid} grid */
 export function matching(repeats, grid) {
   return repeats.map((repeat) => {
     const placements = repeat.placements.filter((place) => {

@@ -48,13 +48,7 @@ export function flip(bitmap, runs) {
   }
 }
 
-/**
- * The rows and columns that runs lie in.
- *
- * @param {number[]} runs not empty
- * @param {number} columns
- * @returns {Box}
- */
+/** The rows and columns that runs lie in. @param {number[]} runs not empty @param {number} columns @returns {Box} */
 export function boxOfRuns(runs, columns) {
   const box = { row0: Infinity, column0: Infinity, row1: 0, column1: 0 };
   for (let k = 0; k < runs.length; k += 2) {

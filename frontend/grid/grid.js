@@ -98,22 +98,12 @@ export class Grid {
     }
   }
 
-  /**
-   * Cut or filled up with knits, kept at the bottom left.
-   *
-   * @param {number} rows
-   * @param {number} columns
-   */
+  /** Cut or filled up with knits, kept at the bottom left. @param {number} rows @param {number} columns */
   resized(rows, columns) {
     return Grid.build(rows, columns, (row, column) => (this.has(row, column) ? this.purl[this.index(row, column)] : 0));
   }
 
-  /**
-   * Repeated from the bottom left up to the given size.
-   *
-   * @param {number} rows
-   * @param {number} columns
-   */
+  /** Repeated from the bottom left up to the given size. @param {number} rows @param {number} columns */
   tiled(rows, columns) {
     return Grid.build(rows, columns, (row, column) => this.purl[this.index(row % this.rows, column % this.columns)]);
   }

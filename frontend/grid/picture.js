@@ -17,11 +17,7 @@ export function greys({ data, width, height }) {
   return values;
 }
 
-/**
- * The grey that best parts dark from light (Otsu, 1979); values below it are dark.
- *
- * @param {Uint8Array} values
- */
+/** The grey that best parts dark from light (Otsu, 1979); values below it are dark. @param {Uint8Array} values */
 export function bestThreshold(values) {
   const counts = new Float64Array(256);
   let sum = 0;

@@ -6,13 +6,7 @@
  * @typedef {[row: number, from: number, to: number]} Span columns from `from` up to before `to`
  */
 
-/**
- * Line between two stitches (Bresenham), both included.
- *
- * @param {Cell} from
- * @param {Cell} to
- * @returns {Cell[]}
- */
+/** Line between two stitches (Bresenham), both included. @param {Cell} from @param {Cell} to @returns {Cell[]} */
 export function line([row, column], [toRow, toColumn]) {
   /** @type {Cell[]} */
   const cells = [];
@@ -55,13 +49,7 @@ export function ellipse(a, b) {
   });
 }
 
-/**
- * Square brushes of a size along a path.
- *
- * @param {Cell[]} path
- * @param {number} size
- * @returns {Span[]}
- */
+/** Square brushes of a size along a path. @param {Cell[]} path @param {number} size @returns {Span[]} */
 export function thick(path, size) {
   const before = Math.floor((size - 1) / 2);
   return path.flatMap(([row, column]) =>

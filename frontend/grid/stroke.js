@@ -20,10 +20,7 @@ export class Brush {
     this.#list = new Uint32Array(length);
   }
 
-  /**
-   * @param {number} length
-   * @param {Iterable<readonly [number, number]>} cells stitch and its value
-   */
+  /** @param {number} length @param {Iterable<readonly [number, number]>} cells stitch and its value */
   static of(length, cells) {
     const brush = new Brush(length);
     for (const [i, value] of cells) brush.set(i, value);

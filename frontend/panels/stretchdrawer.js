@@ -236,11 +236,7 @@ function locking(test) {
   return used > 0 ? `No stitch locks: the tightest has used ${percent(used)} of its stretch.` : "";
 }
 
-/**
- * How the ends are held, what is computed and shown; the usual choice is made.
- *
- * @param {Studio} studio
- */
+/** How the ends are held, what is computed and shown; the usual choice is made. @param {Studio} studio */
 function stretchOptions(studio) {
   const clamps = selectField({ class: "select", id: "stretch-clamps" }, [
     ["clamped", "gripped"],

@@ -102,11 +102,7 @@ async function* hung(studio, signal) {
   }
 }
 
-/**
- * @param {Studio} studio
- * @param {AbortSignal} signal
- * @param {import("../types.js").CurlRequest["pull"]} pull
- */
+/** @param {Studio} studio @param {AbortSignal} signal @param {import("../types.js").CurlRequest["pull"]} pull */
 async function* curled(studio, signal, pull) {
   const asked = { ...studio.request, outline: outlineOf(studio), pull };
   /** The first shape begins at the old one; the last one depends on the chart only. */

@@ -10,10 +10,7 @@ import { scopeOf } from "./scope.js";
 
 const DELAY_MS = 80;
 
-/**
- * @param {Studio} studio
- * @returns {() => void} asks anew
- */
+/** @param {Studio} studio @returns {() => void} asks anew */
 export function startPredictor(studio) {
   const latest = new Latest(DELAY_MS);
   const ask = () => {

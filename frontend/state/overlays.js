@@ -238,9 +238,5 @@ function css(rgb) {
   return `rgb(${rgb.join(" ")})`;
 }
 
-/**
- * What of it fabric that nobody pulls can show: not how far it is pulled.
- *
- * @param {Overlay} overlay
- */
+/** What of it fabric that nobody pulls can show: not how far it is pulled. @param {Overlay} overlay */
 export const atRest = (overlay) => (overlay === strain || overlay === utilisation ? fabrics : overlay);

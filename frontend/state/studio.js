@@ -37,10 +37,7 @@ const SNUG = [1.12, 1.25];
 export const REST = -1;
 
 export class Studio {
-  /**
-   * @param {ChartDocument} document
-   * @param {{id: string, name: string, material: string, note?: string}} design
-   */
+  /** @param {ChartDocument} document @param {{id: string, name: string, material: string, note?: string}} design */
   constructor(document, design) {
     const settings = loadSettings(SETTINGS);
     this.document = document;

@@ -110,11 +110,7 @@ export class Keeper {
     this.#show({ id, remote: null, base: null, document: design }, keep);
   }
 
-  /**
-   * Open a design of the service, with what was changed here and not delivered yet.
-   *
-   * @param {Kept} kept
-   */
+  /** Open a design of the service, with what was changed here and not delivered yet. @param {Kept} kept */
   openKept(kept) {
     this.#leave();
     const remote = { id: kept.id, revision: kept.revision };
@@ -139,11 +135,7 @@ export class Keeper {
     this.state.value = { kind: "shared", mode, token };
   }
 
-  /**
-   * The service has changed the design on show at our request, as by restoring a version.
-   *
-   * @param {Kept} kept
-   */
+  /** The service has changed the design on show at our request, as by restoring a version. @param {Kept} kept */
   takeOver(kept) {
     this.#follow(() => this.studio.follow(kept.document));
     this.#parcel = { ...this.#parcel, remote: { id: kept.id, revision: kept.revision }, base: kept.document };

@@ -8,11 +8,7 @@ import { problemText } from "./problem.js";
 /** Inputs that Enter itself works on. */
 const PRESSED = ["button", "checkbox", "file", "radio"];
 
-/**
- * @param {string} id
- * @param {string} title
- * @param {...import("../elements/dom.js").Child} content
- */
+/** @param {string} id @param {string} title @param {...import("../elements/dom.js").Child} content */
 export function dialog(id, title, ...content) {
   const element = h(
     "dialog",

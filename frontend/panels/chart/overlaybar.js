@@ -206,13 +206,7 @@ function describe(studio, cell) {
   return parts.join(" · ");
 }
 
-/**
- * What the rectangle at a stitch says.
- *
- * @param {Studio} studio
- * @param {number} row
- * @param {number} column
- */
+/** What the rectangle at a stitch says. @param {Studio} studio @param {number} row @param {number} column */
 function give(studio, row, column) {
   const group = groupAt(studio, row, column);
   if (!group) return "in no region";

@@ -25,12 +25,7 @@ export function hindrance(to, { shaped, stitches }) {
   return stitches > most ? `at most ${most.toLocaleString("en")} stitches` : "";
 }
 
-/**
- * The formats that extensions add.
- *
- * @param {Extensions["extensions"]} extensions
- * @returns {ExportKind[]}
- */
+/** The formats that extensions add. @param {Extensions["extensions"]} extensions @returns {ExportKind[]} */
 export function ofExtensions(extensions) {
   return extensions
     .filter(({ group, problem }) => group === "knitcore.exporters" && problem === null)

@@ -297,13 +297,7 @@ export function fabricview(host, studio, view) {
   };
 }
 
-/**
- * What the view is to show.
- *
- * @param {Studio} studio
- * @param {ChartView} view
- * @returns {ViewRequest}
- */
+/** What the view is to show. @param {Studio} studio @param {ChartView} view @returns {ViewRequest} */
 export function viewRequest(studio, view) {
   const { document: chart, seeing } = studio;
   const posed = seeing.posed.value;

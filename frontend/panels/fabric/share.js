@@ -15,10 +15,7 @@ import { download, fileName } from "../../services/exporter.js";
 /** @type {Record<Kind, string>} */
 const ENDINGS = { page: "html", recording: "viser", solid: "glb" };
 
-/**
- * @param {Studio} studio
- * @param {number} width of the picture in pixels; its proportions are the view's
- */
+/** @param {Studio} studio @param {number} width of the picture in pixels; its proportions are the view's */
 export async function savePicture(studio, width) {
   await save(studio, "png", () => viewPicture(studio, width));
 }

@@ -282,10 +282,7 @@ export function create(studio, { keeper }) {
     return { thumb, fingers: rest };
   }
 
-  /**
-   * @param {[number, number][]} start
-   * @param {(label: string, mm: number) => LengthField} length
-   */
+  /** @param {[number, number][]} start @param {(label: string, mm: number) => LengthField} length */
   function profileTable(start, length) {
     /** @type {{at: LengthField, around: LengthField}[]} */
     const places = [];

@@ -25,11 +25,7 @@ const COUNT_MS = 80;
 const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb", "drape"]);
 /** @typedef {(typeof PLOTS)[number]} Plot */
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @returns {() => void} draws the plots anew, for another theme
- */
+/** @param {HTMLElement} host @param {Studio} studio @returns {() => void} draws the plots anew, for another theme */
 export function inspector(host, studio) {
   const title = h("h2", {});
   const scopes = h("select", {
@@ -224,11 +220,7 @@ export function inspector(host, studio) {
   };
 }
 
-/**
- * @param {HTMLTableElement} table
- * @param {PredictResult | null} value
- * @param {Scope} scope of the numbers
- */
+/** @param {HTMLTableElement} table @param {PredictResult | null} value @param {Scope} scope of the numbers */
 function fill(table, value, scope) {
   const size = value && sizeAtRest(scope, value);
   /** @param {string} id @param {number | undefined} number @param {string} [interval] */

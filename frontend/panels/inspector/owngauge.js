@@ -8,10 +8,7 @@ import { h } from "../../elements/dom.js";
 import { scopeOf } from "../../services/scope.js";
 import { numberField } from "../../widgets/fields.js";
 
-/**
- * @param {Studio} studio
- * @returns {{element: HTMLElement, show: () => void}} `show` fills in what is known
- */
+/** @param {Studio} studio @returns {{element: HTMLElement, show: () => void}} `show` fills in what is known */
 export function ownGauge(studio) {
   const cloth = () => ({ chart: scopeOf(studio).grid.text, material: studio.materialId.value });
   const keep = () => {
