@@ -55,5 +55,5 @@ export function saveState(context) {
     others.replaceChildren(icon("copy"), h("span", { class: "label" }, words));
     others.title = `This design is ${words}: strokes there come here at once`;
   });
-  return h("span", { class: "kept-group inline gap-4" }, chip, others);
+  return h("span", { class: "inline gap-4" }, chip, others);
 }

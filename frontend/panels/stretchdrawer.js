@@ -132,7 +132,7 @@ export function stretchdrawer(host, studio, stretcher) {
       { class: "stretch-set line gap-10" },
       h("h2", {}, "Stretch test"),
       choices.element,
-      h("div", { class: "amount line gap-6" }, amount, unit),
+      h("div", { class: "line gap-6" }, amount, unit),
       options.element,
       run,
     ),

@@ -100,7 +100,7 @@ function accountButton({ user }, context) {
   const element = h(
     "button",
     {
-      class: "button quiet account",
+      class: "button quiet",
       id: "action-account",
       title: "Your account",
       onclick: () => context.open("account"),

@@ -80,7 +80,7 @@ export function create(studio, { keeper }) {
         h(
           "section",
           { "aria-label": `Piece ${SIDES[k].letter}` },
-          h("div", { class: "compare-what line gap-8" }, badge(k), which),
+          h("div", { class: "line gap-8" }, badge(k), which),
           yarn,
           picture,
           size,
@@ -88,12 +88,7 @@ export function create(studio, { keeper }) {
       ),
     ),
     status,
-    h(
-      "div",
-      { class: "compare-answers stack" },
-      h("div", {}, table),
-      h("div", { class: "compare-plots" }, ways.element, plot, rectangles),
-    ),
+    h("div", { class: "compare-answers stack" }, h("div", {}, table), h("div", {}, ways.element, plot, rectangles)),
   );
 
   /** @type {{piece: Piece, answers: Answers}[]} */

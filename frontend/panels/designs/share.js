@@ -46,7 +46,7 @@ export function create(_studio, { keeper }) {
   const copied = h("p", { class: "muted" });
   const result = h(
     "div",
-    { class: "share-result stack gap-6", hidden: true },
+    { class: "stack gap-6", hidden: true },
     h("div", { class: "dialog-tools" }, link, copy),
     copied,
   );

@@ -89,7 +89,7 @@ function entries(context) {
 
 /** @param {Studio} _studio @param {ActionContext} context */
 export function create(_studio, context) {
-  const nothing = h("p", { class: "muted command-none", role: "status" });
+  const nothing = h("p", { class: "muted", role: "status" });
   const list = h("div", { class: "command-list stack", role: "listbox", "aria-label": "Commands" });
   const search = h("input", {
     type: "text",

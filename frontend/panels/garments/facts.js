@@ -18,7 +18,7 @@ export function facts(garment, unit) {
   return [
     h(
       "p",
-      { class: "planner-sizes figures" },
+      { class: "figures" },
       h("strong", {}, `${columns} sts × ${rows} rows`),
       ` · ${stitches} stitches · ${figure(yarn_m)} m of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
     ),

@@ -55,7 +55,7 @@ export function create(studio, { keeper }) {
   };
 
   // --- what is asked ----------------------------------------------------------------------------
-  const measures = h("div", { class: "planner-measures stack gap-6" });
+  const measures = h("div", { class: "stack gap-6" });
   const about = h("p", { class: "muted" });
   const ease = numberField({
     id: "planner-ease",
@@ -123,7 +123,7 @@ export function create(studio, { keeper }) {
   );
   const gaugeRow = h(
     "div",
-    { class: "planner-gauge line wrap gap-6", hidden: true },
+    { class: "line wrap gap-6", hidden: true },
     stitches,
     "sts ×",
     rows,
@@ -312,7 +312,7 @@ export function create(studio, { keeper }) {
     start.forEach(add);
     const element = h(
       "div",
-      { class: "planner-profile" },
+      {},
       h(
         "table",
         { class: "planner-table" },

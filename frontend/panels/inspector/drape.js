@@ -84,7 +84,7 @@ const TESTS = [
 /** @param {HTMLElement} host @param {Studio} studio @returns {() => void} nothing to draw anew */
 export function drape(host, studio) {
   const latest = new Latest(0);
-  const answer = h("div", { class: "limb-answer", role: "status", id: "drape-answer" });
+  const answer = h("div", { role: "status", id: "drape-answer" });
   const weight = numberField({ id: "drape-weight", min: "0.005", max: "20", step: "0.01", value: studio.weight.value });
   weight.addEventListener("change", () => {
     if (weight.valueAsNumber > 0) studio.weight.value = weight.valueAsNumber;

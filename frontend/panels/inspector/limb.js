@@ -113,7 +113,7 @@ export function limb(host, studio) {
   };
   showGirths(chosen.value.girths ?? []);
 
-  const answer = h("div", { class: "limb-answer", role: "status", id: "limb-answer" });
+  const answer = h("div", { role: "status", id: "limb-answer" });
   /** @param {LimbResult} found */
   const show = (found) => {
     const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm, interval_source } = found;

@@ -38,7 +38,7 @@ const NEAR = 0.1;
 export function fromStiffness(studio) {
   const { document: chart, selection } = studio;
   const run = new Run();
-  const list = h("ol", { class: "target-list plain-list stack gap-6", id: "parts" });
+  const list = h("ol", { class: "plain-list stack gap-6", id: "parts" });
   const answer = h("div", { class: "inverse-answer", id: "fill-answer" });
   /** @type {Part[]} */
   let parts = [];
@@ -394,7 +394,7 @@ function patchList({ patches, columns }, targeted) {
         repeatPicture(patch.repeat, 60),
         h(
           "div",
-          { class: "candidate-body small shrinks-x grows" },
+          { class: "small shrinks-x grows" },
           h("strong", { class: "candidate-title line gap-8" }, nameOf(patch.repeat)),
           h("div", { class: "muted" }, `${part?.name ?? ""}, ${patch.stitches} sts`),
           ...AXES.map(({ axis, label }) => {

@@ -53,7 +53,7 @@ const quantityOf = (label) => QUANTITIES.find(({ id }) => id === label.split("@"
 /** @param {Studio} studio @param {ActionContext} context */
 export function findTab(studio, context) {
   const run = new Run();
-  const rows = h("div", { class: "target-list plain-list stack gap-6", id: "targets" });
+  const rows = h("div", { class: "plain-list stack gap-6", id: "targets" });
   const answer = h("div", { class: "inverse-answer", id: "find-answer" });
   /** @type {(() => TargetInput | null)[]} */
   const readers = [];
@@ -214,7 +214,7 @@ export function findTab(studio, context) {
       picture,
       h(
         "div",
-        { class: "candidate-body small shrinks-x grows" },
+        { class: "small shrinks-x grows" },
         h(
           "div",
           { class: "candidate-title line gap-8" },
@@ -237,7 +237,7 @@ export function findTab(studio, context) {
         ),
         h(
           "div",
-          { class: "muted candidate-cost" },
+          { class: "muted" },
           `${figure(candidate.transfers_per_stitch, 2)} transfers, ${figure(candidate.crossings_per_stitch, 2)} crossings a stitch; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`,
         ),
       ),

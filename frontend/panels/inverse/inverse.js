@@ -45,7 +45,7 @@ function panel(studio, context) {
   };
   const tabs = h(
     "div",
-    { class: "inverse-tabs flex wrap shrinks-x gap-2", role: "tablist", "aria-label": "Inverse design" },
+    { class: "flex wrap shrinks-x gap-2", role: "tablist", "aria-label": "Inverse design" },
     ...TABS.map(({ id, label }) =>
       h(
         "button",

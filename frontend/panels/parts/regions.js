@@ -26,7 +26,7 @@ import { docked, refreshed } from "../../widgets/dock.js";
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, context) {
   const { document: chart, selection, ink } = studio;
-  const list = h("ol", { class: "part-list plain-list", reversed: true });
+  const list = h("ol", { class: "plain-list", reversed: true });
   let chosen = chart.regions.at(-1)?.id ?? "";
 
   const fromSelection = textButton("select", "From selection", () => action("make-region").perform(context), {
@@ -127,7 +127,7 @@ export function create(studio, context) {
           }),
           h(
             "div",
-            { class: "part-buttons flex wrap gap-5" },
+            { class: "flex wrap gap-5" },
             wide(
               "paint",
               "pencil",

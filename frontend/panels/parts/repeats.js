@@ -23,7 +23,7 @@ import { numberField, textLine } from "../../widgets/fields.js";
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, context) {
   const { document: chart, selection, editing } = studio;
-  const list = h("ol", { class: "part-list plain-list" });
+  const list = h("ol", { class: "plain-list" });
   const fromSelection = textButton("select", "New from the selection", () => action("make-repeat").perform(context), {
     id: "repeat-from-selection",
   });
@@ -89,14 +89,14 @@ export function create(studio, context) {
           h("p", { class: "muted figures" }, repeat.rule[0].toUpperCase() + repeat.rule.slice(1)),
           h(
             "div",
-            { class: "edge-fields line gap-6 gap-12" },
+            { class: "line gap-12" },
             h("span", {}, "Edge"),
             edge("edgeColumns", "sts", edgeColumns),
             edge("edgeRows", "rows", edgeRows),
           ),
           h(
             "div",
-            { class: "part-buttons flex wrap gap-5" },
+            { class: "flex wrap gap-5" },
             wide(
               "place",
               "repeat",
@@ -123,7 +123,7 @@ export function create(studio, context) {
             }),
           ),
           placements.length
-            ? h("ul", { class: "copies plain-list" }, ...placements.map((place, at) => copy(repeat, place, at)))
+            ? h("ul", { class: "plain-list" }, ...placements.map((place, at) => copy(repeat, place, at)))
             : h("p", { class: "muted" }, "Not placed yet."),
           h("p", { class: "muted" }, "Paint any copy: all follow."),
           h(
