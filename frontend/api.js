@@ -9,10 +9,7 @@
 
 /** A refused or failed call. */
 export class ApiError extends Error {
-  /**
-   * @param {Problem} problem
-   * @param {boolean} [passing] whether the service asks to try again later
-   */
+  /** @param {Problem} problem @param {boolean} [passing] whether the service asks to try again later */
   constructor(problem, passing = false) {
     super(problem.detail || problem.title);
     this.name = "ApiError";
@@ -40,10 +37,7 @@ const UNREACHABLE = {
   remedy: "Your chart is saved in this browser. Continue painting; the numbers return when the service does.",
 };
 
-/**
- * @param {Response} response
- * @returns {Promise<Problem>}
- */
+/** @param {Response} response @returns {Promise<Problem>} */
 async function problemOf(response) {
   /** @type {Problem} */
   const plain = {

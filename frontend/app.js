@@ -1,7 +1,7 @@
 /** Puts the page together, in pieces between which the browser has its turn: none keeps it waiting for long. */
 
 import { listenToKeys } from "./actions/registry.js";
-import { ApiError, api, isAbort } from "./api.js";
+import { ApiError, api } from "./api.js";
 import { Painter } from "./chart/painter.js";
 import { isDark, onTheme } from "./state/palette.js";
 import { ChartView } from "./chart/view.js";
@@ -9,7 +9,7 @@ import { ChartDocument } from "./design/document.js";
 import { exampleGrid } from "./grid/example.js";
 import { isChartText } from "./grid/grid.js";
 import { Ink } from "./design/ink.js";
-import { Latest } from "./core/latest.js";
+import { Latest } from "./services/latest.js";
 import { motifGrid } from "./grid/motif.js";
 import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./design/store.js";
 import { byId, firstPaint, isTyping, nextTask } from "./elements/dom.js";
@@ -117,18 +117,17 @@ void firstPaint().then(async () => {
   themed.push(inspector(byId("inspector"), studio));
 });
 
+/** Say what the service refused; that it is away, the banner says. @param {ApiError} error */
+const missed = ({ offline, problem }) => {
+  if (offline) studio.online.value = false;
+  else studio.tellProblem(problem);
+};
+
 const material = new Latest(0);
 const loadMaterial = () =>
   material.run(async (signal) => {
-    try {
-      studio.material.value = await api.material(studio.materialId.value, signal);
-    } catch (error) {
-      if (isAbort(error)) return;
-      if (!(error instanceof ApiError)) throw error;
-      if (error.offline) studio.online.value = false;
-      else studio.tellProblem(error.problem);
-    }
-  });
+    studio.material.value = await api.material(studio.materialId.value, signal);
+  }, missed);
 studio.materialId.watch(loadMaterial);
 
 const loadLists = async () => {
@@ -141,8 +140,7 @@ const loadLists = async () => {
       .map(({ id, name, repeat, note }) => new Ink(id, name, motifGrid(repeat), note));
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    if (error.offline) studio.online.value = false;
-    else studio.tellProblem(error.problem);
+    missed(error);
   }
 };
 await nextTask();

@@ -23,4 +23,10 @@
  * @property {(context: ActionContext) => void} perform
  */
 
-export {};
+/**
+ * What makes the actions of a group.
+ *
+ * @param {string} group
+ * @returns {(id: string, label: string, keys: string[], more: Partial<Action>, perform: Action["perform"]) => Action}
+ */
+export const actionsOf = (group) => (id, label, keys, more, perform) => ({ id, label, group, keys, perform, ...more });

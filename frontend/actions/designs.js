@@ -1,52 +1,32 @@
-/**
- * Designs: beginning, opening, keeping and sharing them.
- *
- * @import {Action, ActionContext} from "./action.js"
- * @import {IconName} from "../elements/icons.js"
- */
+/** Designs: beginning, opening, keeping and sharing them. */
 
-/**
- * @param {string} id
- * @param {string} label
- * @param {string} key
- * @param {IconName} icon
- * @param {(context: ActionContext) => void} perform
- * @returns {Action}
- */
-const action = (id, label, key, icon, perform) => ({
-  id,
-  label,
-  group: "Designs",
-  keys: key ? [key] : [],
-  icon,
-  perform,
-});
+import { actionsOf } from "./action.js";
 
-/** @type {Action[]} */
+const action = actionsOf("Designs");
+
 export const DESIGNS = [
-  action("designs", "My designs …", "Mod+O", "folder", ({ open }) => open("designs")),
-  action("gallery", "New design, examples …", "Shift+N", "gallery", ({ open }) => open("gallery")),
-  action("garments", "Plan a garment …", "Mod+Shift+G", "yarn", ({ open }) => open("garments")),
-  action("versions", "Versions …", "Mod+S", "pin", ({ open }) => open("versions")),
-  action("compare", "Compare two pieces …", "Shift+C", "compare", ({ open }) => open("compare")),
-  action("share", "Share …", "Mod+Shift+S", "share", ({ open }) => open("share")),
-  action("duplicate", "Duplicate this design", "Mod+Shift+D", "copy", ({ studio, keeper }) => {
+  action("designs", "My designs …", ["Mod+O"], { icon: "folder" }, ({ open }) => open("designs")),
+  action("gallery", "New design, examples …", ["Shift+N"], { icon: "gallery" }, ({ open }) => open("gallery")),
+  action("garments", "Plan a garment …", ["Mod+Shift+G"], { icon: "yarn" }, ({ open }) => open("garments")),
+  action("versions", "Versions …", ["Mod+S"], { icon: "pin" }, ({ open }) => open("versions")),
+  action("compare", "Compare two pieces …", ["Shift+C"], { icon: "compare" }, ({ open }) => open("compare")),
+  action("share", "Share …", ["Mod+Shift+S"], { icon: "share" }, ({ open }) => open("share")),
+  action("duplicate", "Duplicate this design", ["Mod+Shift+D"], { icon: "copy" }, ({ studio, keeper }) => {
     const design = studio.toDocument();
     keeper.openNew({ ...design, name: `${design.name.slice(0, 190)} (copy)` });
     studio.tell("This is the copy; the original is among your designs.");
   }),
-  action("yarns", "Own yarns …", "Shift+Y", "yarn", ({ open }) => open("yarns")),
-  action("exports", "Export, all formats …", "Mod+E", "export", ({ open }) => open("exports")),
+  action("yarns", "Own yarns …", ["Shift+Y"], { icon: "yarn" }, ({ open }) => open("yarns")),
+  action("exports", "Export, all formats …", ["Mod+E"], { icon: "export" }, ({ open }) => open("exports")),
   action(
     "project-file",
     "Save as a project file",
-    "Mod+Shift+E",
-    "export",
+    ["Mod+Shift+E"],
+    { icon: "export" },
     ({ studio }) => void import("../services/exporter.js").then(({ exportProject }) => exportProject(studio)),
   ),
-  {
-    ...action("account", "Your account …", "", "person", ({ open }) => open("account")),
-    enabled: ({ user }) => user.value !== null,
-  },
-  action("tour", "Tour of the page", "", "tour", ({ open }) => open("tour")),
+  action("account", "Your account …", [], { icon: "person", enabled: ({ user }) => user.value !== null }, ({ open }) =>
+    open("account"),
+  ),
+  action("tour", "Tour of the page", [], { icon: "tour" }, ({ open }) => open("tour")),
 ];

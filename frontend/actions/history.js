@@ -1,21 +1,19 @@
-/** @type {import("./action.js").Action} */
-export const undo = {
-  id: "undo",
-  label: "Undo",
-  group: "Edit",
-  icon: "undo",
-  keys: ["Mod+Z"],
-  enabled: ({ document }) => document.history.done.length > 0,
-  perform: ({ studio }) => void studio.document.undo(),
-};
+import { actionsOf } from "./action.js";
 
-/** @type {import("./action.js").Action} */
-export const redo = {
-  id: "redo",
-  label: "Redo",
-  group: "Edit",
-  icon: "redo",
-  keys: ["Mod+Shift+Z", "Mod+Y"],
-  enabled: ({ document }) => document.history.undone.length > 0,
-  perform: ({ studio }) => void studio.document.redo(),
-};
+const action = actionsOf("Edit");
+
+export const undo = action(
+  "undo",
+  "Undo",
+  ["Mod+Z"],
+  { icon: "undo", enabled: ({ document }) => document.history.done.length > 0 },
+  ({ studio }) => void studio.document.undo(),
+);
+
+export const redo = action(
+  "redo",
+  "Redo",
+  ["Mod+Shift+Z", "Mod+Y"],
+  { icon: "redo", enabled: ({ document }) => document.history.undone.length > 0 },
+  ({ studio }) => void studio.document.redo(),
+);

@@ -1,29 +1,11 @@
-/**
- * From a target to a fabric: the atlas, the search, and filling.
- *
- * @import {Action} from "./action.js"
- * @import {IconName} from "../elements/icons.js"
- */
+/** From a target to a fabric: the atlas, the search, and filling. */
 
-/**
- * @param {"atlas" | "find" | "fill"} panel
- * @param {string} label
- * @param {string} key
- * @param {IconName} icon
- * @returns {Action}
- */
-const action = (panel, label, key, icon) => ({
-  id: `open-${panel}`,
-  label,
-  group: "From a target to a fabric",
-  icon,
-  keys: [key],
-  perform: ({ open }) => open(panel),
-});
+import { actionsOf } from "./action.js";
 
-/** @type {Action[]} */
+const action = actionsOf("From a target to a fabric");
+
 export const INVERSE = [
-  action("atlas", "Atlas of all repeats", "A", "scatter"),
-  action("find", "Find a fabric by its numbers", "Shift+F", "search"),
-  action("fill", "Fill the chart from a target", "Shift+W", "target"),
+  action("open-atlas", "Atlas of all repeats", ["A"], { icon: "scatter" }, ({ open }) => open("atlas")),
+  action("open-find", "Find a fabric by its numbers", ["Shift+F"], { icon: "search" }, ({ open }) => open("find")),
+  action("open-fill", "Fill the chart from a target", ["Shift+W"], { icon: "target" }, ({ open }) => open("fill")),
 ];

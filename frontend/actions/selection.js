@@ -1,10 +1,10 @@
 /**
  * What to do with the selection: clipboard, patterns, repeats, regions.
  *
- * @import {Action} from "./action.js"
  * @import {Studio} from "../state/studio.js"
  */
 
+import { actionsOf } from "./action.js";
 import { Clip, Floating } from "../design/floating.js";
 import { MAX_ITEMS, MAX_MOTIF } from "../design/design.js";
 import { motifText } from "../grid/motif.js";
@@ -15,7 +15,7 @@ import { repeat as placeTool } from "../tools/repeat.js";
 import { stamp } from "../tools/stamp.js";
 import { nextRegionColour } from "../state/palette.js";
 
-const group = "Selection";
+const action = actionsOf("Selection");
 
 /** @param {Studio} studio */
 const some = ({ selection }) => selection.value !== null;
@@ -37,79 +37,51 @@ function clearPart({ document, selection }, label) {
   );
 }
 
-/** @type {Action} */
-const selectAll = {
-  id: "select-all",
-  label: "Select all",
-  group,
-  icon: "select",
-  keys: ["Mod+A"],
-  perform: ({ studio: { document, selection } }) => (selection.value = selectionOf(document.outline, document.grid)),
-};
+const selectAll = action(
+  "select-all",
+  "Select all",
+  ["Mod+A"],
+  { icon: "select" },
+  ({ studio: { document, selection } }) => (selection.value = selectionOf(document.outline, document.grid)),
+);
 
-/** @type {Action} */
-const deselect = {
-  id: "deselect",
-  label: "Select nothing",
-  group,
-  icon: "close",
-  keys: ["Escape"],
-  enabled: some,
-  perform: ({ studio }) => (studio.selection.value = null),
-};
+const deselect = action(
+  "deselect",
+  "Select nothing",
+  ["Escape"],
+  { icon: "close", enabled: some },
+  ({ studio }) => (studio.selection.value = null),
+);
 
-/** @type {Action} */
-const invert = {
-  id: "invert",
-  label: "Select the rest",
-  group,
-  keys: ["Mod+Shift+I"],
-  enabled: some,
-  perform: ({ studio: { document, selection } }) => {
+const invert = action(
+  "invert",
+  "Select the rest",
+  ["Mod+Shift+I"],
+  { enabled: some },
+  ({ studio: { document, selection } }) => {
     const rest = document.outline.slice();
     if (selection.value) for (const i of selectedCells(selection.value, document.grid)) rest[i] = 0;
     selection.value = selectionOf(rest, document.grid);
   },
-};
+);
 
-/** @type {Action} */
-const copy = {
-  id: "copy",
-  label: "Copy",
-  group,
-  icon: "copy",
-  keys: ["Mod+C"],
-  enabled: some,
-  perform: ({ studio }) => {
-    copyPart(studio);
-    studio.tell("Copied. Paste (Ctrl+V) puts it at the pointer.");
-  },
-};
+const copy = action("copy", "Copy", ["Mod+C"], { icon: "copy", enabled: some }, ({ studio }) => {
+  copyPart(studio);
+  studio.tell("Copied. Paste (Ctrl+V) puts it at the pointer.");
+});
 
-/** @type {Action} */
-const cut = {
-  id: "cut",
-  label: "Cut",
-  group,
-  icon: "cut",
-  keys: ["Mod+X"],
-  enabled: some,
-  perform: ({ studio }) => {
-    copyPart(studio);
-    clearPart(studio, "Cut");
-  },
-};
+const cut = action("cut", "Cut", ["Mod+X"], { icon: "cut", enabled: some }, ({ studio }) => {
+  copyPart(studio);
+  clearPart(studio, "Cut");
+});
 
-/** @type {Action} */
-export const paste = {
-  id: "paste",
-  label: "Paste at the pointer",
-  group,
-  icon: "paste",
-  keys: ["Mod+V"],
-  // The browser's own paste event brings it, or what another program has copied.
-  native: true,
-  perform: ({ studio, view }) => {
+// The browser's own paste event brings it, or what another program has copied.
+export const paste = action(
+  "paste",
+  "Paste at the pointer",
+  ["Mod+V"],
+  { icon: "paste", native: true },
+  ({ studio, view }) => {
     const { document, editing, selection } = studio;
     const { clip } = editing;
     if (!clip) {
@@ -129,24 +101,17 @@ export const paste = {
     editing.hold(new Floating(clip, place, under));
     studio.tool.value = move;
   },
-};
+);
 
-/** @type {Action} */
-const clear = {
-  id: "clear",
-  label: "Turn it into knits",
-  group,
-  icon: "trash",
-  keys: ["Delete", "Backspace"],
-  enabled: some,
-  perform: ({ studio }) => clearPart(studio, "Clear"),
-};
+const clear = action(
+  "clear",
+  "Turn it into knits",
+  ["Delete", "Backspace"],
+  { icon: "trash", enabled: some },
+  ({ studio }) => clearPart(studio, "Clear"),
+);
 
-/**
- * The selected box as a motif, if it is small enough for one.
- *
- * @param {Studio} studio
- */
+/** The selected box as a motif, if it is small enough for one. @param {Studio} studio */
 function selectedMotif(studio) {
   const box = studio.selection.value;
   if (!box) return null;
@@ -171,15 +136,12 @@ export function hasRoom(studio, list, what) {
   return room;
 }
 
-/** @type {Action} */
-const pattern = {
-  id: "keep-pattern",
-  label: "Keep as a pattern on the shelf",
-  group,
-  icon: "stamp",
-  keys: ["Shift+S"],
-  enabled: some,
-  perform: ({ studio }) => {
+const pattern = action(
+  "keep-pattern",
+  "Keep as a pattern on the shelf",
+  ["Shift+S"],
+  { icon: "stamp", enabled: some },
+  ({ studio }) => {
     const part = selectedMotif(studio);
     if (!part || !hasRoom(studio, "shelf", "own patterns")) return;
     const { document } = studio;
@@ -192,17 +154,14 @@ const pattern = {
     studio.selection.value = null;
     studio.tell(`${name} is on the shelf. Click to stamp it, or paint with it.`);
   },
-};
+);
 
-/** @type {Action} */
-export const makeRepeat = {
-  id: "make-repeat",
-  label: "Make it a linked repeat",
-  group,
-  icon: "repeat",
-  keys: ["Shift+P"],
-  enabled: some,
-  perform: ({ studio, open }) => {
+export const makeRepeat = action(
+  "make-repeat",
+  "Make it a linked repeat",
+  ["Shift+P"],
+  { icon: "repeat", enabled: some },
+  ({ studio, open }) => {
     const box = studio.selection.value;
     const motif = selectedMotif(studio);
     if (!box || !motif || !hasRoom(studio, "repeats", "linked repeats")) return;
@@ -215,17 +174,14 @@ export const makeRepeat = {
     open("repeats");
     studio.tell(`${name}: drag to place copies. Paint one, and all follow.`);
   },
-};
+);
 
-/** @type {Action} */
-export const makeRegion = {
-  id: "make-region",
-  label: "Make it a region",
-  group,
-  icon: "regions",
-  keys: ["Shift+G"],
-  enabled: some,
-  perform: ({ studio, open }) => {
+export const makeRegion = action(
+  "make-region",
+  "Make it a region",
+  ["Shift+G"],
+  { icon: "regions", enabled: some },
+  ({ studio, open }) => {
     const { document, selection } = studio;
     if (!selection.value || !hasRoom(studio, "regions", "regions")) return;
     const look = { name: `Region ${document.regions.length + 1}`, colour: nextRegionColour(document.regions) };
@@ -233,17 +189,14 @@ export const makeRegion = {
     selection.value = null;
     open("regions");
   },
-};
+);
 
-/** @type {Action} */
-const cutOutline = {
-  id: "cut-outline",
-  label: "Cut the outline to the selection",
-  group,
-  icon: "cut",
-  keys: [],
-  enabled: some,
-  perform: ({ studio: { document, selection } }) => {
+const cutOutline = action(
+  "cut-outline",
+  "Cut the outline to the selection",
+  [],
+  { icon: "cut", enabled: some },
+  ({ studio: { document, selection } }) => {
     if (!selection.value) return;
     const kept = new Set(selectedCells(selection.value, document.grid));
     document.set(
@@ -252,24 +205,21 @@ const cutOutline = {
       "outline",
     );
   },
-};
+);
 
-/** @type {Action} */
-const fullOutline = {
-  id: "full-outline",
-  label: "Make the outline a full rectangle",
-  group: "Edit",
-  keys: [],
-  enabled: ({ document }) => document.shaped,
-  perform: ({ studio: { document } }) =>
+const fullOutline = action(
+  "full-outline",
+  "Make the outline a full rectangle",
+  [],
+  { group: "Edit", enabled: ({ document }) => document.shaped },
+  ({ studio: { document } }) =>
     void document.set(
       Array.from(document.outline, (_, i) => [i, 1]),
       "Outline",
       "outline",
     ),
-};
+);
 
-/** @type {Action[]} */
 export const SELECTION = [
   selectAll,
   deselect,

@@ -2,14 +2,18 @@
  * Changes of the selection or, if nothing is selected, of the whole chart with all its parts; and its
  * rows and columns.
  *
- * @import {Action, ActionContext} from "./action.js"
+ * @import {ActionContext} from "./action.js"
  * @import {IconName} from "../elements/icons.js"
  */
 
+import { actionsOf } from "./action.js";
 import { changed } from "../design/floating.js";
 import { MAX_SIDE } from "../grid/grid.js";
 import { deleted, inserted, turned } from "../design/reshape.js";
 import { selectedCells } from "../design/selection.js";
+
+const change = actionsOf("Change (selection or chart)");
+const line = actionsOf("Rows and columns");
 
 /**
  * @param {string} id
@@ -17,15 +21,9 @@ import { selectedCells } from "../design/selection.js";
  * @param {IconName} icon
  * @param {string} key
  * @param {"mirrored" | "flipped" | "rotated" | "turnedOver" | "swapped"} how
- * @returns {Action}
  */
-const transform = (id, label, icon, key, how) => ({
-  id,
-  label,
-  group: "Change (selection or chart)",
-  icon,
-  keys: [key],
-  perform: ({ studio: { document, selection } }) => {
+const transform = (id, label, icon, key, how) =>
+  change(id, label, [key], { icon }, ({ studio: { document, selection } }) => {
     const { grid } = document;
     if (!selection.value) {
       document.reshape(label, turned(grid, how));
@@ -39,18 +37,14 @@ const transform = (id, label, icon, key, how) => ({
       (mask) => (shape === "swapped" ? mask : mask[shape]()),
     );
     document.set(cells, label);
-  },
-});
+  });
 
-/** @type {Action} */
-const fillPart = {
-  id: "fill-part",
-  label: "Fill with the chosen stitch or pattern",
-  group: "Change (selection or chart)",
-  icon: "fill",
-  keys: ["F"],
-  enabled: ({ ink }) => ink.value.repeat !== null,
-  perform: ({ studio: { document, ink, selection } }) => {
+const fillPart = change(
+  "fill-part",
+  "Fill with the chosen stitch or pattern",
+  ["F"],
+  { icon: "fill", enabled: ({ ink }) => ink.value.repeat !== null },
+  ({ studio: { document, ink, selection } }) => {
     const { grid } = document;
     const cells = selectedCells(selection.value ?? grid.box, grid);
     const { columns } = grid;
@@ -60,7 +54,7 @@ const fillPart = {
       ink.value.target,
     );
   },
-};
+);
 
 /**
  * Rows or columns that are meant: those selected, or the one under the pointer.
@@ -83,15 +77,9 @@ function meant({ studio: { document, selection }, view }, axis) {
  * @param {string[]} keys
  * @param {"rows" | "columns"} axis
  * @param {"before" | "after"} side before: below, or at the left
- * @returns {Action}
  */
-const insertion = (id, label, keys, axis, side) => ({
-  id,
-  label,
-  group: "Rows and columns",
-  icon: axis === "rows" ? "insert-row" : "insert-column",
-  keys,
-  perform: (context) => {
+const insertion = (id, label, keys, axis, side) =>
+  line(id, label, keys, { icon: axis === "rows" ? "insert-row" : "insert-column" }, (context) => {
     const { document, selection, tell } = context.studio;
     const { grid } = document;
     const [from, to] = meant(context, axis);
@@ -115,30 +103,24 @@ const insertion = (id, label, keys, axis, side) => ({
       column0: box.column0 + columns,
       column1: box.column1 + columns,
     };
-  },
-});
+  });
 
-/**
- * @param {"rows" | "columns"} axis
- * @param {string[]} keys
- * @returns {Action}
- */
-const deletion = (axis, keys) => ({
-  id: `delete-${axis}`,
-  label: axis === "rows" ? "Delete rows" : "Delete columns",
-  group: "Rows and columns",
-  icon: axis === "rows" ? "delete-row" : "delete-column",
-  keys,
-  perform: (context) => {
-    const { studio } = context;
-    const { grid } = studio.document;
-    const [from, to] = meant(context, axis);
-    if (to - from >= grid[axis]) studio.tell(`A chart keeps at least one of its ${axis}.`);
-    else studio.document.reshape(`Delete ${axis}`, deleted(grid, axis, from, to));
-  },
-});
+/** @param {"rows" | "columns"} axis @param {string[]} keys */
+const deletion = (axis, keys) =>
+  line(
+    `delete-${axis}`,
+    `Delete ${axis}`,
+    keys,
+    { icon: axis === "rows" ? "delete-row" : "delete-column" },
+    (context) => {
+      const { studio } = context;
+      const { grid } = studio.document;
+      const [from, to] = meant(context, axis);
+      if (to - from >= grid[axis]) studio.tell(`A chart keeps at least one of its ${axis}.`);
+      else studio.document.reshape(`Delete ${axis}`, deleted(grid, axis, from, to));
+    },
+  );
 
-/** @type {Action[]} */
 export const TRANSFORM = [
   fillPart,
   transform("mirror", "Mirror left and right", "mirror", "Shift+H", "mirrored"),

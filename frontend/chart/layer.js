@@ -65,13 +65,7 @@ export class ColourLayer {
     );
   }
 
-  /**
-   * Colour of a stitch's lower left quarter.
-   *
-   * @param {Grid} grid
-   * @param {number} row
-   * @param {number} column
-   */
+  /** Colour of a stitch's lower left quarter. @param {Grid} grid @param {number} row @param {number} column */
   pixelAt(grid, row, column) {
     return this.#pixels[(2 * (grid.rows - 1 - row) + 1) * 2 * grid.columns + 2 * column];
   }

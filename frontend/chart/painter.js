@@ -38,10 +38,7 @@ export class Painter {
   #panning = false;
   #space = false;
 
-  /**
-   * @param {ChartView} view
-   * @param {Studio} studio
-   */
+  /** @param {ChartView} view @param {Studio} studio */
   constructor(view, studio) {
     this.view = view;
     this.studio = studio;
@@ -93,11 +90,7 @@ export class Painter {
     view.flush();
   }
 
-  /**
-   * @param {Cell} cell
-   * @param {boolean} opposite
-   * @param {{shiftKey: boolean, altKey: boolean}} keys
-   */
+  /** @param {Cell} cell @param {boolean} opposite @param {{shiftKey: boolean, altKey: boolean}} keys */
   #begin(cell, opposite, { shiftKey, altKey }) {
     const { studio } = this;
     const { document: chart, tool } = studio;
@@ -185,10 +178,7 @@ export class Painter {
     if (moved) hover.value = this.studio.document.grid.has(...cell) ? cell : null;
   }
 
-  /**
-   * @param {Cell} cell
-   * @param {boolean} constrain
-   */
+  /** @param {Cell} cell @param {boolean} constrain */
   #follow(cell, constrain) {
     const gesture = this.#gesture;
     if (!gesture || (cell[0] === gesture.current[0] && cell[1] === gesture.current[1])) return;

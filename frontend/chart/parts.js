@@ -139,10 +139,7 @@ export function drawRepeatLabels(context, view, { grid, repeats }, palette) {
 /** Edges of bitmaps, as long as these do not change. @type {WeakMap<Uint8Array, {edition: number, edges: Edges}>} */
 const found = new WeakMap();
 
-/**
- * @param {Uint8Array} cells of the chart
- * @param {ChartDocument} chart
- */
+/** @param {Uint8Array} cells of the chart @param {ChartDocument} chart */
 function known(cells, chart) {
   const edition = chart.edition(cells);
   let entry = found.get(cells);

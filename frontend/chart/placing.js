@@ -74,12 +74,7 @@ function findPlaced(chart, test) {
   return null;
 }
 
-/**
- * The copy of a repeat that is just what is selected.
- *
- * @param {ChartDocument} chart
- * @param {Selection} selection
- */
+/** The copy of a repeat that is just what is selected. @param {ChartDocument} chart @param {Selection} selection */
 export function placedAt(chart, { row0, column0, row1, column1, mask }) {
   if (mask) return null;
   return findPlaced(

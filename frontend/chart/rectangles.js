@@ -122,11 +122,7 @@ function blockGroup({ document: { grid } }, row0, column0, size) {
   return { box, cells, count: cells.length };
 }
 
-/**
- * @param {Studio} studio
- * @param {import("../design/regions.js").Region} region
- * @returns {Group}
- */
+/** @param {Studio} studio @param {import("../design/regions.js").Region} region @returns {Group} */
 function regionGroup({ document: { grid } }, region) {
   const cells = [];
   let row = 0;

@@ -81,7 +81,7 @@ export class ChartView {
     }
     // The cursor is an element of its own: moving it paints nothing.
     this.#cursor = h("div", { class: "chart-cursor", hidden: true });
-    top.after(h("div", { class: "chart-cursors", "aria-hidden": "true" }, this.#cursor));
+    top.after(h("div", { class: "chart-cursors clipped", "aria-hidden": "true" }, this.#cursor));
     for (const signal of [studio.size, studio.tool, studio.ink, this.hover]) {
       signal.listen(() => this.#placeCursor());
     }
@@ -99,20 +99,13 @@ export class ChartView {
     this.redraw();
   }
 
-  /**
-   * @param {number} factor
-   * @param {number} [x] CSS pixels; the middle if left out
-   * @param {number} [y]
-   */
+  /** @param {number} factor @param {number} [x] CSS pixels; the middle if left out @param {number} [y] */
   zoom(factor, x = this.viewport.width / 2, y = this.viewport.height / 2) {
     this.viewport.zoom(factor, x, y, this.studio.document.grid);
     this.redraw();
   }
 
-  /**
-   * @param {number} dx
-   * @param {number} dy
-   */
+  /** @param {number} dx @param {number} dy */
   pan(dx, dy) {
     this.viewport.pan(dx, dy, this.studio.document.grid);
     this.redraw();
@@ -342,10 +335,7 @@ export class ChartView {
     context.restore();
   }
 
-  /**
-   * @param {Box} box
-   * @param {number} width
-   */
+  /** @param {Box} box @param {number} width */
   #outline(box, width) {
     const { x, y, width: wide, height: high } = this.viewport.place(box, this.studio.document.grid);
     const path = new Path2D();
@@ -373,11 +363,7 @@ function paper({ knit }) {
 /** Shown where the chosen overlay has no values (yet). */
 const FALLBACK = OVERLAYS[1];
 
-/**
- * @param {Box} a
- * @param {Box} b
- * @returns {Box}
- */
+/** @param {Box} a @param {Box} b @returns {Box} */
 function intersection(a, b) {
   return {
     row0: Math.max(a.row0, b.row0),

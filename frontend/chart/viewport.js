@@ -61,11 +61,7 @@ export class Viewport {
     this.#keepInView(grid);
   }
 
-  /**
-   * @param {number} dx
-   * @param {number} dy
-   * @param {Grid} grid
-   */
+  /** @param {number} dx @param {number} dy @param {Grid} grid */
   pan(dx, dy, grid) {
     this.x += dx;
     this.y += dy;
@@ -89,12 +85,7 @@ export class Viewport {
     ];
   }
 
-  /**
-   * Where a box of stitches lies on the canvas.
-   *
-   * @param {Box} box
-   * @param {Grid} grid
-   */
+  /** Where a box of stitches lies on the canvas. @param {Box} box @param {Grid} grid */
   place({ row0, column0, row1, column1 }, grid) {
     const first = this.mirrored ? grid.columns - column1 : column0;
     return {
@@ -105,12 +96,7 @@ export class Viewport {
     };
   }
 
-  /**
-   * Stitches at least partly in view.
-   *
-   * @param {Grid} grid
-   * @returns {Box}
-   */
+  /** Stitches at least partly in view. @param {Grid} grid @returns {Box} */
   visible(grid) {
     const [row1, a] = this.cellAt(MARGIN.left, MARGIN.top, grid);
     const [row0, b] = this.cellAt(this.width - MARGIN.right, this.height - MARGIN.bottom, grid);

@@ -1,9 +1,6 @@
 /** Numbers for people: three significant figures, a unit beside each. */
 
-/**
- * @param {number | null | undefined} value
- * @param {number} [digits] significant figures
- */
+/** @param {number | null | undefined} value @param {number} [digits] significant figures */
 export function figure(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
@@ -12,11 +9,7 @@ export function figure(value, digits = 3) {
   return value.toFixed(decimals).replace("-", "−");
 }
 
-/**
- * Both ends with as many decimals as the larger one needs.
- *
- * @param {readonly number[] | null | undefined} interval
- */
+/** Both ends with as many decimals as the larger one needs. @param {readonly number[] | null | undefined} interval */
 export function range(interval) {
   if (!interval || !interval.every(Number.isFinite)) return "";
   const [low, high] = interval;
@@ -33,10 +26,7 @@ export function percentRange(ends, decimals = 0) {
   return ends.map((end) => (end === undefined ? "" : percent(end, decimals).slice(0, -2))).join(" – ");
 }
 
-/**
- * @param {number} share
- * @param {number} [decimals]
- */
+/** @param {number} share @param {number} [decimals] */
 export function percent(share, decimals = 0) {
   return `${(100 * share).toFixed(decimals).replace("-", "−")} %`;
 }

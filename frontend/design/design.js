@@ -20,10 +20,7 @@ export const MAX_MOTIF = 20_000;
 
 /** A design that cannot be read: what is wrong, and what to do. */
 export class DesignError extends Error {
-  /**
-   * @param {string} detail
-   * @param {string} [remedy]
-   */
+  /** @param {string} detail @param {string} [remedy] */
   constructor(detail, remedy = "Export the design again, or use the file that it was made from.") {
     super(detail);
     this.name = "DesignError";
@@ -31,22 +28,12 @@ export class DesignError extends Error {
   }
 }
 
-/**
- * @param {string} chart
- * @param {Partial<Content>} [more]
- * @returns {Content}
- */
+/** @param {string} chart @param {Partial<Content>} [more] @returns {Content} */
 export function contentOf(chart, more = {}) {
   return { chart, outline: null, regions: [], repeats: [], shelf: [], ...more };
 }
 
-/**
- * A document from the content of a file.
- *
- * @param {unknown} value
- * @returns {DesignDocument}
- * @throws {DesignError}
- */
+/** A document from the content of a file. @param {unknown} value @returns {DesignDocument} @throws {DesignError} */
 export function readDesign(value) {
   if (!isObject(value) || value.format !== FORMAT) {
     throw new DesignError("It is not a design.", `A design says "format": "${FORMAT}".`);
@@ -68,11 +55,7 @@ export function readDesign(value) {
   };
 }
 
-/**
- * @param {Record<string, unknown>} value
- * @returns {Content}
- * @throws {DesignError}
- */
+/** @param {Record<string, unknown>} value @returns {Content} @throws {DesignError} */
 export function readContent(value) {
   if (typeof value.chart !== "string") throw new DesignError("It holds no chart.");
   const chart = value.chart.trim();
@@ -122,11 +105,7 @@ export function salvageContent(value) {
   return bare;
 }
 
-/**
- * @param {unknown} value
- * @param {number} rows
- * @param {number} columns
- */
+/** @param {unknown} value @param {number} rows @param {number} columns */
 function readOutline(value, rows, columns) {
   if (value === null) return null;
   const lines = typeof value === "string" ? value.trim().split("\n") : [];
@@ -200,11 +179,7 @@ function readRepeat(item, rows, columns) {
   };
 }
 
-/**
- * @param {unknown} value
- * @param {string} what
- * @returns {Record<string, unknown>[]}
- */
+/** @param {unknown} value @param {string} what @returns {Record<string, unknown>[]} */
 function items(value, what) {
   if (value === undefined || value === null) return [];
   if (!Array.isArray(value) || !value.every(isObject)) throw new DesignError(`Its ${what} are not a list.`);
@@ -214,11 +189,7 @@ function items(value, what) {
   return value;
 }
 
-/**
- * @param {unknown} value
- * @param {string} what
- * @param {number} most
- */
+/** @param {unknown} value @param {string} what @param {number} most */
 function text(value, what, most) {
   if (typeof value !== "string" || !value || /\p{Cc}/u.test(value)) {
     throw new DesignError(`The ${what} must be one line of text.`);
@@ -226,10 +197,7 @@ function text(value, what, most) {
   return value.slice(0, most);
 }
 
-/**
- * @param {unknown} value
- * @param {string} what
- */
+/** @param {unknown} value @param {string} what */
 function motif(value, what) {
   const well = typeof value === "string" && value.length <= MAX_MOTIF;
   if (!well || !isChartText(value.replaceAll("/", "\n"))) {
@@ -246,19 +214,12 @@ function identifier(value) {
   return value;
 }
 
-/**
- * @param {unknown} value
- * @param {number} least
- * @returns {value is number}
- */
+/** @param {unknown} value @param {number} least @returns {value is number} */
 function isCount(value, least) {
   return Number.isInteger(value) && /** @type {number} */ (value) >= least;
 }
 
-/**
- * @param {unknown} value
- * @returns {value is Record<string, unknown>}
- */
+/** @param {unknown} value @returns {value is Record<string, unknown>} */
 function isObject(value) {
   return typeof value === "object" && value !== null && !Array.isArray(value);
 }

@@ -28,19 +28,13 @@ export class ChartDocument extends ChartState {
   /** @type {Set<(names: string[]) => void>} */ #torn = new Set();
   /** @type {{target: Target, layers: Map<string, Layer>, refused: number} | null} */ #stroke = null;
 
-  /**
-   * @param {Grid} grid
-   * @param {History} [history]
-   */
+  /** @param {Grid} grid @param {History} [history] */
   constructor(grid, history = new History()) {
     super(grid);
     this.history = history;
   }
 
-  /**
-   * @param {Content} content
-   * @param {History} [history]
-   */
+  /** @param {Content} content @param {History} [history] */
   static read(content, history = new History()) {
     const chart = new ChartDocument(new Grid(1, 1), history);
     chart.become(snapshotFrom(content));
@@ -49,11 +43,7 @@ export class ChartDocument extends ChartState {
 
   // --- listening ------------------------------------------------------------------------------
 
-  /**
-   * After a whole step: a stroke ended, a region was renamed, an undo, a new chart.
-   *
-   * @param {() => void} listener
-   */
+  /** After a whole step: a stroke ended, a region was renamed, an undo, a new chart. @param {() => void} listener */
   onSettle(listener) {
     this.#settled.add(listener);
   }
@@ -116,12 +106,7 @@ export class ChartDocument extends ChartState {
     }
   }
 
-  /**
-   * End the stroke and remember it as one step.
-   *
-   * @param {string} label
-   * @returns {boolean} whether anything changed
-   */
+  /** End the stroke and remember it as one step. @param {string} label @returns {boolean} whether anything changed */
   commit(label) {
     const stroke = this.#stroke;
     if (!stroke) return false;
@@ -178,12 +163,7 @@ export class ChartDocument extends ChartState {
     this.#keep(label, patches);
   }
 
-  /**
-   * Become another document, as one step that can be undone.
-   *
-   * @param {Content} content
-   * @param {string} label
-   */
+  /** Become another document, as one step that can be undone. @param {Content} content @param {string} label */
   load(content, label) {
     this.cancel();
     const before = { ...snapshotOf(this), shelf: [...this.shelf] };
@@ -192,12 +172,7 @@ export class ChartDocument extends ChartState {
     this.#keep(label, [{ before, after }]);
   }
 
-  /**
-   * Become another document with a history of its own.
-   *
-   * @param {Content} content
-   * @param {History} [history]
-   */
+  /** Become another document with a history of its own. @param {Content} content @param {History} [history] */
   open(content, history = new History()) {
     this.cancel();
     this.history = history;
@@ -407,11 +382,7 @@ export class ChartDocument extends ChartState {
     });
   }
 
-  /**
-   * @param {string} on
-   * @param {Brush} wanted
-   * @param {boolean} fresh
-   */
+  /** @param {string} on @param {Brush} wanted @param {boolean} fresh */
   #lay(on, wanted, fresh) {
     const stroke = this.#stroke;
     const bitmap = this.bitmap(on);
@@ -431,10 +402,7 @@ export class ChartDocument extends ChartState {
     for (const listener of this.#refused) listener(names);
   }
 
-  /**
-   * @param {string} label
-   * @param {Patch[]} patches
-   */
+  /** @param {string} label @param {Patch[]} patches */
   #keep(label, patches) {
     if (!patches.length) return false;
     this.history.push({ label, patches });
@@ -447,10 +415,7 @@ export class ChartDocument extends ChartState {
   }
 }
 
-/**
- * @param {string} prefix
- * @param {readonly {id: string}[]} items
- */
+/** @param {string} prefix @param {readonly {id: string}[]} items */
 function freeId(prefix, items) {
   let number = items.length + 1;
   while (items.some(({ id }) => id === `${prefix}-${number}`)) number++;

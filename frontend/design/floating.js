@@ -11,19 +11,13 @@ import { selects, selectionOf } from "./selection.js";
 
 /** Some stitches of a box, to be copied elsewhere. */
 export class Clip {
-  /**
-   * @param {Grid} part
-   * @param {Uint8Array | null} mask 1 where the clip has a stitch; null: everywhere
-   */
+  /** @param {Grid} part @param {Uint8Array | null} mask 1 where the clip has a stitch; null: everywhere */
   constructor(part, mask = null) {
     this.part = part;
     this.mask = mask;
   }
 
-  /**
-   * @param {Grid} grid
-   * @param {Selection} selection
-   */
+  /** @param {Grid} grid @param {Selection} selection */
   static of(grid, selection) {
     return new Clip(grid.region(selection), selection.mask ?? null);
   }
@@ -91,11 +85,7 @@ export class Floating {
     return cells;
   }
 
-  /**
-   * @param {Grid} grid
-   * @param {Cell} place
-   * @returns {Selection | null} what of it lies within the chart
-   */
+  /** @param {Grid} grid @param {Cell} place @returns {Selection | null} what of it lies within the chart */
   selection(grid, place) {
     const bitmap = new Uint8Array(grid.purl.length);
     for (const [i] of this.clip.at(grid, place)) bitmap[i] = 1;

@@ -22,10 +22,7 @@ import { Grid } from "../grid/grid.js";
 const MAX_STEPS = 500;
 
 export class History {
-  /**
-   * @param {Step[]} [done]
-   * @param {Step[]} [undone]
-   */
+  /** @param {Step[]} [done] @param {Step[]} [undone] */
   constructor(done = [], undone = []) {
     this.done = done;
     this.undone = undone;
@@ -50,11 +47,7 @@ export class History {
     return step;
   }
 
-  /**
-   * As JSON of at most `limit` characters: the oldest steps are left out.
-   *
-   * @param {number} limit
-   */
+  /** As JSON of at most `limit` characters: the oldest steps are left out. @param {number} limit */
   serialised(limit) {
     const done = [...this.done];
     const undone = [...this.undone];

@@ -27,12 +27,7 @@ export class Ink {
     this.target = target;
   }
 
-  /**
-   * The stitch that this ink puts at a place.
-   *
-   * @param {Cell} cell
-   * @param {Cell} origin where the repeat begins
-   */
+  /** The stitch that this ink puts at a place. @param {Cell} cell @param {Cell} origin where the repeat begins */
   at([row, column], [originRow, originColumn]) {
     const repeat = /** @type {Grid} */ (this.repeat);
     const r = modulo(row - originRow, repeat.rows);
@@ -107,10 +102,7 @@ export function inked(grid, spans, ink, origin, symmetry) {
   return brush;
 }
 
-/**
- * @param {number} a
- * @param {number} n
- */
+/** @param {number} a @param {number} n */
 function modulo(a, n) {
   return ((a % n) + n) % n;
 }

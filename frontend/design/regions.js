@@ -54,22 +54,13 @@ export class Region {
     return count;
   }
 
-  /**
-   * The stitch that its fill puts at a place.
-   *
-   * @param {number} row
-   * @param {number} column
-   */
+  /** The stitch that its fill puts at a place. @param {number} row @param {number} column */
   filling(row, column) {
     const fill = /** @type {Grid} */ (this.fill);
     return fill.purl[(row % fill.rows) * fill.columns + (column % fill.columns)];
   }
 
-  /**
-   * @param {RegionItem} item
-   * @param {number} rows
-   * @param {number} columns
-   */
+  /** @param {RegionItem} item @param {number} rows @param {number} columns */
   static read(item, rows, columns) {
     const cells = new Uint8Array(rows * columns);
     for (const [row, column, length] of item.runs) {
@@ -78,10 +69,7 @@ export class Region {
     return new Region(item.id, { ...item, fill: item.fill === null ? null : motifGrid(item.fill) }, cells);
   }
 
-  /**
-   * @param {number} columns
-   * @returns {RegionItem}
-   */
+  /** @param {number} columns @returns {RegionItem} */
   written(columns) {
     const { id, name, colour, yarn, fill, locked, hidden } = this;
     const runs = rowRuns(this.cells, columns);

@@ -20,10 +20,7 @@ import { Brush } from "../grid/stroke.js";
 
 /** Immutable, except for its motif during a stroke. */
 export class Repeat {
-  /**
-   * @param {string} id
-   * @param {RepeatLook} look
-   */
+  /** @param {string} id @param {RepeatLook} look */
   constructor(id, look) {
     this.id = id;
     this.name = look.name;
@@ -121,12 +118,7 @@ export function withPlace({ placements }, place) {
   return [...seen, place];
 }
 
-/**
- * Repeats with only those placements that a chart shows.
- *
- * @param {readonly Repeat[]} repeats
- * @param {Grid} grid
- */
+/** Repeats with only those placements that a chart shows. @param {readonly Repeat[]} repeats @param {Grid} grid */
 export function matching(repeats, grid) {
   return repeats.map((repeat) => {
     const placements = repeat.placements.filter((place) => {
@@ -148,11 +140,7 @@ export class Links {
   locked;
   /** First group of each repeat. @type {number[]} */ #bases = [];
 
-  /**
-   * @param {Grid} grid
-   * @param {readonly Repeat[]} repeats
-   * @param {readonly Region[]} regions
-   */
+  /** @param {Grid} grid @param {readonly Repeat[]} repeats @param {readonly Region[]} regions */
   constructor({ rows, columns, purl: { length } }, repeats, regions) {
     this.group = new Int32Array(length);
     let groups = 1;

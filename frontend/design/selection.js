@@ -10,25 +10,13 @@
  * @typedef {"replace" | "add" | "subtract" | "intersect"} Combination
  */
 
-/**
- * Whether a stitch is selected.
- *
- * @param {Selection} selection
- * @param {number} row
- * @param {number} column
- */
+/** Whether a stitch is selected. @param {Selection} selection @param {number} row @param {number} column */
 export function selects({ row0, column0, row1, column1, mask }, row, column) {
   if (row < row0 || row >= row1 || column < column0 || column >= column1) return false;
   return !mask || mask[(row - row0) * (column1 - column0) + column - column0] === 1;
 }
 
-/**
- * The selected stitches of a chart, by index.
- *
- * @param {Selection} selection
- * @param {Grid} grid
- * @returns {number[]}
- */
+/** The selected stitches of a chart, by index. @param {Selection} selection @param {Grid} grid @returns {number[]} */
 export function selectedCells(selection, grid) {
   const cells = [];
   for (let row = selection.row0; row < selection.row1; row++) {

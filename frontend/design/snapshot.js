@@ -41,12 +41,7 @@ export function snapshotFrom({ chart, outline, regions, repeats, shelf }) {
   };
 }
 
-/**
- * Lines of x and dots, top row first.
- *
- * @param {Uint8Array} outline
- * @param {number} columns
- */
+/** Lines of x and dots, top row first. @param {Uint8Array} outline @param {number} columns */
 export function outlineText(outline, columns) {
   const lines = [];
   for (let i = outline.length - columns; i >= 0; i -= columns) {

@@ -38,11 +38,7 @@ export class ChartState {
     this.codes = surroundings(grid);
   }
 
-  /**
-   * Every visible change, also within a stroke.
-   *
-   * @param {(change: Change) => void} listener
-   */
+  /** Every visible change, also within a stroke. @param {(change: Change) => void} listener */
   onChange(listener) {
     this.#changed.add(listener);
   }
@@ -166,10 +162,7 @@ export class ChartState {
     return [patch];
   }
 
-  /**
-   * @param {Patch} patch
-   * @param {"before" | "after"} side
-   */
+  /** @param {Patch} patch @param {"before" | "after"} side */
   apply(patch, side) {
     if ("on" in patch) this.flipRuns(patch.on, patch.runs);
     else if (!("list" in patch)) this.become(patch[side]);

@@ -37,11 +37,7 @@ export function loadHistory() {
   }
 }
 
-/**
- * @param {Design} design
- * @param {History} history
- * @returns {boolean} whether it is kept
- */
+/** @param {Design} design @param {History} history @returns {boolean} whether it is kept */
 export function saveDesign(design, history) {
   try {
     localStorage.setItem(DESIGN, JSON.stringify(design));
@@ -57,11 +53,7 @@ export function forgetDesign() {
   for (const key of [DESIGN, HISTORY, SHELF]) localStorage.removeItem(key);
 }
 
-/**
- * @template {object} T
- * @param {T} defaults
- * @returns {T}
- */
+/** @template {object} T @param {T} defaults @returns {T} */
 export function loadSettings(defaults) {
   try {
     return { ...defaults, ...JSON.parse(localStorage.getItem(SETTINGS) ?? "{}") };

@@ -28,9 +28,21 @@ export function h(tag, properties = {}, ...children) {
 }
 
 /**
- * @param {Child} child
- * @returns {child is Node | string | number}
+ * An element of a drawing.
+ *
+ * @template {keyof SVGElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, string | number>} attributes
+ * @param {...(Node | string)} children
  */
+export function svg(tag, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+  element.append(...children);
+  return element;
+}
+
+/** @param {Child} child @returns {child is Node | string | number} */
 function isShown(child) {
   return child !== null && child !== undefined && child !== false;
 }

@@ -4,11 +4,7 @@
  * @import {Box} from "./grid.js"
  */
 
-/**
- * A bitmap as base64, eight stitches a byte.
- *
- * @param {Uint8Array} bitmap
- */
+/** A bitmap as base64, eight stitches a byte. @param {Uint8Array} bitmap */
 export function pack(bitmap) {
   const bytes = new Uint8Array(Math.ceil(bitmap.length / 8));
   for (let i = 0; i < bitmap.length; i++) if (bitmap[i]) bytes[i >> 3] |= 1 << (i & 7);
@@ -19,10 +15,7 @@ export function pack(bitmap) {
   return btoa(text);
 }
 
-/**
- * @param {string} text of {@link pack}
- * @param {number} length
- */
+/** @param {string} text of {@link pack} @param {number} length */
 export function unpack(text, length) {
   const bytes = atob(text);
   return Uint8Array.from({ length }, (_, i) => (bytes.charCodeAt(i >> 3) >> (i & 7)) & 1);
@@ -48,25 +41,14 @@ export function toRuns(bitmap, from = 0, to = bitmap.length) {
   return runs;
 }
 
-/**
- * Flip the stitches of runs.
- *
- * @param {Uint8Array} bitmap
- * @param {number[]} runs
- */
+/** Flip the stitches of runs. @param {Uint8Array} bitmap @param {number[]} runs */
 export function flip(bitmap, runs) {
   for (let k = 0; k < runs.length; k += 2) {
     for (let i = runs[k]; i < runs[k] + runs[k + 1]; i++) bitmap[i] ^= 1;
   }
 }
 
-/**
- * The rows and columns that runs lie in.
- *
- * @param {number[]} runs not empty
- * @param {number} columns
- * @returns {Box}
- */
+/** The rows and columns that runs lie in. @param {number[]} runs not empty @param {number} columns @returns {Box} */
 export function boxOfRuns(runs, columns) {
   const box = { row0: Infinity, column0: Infinity, row1: 0, column1: 0 };
   for (let k = 0; k < runs.length; k += 2) {

@@ -17,11 +17,7 @@ export class Grid {
     this.purl = purl;
   }
 
-  /**
-   * From K/P lines, top row first.
-   *
-   * @param {string} text well-formed: {@link isChartText} holds
-   */
+  /** From K/P lines, top row first. @param {string} text well-formed: {@link isChartText} holds */
   static fromText(text) {
     const lines = text.trim().split("\n").reverse();
     const grid = new Grid(lines.length, lines[0].length);
@@ -50,18 +46,12 @@ export class Grid {
     return { row0: 0, column0: 0, row1: this.rows, column1: this.columns };
   }
 
-  /**
-   * @param {number} row
-   * @param {number} column
-   */
+  /** @param {number} row @param {number} column */
   index(row, column) {
     return row * this.columns + column;
   }
 
-  /**
-   * @param {number} row
-   * @param {number} column
-   */
+  /** @param {number} row @param {number} column */
   has(row, column) {
     return row >= 0 && column >= 0 && row < this.rows && column < this.columns;
   }
@@ -108,22 +98,12 @@ export class Grid {
     }
   }
 
-  /**
-   * Cut or filled up with knits, kept at the bottom left.
-   *
-   * @param {number} rows
-   * @param {number} columns
-   */
+  /** Cut or filled up with knits, kept at the bottom left. @param {number} rows @param {number} columns */
   resized(rows, columns) {
     return Grid.build(rows, columns, (row, column) => (this.has(row, column) ? this.purl[this.index(row, column)] : 0));
   }
 
-  /**
-   * Repeated from the bottom left up to the given size.
-   *
-   * @param {number} rows
-   * @param {number} columns
-   */
+  /** Repeated from the bottom left up to the given size. @param {number} rows @param {number} columns */
   tiled(rows, columns) {
     return Grid.build(rows, columns, (row, column) => this.purl[this.index(row % this.rows, column % this.columns)]);
   }
@@ -163,11 +143,7 @@ export class Grid {
   }
 }
 
-/**
- * Whether a text is K/P lines of one length within the page's limits.
- *
- * @param {string} text
- */
+/** Whether a text is K/P lines of one length within the page's limits. @param {string} text */
 export function isChartText(text) {
   const lines = text.trim().split("\n");
   const columns = lines[0].length;

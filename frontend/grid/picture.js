@@ -17,11 +17,7 @@ export function greys({ data, width, height }) {
   return values;
 }
 
-/**
- * The grey that best parts dark from light (Otsu, 1979); values below it are dark.
- *
- * @param {Uint8Array} values
- */
+/** The grey that best parts dark from light (Otsu, 1979); values below it are dark. @param {Uint8Array} values */
 export function bestThreshold(values) {
   const counts = new Float64Array(256);
   let sum = 0;
@@ -112,10 +108,7 @@ export function stitchesOf(values, width, height, { columns, rows, threshold, in
   });
 }
 
-/**
- * @param {number} from
- * @param {number} size
- */
+/** @param {number} from @param {number} size */
 function middle(from, size) {
   const first = Math.floor(from + size / 4);
   return [first, Math.max(first + 1, Math.floor(from + (3 * size) / 4))];

@@ -6,13 +6,7 @@
  * @typedef {[row: number, from: number, to: number]} Span columns from `from` up to before `to`
  */
 
-/**
- * Line between two stitches (Bresenham), both included.
- *
- * @param {Cell} from
- * @param {Cell} to
- * @returns {Cell[]}
- */
+/** Line between two stitches (Bresenham), both included. @param {Cell} from @param {Cell} to @returns {Cell[]} */
 export function line([row, column], [toRow, toColumn]) {
   /** @type {Cell[]} */
   const cells = [];
@@ -36,26 +30,14 @@ export function line([row, column], [toRow, toColumn]) {
   }
 }
 
-/**
- * Filled rectangle between two corners.
- *
- * @param {Cell} a
- * @param {Cell} b
- * @returns {Span[]}
- */
+/** Filled rectangle between two corners. @param {Cell} a @param {Cell} b @returns {Span[]} */
 export function rectangle(a, b) {
   const bottom = Math.min(a[0], b[0]);
   const [from, to] = [Math.min(a[1], b[1]), Math.max(a[1], b[1]) + 1];
   return Array.from({ length: Math.abs(a[0] - b[0]) + 1 }, (_, k) => [bottom + k, from, to]);
 }
 
-/**
- * Filled ellipse within two corners.
- *
- * @param {Cell} a
- * @param {Cell} b
- * @returns {Span[]}
- */
+/** Filled ellipse within two corners. @param {Cell} a @param {Cell} b @returns {Span[]} */
 export function ellipse(a, b) {
   const middleRow = (a[0] + b[0]) / 2;
   const middle = (a[1] + b[1]) / 2;
@@ -67,13 +49,7 @@ export function ellipse(a, b) {
   });
 }
 
-/**
- * Square brushes of a size along a path.
- *
- * @param {Cell[]} path
- * @param {number} size
- * @returns {Span[]}
- */
+/** Square brushes of a size along a path. @param {Cell[]} path @param {number} size @returns {Span[]} */
 export function thick(path, size) {
   const before = Math.floor((size - 1) / 2);
   return path.flatMap(([row, column]) =>

@@ -49,11 +49,7 @@ export function updateSurroundings(grid, codes, box = grid.box, outline = null) 
   }
 }
 
-/**
- * @param {Grid} grid
- * @param {Uint8Array | null} [outline]
- * @returns {Uint8Array}
- */
+/** @param {Grid} grid @param {Uint8Array | null} [outline] @returns {Uint8Array} */
 export function surroundings(grid, outline = null) {
   const codes = new Uint8Array(grid.purl.length);
   updateSurroundings(grid, codes, grid.box, outline);

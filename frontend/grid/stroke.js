@@ -20,20 +20,14 @@ export class Brush {
     this.#list = new Uint32Array(length);
   }
 
-  /**
-   * @param {number} length
-   * @param {Iterable<readonly [number, number]>} cells stitch and its value
-   */
+  /** @param {number} length @param {Iterable<readonly [number, number]>} cells stitch and its value */
   static of(length, cells) {
     const brush = new Brush(length);
     for (const [i, value] of cells) brush.set(i, value);
     return brush;
   }
 
-  /**
-   * @param {number} i
-   * @param {number} value
-   */
+  /** @param {number} i @param {number} value */
   set(i, value) {
     if (this.values[i] === UNTOUCHED) this.#list[this.count++] = i;
     this.values[i] = value;
@@ -55,10 +49,7 @@ export class Layer {
   /** @type {Uint8Array} */ #flipped;
   /** Holds all that was flipped. @type {Box | null} */ #reach = null;
 
-  /**
-   * @param {Uint8Array} bitmap changed in place
-   * @param {number} columns
-   */
+  /** @param {Uint8Array} bitmap changed in place @param {number} columns */
   constructor(bitmap, columns) {
     this.bitmap = bitmap;
     this.columns = columns;
@@ -127,11 +118,7 @@ export class Layer {
   }
 }
 
-/**
- * @param {Box} a
- * @param {Box} b
- * @returns {Box}
- */
+/** @param {Box} a @param {Box} b @returns {Box} */
 export function union(a, b) {
   return {
     row0: Math.min(a.row0, b.row0),

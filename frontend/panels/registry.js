@@ -32,10 +32,7 @@ const PANELS = {
   yarns: () => import("./dialogs/yarns.js"),
 };
 
-/**
- * @param {Studio} studio
- * @returns {(name: PanelName, context: ActionContext) => Promise<void>} opens a panel
- */
+/** @param {Studio} studio @returns {(name: PanelName, context: ActionContext) => Promise<void>} opens a panel */
 export function panelOpener(studio) {
   /** @type {Map<PanelName, () => void>} */
   const made = new Map();

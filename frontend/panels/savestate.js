@@ -29,7 +29,7 @@ const LOOKS = {
 export function saveState(context) {
   const { keeper } = context;
   const chip = h("button", {
-    class: "kept quiet",
+    class: "kept quiet bare inline small nowrap muted gap-5",
     id: "kept",
     onclick: () => {
       const { value } = keeper.state;
@@ -48,12 +48,12 @@ export function saveState(context) {
     chip.title = title;
     if (kind === "conflict") context.open("conflict");
   });
-  const others = h("span", { class: "others", id: "others", role: "status" });
+  const others = h("span", { class: "others inline small nowrap muted gap-5", id: "others", role: "status" });
   keeper.windows.others.watch((count) => {
     others.hidden = count === 0;
     const words = count === 1 ? "open in another window" : `open in ${count} other windows`;
     others.replaceChildren(icon("copy"), h("span", { class: "label" }, words));
     others.title = `This design is ${words}: strokes there come here at once`;
   });
-  return h("span", { class: "kept-group" }, chip, others);
+  return h("span", { class: "inline gap-4" }, chip, others);
 }

@@ -10,10 +10,7 @@ import { icon } from "../elements/icons.js";
 import { designs } from "../sync/designs.js";
 import { textButton } from "../widgets/buttons.js";
 
-/**
- * @param {HTMLElement} host
- * @param {ActionContext} context
- */
+/** @param {HTMLElement} host @param {ActionContext} context */
 export function sharedBanner(host, { keeper, studio }) {
   keeper.state.watch((state) => {
     host.hidden = state.kind !== "shared";

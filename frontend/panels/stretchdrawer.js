@@ -13,43 +13,26 @@ import { h } from "../elements/dom.js";
 import { REST } from "../state/studio.js";
 import { icon } from "../elements/icons.js";
 import { iconButton } from "../widgets/buttons.js";
-import { numberField } from "../widgets/fields.js";
+import { numberField, segmented, selectField } from "../widgets/fields.js";
 
 /** @typedef {"%" | "N"} Unit of a pull */
 
 /** What the field says in each unit at first. */
 const DEFAULTS = { "%": "30", N: "2" };
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @param {Stretcher} stretcher
- */
+/** @param {HTMLElement} host @param {Studio} studio @param {Stretcher} stretcher */
 export function stretchdrawer(host, studio, stretcher) {
   /** @type {Direction} */
   let direction = "wale";
-  /** @param {Direction} which @param {string} label */
-  const choice = (which, label) =>
-    h(
-      "button",
-      {
-        class: "segment",
-        role: "radio",
-        id: `stretch-${which}`,
-        title: `Pull ${along(which)}`,
-        onclick: () => choose(which),
-      },
-      icon(which),
-      label,
-    );
-  const choices = { course: choice("course", "Rows"), wale: choice("wale", "Columns") };
-  /** @param {Direction} which */
-  const choose = (which) => {
-    direction = which;
-    choices.course.setAttribute("aria-checked", String(which === "course"));
-    choices.wale.setAttribute("aria-checked", String(which === "wale"));
-  };
-  choose("wale");
+  const choices = segmented(
+    "Direction of the pull",
+    [
+      ["course", [icon("course"), "Rows"], { id: "stretch-course", title: `Pull ${along("course")}` }],
+      ["wale", [icon("wale"), "Columns"], { id: "stretch-wale", title: `Pull ${along("wale")}` }],
+    ],
+    direction,
+    (way) => (direction = /** @type {Direction} */ (way)),
+  );
 
   const amount = numberField({
     id: "stretch-amount",
@@ -62,16 +45,17 @@ export function stretchdrawer(host, studio, stretcher) {
       if (key === "Enter") start(); // returning false would keep every other key from the field
     },
   });
-  const unit = h(
-    "select",
+  const unit = selectField(
     {
       class: "chip-select",
       id: "stretch-unit",
       "aria-label": "Unit of the pull",
       onchange: () => (amount.value = DEFAULTS[/** @type {Unit} */ (unit.value)]),
     },
-    h("option", { value: "%" }, "%"),
-    h("option", { value: "N" }, "N"),
+    [
+      ["%", "%"],
+      ["N", "N"],
+    ],
   );
   const start = () => {
     const wanted = Number(amount.value);
@@ -109,7 +93,7 @@ export function stretchdrawer(host, studio, stretcher) {
   const done = h("span");
   const progress = h(
     "div",
-    { class: "progress", role: "progressbar", "aria-label": "Stretch test", hidden: true },
+    { class: "progress clipped", role: "progressbar", "aria-label": "Stretch test", hidden: true },
     done,
   );
   const options = stretchOptions(studio);
@@ -128,7 +112,7 @@ export function stretchdrawer(host, studio, stretcher) {
   });
   const slider = h("input", {
     type: "range",
-    class: "slider",
+    class: "slider grows",
     id: "stretch-slider",
     min: String(REST),
     max: "0",
@@ -139,21 +123,16 @@ export function stretchdrawer(host, studio, stretcher) {
       studio.step.value = Number(slider.value);
     },
   });
-  const figures = h("dl", { class: "stretch-figures figures", id: "stretch-figures" });
-  const player = h("div", { class: "player" }, play, slider, figures, save);
+  const figures = h("dl", { class: "stretch-figures figures stack gap-2", id: "stretch-figures" });
+  const player = h("div", { class: "player line gap-12" }, play, slider, figures, save);
 
   host.append(
     h(
       "div",
-      { class: "stretch-set" },
+      { class: "stretch-set line gap-10" },
       h("h2", {}, "Stretch test"),
-      h(
-        "div",
-        { class: "segmented", role: "radiogroup", "aria-label": "Direction of the pull" },
-        choices.course,
-        choices.wale,
-      ),
-      h("div", { class: "amount" }, amount, unit),
+      choices.element,
+      h("div", { class: "line gap-6" }, amount, unit),
       options.element,
       run,
     ),
@@ -257,20 +236,13 @@ function locking(test) {
   return used > 0 ? `No stitch locks: the tightest has used ${percent(used)} of its stretch.` : "";
 }
 
-/**
- * How the ends are held, what is computed and shown; the usual choice is made.
- *
- * @param {Studio} studio
- */
+/** How the ends are held, what is computed and shown; the usual choice is made. @param {Studio} studio */
 function stretchOptions(studio) {
-  /** @param {string} id @param {[string, string][]} choices */
-  const select = (id, choices) =>
-    h("select", { class: "select", id }, ...choices.map(([value, text]) => h("option", { value }, text)));
-  const clamps = select("stretch-clamps", [
+  const clamps = selectField({ class: "select", id: "stretch-clamps" }, [
     ["clamped", "gripped"],
     ["sliding", "free to slide sideways"],
   ]);
-  const model = select("stretch-model", [
+  const model = selectField({ class: "select", id: "stretch-model" }, [
     ["full", "with lock-up"],
     ["published", "as published, without lock-up"],
   ]);
@@ -292,7 +264,7 @@ function stretchOptions(studio) {
     h("label", {}, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
   const panel = h(
     "div",
-    { class: "stretch-options", id: "stretch-options", popover: "auto" },
+    { class: "stretch-options raised rounded shadowed", id: "stretch-options", popover: "auto" },
     row("Ends", clamps),
     row("Law", model),
     row("Shear modulus", shear, "N/mm"),
@@ -312,7 +284,7 @@ function stretchOptions(studio) {
       popoverTargetElement: panel,
       onclick: () => {
         const { left, top } = button.getBoundingClientRect();
-        panel.style.left = `${left}px`;
+        panel.style.left = `min(${left}px, 100vw - 328px)`; // 320 px wide
         panel.style.bottom = `${innerHeight - top + 6}px`;
       },
     },

@@ -13,11 +13,7 @@ import { iconButton } from "../widgets/buttons.js";
 import { saveState } from "./savestate.js";
 import { menu } from "../widgets/menu.js";
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {HTMLElement} host @param {Studio} studio @param {ActionContext} context */
 export function topbar(host, studio, context) {
   const name = h("input", {
     class: "design-name",
@@ -104,7 +100,7 @@ function accountButton({ user }, context) {
   const element = h(
     "button",
     {
-      class: "button quiet account",
+      class: "button quiet",
       id: "action-account",
       title: "Your account",
       onclick: () => context.open("account"),
@@ -129,7 +125,7 @@ function accountButton({ user }, context) {
 export function offerTour(host, { open }) {
   const offer = h(
     "div",
-    { class: "tour-offer", id: "tour-offer" },
+    { class: "tour-offer flex rounded gap-2", id: "tour-offer" },
     h(
       "button",
       { class: "button quiet", onclick: () => (offer.remove(), open("tour")) },
@@ -142,10 +138,7 @@ export function offerTour(host, { open }) {
   host.querySelector(".spacer")?.before(offer);
 }
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 function materialMenu(studio, context) {
   const label = h("span", { class: "ellipsis" }, "Material");
   const { root, setItems } = menu({
@@ -185,7 +178,7 @@ function materialItem({ name, description, fabrics }) {
       : "";
   return h(
     "span",
-    { class: "menu-lines" },
+    { class: "menu-lines stack" },
     h("span", {}, name),
     h(
       "span",
@@ -197,10 +190,7 @@ function materialItem({ name, description, fabrics }) {
   );
 }
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 function exportMenu(studio, context) {
   const { root, setItems } = menu({
     id: "export",
@@ -245,7 +235,7 @@ function exportMenu(studio, context) {
  */
 const item = ({ id, label: own, keys, perform }, context, label = own) => ({
   id: `menu-${id}`,
-  content: h("span", { class: "menu-line" }, label, keys[0] && h("kbd", {}, shown(keys[0]))),
+  content: h("span", { class: "menu-line line spread grows" }, label, keys[0] && h("kbd", {}, shown(keys[0]))),
   perform: () => perform(context),
 });
 
@@ -259,7 +249,7 @@ function designsMenu(context) {
       h("span", { class: "visually-hidden" }, "Knitcore: designs and help"),
       icon("down"),
     ],
-    class: "button quiet brand",
+    class: "button quiet brand flex",
   });
   /** @param {string} id */
   const one = (id) => item(action(id), context);

@@ -61,7 +61,7 @@ export function create() {
   const ring = h("div", { class: "tour-ring" });
   const box = h(
     "div",
-    { class: "tour-box" },
+    { class: "tour-box stack panelled shadowed gap-8" },
     title,
     text,
     h(
@@ -77,7 +77,7 @@ export function create() {
   const element = h(
     "dialog",
     {
-      class: "tour",
+      class: "tour clipped",
       id: "tour",
       "aria-labelledby": "tour-title",
       "aria-describedby": "tour-text",

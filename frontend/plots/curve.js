@@ -8,8 +8,8 @@
  * @import {Plotly, Trace} from "./plotly.js"
  */
 
-import { ApiError, api, isAbort } from "../api.js";
-import { Latest } from "../core/latest.js";
+import { api } from "../api.js";
+import { Latest } from "../services/latest.js";
 import { paced } from "../core/paced.js";
 import { FABRICS } from "../grid/segments.js";
 import { scopeOf } from "../services/scope.js";
@@ -21,11 +21,7 @@ const STEP = FABRICS.length + 3;
 /** The service is asked this long after a change. */
 const DELAY_MS = 300;
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @returns {() => void} draws anew
- */
+/** @param {HTMLElement} host @param {Studio} studio @returns {() => void} draws anew */
 export function curvePlot(host, studio) {
   /** @type {Plotly | null} */
   let plotly = null;
@@ -56,22 +52,19 @@ export function curvePlot(host, studio) {
   };
   const ask = () => {
     if (host.hidden) return;
-    latest.run(async (signal) => {
-      const { grid } = scopeOf(studio);
-      const direction = studio.seeing.pull.value;
-      const cloth = { chart: grid.text, material: studio.materialId.value };
-      const body = { ...cloth, direction, gauge: studio.gauges.of(cloth) };
-      const key = JSON.stringify(body);
-      if (answer?.key === key) return;
-      try {
+    latest.run(
+      async (signal) => {
+        const { grid } = scopeOf(studio);
+        const direction = studio.seeing.pull.value;
+        const cloth = { chart: grid.text, material: studio.materialId.value };
+        const body = { ...cloth, direction, gauge: studio.gauges.of(cloth) };
+        const key = JSON.stringify(body);
+        if (answer?.key === key) return;
         answer = { key, curve: await api.run("curve", body, signal) };
         void draw();
-      } catch (error) {
-        if (isAbort(error)) return;
-        if (!(error instanceof ApiError)) throw error;
-        answer = null; // the inspector's numbers say why
-      }
-    });
+      },
+      () => (answer = null), // the inspector's numbers say why
+    );
   };
   // In a task of its own: drawing takes too long for the end of a stroke, which changes the test.
   const redraw = paced(() => {
@@ -102,11 +95,7 @@ function shownStretch(studio) {
   return direction === studio.seeing.pull.value ? value : null;
 }
 
-/**
- * @param {Studio} studio
- * @param {CurveResult | null} own
- * @returns {Trace[]}
- */
+/** @param {Studio} studio @param {CurveResult | null} own @returns {Trace[]} */
 function traces(studio, own) {
   const read = themedReader();
   /** @param {string} name */
@@ -117,10 +106,7 @@ function traces(studio, own) {
   const band = stressBand(stretch);
   const farthest = Math.max(...(stretch?.strain ?? [0]), own ? 0.6 * Math.max(...own.strain) : 0);
   const end = farthest ? 1.35 * farthest : 0.6;
-  /**
-   * @param {number[]} strain
-   * @param {number[]} stress
-   */
+  /** @param {number[]} strain @param {number[]} stress */
   const upTo = (strain, stress) => {
     const kept = strain.filter((value) => value <= end).length;
     return { x: strain.slice(0, kept).map((value) => 100 * value), y: stress.slice(0, kept) };
@@ -174,11 +160,7 @@ function traces(studio, own) {
       mode: "markers",
       showlegend: false,
       hoverinfo: "skip",
-      marker: {
-        color: colour("panel"),
-        size: 11,
-        line: { color: colour("accent"), width: 3 },
-      },
+      marker: { color: colour("panel"), size: 11, line: { color: colour("accent"), width: 3 } },
     },
     ...FABRICS.map((fabric) => {
       const curve = studio.material.value?.measured?.[fabric]?.[studio.seeing.pull.value];
@@ -195,26 +177,16 @@ function traces(studio, own) {
   return result;
 }
 
-/**
- * The interval of the stretch test.
- *
- * @param {StretchResult | null} stretch
- */
+/** The interval of the stretch test. @param {StretchResult | null} stretch */
 function stressBand(stretch) {
   if (!stretch) return { x: [], y: [] };
   const { force_n: force, stress_n_per_mm: stress } = stretch;
   const strain = stretch.strain.map((one) => 100 * one);
   const [low, high] = stretch.force_interval_n.map((ends) => ends.map((end, i) => (end * stress[i]) / force[i]));
-  return {
-    x: [0, ...strain, ...strain.toReversed()],
-    y: [0, ...low, ...high.toReversed()],
-  };
+  return { x: [0, ...strain, ...strain.toReversed()], y: [0, ...low, ...high.toReversed()] };
 }
 
-/**
- * @param {number} width
- * @param {number} height
- */
+/** @param {number} width @param {number} height */
 export function stressStrainLayout(width, height) {
   const read = themedReader();
   const text = read("--text");

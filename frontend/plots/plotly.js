@@ -25,13 +25,7 @@ export function loadPlotly() {
   return loading;
 }
 
-/**
- * Draw a plot, or draw it anew.
- *
- * @param {HTMLElement} host
- * @param {Trace[]} traces
- * @param {object} layout
- */
+/** Draw a plot, or draw it anew. @param {HTMLElement} host @param {Trace[]} traces @param {object} layout */
 export function drawPlot(host, traces, layout) {
   wanted.set(host, [traces, layout]);
   let drawing = drawings.get(host);

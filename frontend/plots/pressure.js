@@ -5,24 +5,25 @@
  * @import {LimbPlaceResult} from "../types.js"
  */
 
-const SVG = "http://www.w3.org/2000/svg";
+import { svg } from "../elements/dom.js";
+
 const WIDTH = 320;
 const HEIGHT = 132;
 const PAD = { left: 40, right: 8, top: 8, bottom: 34 };
 
 /** @param {LimbPlaceResult[]} places along the limb */
 export function pressurePlot(places) {
-  const svg = document.createElementNS(SVG, "svg");
-  svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
-  svg.setAttribute("class", "pressure-plot");
-  svg.setAttribute("role", "img");
-  svg.setAttribute("aria-label", "Pressure along the limb, mmHg, with its 90 % interval");
-  /** @param {string} tag @param {Record<string, string | number>} attributes @param {string} [text] */
-  const add = (tag, attributes, text) => {
-    const element = document.createElementNS(SVG, tag);
-    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-    if (text) element.textContent = text;
-    svg.append(element);
+  const plot = svg("svg", {
+    viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
+    class: "pressure-plot full-width",
+    role: "img",
+    "aria-label": "Pressure along the limb, mmHg, with its 90 % interval",
+  });
+  /** @type {typeof svg} */
+  const add = (...mark) => {
+    const element = svg(...mark);
+    plot.append(element);
+    return element;
   };
   const first = places[0].at_mm;
   const long = Math.max(places[places.length - 1].at_mm - first, 1e-9);
@@ -47,7 +48,7 @@ export function pressurePlot(places) {
   }
   const { at_mm: tightest } = places.reduce((a, b) => (b.lock_up_share > a.lock_up_share ? b : a));
   add("line", { x1: x(tightest), x2: x(tightest), y1: PAD.top, y2: bottom, class: "pressure-tightest" });
-  return svg;
+  return plot;
 }
 
 /** 1, 2 or 5 times a power of ten that is not less. @param {number} value */

@@ -7,39 +7,28 @@
 
 import { figure } from "../core/format.js";
 import { paced } from "../core/paced.js";
+import { svg } from "../elements/dom.js";
 import { FABRICS } from "../grid/segments.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const PAD = { left: 50, right: 10, top: 8, bottom: 40 };
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @returns {() => void} draws anew
- */
+/** @param {HTMLElement} host @param {Studio} studio @returns {() => void} draws anew */
 export function rigidityPlot(host, studio) {
-  const svg = document.createElementNS(SVG, "svg");
-  svg.setAttribute("role", "img");
-  host.append(svg);
+  const plot = svg("svg", { role: "img" });
+  host.append(plot);
 
-  /**
-   * @param {string} tag
-   * @param {Record<string, string | number>} attributes
-   * @param {string} [text]
-   */
-  const add = (tag, attributes, text) => {
-    const element = document.createElementNS(SVG, tag);
-    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-    if (text) element.textContent = text;
-    svg.append(element);
+  /** @type {typeof svg} */
+  const add = (...mark) => {
+    const element = svg(...mark);
+    plot.append(element);
     return element;
   };
 
   const draw = () => {
     const { clientWidth: width, clientHeight: height } = host;
     if (width < 60 || height < 60) return;
-    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    svg.replaceChildren();
+    plot.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    plot.replaceChildren();
     const points = studio.materials.value.flatMap(({ id, name, fabrics }) =>
       FABRICS.flatMap((fabric) => {
         const one = fabrics[fabric];
@@ -81,15 +70,10 @@ export function rigidityPlot(host, studio) {
     );
     for (const point of points) {
       const chosen = point.id === studio.materialId.value;
-      const dot = add("circle", {
-        cx: x.at(point.x),
-        cy: y.at(point.y),
-        r: chosen ? 6 : 3.2,
-        class: `fabric-dot ${point.fabric}${chosen ? " chosen" : ""}`,
-      });
-      const tip = document.createElementNS(SVG, "title");
-      tip.textContent = `${point.name}, ${point.fabric}: ${figure(point.x)} and ${figure(point.y)} N/mm`;
-      dot.append(tip);
+      const look = `fabric-dot ${point.fabric}${chosen ? " chosen" : ""}`;
+      const tip = `${point.name}, ${point.fabric}: ${figure(point.x)} and ${figure(point.y)} N/mm`;
+      const place = { cx: x.at(point.x), cy: y.at(point.y), r: chosen ? 6 : 3.2 };
+      add("circle", { ...place, class: look }, svg("title", {}, tip));
     }
     if (own && value) {
       const intervals = [value.modulus_course_interval_n_per_mm, value.modulus_wale_interval_n_per_mm];
@@ -112,12 +96,12 @@ export function rigidityPlot(host, studio) {
       }
       add("path", { d: "M0-8L8 0 0 8-8 0z", transform: `translate(${x.at(own.x)} ${y.at(own.y)})`, class: "own-dot" });
       const label = add("text", { y: y.at(own.y) - 9, class: "own-label" }, `this ${scope}`);
-      const wide = /** @type {SVGTextElement} */ (label).getComputedTextLength();
+      const wide = label.getComputedTextLength();
       const right = x.at(own.x) + 13 + wide > width;
       // Beside the dot, but never over the axis.
       label.setAttribute("x", String(Math.max(PAD.left + 3, x.at(own.x) + (right ? -13 - wide : 13))));
     }
-    svg.setAttribute(
+    plot.setAttribute(
       "aria-label",
       own
         ? `This ${scope}: ${figure(own.x)} N/mm along the rows, ${figure(own.y)} N/mm along the columns, among the fabrics of all materials.`

@@ -13,11 +13,7 @@ const NAMELESS = "local";
 /** @param {SignedIn} signedIn */
 export const nameOf = ({ user }) => (user === NAMELESS ? "Signed in" : user);
 
-/**
- * Show the user's name, if this browser has a session.
- *
- * @param {Studio} studio
- */
+/** Show the user's name, if this browser has a session. @param {Studio} studio */
 export async function showUser(studio) {
   try {
     const found = await api.session();

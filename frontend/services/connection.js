@@ -6,10 +6,7 @@
 
 const RETRY_MS = 3000;
 
-/**
- * @param {Studio} studio
- * @param {() => void} back called when the service answers again
- */
+/** @param {Studio} studio @param {() => void} back called when the service answers again */
 export function watchConnection(studio, back) {
   /** @type {ReturnType<typeof setInterval> | undefined} */
   let timer;

@@ -47,10 +47,7 @@ export const fileName = ({ name }) =>
     .replace(/^-|-$/g, "")
     .toLowerCase() || "chart";
 
-/**
- * @param {string} name
- * @param {Blob} blob
- */
+/** @param {string} name @param {Blob} blob */
 export function download(name, blob) {
   const link = h("a", { href: URL.createObjectURL(blob), download: name });
   link.click();

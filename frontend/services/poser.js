@@ -7,9 +7,9 @@
  * @import {Studio} from "../state/studio.js"
  */
 
-import { ApiError, api, isAbort } from "../api.js";
+import { api } from "../api.js";
 import { along } from "../core/directions.js";
-import { Latest } from "../core/latest.js";
+import { Latest } from "./latest.js";
 import { figure, percent } from "../core/format.js";
 import { outlineText } from "../design/snapshot.js";
 import { REST } from "../state/studio.js";
@@ -36,22 +36,21 @@ export function startPoser(studio) {
     const fits = old?.pose === now && old.rows === rows && old.columns === columns;
     posed.value = fits && old ? { ...old, converged: false } : null;
     if (!shapes) return;
-    latest.run(async (signal) => {
-      try {
+    latest.run(
+      async (signal) => {
         for await (const found of shapes(studio, signal)) {
           if (signal.aborted) return;
           posed.value = found;
           if (found.converged) return;
         }
-      } catch (error) {
-        if (isAbort(error) || signal.aborted) return;
-        if (!(error instanceof ApiError)) throw error;
-        if (error.offline) studio.online.value = false;
-        studio.tellProblem(error.problem);
+      },
+      ({ offline, problem }) => {
+        if (offline) studio.online.value = false;
+        studio.tellProblem(problem);
         pose.value = "flat";
         curling.value = false;
-      }
-    });
+      },
+    );
   };
   const again = () => {
     if (pose.value === "tested")
@@ -103,11 +102,7 @@ async function* hung(studio, signal) {
   }
 }
 
-/**
- * @param {Studio} studio
- * @param {AbortSignal} signal
- * @param {import("../types.js").CurlRequest["pull"]} pull
- */
+/** @param {Studio} studio @param {AbortSignal} signal @param {import("../types.js").CurlRequest["pull"]} pull */
 async function* curled(studio, signal, pull) {
   const asked = { ...studio.request, outline: outlineOf(studio), pull };
   /** The first shape begins at the old one; the last one depends on the chart only. */

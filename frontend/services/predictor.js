@@ -4,36 +4,32 @@
  * @import {Studio} from "../state/studio.js"
  */
 
-import { ApiError, api, isAbort } from "../api.js";
-import { Latest } from "../core/latest.js";
+import { api } from "../api.js";
+import { Latest } from "./latest.js";
 import { scopeOf } from "./scope.js";
 
 const DELAY_MS = 80;
 
-/**
- * @param {Studio} studio
- * @returns {() => void} asks anew
- */
+/** @param {Studio} studio @returns {() => void} asks anew */
 export function startPredictor(studio) {
   const latest = new Latest(DELAY_MS);
   const ask = () => {
     const { prediction } = studio;
     if (!prediction.value.busy) prediction.value = { ...prediction.value, busy: true };
-    latest.run(async (signal) => {
-      const { kind: scope, grid, shaped } = scopeOf(studio);
-      try {
+    latest.run(
+      async (signal) => {
+        const { kind: scope, grid, shaped } = scopeOf(studio);
         const cloth = { chart: grid.text, material: studio.materialId.value };
         const value = await api.run("predict", { ...cloth, ...shaped, gauge: studio.gauges.of(cloth) }, signal);
         if (signal.aborted) return;
         prediction.value = { value, busy: false, problem: null, scope };
         studio.online.value = true;
-      } catch (error) {
-        if (isAbort(error) || signal.aborted) return;
-        if (!(error instanceof ApiError)) throw error;
-        prediction.value = { value: null, busy: false, problem: error.problem, scope };
-        if (error.offline) studio.online.value = false;
-      }
-    });
+      },
+      ({ offline, problem }) => {
+        prediction.value = { value: null, busy: false, problem, scope: scopeOf(studio).kind };
+        if (offline) studio.online.value = false;
+      },
+    );
   };
   studio.document.onChange(ask);
   studio.selection.listen(ask);

@@ -4,11 +4,7 @@
  * @import {Problem} from "../types.js"
  */
 
-/**
- * @param {string} detail
- * @param {string} remedy
- * @returns {Problem}
- */
+/** @param {string} detail @param {string} remedy @returns {Problem} */
 export const refusal = (detail, remedy) => ({
   type: "input",
   title: "This chart cannot be imported",

@@ -6,8 +6,7 @@
  * @import {RelaxResult} from "../types.js"
  */
 
-import { ApiError, isAbort } from "../api.js";
-import { Latest } from "../core/latest.js";
+import { Latest } from "./latest.js";
 import { runJob } from "./jobs.js";
 import { scopeOf } from "./scope.js";
 
@@ -28,23 +27,23 @@ export function startRelaxer(studio) {
     const material = studio.materialId.value;
     if (!chart || refused.has(`${material}\n${chart}`)) return;
     const cloth = { chart: scopeOf(studio).grid.text, material };
-    latest.run(async (signal) => {
-      relaxing.value = true;
-      try {
+    latest.run(
+      async (signal) => {
+        relaxing.value = true;
         /** @type {RelaxResult} */
         const { gauge } = await runJob("relax", { chart, material, branch: "mirrored" }, { signal });
         if (signal.aborted) return;
         if (gauge) gauges.keep(cloth, gauge);
         else refused.add(`${material}\n${chart}`);
-      } catch (error) {
-        if (isAbort(error) || signal.aborted) return;
-        if (!(error instanceof ApiError)) throw error;
+        relaxing.value = false;
+      },
+      ({ offline }) => {
         // The learned numbers stand as they are, with their wider intervals.
-        if (error.offline) studio.online.value = false;
+        if (offline) studio.online.value = false;
         else refused.add(`${material}\n${chart}`);
-      }
-      relaxing.value = false;
-    });
+        relaxing.value = false;
+      },
+    );
   };
   prediction.listen(consider);
   stretch.listen(consider);

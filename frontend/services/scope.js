@@ -21,10 +21,7 @@ import { largestRectangle } from "../grid/inscribed.js";
 import { selectionOf } from "../design/selection.js";
 import { outlineText } from "../design/snapshot.js";
 
-/**
- * @param {Studio} studio
- * @returns {Scope}
- */
+/** @param {Studio} studio @returns {Scope} */
 export function scopeOf(studio) {
   const { document: chart, selection, seeing } = studio;
   const box = selection.value;

@@ -57,11 +57,7 @@ export async function refresh(studio) {
 export const isYarnFile = (value) =>
   typeof value === "object" && value !== null && "format" in value && value.format === "knitcore-material";
 
-/**
- * What a service asks for of two tests of a fabric.
- *
- * @param {Tests} tests
- */
+/** What a service asks for of two tests of a fabric. @param {Tests} tests */
 export async function fitRequest({ course, wale }) {
   return { test_course: await uploaded(course), test_wale: await uploaded(wale) };
 }
@@ -154,11 +150,7 @@ export function yarnOf(base, name, yarn, fitted, evidence = []) {
   return /** @type {MaterialDocument} */ (/** @type {unknown} */ (document));
 }
 
-/**
- * What a yarn's figures rest on, in lines.
- *
- * @param {MaterialDocument} yarn
- */
+/** What a yarn's figures rest on, in lines. @param {MaterialDocument} yarn */
 export const evidenceOf = (yarn) => [
   ...distinctLines(yarn.note ?? "")
     .split("\n")

@@ -30,10 +30,7 @@ export const part = (map, from, to) => ({
   css: (t) => map.css(from + t * (to - from)),
 });
 
-/**
- * @param {string} stops
- * @returns {ColourMap}
- */
+/** @param {string} stops @returns {ColourMap} */
 function colourMap(stops) {
   const table = stops.split(" ").map((hex) => Number.parseInt(hex, 16));
   const last = table.length - 1;

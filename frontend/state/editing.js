@@ -20,10 +20,7 @@ export class Editing {
   #document;
   #selection;
 
-  /**
-   * @param {ChartDocument} document
-   * @param {Signal<Selection | null>} selection
-   */
+  /** @param {ChartDocument} document @param {Signal<Selection | null>} selection */
   constructor(document, selection) {
     const settings = loadSettings(SETTINGS);
     this.#document = document;
@@ -58,11 +55,7 @@ export class Editing {
     return still ? held.floating : null;
   }
 
-  /**
-   * Select what was just put down, so that it can be moved on.
-   *
-   * @param {Floating} floating
-   */
+  /** Select what was just put down, so that it can be moved on. @param {Floating} floating */
   hold(floating) {
     const selection = floating.selection(this.#document.grid, floating.place);
     this.#selection.value = selection;

@@ -36,10 +36,7 @@ const always = () => true;
 /** A purl is drawn a little darker where the colour itself does not carry a number. */
 const PURL_SHADE = 0.8;
 
-/**
- * @param {(code: number, quarter: number, purl: number) => number} rule
- * @returns {KindColours}
- */
+/** @param {(code: number, quarter: number, purl: number) => number} rule @returns {KindColours} */
 function byKind(rule) {
   const table = new Uint32Array(128);
   for (let k = 0; k < 128; k++) table[k] = rule((k >> 2) & 15, k & 3, k >> 6);
@@ -102,11 +99,7 @@ const segments = {
   }),
 };
 
-/**
- * @param {Direction} direction
- * @param {string} label
- * @returns {Overlay}
- */
+/** @param {Direction} direction @param {string} label @returns {Overlay} */
 function modulus(direction, label) {
   /** @param {StitchKind} kind */
   const value = (kind) => kind[`modulus_${direction}_n_per_mm`];
@@ -245,9 +238,5 @@ function css(rgb) {
   return `rgb(${rgb.join(" ")})`;
 }
 
-/**
- * What of it fabric that nobody pulls can show: not how far it is pulled.
- *
- * @param {Overlay} overlay
- */
+/** What of it fabric that nobody pulls can show: not how far it is pulled. @param {Overlay} overlay */
 export const atRest = (overlay) => (overlay === strain || overlay === utilisation ? fabrics : overlay);

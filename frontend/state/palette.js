@@ -75,10 +75,7 @@ function palette(dark) {
   };
 }
 
-/**
- * @param {string} hex #rrggbb
- * @returns {number[]}
- */
+/** @param {string} hex #rrggbb @returns {number[]} */
 export function channels(hex) {
   const value = Number.parseInt(hex.slice(1), 16);
   return [(value >> 16) & 255, (value >> 8) & 255, value & 255];

@@ -28,13 +28,7 @@ import { Seeing } from "./seeing.js";
 import { Gauges } from "./gauges.js";
 import { TOOLS } from "../tools/registry.js";
 
-const SETTINGS = {
-  overlay: "fabrics",
-  rectangles: false,
-  tool: "pencil",
-  size: 1,
-  weight: 0.5,
-};
+const SETTINGS = { overlay: "fabrics", rectangles: false, tool: "pencil", size: 1, weight: 0.5 };
 
 /** Girths of a limb that a tube of the chart sits on firmly, over its size at rest. */
 const SNUG = [1.12, 1.25];
@@ -43,10 +37,7 @@ const SNUG = [1.12, 1.25];
 export const REST = -1;
 
 export class Studio {
-  /**
-   * @param {ChartDocument} document
-   * @param {{id: string, name: string, material: string, note?: string}} design
-   */
+  /** @param {ChartDocument} document @param {{id: string, name: string, material: string, note?: string}} design */
   constructor(document, design) {
     const settings = loadSettings(SETTINGS);
     this.document = document;
@@ -241,11 +232,7 @@ export class Studio {
     return fields?.[this.stretchDirection() === "course" ? "strain_course_interval" : "strain_wale_interval"];
   }
 
-  /**
-   * Show a message to the user.
-   *
-   * @param {Problem} problem
-   */
+  /** Show a message to the user. @param {Problem} problem */
   tellProblem(problem) {
     this.message.value = { kind: "error", ...problem };
   }

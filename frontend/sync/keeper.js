@@ -110,11 +110,7 @@ export class Keeper {
     this.#show({ id, remote: null, base: null, document: design }, keep);
   }
 
-  /**
-   * Open a design of the service, with what was changed here and not delivered yet.
-   *
-   * @param {Kept} kept
-   */
+  /** Open a design of the service, with what was changed here and not delivered yet. @param {Kept} kept */
   openKept(kept) {
     this.#leave();
     const remote = { id: kept.id, revision: kept.revision };
@@ -139,11 +135,7 @@ export class Keeper {
     this.state.value = { kind: "shared", mode, token };
   }
 
-  /**
-   * The service has changed the design on show at our request, as by restoring a version.
-   *
-   * @param {Kept} kept
-   */
+  /** The service has changed the design on show at our request, as by restoring a version. @param {Kept} kept */
   takeOver(kept) {
     this.#follow(() => this.studio.follow(kept.document));
     this.#parcel = { ...this.#parcel, remote: { id: kept.id, revision: kept.revision }, base: kept.document };
@@ -387,11 +379,7 @@ export class Keeper {
     }
   }
 
-  /**
-   * Deliver designs that were left before the service had them.
-   *
-   * @param {string[]} [only]
-   */
+  /** Deliver designs that were left before the service had them. @param {string[]} [only] */
   async deliverOthers(only) {
     for (let parcel of drafts.all()) {
       if (parcel.id === this.#parcel.id || (only && !only.includes(parcel.id))) continue;

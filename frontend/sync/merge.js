@@ -37,12 +37,7 @@ export function merge(base, mine, theirs) {
   return { document, conflicts };
 }
 
-/**
- * Whether two documents are the same.
- *
- * @param {DesignDocument} one
- * @param {DesignDocument} other
- */
+/** Whether two documents are the same. @param {DesignDocument} one @param {DesignDocument} other */
 export function same(one, other) {
   return (
     [...PLAIN, /** @type {const} */ ("chart")].every((part) => one[part] === other[part]) &&

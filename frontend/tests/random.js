@@ -1,10 +1,6 @@
 import { Grid } from "../grid/grid.js";
 
-/**
- * A repeatable random chart.
- *
- * @param {number} seed
- */
+/** A repeatable random chart. @param {number} seed */
 export function random(seed) {
   let state = seed * 2654435761;
   const next = () => {

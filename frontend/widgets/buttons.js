@@ -22,15 +22,15 @@ export function iconButton(sign, label, perform, more = {}) {
 }
 
 /**
- * A button with a sign before its words.
+ * A button with words and perhaps a sign before them.
  *
- * @param {IconName} sign
+ * @param {IconName | null} sign
  * @param {string | Node} label
  * @param {() => unknown} perform
  * @param {Record<string, unknown>} [more] properties
  */
 export function textButton(sign, label, perform, more = {}) {
-  return h("button", { class: "button", onclick: perform, ...more }, icon(sign), label);
+  return h("button", { class: "button", onclick: perform, ...more }, sign && icon(sign), label);
 }
 
 /**

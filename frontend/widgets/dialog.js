@@ -8,15 +8,11 @@ import { problemText } from "./problem.js";
 /** Inputs that Enter itself works on. */
 const PRESSED = ["button", "checkbox", "file", "radio"];
 
-/**
- * @param {string} id
- * @param {string} title
- * @param {...import("../elements/dom.js").Child} content
- */
+/** @param {string} id @param {string} title @param {...import("../elements/dom.js").Child} content */
 export function dialog(id, title, ...content) {
   const element = h(
     "dialog",
-    { id, class: "dialog", "aria-labelledby": `${id}-title` },
+    { id, class: "dialog panelled shadowed", "aria-labelledby": `${id}-title` },
     h(
       "header",
       {},

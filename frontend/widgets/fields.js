@@ -2,10 +2,12 @@
 
 import { h } from "../elements/dom.js";
 
+/** @import {Child} from "../elements/dom.js" */
+
 const MM_PER_INCH = 25.4;
 
 /** @param {Record<string, unknown>} more its properties */
-export const numberField = (more) => h("input", { type: "number", class: "number figures", ...more });
+export const numberField = (more) => h("input", { type: "number", class: "number figures framed rounded", ...more });
 
 /**
  * A field for a short text, with its label in the same line.
@@ -18,7 +20,7 @@ export const numberField = (more) => h("input", { type: "number", class: "number
 export const textLine = (label, value, changed, more) =>
   h(
     "label",
-    { class: "line-field" },
+    { class: "line-field stack gap-8" },
     h("span", {}, label),
     h("input", {
       type: "text",
@@ -32,11 +34,7 @@ export const textLine = (label, value, changed, more) =>
 
 /** A field for a length that can change its unit. */
 export class LengthField {
-  /**
-   * @param {string} label
-   * @param {number} mm
-   * @param {() => void} changed
-   */
+  /** @param {string} label @param {number} mm @param {() => void} changed */
   constructor(label, mm, changed) {
     this.mm = mm;
     this.unit = "mm";
@@ -80,12 +78,12 @@ export class LengthField {
 export function choice(name, label, choices, chosen, changed) {
   return h(
     "fieldset",
-    { class: "planner-choice" },
+    { class: "planner-choice flex wrap gap-6" },
     h("legend", { class: "visually-hidden" }, label),
     ...choices.map(([value, words]) =>
       h(
         "label",
-        { class: "planner-choice-item" },
+        { class: "planner-choice-item relative" },
         h("input", { type: "radio", name, value, checked: value === chosen, onchange: () => changed(value) }),
         h("span", {}, words),
       ),
@@ -93,15 +91,43 @@ export function choice(name, label, choices, chosen, changed) {
   );
 }
 
-/**
- * @param {string} label
- * @param {Node} field
- * @param {string} [hint]
- */
+/** @param {string} label @param {Node} field @param {string} [hint] */
 export const labelled = (label, field, hint) =>
   h(
     "label",
-    { class: "planner-field" },
+    { class: "planner-field line spread gap-12" },
     h("span", {}, label, hint && h("span", { class: "muted" }, ` ${hint}`)),
     field,
   );
+
+/**
+ * @param {Record<string, unknown>} more its properties
+ * @param {Iterable<readonly [value: string, words: string]>} options
+ */
+export const selectField = (more, options) =>
+  h("select", more, ...Array.from(options, ([value, words]) => h("option", { value }, words)));
+
+/**
+ * Segments side by side of which one is chosen.
+ *
+ * @template T
+ * @param {string} label
+ * @param {readonly (readonly [value: T, content: Child | Child[], properties?: Record<string, unknown>])[]} choices
+ * @param {T} chosen
+ * @param {(value: T) => void} changed
+ * @param {Record<string, unknown>} [more] properties of all of it
+ */
+export function segmented(label, choices, chosen, changed, more = {}) {
+  const segments = choices.map(([value, content, properties]) =>
+    h(
+      "button",
+      { class: "segment", role: "radio", onclick: () => (show(value), changed(value)), ...properties },
+      ...[content].flat(),
+    ),
+  );
+  const show = (/** @type {T} */ value) =>
+    segments.forEach((segment, i) => segment.setAttribute("aria-checked", String(choices[i][0] === value)));
+  show(chosen);
+  const element = h("div", { class: "segmented", role: "radiogroup", "aria-label": label, ...more }, ...segments);
+  return { element, show };
+}

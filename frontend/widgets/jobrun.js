@@ -17,7 +17,7 @@ export class Run {
   #text = h("span", { class: "figures" });
   #busy = h(
     "div",
-    { class: "inverse-run", hidden: true },
+    { class: "inverse-run line gap-10", hidden: true },
     this.#bar,
     this.#text,
     textButton("stop", "Cancel", () => this.cancel()),

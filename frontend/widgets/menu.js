@@ -9,12 +9,10 @@
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
 
-/**
- * @param {{id: string, label: string, content: Child[], class: string}} options
- */
+/** @param {{id: string, label: string, content: Child[], class: string}} options */
 export function menu({ id, label, content, class: style }) {
   const list = h("div", {
-    class: "menu",
+    class: "menu raised shadowed",
     role: "menu",
     id: `${id}-menu`,
     popover: "auto",
@@ -62,7 +60,7 @@ export function menu({ id, label, content, class: style }) {
           : h(
               "button",
               {
-                class: "menu-item",
+                class: "menu-item bare line full-width gap-6",
                 id: item.id,
                 role: item.checked === undefined ? "menuitem" : "menuitemradio",
                 "aria-checked": item.checked === undefined ? undefined : String(item.checked),

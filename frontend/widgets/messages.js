@@ -11,11 +11,7 @@ import { problemText } from "./problem.js";
 
 const INFO_MS = 5000;
 
-/**
- * @param {HTMLElement} host
- * @param {HTMLElement} banner
- * @param {Studio} studio
- */
+/** @param {HTMLElement} host @param {HTMLElement} banner @param {Studio} studio */
 export function messages(host, banner, studio) {
   studio.message.listen((message) => {
     if (!message) return;
@@ -23,7 +19,7 @@ export function messages(host, banner, studio) {
     const close = () => box.remove();
     const box = h(
       "div",
-      { class: `message ${kind}` },
+      { class: `message raised flex shadowed gap-10 ${kind}` },
       icon(kind === "error" ? "warning" : "info"),
       problemText(message),
       iconButton("close", "Close this message", close),

@@ -10,7 +10,7 @@ const TOUCH_MS = 450;
 const GAP_PX = 8;
 
 export function tips() {
-  const tip = h("div", { class: "tip", popover: "manual", "aria-hidden": "true" });
+  const tip = h("div", { class: "tip small shadowed", popover: "manual", "aria-hidden": "true" });
   document.body.append(tip);
   /** @type {{element: HTMLElement, title: string} | null} */
   let shown = null;

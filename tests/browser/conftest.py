@@ -104,19 +104,32 @@ def studio(visitor: Page, service: str) -> Page:
 
 @pytest.fixture
 def flat_studio(visitor: Page, service: str) -> Page:
-    """The same with an empty 3D view: drawing it without a GPU takes most of a test's time."""
-    visitor.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
-    return open_small_chart(visitor, service)
+    """The same with an empty 3D view."""
+    return open_small_chart(flat(visitor), service)
 
 
-def open_small_chart(visitor: Page, service: str, chart: str = CHART) -> Page:
-    """Show a chart, by default one of 12 x 10 knits."""
+def flat(page: Page) -> Page:
+    """The page with an empty 3D view: drawing it without a GPU takes most of a test's time."""
+    page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+    return page
+
+
+def second_window(page: Page, address: str) -> Page:
+    """Show an address in another window of the same browser, with an empty 3D view."""
+    window = flat(page.context.new_page())
+    window.goto(address)
+    wait_for_numbers(window)
+    return window
+
+
+def open_small_chart(visitor: Page, service: str, chart: str = CHART, **content: object) -> Page:
+    """Show a design, by default one of 12 x 10 knits."""
     design = {
         "id": os.urandom(16).hex(),
         "name": "Test",
         "material": "acrylic",
         "chart": chart,
-    }
+    } | content
     kept = f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}"
     visitor.add_init_script(
         f"if (parent === window) {kept}"

@@ -15,6 +15,7 @@ from app.service.limits.user_limits import OverLimitError
 from app.service.web.errors import problem_of
 from tests.app.running import Service
 from tests.browser.axe import THEMES, violations
+from tests.browser.conftest import flat
 
 TOO_MANY: dict[str, str] = problem_of(OverLimitError.of("connections", 128, 128)).model_dump()
 
@@ -35,8 +36,7 @@ def lab(tmp_path: Path, bundle: None) -> Iterator[tuple[str, str]]:
 def test_the_user_is_named_and_signs_out(visitor: Page, lab: tuple[str, str]) -> None:
     url, token = lab
     page = visitor
-    page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
-    page.goto(url)
+    flat(page).goto(url)
     found = [f"sign-in: {wrong}" for wrong in violations(page)]
     page.get_by_label("Token").fill(token)
     page.get_by_role("button", name="Sign in").click()

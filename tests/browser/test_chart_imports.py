@@ -61,6 +61,7 @@ def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> No
     for name, kind, content, message in (
         ("broken.png", "image/png", b"\x89PNG nonsense", "not a picture"),
         ("empty.txt", "text/plain", b"", "is empty"),
+        ("ragged.txt", "text/plain", b"KP\nKPK", "line 2 has 3 stitches"),
         ("program.bin", "", b"\x00\x01\x02", "is not a text file"),
         ("half.json", "application/json", b'{"format": "knitcore-des', "not valid JSON"),
         ("other.json", "application/json", b'{"a": 1}', "not a design"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
@@ -11,6 +10,7 @@ from playwright.sync_api import Page, expect
 from knitcore.formats.designs.design_file import design_from_mapping
 from knitcore.formats.read.chart_files import read_piece
 from tests.browser.axe import violations
+from tests.browser.page import kept_design
 
 
 def _plan(page: Page, template: str) -> None:
@@ -46,7 +46,11 @@ def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: 
     assert {yarn.name for yarn in piece.yarns} == {"blue", "orange", "green", "purple"}
     kept = design_from_mapping(
         {"format": "knitcore-design", "version": 2}
-        | {k: v for k, v in _kept(page).items() if k in ("name", "chart", "outline", "regions")}
+        | {
+            k: v
+            for k, v in kept_design(page).items()
+            if k in ("name", "chart", "outline", "regions")
+        }
     )
     assert kept.to_piece() == piece
     assert {region.name for region in kept.regions} >= {"thumb", "thumb gusset", "fingers"}
@@ -95,7 +99,7 @@ def test_written_rows_are_opened_as_a_design(flat_studio: Page, tmp_path: Path) 
     page.keyboard.press("i")
     page.locator("#import-file").set_input_files(file)
     expect(page.locator("#chart-size")).to_contain_text("4 × 2")
-    assert _kept(page)["outline"] == "..xx\nxxxx"
+    assert kept_design(page)["outline"] == "..xx\nxxxx"
 
 
 @pytest.mark.slow
@@ -106,12 +110,6 @@ def test_both_panels_are_accessible(flat_studio: Page) -> None:
     page.keyboard.press("Escape")
     page.keyboard.press("Control+E")
     assert not violations(page)
-
-
-def _kept(page: Page) -> dict[str, object]:
-    page.wait_for_function("() => !('unsaved' in document.documentElement.dataset)")
-    kept: dict[str, object] = json.loads(page.evaluate("localStorage['knitcore.design']"))
-    return kept
 
 
 def test_formats_of_extensions_are_offered(flat_studio: Page) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
@@ -18,7 +17,6 @@ from tests.browser.page import (
     settle,
     wait_for_change,
     wait_for_colour,
-    wait_for_picture,
 )
 
 
@@ -178,18 +176,6 @@ def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> N
     flat_studio.click("#gallery-seed")
     expect(flat_studio.locator("#stretch-slider")).to_be_disabled()
     expect(flat_studio.locator("#stretch-figures")).not_to_contain_text("10 %")
-
-
-@pytest.mark.slow
-def test_3d_view_shows_the_fabrics_in_their_colours(studio: Page) -> None:
-    studio.click("#ink-seed")
-    studio.click("#fill-all")
-
-    def purple(picture: np.ndarray) -> int:
-        red, green, blue = np.moveaxis(picture, -1, 0)
-        return int(((red > green + 6) & (blue > green + 14)).sum())
-
-    wait_for_picture(studio, "#fabric", purple, 800)
 
 
 def test_the_whole_chart_is_undone_to_the_start_and_redone(flat_studio: Page) -> None:

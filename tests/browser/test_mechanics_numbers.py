@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from collections.abc import Iterator
@@ -15,7 +14,7 @@ from playwright.sync_api import Page, expect
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import MeasuredCurve, material, save_material_file
-from tests.browser.conftest import wait_for_numbers
+from tests.browser.conftest import flat, open_small_chart
 from tests.browser.page import Chart, kept_chart
 
 NUMBER = r"−?\d+(\.\d+)?"
@@ -31,25 +30,9 @@ LEFT = {
 
 
 def open_design(page: Page, service: str, **content: object) -> Page:
-    """Show a design, with an empty 3D view."""
-    page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
-    design = {
-        "id": os.urandom(16).hex(),
-        "format": "knitcore-design",
-        "version": 2,
-        "name": "Test",
-        "material": "acrylic",
-        "note": "",
-        "chart": RIBBED,
-        "outline": None,
-        "regions": [],
-        "repeats": [],
-        "shelf": [],
-    } | content
-    page.add_init_script(f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}")
-    page.goto(service)
-    wait_for_numbers(page)
-    return page
+    """Show a design, by default a ribbed one, with an empty 3D view."""
+    whole = {"format": "knitcore-design", "version": 2, "chart": RIBBED} | content
+    return open_small_chart(flat(page), service, **whole)
 
 
 @pytest.mark.slow

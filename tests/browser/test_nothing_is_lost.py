@@ -45,18 +45,6 @@ def test_bad_text_is_explained_and_changes_nothing(flat_studio: Page) -> None:
     assert kept_chart(flat_studio) == painted
 
 
-def test_a_dropped_file_without_a_chart_is_explained(flat_studio: Page) -> None:
-    flat_studio.evaluate(
-        """() => {
-            const data = new DataTransfer();
-            data.items.add(new File(["KP\\nKPK"], "ragged.txt", { type: "text/plain" }));
-            window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
-        }"""
-    )
-    expect(flat_studio.locator("#messages")).to_contain_text("line 2 has 3 stitches")
-    assert kept_chart(flat_studio) == CHART
-
-
 def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
     flat_studio.fill("#stretch-amount", "390")
     flat_studio.click("#stretch-run")

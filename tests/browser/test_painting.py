@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import COLUMNS, wait_for_numbers
+from tests.browser.conftest import wait_for_numbers
 from tests.browser.page import drag, kept_chart
 
 
@@ -12,16 +12,6 @@ def test_right_button_paints_the_opposite(flat_studio: Page) -> None:
     flat_studio.click("#ink-knit")
     flat_studio.locator("#chart").click(button="right")
     assert kept_chart(flat_studio).count("P") == 1
-
-
-def test_chart_can_be_painted_without_a_mouse(flat_studio: Page) -> None:
-    flat_studio.focus("#chart")
-    for key in ("ArrowUp", "ArrowUp", "ArrowLeft", "Enter"):
-        flat_studio.keyboard.press(key)
-    lines = kept_chart(flat_studio).splitlines()[::-1]
-    assert [(r, c) for r, line in enumerate(lines) for c, s in enumerate(line) if s == "P"] == [
-        (1, COLUMNS - 2)
-    ]
 
 
 def test_selection_shows_numbers_of_its_own(flat_studio: Page) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, Page
 
-from tests.browser.conftest import CHART, TIMEOUT_MS, open_small_chart
+from tests.browser.conftest import CHART, TIMEOUT_MS, flat, open_small_chart
 from tests.browser.page import Chart, kept_chart, purls
 
 pytestmark = pytest.mark.slow
@@ -24,9 +24,7 @@ def tablet(browser: Browser, service: str) -> Iterator[Page]:
         viewport={"width": 1024, "height": 768}, has_touch=True, reduced_motion="reduce"
     )
     context.set_default_timeout(TIMEOUT_MS)
-    page = context.new_page()
-    page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
-    yield open_small_chart(page, service)
+    yield open_small_chart(flat(context.new_page()), service)
     context.close()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from tests.browser.conftest import wait_for_numbers
+from tests.browser.conftest import flat, second_window, wait_for_numbers
 from tests.browser.page import drag
 
 
@@ -17,10 +17,7 @@ def test_a_stroke_in_one_window_is_seen_in_the_other_which_nobody_touches(
     expect(first.locator("#others")).to_be_hidden()
     drag(first, 60, 0)
     expect(first.locator("#kept")).to_have_attribute("data-state", "kept")
-    second = first.context.new_page()
-    second.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
-    second.goto(first.url)
-    wait_for_numbers(second)
+    second = second_window(first, first.url)
     expect(first.locator("#others")).to_contain_text("open in another window")
     expect(second.locator("#others")).to_contain_text("open in another window")
     theirs, ours = (page.locator("#segments-course") for page in (second, first))
@@ -36,10 +33,7 @@ def test_a_stroke_in_one_window_is_seen_in_the_other_which_nobody_touches(
 
 def test_windows_opened_before_the_first_stroke_share_one_design(flat_studio: Page) -> None:
     first = flat_studio
-    second = first.context.new_page()
-    second.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
-    second.goto(first.url)
-    wait_for_numbers(second)
+    second = second_window(first, first.url)
     ours, theirs = (page.locator("#segments-course") for page in (first, second))
     before = ours.text_content() or ""
     drag(first, 60, 0)
@@ -58,10 +52,7 @@ def test_windows_that_both_paint_before_the_first_delivery_share_one_design(
     flat_studio: Page,
 ) -> None:
     first = flat_studio
-    second = first.context.new_page()
-    second.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
-    second.goto(first.url)
-    wait_for_numbers(second)
+    second = second_window(first, first.url)
     held: list[Route] = []
 
     def hold(route: Route) -> None:
@@ -95,8 +86,7 @@ def test_another_browser_with_the_design_is_told_of_and_its_strokes_are_seen(
     assert first.context.browser is not None
     elsewhere = first.context.browser.new_context()
     try:
-        second = elsewhere.new_page()
-        second.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+        second = flat(elsewhere.new_page())
         second.goto(first.url)
         wait_for_numbers(second)
         for page in (first, second):

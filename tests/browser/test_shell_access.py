@@ -10,7 +10,7 @@ from PIL import Image
 from playwright.sync_api import Page, expect
 
 from tests.browser.axe import THEMES, violations
-from tests.browser.page import drop, kept_chart, settle
+from tests.browser.page import drop, kept_chart, purls, settle
 
 
 def open_yarn_form(page: Page) -> None:
@@ -125,9 +125,9 @@ def test_a_chart_is_painted_with_keys_alone(flat_studio: Page) -> None:
         if page.evaluate("document.activeElement.id") == "chart":
             break
     assert page.evaluate("document.activeElement.id") == "chart"
-    page.keyboard.press("ArrowRight")
-    page.keyboard.press("Enter")
-    assert kept_chart(page).count("P") == 1
+    for key in ("ArrowUp", "ArrowUp", "ArrowLeft", "Enter"):
+        page.keyboard.press(key)
+    assert purls(kept_chart(page)) == {(2, 2)}
     frame = "getComputedStyle(document.activeElement.parentElement).borderTopColor"
     focused = page.evaluate(frame)
     page.evaluate("document.querySelector('.design-name').focus()")

@@ -10,10 +10,9 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.axe import THEMES, violations
-from tests.browser.conftest import CHART, wait_for_numbers
-from tests.browser.page import drag, kept_chart
+from tests.browser.conftest import CHART, flat, second_window, wait_for_numbers
+from tests.browser.page import drag, kept_chart, kept_design
 
-NO_3D = "**/view/**"
 SERVICE = "**/api/v1/designs**"
 AGREE = """async () => {
     const { chart, remote } = JSON.parse(localStorage['knitcore.design']);
@@ -53,15 +52,6 @@ def at_the_service(page: Page) -> dict[str, str]:
     return document
 
 
-def beside(page: Page, address: str) -> Page:
-    """The same browser's second window."""
-    second = page.context.new_page()
-    second.route(NO_3D, lambda route: route.fulfill(body="", content_type="text/html"))
-    second.goto(address)
-    wait_for_numbers(second)
-    return second
-
-
 def test_strokes_and_names_reach_the_service(flat_studio: Page) -> None:
     chart = painted(flat_studio)
     renamed(flat_studio, "Cuff")
@@ -87,7 +77,7 @@ def test_what_is_painted_while_the_service_is_away_is_delivered_later(flat_studi
 
 def test_two_windows_merge_their_strokes(flat_studio: Page) -> None:
     painted(flat_studio)
-    second = beside(flat_studio, flat_studio.url)
+    second = second_window(flat_studio, flat_studio.url)
     theirs = painted(second, 0, 50)
     flat_studio.bring_to_front()
     drag(flat_studio, 40, 0, start=(-120, 60))
@@ -104,7 +94,7 @@ def test_what_cannot_be_merged_is_a_choice_that_loses_nothing(flat_studio: Page)
     flat_studio.route(SERVICE, lambda route: route.abort())
     renamed(flat_studio, "Mine")
     expect(flat_studio.locator("#kept")).to_contain_text("Kept here")
-    second = beside(flat_studio, flat_studio.url)
+    second = second_window(flat_studio, flat_studio.url)
     renamed(second, "Theirs")
     saved(second)
     second.close()
@@ -167,8 +157,7 @@ def test_a_link_shows_the_design_to_others_and_lets_them_copy_it(
     expect(flat_studio.locator("#share-link")).to_have_value(LINK)
     link = flat_studio.input_value("#share-link")
     stranger = browser.new_context(viewport={"width": 1280, "height": 720})
-    page = stranger.new_page()
-    page.route(NO_3D, lambda route: route.fulfill(body="", content_type="text/html"))
+    page = flat(stranger.new_page())
     page.goto(link)
     expect(page.locator("#shared")).to_contain_text("Shared with you")
     drag(page, 0, 50, start=(-80, -30))
@@ -189,8 +178,7 @@ def test_the_gallery_opens_a_glove_and_the_design_before_it_stays(flat_studio: P
     flat_studio.keyboard.press("Shift+N")
     flat_studio.click("#gallery-glove")
     expect(flat_studio.locator(".design-name")).to_have_value("Therapeutic glove")
-    kept_chart(flat_studio)
-    design = json.loads(flat_studio.evaluate("localStorage['knitcore.design']"))
+    design = kept_design(flat_studio)
     assert "." in design["outline"]
     assert {region["name"] for region in design["regions"]} >= {"cuff", "thumb", "fingers"}
     flat_studio.goto(before)
@@ -218,8 +206,7 @@ def test_a_project_file_goes_out_and_comes_in(flat_studio: Page, tmp_path: Path)
 
 @pytest.mark.slow
 def test_the_tour_is_walked_with_keys_and_ends(visitor: Page, service: str) -> None:
-    visitor.route(NO_3D, lambda route: route.fulfill(body="", content_type="text/html"))
-    visitor.goto(service)
+    flat(visitor).goto(service)
     visitor.get_by_role("button", name="Take the tour").click()
     expect(visitor.locator("#tour")).to_be_visible()
     seen = set()

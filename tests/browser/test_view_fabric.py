@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -19,7 +18,6 @@ from tests.browser.conftest import (
     ROWS,
     TIMEOUT_MS,
     open_small_chart,
-    wait_for_numbers,
 )
 from tests.browser.page import (
     coloured,
@@ -388,18 +386,7 @@ def test_two_designs_never_show_each_other(browser: Browser, service: str) -> No
             viewport={"width": 1280, "height": 720}, reduced_motion="reduce"
         )
         context.set_default_timeout(TIMEOUT_MS)
-        page = context.new_page()
-        design = {
-            "id": os.urandom(16).hex(),
-            "name": "Test",
-            "material": "acrylic",
-            "chart": "\n".join([chart] * 8),
-        }
-        page.add_init_script(
-            f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}"
-        )
-        page.goto(service)
-        wait_for_numbers(page)
+        page = open_small_chart(context.new_page(), service, "\n".join([chart] * 8))
         contexts.append((context, page))
     for _, page in contexts:
         pictures.append(_wait_for_live_cloth(page))

@@ -8,6 +8,7 @@
 
 import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
+import { segmented, selectField } from "../../widgets/fields.js";
 import { actionButton } from "../../widgets/buttons.js";
 
 /** @type {[Look, string][]} */
@@ -18,14 +19,11 @@ const LOOKS = [
   ["loops", "Loops"],
 ];
 
-/**
- * @param {HTMLElement} host
- * @param {ActionContext} context
- */
+/** @param {HTMLElement} host @param {ActionContext} context */
 export function chartstrip(host, context) {
   const { studio } = context;
   const { editing, document: chart } = studio;
-  const key = h("div", { class: "chart-key", role: "img" });
+  const key = h("div", { class: "chart-key flex gap-12", role: "img" });
   const showKey = () => {
     const look = editing.look.value;
     const drawn = look === "loops" ? "loops" : look === "colours" ? "plain" : "dots";
@@ -34,7 +32,7 @@ export function chartstrip(host, context) {
       h(
         "span",
         { class: "legend-item" },
-        h("span", { class: `key-cell ${kind} ${drawn}${look === "symbols" ? " paper" : ""}` }),
+        h("span", { class: `key-cell relative ${kind} ${drawn}${look === "symbols" ? " paper" : ""}` }),
         label,
       );
     key.replaceChildren(
@@ -52,16 +50,15 @@ export function chartstrip(host, context) {
     shaped = chart.shaped;
   });
 
-  const look = h(
-    "select",
+  const look = selectField(
     {
-      class: "strip-select",
+      class: "strip-select raised shrinks-x rounded",
       id: "look",
       title: "How stitches are drawn (V)",
       "aria-label": "How stitches are drawn",
       onchange: () => (editing.look.value = /** @type {Look} */ (look.value)),
     },
-    ...LOOKS.map(([value, label]) => h("option", { value }, label)),
+    LOOKS,
   );
   editing.look.watch((value) => (look.value = value));
   // Colours were asked for: show them.
@@ -70,12 +67,12 @@ export function chartstrip(host, context) {
   });
 
   /** @param {"fit" | "zoom-in" | "zoom-out"} id */
-  const small = (id) => actionButton(action(id), context, "strip-button");
+  const small = (id) => actionButton(action(id), context, "strip-button bare centred rounded");
 
   host.append(
     h(
       "div",
-      { class: "chart-strip" },
+      { class: "chart-strip line small nowrap gap-10" },
       key,
       h("span", { class: "spacer" }),
       choice("Side of the cloth", "K", editing.back, [
@@ -101,19 +98,14 @@ export function chartstrip(host, context) {
  * @param {[boolean, string][]} options
  */
 function choice(label, key, signal, options) {
-  const buttons = options.map(([value, text]) =>
-    h(
-      "button",
-      { class: "segment", role: "radio", id: `choose-${text.toLowerCase()}`, onclick: () => (signal.value = value) },
-      text,
-    ),
+  const choices = options.map(
+    ([value, text]) => /** @type {const} */ ([value, text, { id: `choose-${text.toLowerCase()}` }]),
   );
-  signal.watch((now) =>
-    buttons.forEach((button, k) => button.setAttribute("aria-checked", String(options[k][0] === now))),
-  );
-  return h(
-    "div",
-    { class: "segmented small", role: "radiogroup", "aria-label": label, title: `${label} (${key})` },
-    ...buttons,
-  );
+  const title = `${label} (${key})`;
+  const { element, show } = segmented(label, choices, signal.value, (value) => (signal.value = value), {
+    class: "segmented small",
+    title,
+  });
+  signal.listen(show);
+  return element;
 }

@@ -54,11 +54,7 @@ export function overlaybar(host, studio, view) {
   const { crosses: crossing } = studio.seeing;
   const crosses = h(
     "button",
-    {
-      class: "chip",
-      id: "overlay-crosses",
-      onclick: () => (crossing.value = !crossing.value),
-    },
+    { class: "chip", id: "overlay-crosses", onclick: () => (crossing.value = !crossing.value) },
     "+ Strain",
   );
   crossing.watch((on) => crosses.setAttribute("aria-pressed", String(on)));
@@ -81,8 +77,8 @@ export function overlaybar(host, studio, view) {
   );
   const { groups, block } = studio.seeing;
   grouping.value = groups.value === "block" ? `block-${block.value}` : groups.value;
-  const legend = h("div", { class: "legend" });
-  const readout = h("output", { class: "readout figures", id: "readout" });
+  const legend = h("div", { class: "legend line small nowrap clipped" });
+  const readout = h("output", { class: "readout figures line small nowrap muted clipped", id: "readout" });
 
   let pulled = false;
   const show = () => {
@@ -142,12 +138,12 @@ export function overlaybar(host, studio, view) {
   host.append(
     h(
       "div",
-      { class: "chips" },
+      { class: "chips line wrap gap-2" },
       h(
         "div",
-        { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" },
+        { class: "chips line wrap gap-2", role: "radiogroup", "aria-label": "Colours of the chart" },
         ...chips.slice(0, 3),
-        h("span", { class: "chip-heading", "aria-hidden": "true" }, "Modulus"),
+        h("span", { class: "chip-heading small muted", "aria-hidden": "true" }, "Modulus"),
         ...chips.slice(3, 6),
         h("span", { class: "chip-divider", "aria-hidden": "true" }),
         ...chips.slice(6),
@@ -175,10 +171,7 @@ function scale({ map, low, high, unit, log, label }) {
   ].filter((part) => part instanceof Node);
 }
 
-/**
- * @param {Studio} studio
- * @param {Cell | null} cell
- */
+/** @param {Studio} studio @param {Cell | null} cell */
 function describe(studio, cell) {
   const { grid, codes } = studio.document;
   if (!cell || !grid.has(...cell)) return IDLE;
@@ -213,13 +206,7 @@ function describe(studio, cell) {
   return parts.join(" · ");
 }
 
-/**
- * What the rectangle at a stitch says.
- *
- * @param {Studio} studio
- * @param {number} row
- * @param {number} column
- */
+/** What the rectangle at a stitch says. @param {Studio} studio @param {number} row @param {number} column */
 function give(studio, row, column) {
   const group = groupAt(studio, row, column);
   if (!group) return "in no region";

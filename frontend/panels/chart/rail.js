@@ -14,11 +14,7 @@ import { actionButton } from "../../widgets/buttons.js";
 
 const SYMMETRY_NAMES = { none: "off", across: "left and right", up: "top and bottom", both: "both ways" };
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {HTMLElement} host @param {Studio} studio @param {ActionContext} context */
 export function rail(host, studio, context) {
   const tools = TOOLS.map((tool) =>
     h(
@@ -63,7 +59,7 @@ export function rail(host, studio, context) {
     symmetry.title = `Symmetry: ${SYMMETRY_NAMES[value]} (Y)`;
     symmetry.replaceChildren(
       icon(value === "up" ? "flip" : "mirror"),
-      value === "both" ? h("span", { class: "badge" }, "2") : "",
+      value === "both" ? h("span", { class: "badge small" }, "2") : "",
     );
   });
 

@@ -20,10 +20,7 @@ const NAMED = [
   ["make-region", "Region"],
 ];
 
-/**
- * @param {HTMLElement} host
- * @param {ActionContext} context
- */
+/** @param {HTMLElement} host @param {ActionContext} context */
 export function selectionbar(host, context) {
   const { studio } = context;
   /** @param {string} id @param {string} [text] */
@@ -32,7 +29,7 @@ export function selectionbar(host, context) {
     return h(
       "button",
       {
-        class: text ? "bar-button named" : "bar-button",
+        class: text ? "bar-button named bare inline small gap-4" : "bar-button bare inline small gap-4",
         id: `selection-${id}`,
         title: keys[0] ? `${label} (${shown(keys[0])})` : label,
         "aria-label": label,
@@ -45,10 +42,10 @@ export function selectionbar(host, context) {
   const count = h("span", { class: "bar-count figures" });
   const bar = h(
     "div",
-    { class: "selection-bar", role: "toolbar", "aria-label": "Selection", id: "selection-bar", hidden: true },
+    { class: "selection-bar raised", role: "toolbar", "aria-label": "Selection", id: "selection-bar", hidden: true },
     count,
-    ...GROUPS.map((group) => h("span", { class: "bar-group" }, ...group.map((id) => button(id)))),
-    h("span", { class: "bar-group" }, ...NAMED.map(([id, text]) => button(id, text))),
+    ...GROUPS.map((group) => h("span", { class: "bar-group flex" }, ...group.map((id) => button(id)))),
+    h("span", { class: "bar-group flex" }, ...NAMED.map(([id, text]) => button(id, text))),
     button("deselect"),
   );
   const strip = host.querySelector(".chart-strip");

@@ -29,7 +29,7 @@ const MOST = 9;
  */
 export function shelf(host, studio, context) {
   const { document: chart } = studio;
-  const list = h("div", { class: "shelf-list" });
+  const list = h("div", { class: "shelf-list flex shrinks-x grows gap-2" });
   const fill = action("fill-part");
   const fillButton = textButton("fill", h("span", {}, "Fill chart"), () => fill.perform(context), {
     id: "fill-all",
@@ -73,7 +73,7 @@ export function shelf(host, studio, context) {
           h(
             "button",
             {
-              class: "swatch",
+              class: "swatch bare stack small nowrap rounded",
               role: "radio",
               id: `ink-${ink.id}`,
               title: ink.note || ink.name,

@@ -9,14 +9,15 @@
  * @import {Answers, Choice, Piece} from "./pieces.js"
  */
 
-import { ApiError, isAbort } from "../../api.js";
+import { ApiError } from "../../api.js";
 import { difference, interpolated } from "../../core/difference.js";
 import { LINES, along } from "../../core/directions.js";
 import { figure, range } from "../../core/format.js";
-import { Latest } from "../../core/latest.js";
+import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { drawPair } from "../../plots/pair.js";
 import { dialog, problemBox } from "../../widgets/dialog.js";
+import { segmented } from "../../widgets/fields.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { sizeAtRest } from "../../services/scope.js";
 import { NOW, answers, choices, piece } from "./pieces.js";
@@ -32,34 +33,21 @@ const RECTANGLES_PX = 150;
 /** The load at which stretches are compared: a hand's pull. */
 const LOAD_N_PER_MM = 0.1;
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper }) {
   const status = h("div", { class: "dialog-status", role: "status" });
-  const table = h("table", { class: "numbers compare-numbers", id: "compare-numbers" });
+  const table = h("table", { class: "numbers compare-numbers full-width", id: "compare-numbers" });
   const plot = h("div", { class: "plot", id: "compare-plot" });
-  const rectangles = h("div", { class: "compare-rectangles" });
+  const rectangles = h("div", { class: "compare-rectangles stack" });
   /** @type {Direction} */
   let direction = "course";
-  const ways = /** @type {Direction[]} */ (["course", "wale"]).map((way) =>
-    h(
-      "button",
-      {
-        class: "segment",
-        role: "radio",
-        id: `compare-${way}`,
-        "aria-checked": String(way === direction),
-        onclick: () => {
-          direction = way;
-          for (const one of ways) one.setAttribute("aria-checked", String(one.id === `compare-${way}`));
-          draw();
-        },
-      },
-      `Pulled ${along(way)}`,
-    ),
+  const directions = /** @type {Direction[]} */ (["course", "wale"]).map(
+    (way) => /** @type {const} */ ([way, `Pulled ${along(way)}`, { id: `compare-${way}` }]),
   );
+  const ways = segmented("Direction of the curves", directions, direction, (way) => {
+    direction = way;
+    draw();
+  });
   const sides = SIDES.map(({ id, letter }) => {
     const which = h("select", {
       class: "select",
@@ -77,7 +65,7 @@ export function create(studio, { keeper }) {
       which,
       yarn,
       yarnId: "", // chosen instead of the piece's own
-      picture: h("div", { class: "compare-picture" }),
+      picture: h("div", { class: "compare-picture centred rounded sunken" }),
       size: h("p", { class: "muted figures" }),
     };
     return side;
@@ -87,12 +75,12 @@ export function create(studio, { keeper }) {
     "Compare",
     h(
       "div",
-      { class: "compare-sides" },
+      { class: "compare-sides stack" },
       ...sides.map(({ which, yarn, picture, size }, k) =>
         h(
           "section",
           { "aria-label": `Piece ${SIDES[k].letter}` },
-          h("div", { class: "compare-what" }, badge(k), which),
+          h("div", { class: "line gap-8" }, badge(k), which),
           yarn,
           picture,
           size,
@@ -100,18 +88,7 @@ export function create(studio, { keeper }) {
       ),
     ),
     status,
-    h(
-      "div",
-      { class: "compare-answers" },
-      h("div", {}, table),
-      h(
-        "div",
-        { class: "compare-plots" },
-        h("div", { class: "segmented", role: "radiogroup", "aria-label": "Direction of the curves" }, ...ways),
-        plot,
-        rectangles,
-      ),
-    ),
+    h("div", { class: "compare-answers stack" }, h("div", {}, table), h("div", {}, ways.element, plot, rectangles)),
   );
 
   /** @type {{piece: Piece, answers: Answers}[]} */
@@ -119,8 +96,8 @@ export function create(studio, { keeper }) {
   const latest = new Latest(0);
   const load = () => {
     element.classList.add("busy");
-    latest.run(async (signal) => {
-      try {
+    latest.run(
+      async (signal) => {
         const all = await Promise.all(
           sides.map(async ({ which, yarnId }) => {
             const one = await piece(studio, keeper, which.value);
@@ -133,13 +110,12 @@ export function create(studio, { keeper }) {
         status.replaceChildren();
         element.classList.remove("busy");
         draw();
-      } catch (error) {
-        if (isAbort(error) || signal.aborted) return;
-        if (!(error instanceof ApiError)) throw error;
+      },
+      ({ problem }) => {
         element.classList.remove("busy");
-        status.replaceChildren(problemBox(error.problem, load));
-      }
-    });
+        status.replaceChildren(problemBox(problem, load));
+      },
+    );
   };
   const draw = () => {
     if (!found.length) return;
@@ -214,7 +190,7 @@ export function create(studio, { keeper }) {
 /** @param {number} side */
 function badge(side) {
   const { letter, colour } = SIDES[side];
-  const element = h("span", { class: "compare-badge" }, letter);
+  const element = h("span", { class: "compare-badge small" }, letter);
   element.style.backgroundColor = `var(--${colour})`;
   return element;
 }
@@ -328,7 +304,7 @@ function drawRectangles(host, pair) {
   host.replaceChildren(
     h(
       "div",
-      { class: "compare-nest", role: "img", "aria-label": "Extensibility rectangles of both pieces" },
+      { class: "compare-nest relative", role: "img", "aria-label": "Extensibility rectangles of both pieces" },
       ...sides.map(([course, wale], k) => {
         const rectangle = h("span", {});
         rectangle.style.cssText = `width: ${Math.sqrt(course) * scale}px; height: ${Math.sqrt(wale) * scale}px; border-color: var(--${SIDES[k].colour})`;

@@ -23,11 +23,7 @@ import { scopeIn } from "../../services/scope.js";
 /** The design in hand, as it is now. */
 export const NOW = "now";
 
-/**
- * @param {Studio} studio
- * @param {ActionContext["keeper"]} keeper
- * @returns {Promise<Choice[]>}
- */
+/** @param {Studio} studio @param {ActionContext["keeper"]} keeper @returns {Promise<Choice[]>} */
 export async function choices(studio, keeper) {
   const id = keeper.remoteId;
   const [{ versions }, { designs: others }] = await Promise.all([

@@ -10,21 +10,18 @@ import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { attempt } from "../../widgets/attempt.js";
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const text = h("p", {});
-  const sides = h("div", { class: "sides" });
+  const sides = h("div", { class: "sides stack" });
   const element = dialog("conflict-dialog", "This design was changed elsewhere, too", text, sides, status);
 
   /** @param {"mine" | "theirs" | "both"} choice @param {string} label @param {string} note @param {string} style */
   const option = (choice, label, note, style = "button") =>
     h(
       "div",
-      { class: "option" },
+      { class: "option stack gap-12" },
       h(
         "button",
         {
@@ -41,7 +38,7 @@ export function create(studio, { keeper }) {
   element.append(
     h(
       "div",
-      { class: "options" },
+      { class: "options stack gap-8" },
       option("both", "Keep both", "Mine becomes a design of its own.", "button primary"),
       option("mine", "Keep mine", "Theirs stays as a version."),
       option("theirs", "Take theirs", "Mine can be brought back from Deleted for 30 days."),
@@ -62,7 +59,7 @@ export function create(studio, { keeper }) {
 const side = (title, design) =>
   h(
     "figure",
-    { class: "side-picture" },
+    { class: "side-picture stack sunken gap-8" },
     thumbnail(design, { side: 150, label: `${title}: ${design.name}` }),
     h("figcaption", {}, h("strong", {}, title), h("span", { class: "muted" }, ` ${design.name}`)),
   );

@@ -10,15 +10,13 @@ import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { designs } from "../../sync/designs.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
+import { segmented } from "../../widgets/fields.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, context) {
   const { keeper } = context;
   let deleted = false;
@@ -35,28 +33,17 @@ export function create(studio, context) {
     oninput: () => filter(),
   });
   const more = h("button", { class: "button", onclick: () => void load() }, "Show more");
-  /** @param {boolean} which @param {string} label @param {string} id */
-  const tab = (which, label, id) =>
-    h(
-      "button",
-      {
-        class: "segment",
-        role: "radio",
-        id,
-        "aria-checked": String(which === deleted),
-        onclick: (/** @type {MouseEvent} */ { currentTarget }) => {
-          deleted = which;
-          for (const one of tabs.children) one.setAttribute("aria-checked", String(one === currentTarget));
-          void reload();
-        },
-      },
-      label,
-    );
-  const tabs = h(
-    "div",
-    { class: "segmented", role: "radiogroup", "aria-label": "Which designs" },
-    tab(false, "Designs", "designs-kept"),
-    tab(true, "Deleted", "designs-deleted"),
+  const tabs = segmented(
+    "Which designs",
+    [
+      [false, "Designs", { id: "designs-kept" }],
+      [true, "Deleted", { id: "designs-deleted" }],
+    ],
+    deleted,
+    (which) => {
+      deleted = which;
+      void reload();
+    },
   );
   const element = dialog(
     "designs-dialog",
@@ -65,7 +52,7 @@ export function create(studio, context) {
       "div",
       { class: "dialog-tools" },
       search,
-      tabs,
+      tabs.element,
       h("span", { class: "spacer" }),
       textButton("gallery", "Examples", () => leave(() => context.open("gallery")), { id: "designs-gallery" }),
       textButton("plus", "New", () => leave(() => context.open("gallery")), {
@@ -132,12 +119,12 @@ export function create(studio, context) {
   const card = (design) => {
     const name = h("span", { class: "card-name ellipsis", title: design.name }, design.name);
     const here = design.id === keeper.remoteId;
-    const frame = h("span", { class: "card-picture", "data-id": design.id }, deleted && icon("trash"));
+    const frame = h("span", { class: "card-picture centred muted", "data-id": design.id }, deleted && icon("trash"));
     pictures.observe(frame);
     const open = h(
       "button",
       {
-        class: "card-open",
+        class: "card-open sunken",
         disabled: deleted,
         "aria-label": `Open ${design.name}`,
         "aria-current": here ? "true" : undefined,
@@ -166,7 +153,7 @@ export function create(studio, context) {
     item.append(
       h(
         "span",
-        { class: "card-tools" },
+        { class: "card-tools flex gap-2" },
         ...(deleted
           ? [textButton("undo", "Bring back", () => void recover(design, item))]
           : [
@@ -229,7 +216,7 @@ export function create(studio, context) {
     status.replaceChildren(
       h(
         "div",
-        { class: "notice" },
+        { class: "notice line spread rounded gap-12" },
         h("span", {}, `“${design.name}” was deleted. It stays under Deleted for 30 days.`),
         textButton("undo", "Undo", () => void recover(design, null), { id: "designs-undo" }),
       ),

@@ -22,10 +22,7 @@ const MODES = {
   copy: ["To copy", "Anyone with the link can also make a copy of their own. Yours stays as it is."],
 };
 
-/**
- * @param {Studio} _studio
- * @param {ActionContext} context
- */
+/** @param {Studio} _studio @param {ActionContext} context */
 export function create(_studio, { keeper }) {
   /** @type {ShareMode} */ let mode = "read";
   const status = h("div", { class: "dialog-status", role: "status" });
@@ -49,18 +46,18 @@ export function create(_studio, { keeper }) {
   const copied = h("p", { class: "muted" });
   const result = h(
     "div",
-    { class: "share-result", hidden: true },
+    { class: "stack gap-6", hidden: true },
     h("div", { class: "dialog-tools" }, link, copy),
     copied,
   );
 
   const choices = h(
     "div",
-    { class: "choices", role: "radiogroup", "aria-label": "What the link allows" },
+    { class: "choices stack gap-8", role: "radiogroup", "aria-label": "What the link allows" },
     .../** @type {ShareMode[]} */ (["read", "copy"]).map((which) =>
       h(
         "label",
-        { class: "choice" },
+        { class: "choice flex gap-10" },
         h("input", {
           type: "radio",
           name: "share-mode",
@@ -116,17 +113,10 @@ export function create(_studio, { keeper }) {
         h("span", {}, MODES[share.mode][0]),
         h("span", { class: "muted" }, `made ${ago(share.created_at)}`),
       ),
-      h(
-        "button",
-        {
-          class: "button",
-          onclick: async () => {
-            const id = keeper.remoteId;
-            if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();
-          },
-        },
-        "Take back",
-      ),
+      textButton(null, "Take back", async () => {
+        const id = keeper.remoteId;
+        if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();
+      }),
     );
 
   return () => {

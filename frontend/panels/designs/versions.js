@@ -16,10 +16,7 @@ import { keptName } from "./kept.js";
 import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper, open }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ol", { class: "rows-list", id: "versions-list" });
@@ -74,7 +71,7 @@ export function create(studio, { keeper, open }) {
 
   /** @param {Version} version */
   const row = (version) => {
-    const picture = h("span", { class: "row-picture" });
+    const picture = h("span", { class: "row-picture centred sunken" });
     const id = keeper.remoteId ?? "";
     void designs.version(id, version.number).then(
       ({ document }) => picture.replaceChildren(thumbnail(document, { side: 44 })),
@@ -100,22 +97,18 @@ export function create(studio, { keeper, open }) {
         },
         { "aria-label": `Compare with ${version.name}` },
       ),
-      h(
-        "button",
-        {
-          class: "button",
-          "aria-label": `Restore ${version.name}`,
-          onclick: async () => {
-            const known = await remote();
-            const kept =
-              known && (await attempt(status, () => designs.restore(known, version.number, keeper.revision)));
-            if (!kept) return;
-            keeper.takeOver(kept);
-            element.close();
-            studio.tell(`“${version.name}” is restored. The state before it is a version, too.`);
-          },
-        },
+      textButton(
+        null,
         "Restore",
+        async () => {
+          const known = await remote();
+          const kept = known && (await attempt(status, () => designs.restore(known, version.number, keeper.revision)));
+          if (!kept) return;
+          keeper.takeOver(kept);
+          element.close();
+          studio.tell(`“${version.name}” is restored. The state before it is a version, too.`);
+        },
+        { "aria-label": `Restore ${version.name}` },
       ),
     );
   };

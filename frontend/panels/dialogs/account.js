@@ -12,6 +12,7 @@ import { h } from "../../elements/dom.js";
 import { nameOf } from "../../services/account.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
+import { textButton } from "../../widgets/buttons.js";
 
 /** @param {number} n */
 const count = (n) => n.toLocaleString("en");
@@ -33,10 +34,7 @@ const LIMITS = /** @type {const} */ ([
   ["connections", "Requests at once, with this one", count],
 ]);
 
-/**
- * @param {Studio} _studio
- * @param {ActionContext} context
- */
+/** @param {Studio} _studio @param {ActionContext} context */
 export function create(_studio, { keeper }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const who = h("p", {});
@@ -52,7 +50,7 @@ export function create(_studio, { keeper }) {
     h("h3", {}, "What you use"),
     h(
       "table",
-      { class: "figures use" },
+      { class: "figures use full-width" },
       h("thead", {}, h("tr", {}, ...["", "used", "of"].map((text) => h("th", { scope: "col" }, text)))),
       used,
     ),
@@ -101,17 +99,14 @@ export function create(_studio, { keeper }) {
         h("span", { class: "muted" }, `signed in ${ago(created_at)}`),
       ),
       !is_this &&
-        h(
-          "button",
-          {
-            class: "button",
-            "aria-label": `End the session of the browser that signed in ${ago(created_at)}`,
-            onclick: async () => {
-              await attempt(status, () => api.endSession(id));
-              await load();
-            },
-          },
+        textButton(
+          null,
           "End",
+          async () => {
+            await attempt(status, () => api.endSession(id));
+            await load();
+          },
+          { "aria-label": `End the session of the browser that signed in ${ago(created_at)}` },
         ),
     );
 

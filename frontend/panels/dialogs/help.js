@@ -28,7 +28,7 @@ export function create() {
           h("h3", {}, group),
           h(
             "dl",
-            { class: "keys" },
+            { class: "keys stack" },
             ...ACTIONS.filter((one) => one.group === group).flatMap((one) => [
               h("dt", {}, ...one.keys.slice(0, 2).map((key) => h("kbd", {}, shown(key)))),
               h("dd", {}, one.label, hints.has(one.id) && h("span", { class: "muted" }, ` – ${hints.get(one.id)}`)),

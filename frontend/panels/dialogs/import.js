@@ -11,14 +11,11 @@ import { importFile, importText } from "./importer.js";
 import { problemText } from "../../widgets/problem.js";
 import { dialog } from "../../widgets/dialog.js";
 
-/**
- * @param {Studio} _
- * @param {ActionContext} context
- */
+/** @param {Studio} _ @param {ActionContext} context */
 export function create(_, context) {
   const text = h("textarea", {
     id: "import-text",
-    class: "import-text",
+    class: "import-text framed rounded full-width",
     rows: 10,
     spellcheck: false,
     placeholder: "KPKPKP\nPKPKPK",

@@ -92,11 +92,7 @@ function importProject({ studio, keeper }, text) {
   }
 }
 
-/**
- * @param {ActionContext} context
- * @param {File} file
- * @returns {Promise<Problem | null>}
- */
+/** @param {ActionContext} context @param {File} file @returns {Promise<Problem | null>} */
 export async function importFile(context, file) {
   if (file.size > MAX_FILE_BYTES) {
     return refusal(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB.`, "Files have at most 12 MB.");

@@ -43,10 +43,7 @@ const PLOTS = /** @type {const} */ ([
 /** @param {string} text as it is typed */
 const plain = (text) => text.trim().toLowerCase().replaceAll("×", "x").replaceAll("–", "-");
 
-/**
- * @param {ActionContext} context
- * @returns {Entry[]}
- */
+/** @param {ActionContext} context @returns {Entry[]} */
 function entries(context) {
   const { studio } = context;
   const patterns = studio.shelf.value.filter(({ repeat }) => repeat);
@@ -92,12 +89,12 @@ function entries(context) {
 
 /** @param {Studio} _studio @param {ActionContext} context */
 export function create(_studio, context) {
-  const nothing = h("p", { class: "muted command-none", role: "status" });
-  const list = h("div", { class: "command-list", role: "listbox", "aria-label": "Commands" });
+  const nothing = h("p", { class: "muted", role: "status" });
+  const list = h("div", { class: "command-list stack", role: "listbox", "aria-label": "Commands" });
   const search = h("input", {
     type: "text",
     id: "command-search",
-    class: "command-search",
+    class: "command-search framed rounded full-width",
     placeholder: "Find a command, yarn, pattern, plot …",
     "aria-label": "Find a tool or command",
     oninput: () => show(),
@@ -130,7 +127,7 @@ export function create(_studio, context) {
         h(
           "button",
           {
-            class: "command",
+            class: "command bare line gap-10",
             role: "option",
             tabIndex: -1,
             "aria-selected": String(i === 0),

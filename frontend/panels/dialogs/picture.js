@@ -14,6 +14,7 @@ import { h } from "../../elements/dom.js";
 import { refusal } from "../../services/refusal.js";
 import { dialog } from "../../widgets/dialog.js";
 import { numberField } from "../../widgets/fields.js";
+import { textButton } from "../../widgets/buttons.js";
 
 /** Larger pictures are made smaller before they are looked at. */
 const MAX_PIXELS = 1600;
@@ -67,20 +68,14 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
 
   /** @param {string} label @param {string} id @param {number} value */
   const count = (label, id, value) => {
-    const input = numberField({
-      id,
-      min: 1,
-      max: MAX_SIDE,
-      value,
-      oninput: () => show(),
-    });
-    return { input, row: h("label", { class: "field" }, h("span", {}, label), input) };
+    const input = numberField({ id, min: 1, max: MAX_SIDE, value, oninput: () => show() });
+    return { input, row: h("label", { class: "field stack gap-4" }, h("span", {}, label), input) };
   };
   const columns = count("Stitches", "picture-columns", cells.columns);
   const rows = count("Rows", "picture-rows", cells.rows);
   const threshold = h("input", {
     type: "range",
-    class: "slider",
+    class: "slider grows",
     id: "picture-threshold",
     min: 1,
     max: 255,
@@ -100,31 +95,25 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
     const before = use(grid);
     studio.tell(`Imported ${grid.columns} stitches × ${grid.rows} rows from ${name}. ${before}`);
   };
-  const apply = h(
-    "button",
-    {
-      class: "button primary",
-      id: "picture-apply",
-      onclick: () =>
-        take((grid) => {
-          keeper.openNew(plainDesign(name.replace(/\.[^.]*$/, "") || "Picture", grid.text, studio.materialId.value));
-          return "The design before it is still among your designs.";
-        }),
-    },
+  const apply = textButton(
+    null,
     "New design",
+    () =>
+      take((grid) => {
+        keeper.openNew(plainDesign(name.replace(/\.[^.]*$/, "") || "Picture", grid.text, studio.materialId.value));
+        return "The design before it is still among your designs.";
+      }),
+    { class: "button primary", id: "picture-apply" },
   );
-  const replace = h(
-    "button",
-    {
-      class: "button",
-      id: "picture-replace",
-      onclick: () =>
-        take((grid) => {
-          studio.document.replace(grid, "Import");
-          return "Undo brings the old chart back.";
-        }),
-    },
+  const replace = textButton(
+    null,
     "Replace this chart",
+    () =>
+      take((grid) => {
+        studio.document.replace(grid, "Import");
+        return "Undo brings the old chart back.";
+      }),
+    { id: "picture-replace" },
   );
 
   /** @param {string} id @param {string} label @param {{columns: number, rows: number}} size */
@@ -189,7 +178,7 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
     "Import a picture",
     h(
       "div",
-      { class: "picture-pair" },
+      { class: "picture-pair stack" },
       h(
         "figure",
         {},
@@ -205,7 +194,7 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
       rows.row,
       h(
         "div",
-        { class: "picture-sizes" },
+        { class: "picture-sizes flex wrap gap-8" },
         each && size("picture-each", "A pixel a stitch", { columns: bitmap.width, rows: bitmap.height }),
         found && size("picture-found", `Grid found: ${found.columns} × ${found.rows}`, found),
       ),
@@ -213,7 +202,7 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
     problem,
     h(
       "div",
-      { class: "picture-tone" },
+      { class: "picture-tone line wrap gap-12" },
       h("label", { for: "picture-threshold" }, "Purl if darker than"),
       threshold,
       share,

@@ -9,6 +9,7 @@ import { resized } from "../../design/reshape.js";
 import { h } from "../../elements/dom.js";
 import { dialog } from "../../widgets/dialog.js";
 import { numberField } from "../../widgets/fields.js";
+import { textButton } from "../../widgets/buttons.js";
 
 const UP = /** @type {const} */ ([
   [1, "top"],
@@ -33,12 +34,12 @@ export function create(studio) {
       required: true,
       oninput: () => advise(),
     });
-    return { input, row: h("label", { class: "field" }, h("span", {}, label), input) };
+    return { input, row: h("label", { class: "field stack gap-4" }, h("span", {}, label), input) };
   };
   const columns = field("Stitches", "new-columns");
   const rows = field("Rows", "new-rows");
   const problem = h("p", { class: "problem-text", role: "alert" });
-  const advice = h("div", { class: "resize-advice" });
+  const advice = h("div", { class: "resize-advice line wrap spread gap-8" });
   const anchors = UP.flatMap(([up, vertical]) =>
     ACROSS.map(([across, horizontal]) => {
       const name = vertical === horizontal ? "middle" : `${vertical} ${horizontal}`;
@@ -84,18 +85,11 @@ export function create(studio) {
         if (next.rows === size[0] && next.columns === size[1]) return [];
         return [
           h("p", { class: "muted" }, `${repeat.name} is a ${repeat.rule}.`),
-          h(
-            "button",
-            {
-              class: "button",
-              onclick: () => {
-                columns.input.value = String(next.columns);
-                rows.input.value = String(next.rows);
-                advise();
-              },
-            },
-            `Keep it whole: ${next.columns} × ${next.rows}`,
-          ),
+          textButton(null, `Keep it whole: ${next.columns} × ${next.rows}`, () => {
+            columns.input.value = String(next.columns);
+            rows.input.value = String(next.rows);
+            advise();
+          }),
         ];
       }),
     );
@@ -110,9 +104,9 @@ export function create(studio) {
   const forContent = [
     h(
       "fieldset",
-      { class: "anchors" },
+      { class: "anchors flex" },
       h("legend", {}, "The chart stays at"),
-      h("div", { class: "anchor-grid" }, ...anchors),
+      h("div", { class: "anchor-grid stack" }, ...anchors),
     ),
     h("p", { class: "muted" }, "Regions, outline and linked repeats move along. All three can be undone."),
     h(
@@ -130,7 +124,7 @@ export function create(studio) {
   const element = dialog(
     "resize-dialog",
     "Size of the chart",
-    h("div", { class: "resize-fields" }, h("div", { class: "fields" }, columns.row, rows.row), anchoring),
+    h("div", { class: "resize-fields flex wrap" }, h("div", { class: "fields" }, columns.row, rows.row), anchoring),
     problem,
     advice,
     note,
@@ -139,18 +133,15 @@ export function create(studio) {
       { class: "dialog-buttons" },
       anew,
       repeating,
-      h(
-        "button",
-        {
-          class: "button primary",
-          id: "resize-apply",
-          onclick: () =>
-            apply((r, c) => {
-              const same = r === document.grid.rows && c === document.grid.columns;
-              if (!same) document.reshape("Resize", resized(document.grid, r, c, anchor()));
-            }),
-        },
+      textButton(
+        null,
         "Set the size",
+        () =>
+          apply((r, c) => {
+            const same = r === document.grid.rows && c === document.grid.columns;
+            if (!same) document.reshape("Resize", resized(document.grid, r, c, anchor()));
+          }),
+        { class: "button primary", id: "resize-apply" },
       ),
     ),
   );

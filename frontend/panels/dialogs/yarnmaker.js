@@ -27,10 +27,7 @@ import { Run } from "../../widgets/jobrun.js";
 const ESTIMATED = "estimated from the library's yarns";
 const TABLES = ".csv,.xlsx,.xls";
 
-/**
- * @param {Studio} studio
- * @param {() => void} made called when the yarn is kept
- */
+/** @param {Studio} studio @param {() => void} made called when the yarn is kept */
 export function yarnMaker(studio, made) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const run = new Run();
@@ -225,7 +222,7 @@ export function yarnMaker(studio, made) {
       { class: "yarn-fabrics" },
       h(
         "table",
-        { class: "yarn-table" },
+        { class: "yarn-table small full-width" },
         h(
           "thead",
           {},

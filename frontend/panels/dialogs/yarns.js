@@ -109,7 +109,7 @@ export function create(studio) {
     return h(
       "details",
       {
-        class: "row-more",
+        class: "row-more small",
         ontoggle: async () => {
           if (told.hasChildNodes()) return;
           const document = await attempt(status, () => yarns.file(id));

@@ -32,19 +32,11 @@ const PHOTO_PX = { width: 1400, height: 800 };
 /** @param {ArrayBuffer} buffer */
 const toBase64 = (buffer) => btoa(Array.from(new Uint8Array(buffer), (byte) => String.fromCharCode(byte)).join(""));
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { view }) {
   let kind = KINDS[0];
   const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
-  const tex = numberField({
-    min: "1",
-    step: "any",
-    placeholder: "–",
-    "aria-label": "Yarn in tex",
-  });
+  const tex = numberField({ min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex" });
   const sides = choice(
     "export-side",
     "Side of row 1",
@@ -118,7 +110,7 @@ export function create(studio, { view }) {
     [...new Set(some.map(({ one }) => one.group))].map((group) =>
       h(
         "fieldset",
-        { class: "exports-kinds" },
+        { class: "exports-kinds stack gap-2" },
         h("legend", {}, group),
         ...some
           .filter(({ one }) => one.group === group)
@@ -131,7 +123,7 @@ export function create(studio, { view }) {
     "Export",
     h(
       "div",
-      { class: "exports" },
+      { class: "exports stack" },
       formats,
       h(
         "section",
@@ -219,9 +211,9 @@ export function create(studio, { view }) {
     const text =
       kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MAX_SHOWN)) : "";
     outcome.replaceChildren(
-      h("ul", { class: "planner-notes" }, ...found.map((words) => h("li", {}, icon("check"), words))),
+      h("ul", { class: "planner-notes plain-list" }, ...found.map((words) => h("li", {}, icon("check"), words))),
       text && !kind.to.endsWith("svg")
-        ? h("pre", { class: "exports-text", tabIndex: 0, "aria-label": "The file" }, text)
+        ? h("pre", { class: "exports-text rounded sunken", tabIndex: 0, "aria-label": "The file" }, text)
         : "",
       h("div", { class: "dialog-buttons" }, h("button", { class: "button", onclick: save }, "Save it again")),
     );

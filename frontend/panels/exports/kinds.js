@@ -25,120 +25,57 @@ export function hindrance(to, { shaped, stitches }) {
   return stitches > most ? `at most ${most.toLocaleString("en")} stitches` : "";
 }
 
-/**
- * The formats that extensions add.
- *
- * @param {Extensions["extensions"]} extensions
- * @returns {ExportKind[]}
- */
+/** The formats that extensions add. @param {Extensions["extensions"]} extensions @returns {ExportKind[]} */
 export function ofExtensions(extensions) {
   return extensions
     .filter(({ group, problem }) => group === "knitcore.exporters" && problem === null)
     .flatMap(({ offers, package: from }) =>
-      offers.map((to) => ({
-        to,
-        name: to,
-        note: `added by ${from}`,
-        group: "From extensions",
-        options: ["worked", "note", "tex"],
-      })),
+      kinds(
+        "From extensions",
+        offers.map((to) => [to, to, `added by ${from}`, PAPER]),
+      ),
     );
 }
 
-/** @type {ExportKind[]} */
+/** What can be said about a file on paper. @type {Option[]} */
+const PAPER = ["worked", "note", "tex"];
+
+/**
+ * A group's formats: each by its name for the service, name and note on the page, options, and whether
+ * it is text that can be read here.
+ *
+ * @param {string} group
+ * @param {[to: string, name: string, note: string, options: Option[], text?: boolean][]} formats
+ * @returns {ExportKind[]}
+ */
+const kinds = (group, formats) =>
+  formats.map(([to, name, note, options, text]) => ({ to, name, note, group, options, text }));
+
 export const KINDS = [
-  {
-    to: "pattern",
-    name: "Pattern to knit from",
-    note: "PDF: the 3D view as it is now, materials, gauge, parts, written rows, finishing, evidence, chart",
-    group: "To knit by hand",
-    options: ["worked", "note", "tex"],
-  },
-  {
-    to: "pattern-svg",
-    name: "The same as a drawing",
-    note: "SVG, its pages one below the other",
-    group: "To knit by hand",
-    options: ["worked", "note", "tex"],
-  },
-  {
-    to: "written",
-    name: "Written rows",
-    note: "as knitters write them, with shaping and colours",
-    group: "To knit by hand",
-    options: ["worked"],
-    text: true,
-  },
-  {
-    to: "pdf",
-    name: "Chart to print",
-    note: "PDF with key, row numbers, repeat and notes",
-    group: "To knit by hand",
-    options: ["worked", "note", "tex"],
-  },
-  {
-    to: "svg",
-    name: "Chart as a drawing",
-    note: "SVG",
-    group: "To knit by hand",
-    options: ["worked", "note", "tex"],
-    text: true,
-  },
-  {
-    to: "knitspeak",
-    name: "KnitSpeak",
-    note: "for Stitch Maps and other tools; rectangular charts only",
-    group: "To knit by hand",
-    options: ["worked"],
-    text: true,
-  },
-  {
-    to: "knitout",
-    name: "Knitout",
-    note: "for a V-bed machine; knitted on a virtual one first",
-    group: "For a machine",
-    options: ["finish"],
-    text: true,
-  },
-  {
-    to: "report",
-    name: "Report",
-    note: "PDF: numbers with intervals, maps, curves, assumptions, chart",
-    group: "To keep and to compute with",
-    options: ["worked", "note", "tex"],
-  },
-  {
-    to: "design",
-    name: "Project file",
-    note: "everything in this design, to open again",
-    group: "To keep and to compute with",
-    options: ["note"],
-    text: true,
-  },
-  {
-    to: "png",
-    name: "Picture",
-    note: "one pixel per stitch; purls are dark, cells without a stitch transparent",
-    group: "To keep and to compute with",
-    options: [],
-  },
-  {
-    to: "text",
-    name: "Lines of K and P",
-    note: "rectangular charts only",
-    group: "To keep and to compute with",
-    options: [],
-    text: true,
-  },
-  {
-    to: "csv",
-    name: "Values of every stitch",
-    note: "CSV",
-    group: "To keep and to compute with",
-    options: [],
-    text: true,
-  },
-  { to: "vtu", name: "Mesh for ParaView", note: "VTU", group: "To keep and to compute with", options: [] },
-  { to: "glb", name: "Loops in 3D", note: "glTF", group: "To keep and to compute with", options: [] },
-  { to: "stl", name: "Loops to print in 3D", note: "STL", group: "To keep and to compute with", options: [] },
+  ...kinds("To knit by hand", [
+    [
+      "pattern",
+      "Pattern to knit from",
+      "PDF: the 3D view as it is now, materials, gauge, parts, written rows, finishing, evidence, chart",
+      PAPER,
+    ],
+    ["pattern-svg", "The same as a drawing", "SVG, its pages one below the other", PAPER],
+    ["written", "Written rows", "as knitters write them, with shaping and colours", ["worked"], true],
+    ["pdf", "Chart to print", "PDF with key, row numbers, repeat and notes", PAPER],
+    ["svg", "Chart as a drawing", "SVG", PAPER, true],
+    ["knitspeak", "KnitSpeak", "for Stitch Maps and other tools; rectangular charts only", ["worked"], true],
+  ]),
+  ...kinds("For a machine", [
+    ["knitout", "Knitout", "for a V-bed machine; knitted on a virtual one first", ["finish"], true],
+  ]),
+  ...kinds("To keep and to compute with", [
+    ["report", "Report", "PDF: numbers with intervals, maps, curves, assumptions, chart", PAPER],
+    ["design", "Project file", "everything in this design, to open again", ["note"], true],
+    ["png", "Picture", "one pixel per stitch; purls are dark, cells without a stitch transparent", []],
+    ["text", "Lines of K and P", "rectangular charts only", [], true],
+    ["csv", "Values of every stitch", "CSV", [], true],
+    ["vtu", "Mesh for ParaView", "VTU", []],
+    ["glb", "Loops in 3D", "glTF", []],
+    ["stl", "Loops to print in 3D", "STL", []],
+  ]),
 ];

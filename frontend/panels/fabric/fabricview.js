@@ -45,11 +45,11 @@ const BLIND = {
  * @returns {() => void} sends the design again, for a service that has forgotten it
  */
 export function fabricview(host, studio, view) {
-  const frame = h("iframe", { title: "Fabric in 3D", class: "fabric-frame", tabIndex: 0 });
+  const frame = h("iframe", { title: "Fabric in 3D", class: "fabric-frame full-width", tabIndex: 0 });
   // Without our origin it may have a process of its own; then its frames do not keep the page waiting.
   frame.setAttribute("sandbox", "allow-scripts");
-  const status = h("div", { class: "fabric-status", role: "status" });
-  const caption = h("div", { class: "fabric-caption" });
+  const status = h("div", { class: "fabric-status raised line rounded gap-10", role: "status" });
+  const caption = h("div", { class: "fabric-caption small" });
   const still = new Still(frame);
   const drawing = { slow: false, held: false };
   /** @param {{pass: string} | {hold: boolean} | {ink: string}} message */
@@ -297,13 +297,7 @@ export function fabricview(host, studio, view) {
   };
 }
 
-/**
- * What the view is to show.
- *
- * @param {Studio} studio
- * @param {ChartView} view
- * @returns {ViewRequest}
- */
+/** What the view is to show. @param {Studio} studio @param {ChartView} view @returns {ViewRequest} */
 export function viewRequest(studio, view) {
   const { document: chart, seeing } = studio;
   const posed = seeing.posed.value;

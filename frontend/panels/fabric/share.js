@@ -15,10 +15,7 @@ import { download, fileName } from "../../services/exporter.js";
 /** @type {Record<Kind, string>} */
 const ENDINGS = { page: "html", recording: "viser", solid: "glb" };
 
-/**
- * @param {Studio} studio
- * @param {number} width of the picture in pixels; its proportions are the view's
- */
+/** @param {Studio} studio @param {number} width of the picture in pixels; its proportions are the view's */
 export async function savePicture(studio, width) {
   await save(studio, "png", () => viewPicture(studio, width));
 }
@@ -26,12 +23,7 @@ export async function savePicture(studio, width) {
 /** Whether the view shows a cloth, of which a picture can be made. */
 export const isKnitted = () => document.querySelector(".fabric[data-live]") !== null;
 
-/**
- * A picture (PNG) as this browser sees the fabric.
- *
- * @param {Studio} studio
- * @param {number} width
- */
+/** A picture (PNG) as this browser sees the fabric. @param {Studio} studio @param {number} width */
 export async function viewPicture(studio, width) {
   const frame = document.querySelector(".fabric-frame");
   const height = Math.round((width * (frame?.clientHeight ?? 3)) / (frame?.clientWidth ?? 4));
@@ -50,11 +42,7 @@ export async function saveFile(studio, request, kind, animated) {
   await save(studio, ENDINGS[kind], async () => (await fetched(`/views/${kind}`, { method: "POST", body })).blob());
 }
 
-/**
- * @param {Studio} studio
- * @param {string} ending
- * @param {() => Promise<Blob>} made
- */
+/** @param {Studio} studio @param {string} ending @param {() => Promise<Blob>} made */
 async function save(studio, ending, made) {
   studio.tell("The file is being made …");
   try {

@@ -18,7 +18,7 @@ export class Still {
     this.frame = frame;
   }
 
-  root = h("img", { class: "fabric-still", alt: "", hidden: true });
+  root = h("img", { class: "fabric-still full-width shrinks-y", alt: "", hidden: true });
   /** What was asked for last. */
   #asked = "";
   #busy = false;

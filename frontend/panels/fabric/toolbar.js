@@ -8,6 +8,7 @@
 import { POSES } from "../../state/seeing.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
+import { segmented } from "../../widgets/fields.js";
 import { menu } from "../../widgets/menu.js";
 
 /** @type {{side: CameraSide, label: string, hint: string}[]} */
@@ -43,16 +44,12 @@ export function toolbar(studio, look, request) {
   const sides = SIDES.map(({ side, label, hint }) =>
     h("button", { class: "segment", id: `look-${side}`, title: hint, onclick: () => look(side) }, label),
   );
-  const poses = HINTS.map(([id, hint]) => {
-    const press = () => (studio.seeing.pose.value = id);
-    const segment = h(
-      "button",
-      { class: "segment", role: "radio", id: `fabric-${id}`, title: hint, onclick: press },
-      POSES[id],
-    );
-    studio.seeing.pose.watch((now) => segment.setAttribute("aria-checked", String(now === id)));
-    return segment;
-  });
+  const { pose } = studio.seeing;
+  const segments = HINTS.map(
+    ([id, hint]) => /** @type {const} */ ([id, POSES[id], { id: `fabric-${id}`, title: hint }]),
+  );
+  const poses = segmented("Shape", segments, pose.value, (id) => (pose.value = id));
+  pose.listen(poses.show);
   const { root, setItems, button } = menu({
     id: "fabric-colours",
     label: "Colours of the yarn",
@@ -73,18 +70,15 @@ export function toolbar(studio, look, request) {
   );
   return h(
     "div",
-    { class: "fabric-tools", role: "toolbar", "aria-label": "The fabric in 3D" },
+    { class: "fabric-tools line wrap gap-6", role: "toolbar", "aria-label": "The fabric in 3D" },
     h("div", { class: "segmented", role: "group", "aria-label": "Side" }, ...sides),
-    h("div", { class: "segmented", role: "radiogroup", "aria-label": "Shape" }, ...poses),
+    poses.element,
     root,
     shareMenu(studio, request),
   );
 }
 
-/**
- * @param {Studio} studio
- * @param {import("./share.js").RequestOfView} request
- */
+/** @param {Studio} studio @param {import("./share.js").RequestOfView} request */
 function shareMenu(studio, request) {
   const { root, setItems, button } = menu({
     id: "fabric-share",

@@ -28,42 +28,22 @@ const tiled = (motif, rows, columns) => () => Grid.fromText(motif.replaceAll("/"
 const DIAMONDS = "KKKKPKKK/KKKPKPKK/KKPKKKPK/KPKKKKKP/PKKKKKKK/KPKKKKKP/KKPKKKPK/KKKPKPKK";
 
 /** @type {Example[]} */
-export const EXAMPLES = [
-  {
-    id: "stockinette",
-    name: "Stockinette",
-    note: "All even segments: the stiffest of the four.",
-    chart: tiled("K", 24, 30),
-  },
-  {
-    id: "garter",
-    name: "Garter",
-    note: "Odd segments along the columns: stretches lengthwise.",
-    chart: tiled("P/K", 24, 30),
-  },
-  { id: "rib", name: "1×1 rib", note: "Odd segments along the rows: stretches across.", chart: tiled("KP", 24, 30) },
-  { id: "seed", name: "Seed", note: "Odd segments both ways: soft both ways.", chart: tiled("KP/PK", 24, 30) },
-  {
-    id: "rib-2-2",
-    name: "2×2 rib",
-    note: "Pulls in more, and stretches more, than 1×1.",
-    chart: tiled("KKPP", 24, 32),
-  },
-  {
-    id: "basket",
-    name: "Basket",
-    note: "Blocks that lean against each other.",
-    chart: tiled("PPPPKKKK/PPPPKKKK/PPPPKKKK/PPPPKKKK/KKKKPPPP/KKKKPPPP/KKKKPPPP/KKKKPPPP", 24, 32),
-  },
-  { id: "moss", name: "Moss", note: "Seed, with each row knitted twice.", chart: tiled("PK/PK/KP/KP", 24, 30) },
-  { id: "diamonds", name: "Diamonds", note: "Soft lines across a stiff ground.", chart: tiled(DIAMONDS, 24, 32) },
-  {
-    id: "sampler",
-    name: "Cuff with a panel",
-    note: "All four fabrics in one swatch: where will it give?",
-    chart: () => exampleGrid().text,
-  },
-];
+export const EXAMPLES = /** @type {[string, string, string, () => string][]} */ ([
+  ["stockinette", "Stockinette", "All even segments: the stiffest of the four.", tiled("K", 24, 30)],
+  ["garter", "Garter", "Odd segments along the columns: stretches lengthwise.", tiled("P/K", 24, 30)],
+  ["rib", "1×1 rib", "Odd segments along the rows: stretches across.", tiled("KP", 24, 30)],
+  ["seed", "Seed", "Odd segments both ways: soft both ways.", tiled("KP/PK", 24, 30)],
+  ["rib-2-2", "2×2 rib", "Pulls in more, and stretches more, than 1×1.", tiled("KKPP", 24, 32)],
+  [
+    "basket",
+    "Basket",
+    "Blocks that lean against each other.",
+    tiled("PPPPKKKK/PPPPKKKK/PPPPKKKK/PPPPKKKK/KKKKPPPP/KKKKPPPP/KKKKPPPP/KKKKPPPP", 24, 32),
+  ],
+  ["moss", "Moss", "Seed, with each row knitted twice.", tiled("PK/PK/KP/KP", 24, 30)],
+  ["diamonds", "Diamonds", "Soft lines across a stiff ground.", tiled(DIAMONDS, 24, 32)],
+  ["sampler", "Cuff with a panel", "All four fabrics in one swatch: where will it give?", () => exampleGrid().text],
+]).map(([id, name, note, chart]) => ({ id, name, note, chart }));
 
 /** @type {GarmentExample[]} */
 export const GARMENTS = [

@@ -16,10 +16,7 @@ import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { EXAMPLES, GARMENTS, garmentDesign } from "./examples.js";
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper, open }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const examples = h("ul", { class: "cards", id: "gallery-examples" });
@@ -58,8 +55,8 @@ export function create(studio, { keeper, open }) {
       { class: "card" },
       h(
         "button",
-        { class: "card-open whole", id: `gallery-${id}`, onclick: perform },
-        h("span", { class: "card-picture" }, picture),
+        { class: "card-open whole sunken", id: `gallery-${id}`, onclick: perform },
+        h("span", { class: "card-picture centred muted" }, picture),
         h("span", { class: "card-name" }, name),
         h("span", { class: "card-facts muted" }, note),
       ),

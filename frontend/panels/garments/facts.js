@@ -10,11 +10,7 @@ import { icon } from "../../elements/icons.js";
 
 const MAX_PLACES = 9;
 
-/**
- * @param {Garment} garment
- * @param {string} unit mm or in
- * @returns {Node[]}
- */
+/** @param {Garment} garment @param {string} unit mm or in @returns {Node[]} */
 export function facts(garment, unit) {
   const { columns, rows, stitches, yarn_m, yarn_g, gauges } = garment;
   const gauge = gauges.find(({ fabric }) => fabric === "stockinette") ?? gauges[0];
@@ -22,7 +18,7 @@ export function facts(garment, unit) {
   return [
     h(
       "p",
-      { class: "planner-sizes figures" },
+      { class: "figures" },
       h("strong", {}, `${columns} sts × ${rows} rows`),
       ` · ${stitches} stitches · ${figure(yarn_m)} m of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
     ),
@@ -35,7 +31,7 @@ export function facts(garment, unit) {
     ...pressure(garment, unit),
     h(
       "ul",
-      { class: "planner-notes" },
+      { class: "planner-notes plain-list" },
       ...garment.warnings.map((words) => h("li", { class: "warned" }, icon("warning"), words)),
       ...garment.notes.map((words) => h("li", {}, icon("info"), words)),
       h("li", {}, icon("info"), `To close: ${garment.closing}.`),
@@ -120,7 +116,7 @@ function pressure({ worn }, unit) {
     ),
     h(
       "details",
-      { class: "planner-warnings" },
+      { class: "planner-warnings small" },
       h("summary", {}, `About the pressure (${warned.length})`),
       h("ul", {}, ...warned.map((words) => h("li", {}, words))),
     ),

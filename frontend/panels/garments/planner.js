@@ -18,8 +18,8 @@
  *   yarn_g: number | null, notes: string[], warnings: string[], design: DesignDocument}} Garment
  */
 
-import { ApiError, call, isAbort } from "../../api.js";
-import { Latest } from "../../core/latest.js";
+import { call } from "../../api.js";
+import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog, problemBox } from "../../widgets/dialog.js";
@@ -32,10 +32,7 @@ const TYPING_MS = 250;
 /** The middle of the range that the paper wanted for its glove, 20 to 30. */
 const TARGET_MMHG = 25;
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper }) {
   let unit = "mm";
   let template = TEMPLATES[0];
@@ -50,11 +47,15 @@ export function create(studio, { keeper }) {
   const latest = new Latest(TYPING_MS);
   const changed = () => {
     make.disabled = true; // until the new plan is there, the old one must not be made
-    latest.run(plan);
+    latest.run(plan, ({ problem }) => {
+      garment = null;
+      status.replaceChildren(problemBox({ ...problem, title: "This garment cannot be planned" }));
+      planned();
+    });
   };
 
   // --- what is asked ----------------------------------------------------------------------------
-  const measures = h("div", { class: "planner-measures" });
+  const measures = h("div", { class: "stack gap-6" });
   const about = h("p", { class: "muted" });
   const ease = numberField({
     id: "planner-ease",
@@ -108,14 +109,7 @@ export function create(studio, { keeper }) {
     },
   });
   /** @param {string} label @param {string} value */
-  const count = (label, value) =>
-    numberField({
-      min: "1",
-      step: "any",
-      value,
-      "aria-label": label,
-      oninput: changed,
-    });
+  const count = (label, value) => numberField({ min: "1", step: "any", value, "aria-label": label, oninput: changed });
   const [stitches, rows] = [count("Stitches", "22"), count("Rows", "30")];
   const per = h(
     "select",
@@ -129,7 +123,7 @@ export function create(studio, { keeper }) {
   );
   const gaugeRow = h(
     "div",
-    { class: "planner-gauge", hidden: true },
+    { class: "line wrap gap-6", hidden: true },
     stitches,
     "sts ×",
     rows,
@@ -141,26 +135,22 @@ export function create(studio, { keeper }) {
 
   // --- what comes of it -------------------------------------------------------------------------
   const canvas = h("canvas", { role: "img", id: "planner-preview", "aria-label": "The garment, laid flat" });
-  const result = h("div", { class: "planner-facts", id: "planner-facts", "aria-live": "polite" });
+  const result = h("div", { class: "planner-facts column gap-12", id: "planner-facts", "aria-live": "polite" });
   const status = h("div", { class: "dialog-status", role: "status" });
-  const make = h(
-    "button",
-    {
-      class: "button primary",
-      id: "planner-make",
-      disabled: true,
-      onclick: () => {
-        if (!garment) return;
-        element.close();
-        const { outline } = garment.design;
-        if (template.id === "glove" && outline) studio.seeing.glove.value = { request: hand, outline };
-        keeper.openNew(garment.design);
-        studio.tell(
-          `${garment.design.name}: ${garment.columns} stitches × ${garment.rows} rows. The design before it is still among your designs.`,
-        );
-      },
-    },
+  const make = textButton(
+    null,
     "Make this design",
+    () => {
+      if (!garment) return;
+      element.close();
+      const { outline } = garment.design;
+      if (template.id === "glove" && outline) studio.seeing.glove.value = { request: hand, outline };
+      keeper.openNew(garment.design);
+      studio.tell(
+        `${garment.design.name}: ${garment.columns} stitches × ${garment.rows} rows. The design before it is still among your designs.`,
+      );
+    },
+    { class: "button primary", id: "planner-make", disabled: true },
   );
 
   const element = dialog(
@@ -168,10 +158,10 @@ export function create(studio, { keeper }) {
     "Plan a garment",
     h(
       "div",
-      { class: "planner" },
+      { class: "planner stack" },
       h(
         "form",
-        { class: "planner-form", onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
+        { class: "planner-form column shrinks-x", onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
         choice(
           "planner-template",
           "Garment",
@@ -186,7 +176,7 @@ export function create(studio, { keeper }) {
         about,
         h(
           "div",
-          { class: "planner-heading" },
+          { class: "planner-heading line spread gap-10" },
           h("h3", {}, "Measurements"),
           choice(
             "planner-unit",
@@ -204,20 +194,20 @@ export function create(studio, { keeper }) {
           ),
         ),
         measures,
-        h("div", { class: "planner-heading" }, h("h3", {}, "Fit"), fit),
+        h("div", { class: "planner-heading line spread gap-10" }, h("h3", {}, "Fit"), fit),
         easeRow,
         targetRow,
         h("h3", {}, "Yarn and gauge"),
         labelled("Material", yarn),
         labelled("Yarn, tex (g/km)", tex, "for its mass"),
-        h("label", { class: "planner-check" }, own, "My own gauge"),
+        h("label", { class: "planner-check line gap-8" }, own, "My own gauge"),
         gaugeRow,
-        h("label", { class: "planner-check" }, intarsia, "A colour for each fabric (intarsia)"),
+        h("label", { class: "planner-check line gap-8" }, intarsia, "A colour for each fabric (intarsia)"),
       ),
       h(
         "section",
-        { class: "planner-result", "aria-label": "The garment" },
-        h("div", { class: "planner-picture" }, canvas),
+        { class: "planner-result column shrinks-x", "aria-label": "The garment" },
+        h("div", { class: "planner-picture centred rounded sunken" }, canvas),
         status,
         result,
       ),
@@ -292,10 +282,7 @@ export function create(studio, { keeper }) {
     return { thumb, fingers: rest };
   }
 
-  /**
-   * @param {[number, number][]} start
-   * @param {(label: string, mm: number) => LengthField} length
-   */
+  /** @param {[number, number][]} start @param {(label: string, mm: number) => LengthField} length */
   function profileTable(start, length) {
     /** @type {{at: LengthField, around: LengthField}[]} */
     const places = [];
@@ -325,7 +312,7 @@ export function create(studio, { keeper }) {
     start.forEach(add);
     const element = h(
       "div",
-      { class: "planner-profile" },
+      {},
       h(
         "table",
         { class: "planner-table" },
@@ -374,17 +361,14 @@ export function create(studio, { keeper }) {
       intarsia: intarsia.checked,
     };
     result.classList.add("busy");
-    try {
-      garment = /** @type {Garment} */ (await call("/garment", { method: "POST", body, signal }));
-      hand = { garment: body.garment, material: body.material, gauge: body.gauge };
-      status.replaceChildren();
-      show(garment);
-    } catch (error) {
-      if (isAbort(error)) return;
-      if (!(error instanceof ApiError)) throw error;
-      garment = null;
-      status.replaceChildren(problemBox({ ...error.problem, title: "This garment cannot be planned" }));
-    }
+    garment = /** @type {Garment} */ (await call("/garment", { method: "POST", body, signal }));
+    hand = { garment: body.garment, material: body.material, gauge: body.gauge };
+    status.replaceChildren();
+    show(garment);
+    planned();
+  }
+
+  function planned() {
     result.classList.remove("busy");
     make.disabled = garment === null;
   }

@@ -5,13 +5,14 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
-import { ApiError, api, isAbort } from "../../api.js";
+import { api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
-import { Latest } from "../../core/latest.js";
+import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { scopeOf } from "../../services/scope.js";
 import { labelled, numberField } from "../../widgets/fields.js";
 import { problemText } from "../../widgets/problem.js";
+import { textButton } from "../../widgets/buttons.js";
 
 /** @typedef {{chart: string, material: string, linear_density_g_per_m: number}} Weighed */
 /**
@@ -80,14 +81,10 @@ const TESTS = [
   },
 ];
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @returns {() => void} nothing to draw anew
- */
+/** @param {HTMLElement} host @param {Studio} studio @returns {() => void} nothing to draw anew */
 export function drape(host, studio) {
   const latest = new Latest(0);
-  const answer = h("div", { class: "limb-answer", role: "status", id: "drape-answer" });
+  const answer = h("div", { role: "status", id: "drape-answer" });
   const weight = numberField({ id: "drape-weight", min: "0.005", max: "20", step: "0.01", value: studio.weight.value });
   weight.addEventListener("change", () => {
     if (weight.valueAsNumber > 0) studio.weight.value = weight.valueAsNumber;
@@ -116,36 +113,27 @@ export function drape(host, studio) {
       linear_density_g_per_m: studio.weight.value,
     };
     answer.replaceChildren(h("span", { class: "spinner" }), `${label}: being computed`);
-    latest.run(async (signal) => {
-      try {
+    latest.run(
+      async (signal) => {
         const { words, notes, converged = false, piece } = await tell(asked, signal);
         if (piece) show(label, piece, converged, notes[0]);
         answer.replaceChildren(
           ...words.map((text) => h("p", { class: "figures" }, text)),
           ...notes.map((text) => h("p", { class: "muted" }, text)),
         );
-      } catch (error) {
-        if (isAbort(error)) return;
-        if (!(error instanceof ApiError)) throw error;
-        answer.replaceChildren(problemText(error.problem));
-      }
-    });
+      },
+      ({ problem }) => answer.replaceChildren(problemText(problem)),
+    );
   };
   host.append(
     h(
       "div",
-      { class: "limb-more" },
+      { class: "limb-more flex wrap gap-6" },
       labelled("Yarn weighs", weight, "g/m"),
-      h(
-        "button",
-        {
-          class: "button",
-          id: "drape-hang",
-          title: "Hanging from its top edge, in 3D",
-          onclick: () => (studio.seeing.pose.value = "hung"),
-        },
-        "Hang it",
-      ),
+      textButton(null, "Hang it", () => (studio.seeing.pose.value = "hung"), {
+        id: "drape-hang",
+        title: "Hanging from its top edge, in 3D",
+      }),
       ...TESTS.map((test) =>
         h(
           "button",

@@ -18,17 +18,14 @@ import { rigidityPlot } from "../../plots/rigidity.js";
 import { drape } from "./drape.js";
 import { limb } from "./limb.js";
 import { ownGauge } from "./owngauge.js";
+import { segmented } from "../../widgets/fields.js";
 import { problemText } from "../../widgets/problem.js";
 
 const COUNT_MS = 80;
 const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb", "drape"]);
 /** @typedef {(typeof PLOTS)[number]} Plot */
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @returns {() => void} draws the plots anew, for another theme
- */
+/** @param {HTMLElement} host @param {Studio} studio @returns {() => void} draws the plots anew, for another theme */
 export function inspector(host, studio) {
   const title = h("h2", {});
   const scopes = h("select", {
@@ -44,14 +41,14 @@ export function inspector(host, studio) {
   const gauge = ownGauge(studio);
   const provenance = h("summary", { id: "provenance", title: "Where these numbers come from" });
   const notes = h("ul", { class: "notes" });
-  const source = h("details", { class: "source" }, provenance, gauge.element, notes);
+  const source = h("details", { class: "source small muted" }, provenance, gauge.element, notes);
   const problem = h("div", { class: "problem", hidden: true });
-  const table = h("table", { class: "numbers" });
-  const shares = h("div", { class: "shares" });
+  const table = h("table", { class: "numbers full-width" });
+  const shares = h("div", { class: "shares stack gap-6" });
   const rigidity = h("div", { class: "plot", id: "plot-rigidity" });
   const curve = h("div", { class: "plot", id: "plot-curve" });
-  const worn = h("div", { class: "limb", id: "plot-limb" });
-  const weighed = h("div", { class: "limb", id: "plot-drape" });
+  const worn = h("div", { class: "limb stack shrinks-x shrinks-y gap-10", id: "plot-limb" });
+  const weighed = h("div", { class: "limb stack shrinks-x shrinks-y gap-10", id: "plot-drape" });
   const plots = { rigidity, curve, limb: worn, drape: weighed };
   /** @type {Record<Plot, () => void>} */
   const draw = {
@@ -66,7 +63,7 @@ export function inspector(host, studio) {
     h(
       "button",
       {
-        class: "tab",
+        class: "tab bare small shrinks-x nowrap muted clipped",
         role: "tab",
         id: `tab-${id}`,
         "aria-controls": `plot-${id}`,
@@ -84,31 +81,22 @@ export function inspector(host, studio) {
     limb: tab("limb", "Limb"),
     drape: tab("drape", "Drape"),
   };
-  const pulls = h("div", {
+  const ways = /** @type {Direction[]} */ (["course", "wale"]).map(
+    (way) =>
+      /** @type {const} */ ([
+        way,
+        icon(way),
+        { id: `curve-${way}`, title: `Pulled ${along(way)}`, "aria-label": LINES[way] },
+      ]),
+  );
+  const { pull } = studio.seeing;
+  const pulls = segmented("Direction of the curves", ways, pull.value, (way) => (pull.value = way), {
     class: "segmented small curve-pulls",
-    role: "radiogroup",
-    "aria-label": "Direction of the curves",
   });
-  const ways = /** @type {Direction[]} */ (["course", "wale"]).map((way) => {
-    const button = h(
-      "button",
-      {
-        class: "segment",
-        role: "radio",
-        id: `curve-${way}`,
-        title: `Pulled ${along(way)}`,
-        "aria-label": LINES[way],
-        onclick: () => (studio.seeing.pull.value = way),
-      },
-      icon(way),
-    );
-    studio.seeing.pull.watch((chosen) => button.setAttribute("aria-checked", String(chosen === way)));
-    return button;
-  });
-  pulls.append(...ways);
+  pull.listen(pulls.show);
   /** @param {Plot} id */
   const choose = (id) => {
-    pulls.hidden = id !== "curve";
+    pulls.element.hidden = id !== "curve";
     for (const one of PLOTS) {
       plots[one].hidden = one !== id;
       tabs[one].setAttribute("aria-selected", String(one === id));
@@ -120,16 +108,21 @@ export function inspector(host, studio) {
     h(
       "div",
       { class: "inspector-numbers" },
-      h("div", { class: "inspector-head" }, h("div", { class: "inspector-title" }, title, scopes), source),
+      h(
+        "div",
+        { class: "inspector-head stack" },
+        h("div", { class: "inspector-title line gap-8" }, title, scopes),
+        source,
+      ),
       problem,
       table,
       shares,
     ),
     h(
       "div",
-      { class: "inspector-plots" },
-      h("div", { class: "tabs", role: "tablist", "aria-label": "Plots" }, ...Object.values(tabs)),
-      pulls,
+      { class: "inspector-plots stack shrinks-x shrinks-y relative" },
+      h("div", { class: "tabs flex wrap shrinks-x", role: "tablist", "aria-label": "Plots" }, ...Object.values(tabs)),
+      pulls.element,
       ...Object.values(plots),
     ),
   );
@@ -227,11 +220,7 @@ export function inspector(host, studio) {
   };
 }
 
-/**
- * @param {HTMLTableElement} table
- * @param {PredictResult | null} value
- * @param {Scope} scope of the numbers
- */
+/** @param {HTMLTableElement} table @param {PredictResult | null} value @param {Scope} scope of the numbers */
 function fill(table, value, scope) {
   const size = value && sizeAtRest(scope, value);
   /** @param {string} id @param {number | undefined} number @param {string} [interval] */
@@ -320,7 +309,7 @@ function inverse(interval) {
  */
 function shareBar(id, parts, direction) {
   const present = parts.filter(({ share }) => share > 0);
-  const bar = h("div", { class: "bar", "aria-hidden": "true" });
+  const bar = h("div", { class: "bar flex clipped", "aria-hidden": "true" });
   const keys = present.map(({ share, colour, text }) => {
     const piece = h("span", {});
     piece.style.flexGrow = String(share);
@@ -335,6 +324,6 @@ function shareBar(id, parts, direction) {
     "div",
     { class: direction ? "share counts" : "share", id, title },
     bar,
-    h("div", { class: "share-text figures" }, direction && icon(direction), ...keys),
+    h("div", { class: "share-text figures flex wrap small" }, direction && icon(direction), ...keys),
   );
 }

@@ -6,9 +6,9 @@
  * @import {Direction, LimbResult} from "../../types.js"
  */
 
-import { ApiError, api, isAbort } from "../../api.js";
+import { api } from "../../api.js";
 import { percent, range } from "../../core/format.js";
-import { Latest } from "../../core/latest.js";
+import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { pressurePlot } from "../../plots/pressure.js";
 import { scopeOf } from "../../services/scope.js";
@@ -21,11 +21,7 @@ const MAX_GIRTHS = 12;
 /** From the last girth to one that is added, mm. */
 const FARTHER_MM = 50;
 
-/**
- * @param {HTMLElement} host
- * @param {Studio} studio
- * @returns {() => void} asks anew
- */
+/** @param {HTMLElement} host @param {Studio} studio @returns {() => void} asks anew */
 export function limb(host, studio) {
   const chosen = studio.seeing.limb;
   const latest = new Latest(DELAY_MS);
@@ -38,15 +34,10 @@ export function limb(host, studio) {
     const rest_mm = tube.valueAsNumber > 0 ? tube.valueAsNumber : null;
     const sized = rest_mm ? girths.map((girth) => ({ ...girth, rest_mm })) : girths;
     const chart = rest_mm || kind !== "chart" ? grid.text : studio.request.chart;
-    latest.run(async (signal) => {
-      try {
-        show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal));
-      } catch (error) {
-        if (isAbort(error)) return;
-        if (!(error instanceof ApiError)) throw error;
-        answer.replaceChildren(problemText(error.problem));
-      }
-    });
+    latest.run(
+      async (signal) => show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal)),
+      ({ problem }) => answer.replaceChildren(problemText(problem)),
+    );
   };
   const tube = numberField({ id: "limb-tube", min: "10", max: "3000", placeholder: "chart", oninput: ask });
   const around = h(
@@ -122,7 +113,7 @@ export function limb(host, studio) {
   };
   showGirths(chosen.value.girths ?? []);
 
-  const answer = h("div", { class: "limb-answer", role: "status", id: "limb-answer" });
+  const answer = h("div", { role: "status", id: "limb-answer" });
   /** @param {LimbResult} found */
   const show = (found) => {
     const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm, interval_source } = found;
@@ -144,7 +135,7 @@ export function limb(host, studio) {
     answer.replaceChildren(
       h(
         "p",
-        { class: "limb-pressure" },
+        { class: "limb-pressure flex wrap" },
         h("span", { class: "value figures" }, pressed.length ? `${range(ends("mmhg"))} mmHg` : "No pressure"),
         pressed.length
           ? h(
@@ -163,7 +154,7 @@ export function limb(host, studio) {
   host.append(
     h(
       "div",
-      { class: "limb-fields" },
+      { class: "limb-fields flex wrap" },
       h(
         "table",
         { class: "limb-girths" },
@@ -172,7 +163,7 @@ export function limb(host, studio) {
       ),
       h(
         "div",
-        { class: "limb-more" },
+        { class: "limb-more flex wrap gap-6" },
         h("button", { class: "button", id: "limb-add", onclick: add }, "Add a girth"),
         labelled("Tube at rest", tube, "mm"),
         labelled("Around it run the", around),

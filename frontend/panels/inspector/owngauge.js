@@ -8,10 +8,7 @@ import { h } from "../../elements/dom.js";
 import { scopeOf } from "../../services/scope.js";
 import { numberField } from "../../widgets/fields.js";
 
-/**
- * @param {Studio} studio
- * @returns {{element: HTMLElement, show: () => void}} `show` fills in what is known
- */
+/** @param {Studio} studio @returns {{element: HTMLElement, show: () => void}} `show` fills in what is known */
 export function ownGauge(studio) {
   const cloth = () => ({ chart: scopeOf(studio).grid.text, material: studio.materialId.value });
   const keep = () => {
@@ -29,7 +26,7 @@ export function ownGauge(studio) {
   const rows = field("own-gauge-rows", "Rows per 10 cm of your knitted cloth");
   const element = h(
     "div",
-    { class: "own-gauge", title: "Counted on cloth of this chart at rest: it makes the numbers more certain" },
+    { class: "own-gauge line", title: "Counted on cloth of this chart at rest: it makes the numbers more certain" },
     "Your gauge, 10 cm:",
     stitches,
     "×",

@@ -95,7 +95,7 @@ export function carry(down, studio, view, key, clicked = () => {}, material) {
   if (down.button !== 0) return;
   const canvas = byId("chart");
   const hint = h("span", {});
-  const ghost = h("div", { class: "inverse-ghost", "aria-hidden": "true" }, repeatPicture(key, 56), hint);
+  const ghost = h("div", { class: "inverse-ghost line gap-8", "aria-hidden": "true" }, repeatPicture(key, 56), hint);
   const release = new AbortController();
   /** @type {Place | null} */
   let place = null;

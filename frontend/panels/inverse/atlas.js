@@ -16,16 +16,9 @@ import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js"
 import { Run } from "../../widgets/jobrun.js";
 import { inWords, scatter } from "./scatter.js";
 import { textButton } from "../../widgets/buttons.js";
+import { segmented } from "../../widgets/fields.js";
 
-const EXTENTS = [
-  { id: "small", label: "Up to 3 × 3" },
-  { id: "all", label: "Up to 4 × 4" },
-];
-
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function atlasTab(studio, context) {
   const run = new Run();
   /** @type {Map<string, AtlasResult>} */
@@ -33,7 +26,7 @@ export function atlasTab(studio, context) {
   /** @type {AtlasResult | null} */ let table = null;
   let extent = "small";
 
-  const tip = h("div", { class: "inverse-tip", hidden: true, "aria-hidden": "true" });
+  const tip = h("div", { class: "inverse-tip raised line small nowrap gap-10", hidden: true, "aria-hidden": "true" });
   const detail = h("div", { class: "inverse-detail", id: "inverse-detail", "aria-live": "polite" });
   const plot = scatter({
     onHover: (point) => hint(point),
@@ -41,29 +34,19 @@ export function atlasTab(studio, context) {
     onChoose: (point) => choose(point),
     onApply: () => apply(),
   });
-  const frame = h("div", { class: "inverse-plot" }, plot.canvas, tip);
+  const frame = h("div", { class: "inverse-plot grows clipped relative" }, plot.canvas, tip);
   const count = h("span", { class: "muted figures" });
-  const extents = h(
-    "div",
-    { class: "segmented", role: "radiogroup", "aria-label": "Which repeats" },
-    ...EXTENTS.map(({ id, label }) =>
-      h(
-        "button",
-        {
-          class: "segment",
-          role: "radio",
-          id: `atlas-${id}`,
-          "aria-checked": String(id === extent),
-          onclick: () => {
-            extent = id;
-            for (const other of extents.children)
-              other.setAttribute("aria-checked", String(other.id === `atlas-${id}`));
-            void load();
-          },
-        },
-        label,
-      ),
-    ),
+  const extents = segmented(
+    "Which repeats",
+    [
+      ["small", "Up to 3 × 3", { id: "atlas-small" }],
+      ["all", "Up to 4 × 4", { id: "atlas-all" }],
+    ],
+    extent,
+    (id) => {
+      extent = id;
+      void load();
+    },
   );
   /** @type {Point | null} */ let chosen = null;
 
@@ -98,7 +81,7 @@ export function atlasTab(studio, context) {
         ),
         h(
           "p",
-          { class: "inverse-legend" },
+          { class: "inverse-legend flex wrap small" },
           h("span", {}, h("i", { class: "mark pure" }), "four fabrics"),
           table?.provenance.includes("swept") && h("span", {}, h("i", { class: "mark square" }), "swept"),
           h("span", {}, h("i", { class: "mark" }), "learned"),
@@ -123,11 +106,11 @@ export function atlasTab(studio, context) {
     detail.replaceChildren(
       h(
         "div",
-        { class: "inverse-chosen" },
+        { class: "inverse-chosen flex" },
         handle,
         h(
           "div",
-          { class: "inverse-title" },
+          { class: "inverse-title stack shrinks-x" },
           h("strong", { id: "inverse-name" }, nameOf(key)),
           h("span", { class: "muted" }, sourceInWords(table.provenance[k])),
           h(
@@ -143,7 +126,7 @@ export function atlasTab(studio, context) {
       ),
       h(
         "table",
-        { class: "inverse-numbers" },
+        { class: "inverse-numbers small full-width" },
         h(
           "tbody",
           {},
@@ -165,7 +148,7 @@ export function atlasTab(studio, context) {
       ),
       h(
         "table",
-        { class: "inverse-numbers" },
+        { class: "inverse-numbers small full-width" },
         h(
           "tbody",
           {},
@@ -209,8 +192,8 @@ export function atlasTab(studio, context) {
 
   const element = h(
     "div",
-    { class: "inverse-tab" },
-    h("div", { class: "inverse-bar" }, extents, count, h("span", { class: "spacer" })),
+    { class: "inverse-tab column shrinks-y gap-8" },
+    h("div", { class: "inverse-bar" }, extents.element, count, h("span", { class: "spacer" })),
     run.element,
     frame,
     detail,

@@ -18,10 +18,9 @@ import { FABRICS } from "../../grid/segments.js";
 import { selectedCells } from "../../design/selection.js";
 import { outlineText } from "../../design/snapshot.js";
 import { h } from "../../elements/dom.js";
-import { icon } from "../../elements/icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { nameOf, repeatPicture } from "./apply.js";
-import { field } from "./find.js";
+import { field, form, verdict } from "./form.js";
 import { Run } from "../../widgets/jobrun.js";
 
 const SHOWN_PATCHES = 6;
@@ -39,7 +38,7 @@ const NEAR = 0.1;
 export function fromStiffness(studio) {
   const { document: chart, selection } = studio;
   const run = new Run();
-  const list = h("ol", { class: "target-list", id: "parts" });
+  const list = h("ol", { class: "plain-list stack gap-6", id: "parts" });
   const answer = h("div", { class: "inverse-answer", id: "fill-answer" });
   /** @type {Part[]} */
   let parts = [];
@@ -157,10 +156,10 @@ export function fromStiffness(studio) {
     part.tell();
     return h(
       "li",
-      { class: "target" },
+      { class: "target sunken" },
       h(
         "div",
-        { class: "target-line" },
+        { class: "target-line line wrap gap-6" },
         h("input", {
           type: "text",
           class: "text part-title",
@@ -170,7 +169,7 @@ export function fromStiffness(studio) {
           onchange: (/** @type {Event} */ { target }) =>
             (part.name = /** @type {HTMLInputElement} */ (target).value.trim() || part.name),
         }),
-        h("span", { class: "muted figures part-count" }, `${part.cells.length} sts`),
+        h("span", { class: "muted figures part-count small nowrap" }, `${part.cells.length} sts`),
         iconButton("close", `Remove ${part.name}`, () => {
           parts = parts.filter((other) => other !== part);
           show();
@@ -180,7 +179,7 @@ export function fromStiffness(studio) {
       ...AXES.map(({ label }, i) =>
         h(
           "div",
-          { class: "part-number" },
+          { class: "part-number stack small" },
           h("span", { class: "muted" }, label),
           now[i],
           h("span", { class: "muted", "aria-hidden": "true" }, "→"),
@@ -299,14 +298,8 @@ export function fromStiffness(studio) {
       if (size === sizeNow()) put((at) => before[at], "Take the fill back");
       void fill();
     });
-    const good = found.off_share <= 0.05;
     answer.replaceChildren(
-      h(
-        "p",
-        { class: good ? "inverse-verdict good" : "inverse-verdict" },
-        icon(good ? "check" : "info"),
-        h("span", {}, verdict(found.off_share)),
-      ),
+      verdict(found.off_share <= 0.05, inWords(found.off_share)),
       h("div", { class: "inverse-buttons" }, keep, back, other),
       h(
         "details",
@@ -327,20 +320,13 @@ export function fromStiffness(studio) {
   const element = h(
     "div",
     { class: "inverse-section" },
-    h(
-      "form",
-      {
-        class: "inverse-form",
-        onsubmit: (/** @type {Event} */ event) => {
-          event.preventDefault();
-          void fill();
-        },
-      },
+    form(
+      fill,
       h("div", { class: "inverse-bar" }, addButton, textButton("plus", "Regions", addRegions, { id: "part-regions" })),
       list,
       h(
         "details",
-        { class: "inverse-more" },
+        { class: "inverse-more small" },
         h("summary", {}, "Options"),
         h("label", { class: "check" }, "No patch narrower than", smallest, "stitches"),
         h("label", { class: "check" }, scattered, "Scattered purls, too, where they come nearer: hard to knit by hand"),
@@ -361,7 +347,7 @@ export function fromStiffness(studio) {
 }
 
 /** @param {number} off share that misses its target */
-function verdict(off) {
+function inWords(off) {
   if (off <= 0.05) return `On the chart now, as wanted: ${percent(1 - off)} of it is within 10 %.`;
   const share = off >= 1 ? "none" : percent(1 - off);
   return `On the chart now, the nearest that was found: ${share} of it is within 10 % of what was wanted.`;
@@ -408,8 +394,8 @@ function patchList({ patches, columns }, targeted) {
         repeatPicture(patch.repeat, 60),
         h(
           "div",
-          { class: "candidate-body" },
-          h("strong", { class: "candidate-title" }, nameOf(patch.repeat)),
+          { class: "small shrinks-x grows" },
+          h("strong", { class: "candidate-title line gap-8" }, nameOf(patch.repeat)),
           h("div", { class: "muted" }, `${part?.name ?? ""}, ${patch.stitches} sts`),
           ...AXES.map(({ axis, label }) => {
             const value = patch[`modulus_${axis}_n_per_mm`];

@@ -6,6 +6,7 @@
 
 import { byId, h } from "../../elements/dom.js";
 import { docked } from "../../widgets/dock.js";
+import { segmented } from "../../widgets/fields.js";
 import { fromStiffness } from "./fill.js";
 import { fromOutline } from "./outline.js";
 
@@ -16,20 +17,11 @@ export function create(studio) {
     { id: "stiffness", label: "Stiffness", ...stiffness },
     { id: "outline", label: "Outline under a stretch", ...fromOutline(studio) },
   ];
-  const choice = h(
-    "div",
-    { class: "segmented", role: "radiogroup", "aria-label": "What is asked for" },
-    ...ways.map(({ id, label }) =>
-      h("button", { class: "segment", role: "radio", id: `fill-${id}`, onclick: () => show(id) }, label),
-    ),
-  );
-  const show = (/** @type {string} */ chosen) =>
-    ways.forEach(({ id, element }, i) => {
-      element.hidden = id !== chosen;
-      choice.children[i].setAttribute("aria-checked", String(id === chosen));
-    });
+  const show = (/** @type {string} */ chosen) => ways.forEach(({ id, element }) => (element.hidden = id !== chosen));
   show("stiffness");
-  const content = h("div", { class: "inverse filling" }, choice, ...ways.map(({ element }) => element));
+  const segments = ways.map(({ id, label }) => /** @type {const} */ ([id, label, { id: `fill-${id}` }]));
+  const choice = segmented("What is asked for", segments, "stiffness", show);
+  const content = h("div", { class: "inverse filling" }, choice.element, ...ways.map(({ element }) => element));
   const open = docked(studio, "fill", "Fill from a target", content);
   return () => {
     open();

@@ -12,90 +12,48 @@ import { icon } from "../../elements/icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { curlInWords, paintWith, sourceInWords } from "./atlas.js";
+import { field, form, verdict } from "./form.js";
 import { Run } from "../../widgets/jobrun.js";
-import { numberField } from "../../widgets/fields.js";
+import { selectField } from "../../widgets/fields.js";
 
 /**
  * @typedef {{id: string, label: string, short: string, unit: string, start: number, percent?: boolean,
  *   needs?: "load" | "limb", difference?: boolean}} Quantity `difference`: its tolerance is not a share
  */
 
-/** @type {Quantity[]} */
+/**
+ * @param {string} id
+ * @param {string} label
+ * @param {string} short
+ * @param {string} unit
+ * @param {number} start
+ * @param {Partial<Quantity>} [more]
+ * @returns {Quantity}
+ */
+const quantity = (id, label, short, unit, start, more = {}) => ({ id, label, short, unit, start, ...more });
+
 const QUANTITIES = [
-  { id: "modulus_course_n_per_mm", label: "Modulus, rows", short: "rows", unit: "N/mm", start: 0.1 },
-  { id: "modulus_wale_n_per_mm", label: "Modulus, columns", short: "columns", unit: "N/mm", start: 0.1 },
-  {
-    id: "stretch_course",
-    label: "Stretch, rows",
-    short: "stretch, rows",
-    unit: "%",
-    start: 60,
-    percent: true,
-    needs: "load",
-  },
-  {
-    id: "stretch_wale",
-    label: "Stretch, columns",
-    short: "stretch, columns",
-    unit: "%",
-    start: 40,
-    percent: true,
-    needs: "load",
-  },
-  {
-    id: "pressure_course_mmhg",
-    label: "Pressure, rows around a limb",
-    short: "pressure",
-    unit: "mmHg",
-    start: 20,
-    needs: "limb",
-  },
-  {
-    id: "pressure_wale_mmhg",
-    label: "Pressure, columns around a limb",
-    short: "pressure",
-    unit: "mmHg",
-    start: 20,
-    needs: "limb",
-  },
-  { id: "anisotropy", label: "Ratio of the moduli (rows over columns)", short: "ratio", unit: "", start: 1 },
-  {
-    id: "poisson_yx",
-    label: "Poisson ratio, pulled along rows",
-    short: "Poisson, rows",
-    unit: "",
-    start: 0.2,
-    difference: true,
-  },
-  {
-    id: "poisson_xy",
-    label: "Poisson ratio, pulled along columns",
-    short: "Poisson, columns",
-    unit: "",
-    start: 0.4,
-    difference: true,
-  },
-  { id: "extensibility_course_mm_per_n", label: "Extensibility, rows", short: "ext., rows", unit: "mm/N", start: 10 },
-  {
-    id: "extensibility_wale_mm_per_n",
-    label: "Extensibility, columns",
-    short: "ext., columns",
-    unit: "mm/N",
-    start: 10,
-  },
+  quantity("modulus_course_n_per_mm", "Modulus, rows", "rows", "N/mm", 0.1),
+  quantity("modulus_wale_n_per_mm", "Modulus, columns", "columns", "N/mm", 0.1),
+  quantity("stretch_course", "Stretch, rows", "stretch, rows", "%", 60, { percent: true, needs: "load" }),
+  quantity("stretch_wale", "Stretch, columns", "stretch, columns", "%", 40, { percent: true, needs: "load" }),
+  quantity("pressure_course_mmhg", "Pressure, rows around a limb", "pressure", "mmHg", 20, { needs: "limb" }),
+  quantity("pressure_wale_mmhg", "Pressure, columns around a limb", "pressure", "mmHg", 20, { needs: "limb" }),
+  quantity("anisotropy", "Ratio of the moduli (rows over columns)", "ratio", "", 1),
+  quantity("poisson_yx", "Poisson ratio, pulled along rows", "Poisson, rows", "", 0.2, { difference: true }),
+  quantity("poisson_xy", "Poisson ratio, pulled along columns", "Poisson, columns", "", 0.4, { difference: true }),
+  quantity("extensibility_course_mm_per_n", "Extensibility, rows", "ext., rows", "mm/N", 10),
+  quantity("extensibility_wale_mm_per_n", "Extensibility, columns", "ext., columns", "mm/N", 10),
 ];
 const COUNT = 12;
 
 /** @param {string} label of a value, such as stretch_wale@0.1 */
 const quantityOf = (label) => QUANTITIES.find(({ id }) => id === label.split("@")[0]) ?? QUANTITIES[0];
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function findTab(studio, context) {
   const run = new Run();
-  const rows = h("div", { class: "target-list", id: "targets" });
+  const rows = h("div", { class: "plain-list stack gap-6", id: "targets" });
   const answer = h("div", { class: "inverse-answer", id: "find-answer" });
   /** @type {(() => TargetInput | null)[]} */
   const readers = [];
@@ -107,8 +65,8 @@ export function findTab(studio, context) {
       { class: "text", "aria-label": "Quantity" },
       ...QUANTITIES.map((q) => h("option", { value: q.id, selected: q === first }, q.label)),
     );
-    const number = field("Value", value, { step: "any", class: "number figures target-value" });
-    const unit = h("span", { class: "muted target-unit" });
+    const number = field("Value", value, { step: "any", class: "number figures target-value framed rounded" });
+    const unit = h("span", { class: "muted target-unit small" });
     const tolerance = field("Tolerance", 10, { min: "0.1", step: "any" });
     const toleranceUnit = h("span", { class: "muted" }, "%");
     const weight = h(
@@ -123,7 +81,7 @@ export function findTab(studio, context) {
     const load = field("Load in N/mm", 0.1, { min: "0.001", max: "0.5", step: "any" });
     const rest = field("Tube at rest in mm", 180, { min: "1", step: "any" });
     const worn = field("Limb in mm", 220, { min: "1", step: "any" });
-    const extra = h("div", { class: "target-extra" });
+    const extra = h("div", { class: "target-extra line wrap small gap-6" });
     const remove = iconButton("close", "Remove this target", () => {
       readers.splice(readers.indexOf(read), 1);
       row.remove();
@@ -169,10 +127,10 @@ export function findTab(studio, context) {
     readers.push(read);
     const row = h(
       "div",
-      { class: "target" },
+      { class: "target sunken" },
       h(
         "div",
-        { class: "target-line" },
+        { class: "target-line line wrap gap-6" },
         select,
         number,
         unit,
@@ -234,12 +192,7 @@ export function findTab(studio, context) {
   /** @param {FindResult} found @param {TargetInput[]} targets */
   const show = (found, targets) => {
     answer.replaceChildren(
-      h(
-        "p",
-        { class: found.reached ? "inverse-verdict good" : "inverse-verdict" },
-        icon(found.reached ? "check" : "info"),
-        h("span", {}, verdict(found, targets)),
-      ),
+      verdict(found.reached, inWords(found, targets)),
       h("ol", { class: "candidates" }, ...found.candidates.map(item)),
       ...(found.elsewhere.length
         ? [h("h3", {}, "In other yarns"), h("ol", { class: "candidates" }, ...found.elsewhere.map(item))]
@@ -261,16 +214,16 @@ export function findTab(studio, context) {
       picture,
       h(
         "div",
-        { class: "candidate-body" },
+        { class: "small shrinks-x grows" },
         h(
           "div",
-          { class: "candidate-title" },
+          { class: "candidate-title line gap-8" },
           h("strong", {}, nameOf(key)),
           h("span", { class: "muted ellipsis" }, name),
           h(
             "span",
             {
-              class: candidate.reached ? "reached-mark" : "muted",
+              class: candidate.reached ? "reached-mark inline small nowrap" : "muted",
               title: "Probability that all targets are met within their tolerances, from the 90 % intervals",
             },
             candidate.reached && icon("check"),
@@ -279,18 +232,18 @@ export function findTab(studio, context) {
         ),
         h(
           "div",
-          { class: "candidate-values figures" },
+          { class: "candidate-values figures flex wrap" },
           ...Object.keys(candidate.values).map((label) => valueOf(candidate, label)),
         ),
         h(
           "div",
-          { class: "muted candidate-cost" },
+          { class: "muted" },
           `${figure(candidate.transfers_per_stitch, 2)} transfers, ${figure(candidate.crossings_per_stitch, 2)} crossings a stitch; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`,
         ),
       ),
       h(
         "div",
-        { class: "candidate-buttons" },
+        { class: "candidate-buttons stack gap-4" },
         iconButton(
           "fill",
           `Fill with ${nameOf(key)}`,
@@ -304,15 +257,8 @@ export function findTab(studio, context) {
 
   addRow(QUANTITIES[0]);
   addRow(QUANTITIES[1]);
-  const form = h(
-    "form",
-    {
-      class: "inverse-form",
-      onsubmit: (/** @type {Event} */ event) => {
-        event.preventDefault();
-        void search();
-      },
-    },
+  const targetForm = form(
+    search,
     rows,
     h(
       "div",
@@ -336,12 +282,12 @@ export function findTab(studio, context) {
       h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find"),
     ),
   );
-  const element = h("div", { class: "inverse-tab scrolls" }, form, run.element, answer);
+  const element = h("div", { class: "inverse-tab scrolls column shrinks-y gap-8" }, targetForm, run.element, answer);
   return { element, open: () => {}, retheme: () => {} };
 }
 
 /** @param {FindResult} found @param {TargetInput[]} targets */
-function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) {
+function inWords({ reached, candidates, searched, ranges, elsewhere }, targets) {
   const within = candidates.filter((candidate) => candidate.reached).length;
   if (reached)
     return [
@@ -386,14 +332,9 @@ function valueOf(candidate, label) {
   );
 }
 
-/** @param {string} label @param {number} value @param {Record<string, unknown>} more */
-export function field(label, value, more = {}) {
-  return numberField({ "aria-label": label, value: String(value), required: true, ...more });
-}
-
-/** @param {string} label @param {string[][]} options */
+/** @param {string} label @param {[string, string][]} options */
 function limit(label, options) {
-  const select = h("select", { class: "text" }, ...options.map(([value, text]) => h("option", { value }, text)));
+  const select = selectField({ class: "text" }, options);
   return { select, label: h("label", { class: "check" }, label, select) };
 }
 

@@ -21,10 +21,7 @@ const TABS = [
 /** One panel for both. @type {WeakMap<Studio, (tab: TabName) => void>} */
 const panels = new WeakMap();
 
-/**
- * @param {TabName} tab
- * @returns {(studio: Studio, context: ActionContext) => () => void}
- */
+/** @param {TabName} tab @returns {(studio: Studio, context: ActionContext) => () => void} */
 export const opening = (tab) => (studio, context) => {
   let show = panels.get(studio);
   if (!show) {
@@ -35,10 +32,7 @@ export const opening = (tab) => (studio, context) => {
   return () => open(tab);
 };
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 function panel(studio, context) {
   const atlas = atlasTab(studio, context);
   const find = findTab(studio, context);
@@ -51,12 +45,12 @@ function panel(studio, context) {
   };
   const tabs = h(
     "div",
-    { class: "inverse-tabs", role: "tablist", "aria-label": "Inverse design" },
+    { class: "flex wrap shrinks-x gap-2", role: "tablist", "aria-label": "Inverse design" },
     ...TABS.map(({ id, label }) =>
       h(
         "button",
         {
-          class: "inverse-tab-button",
+          class: "inverse-tab-button bare nowrap muted",
           role: "tab",
           id: `inverse-${id}`,
           "aria-controls": `inverse-${id}-content`,
@@ -75,7 +69,7 @@ function panel(studio, context) {
       ),
     ),
   );
-  const yarn = h("span", { class: "muted ellipsis inverse-yarn" });
+  const yarn = h("span", { class: "muted ellipsis inverse-yarn small shrinks-x grows" });
   const section = h(
     "section",
     {

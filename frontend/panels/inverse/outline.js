@@ -8,15 +8,14 @@
 
 import { figure, percent } from "../../core/format.js";
 import { Grid } from "../../grid/grid.js";
-import { h } from "../../elements/dom.js";
-import { icon } from "../../elements/icons.js";
+import { h, svg } from "../../elements/dom.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
-import { field } from "./find.js";
+import { field, form, verdict } from "./form.js";
+import { segmented } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
 import { textButton } from "../../widgets/buttons.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const WIDTH = 316;
 const HEIGHT = 200;
 const PAD = { left: 34, right: 10, top: 10, bottom: 48 };
@@ -37,11 +36,12 @@ export function fromOutline(studio) {
   const band = field("Narrowest band, lines", 4, { min: "1", max: "100", step: "1" });
   let seed = 0;
 
-  const svg = document.createElementNS(SVG, "svg");
-  svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
-  svg.setAttribute("class", "outline-plot");
-  svg.setAttribute("role", "group");
-  svg.setAttribute("aria-label", "Target width of the stretched swatch over its width at rest");
+  const plot = svg("svg", {
+    viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
+    class: "outline-plot full-width",
+    role: "group",
+    "aria-label": "Target width of the stretched swatch over its width at rest",
+  });
   const x = (/** @type {number} */ share) => PAD.left + share * (WIDTH - PAD.left - PAD.right);
   const y = (/** @type {number} */ width) =>
     PAD.top + ((HIGH - width) / (HIGH - LOW)) * (HEIGHT - PAD.top - PAD.bottom);
@@ -58,17 +58,15 @@ export function fromOutline(studio) {
     const t = (share - at[k]) / (at[k + 1] - at[k]);
     return values[k] + (values[k + 1] - values[k]) * t * t * (3 - 2 * t);
   };
-  /** @param {string} tag @param {Record<string, string | number>} attributes @param {string} [text] */
-  const add = (tag, attributes, text) => {
-    const element = /** @type {SVGElement} */ (document.createElementNS(SVG, tag));
-    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-    if (text) element.textContent = text;
-    svg.append(element);
+  /** @type {typeof svg} */
+  const add = (...mark) => {
+    const element = svg(...mark);
+    plot.append(element);
     return element;
   };
   const draw = () => {
-    const focused = svg.contains(document.activeElement) ? document.activeElement?.id : "";
-    svg.replaceChildren();
+    const focused = plot.contains(document.activeElement) ? document.activeElement?.id : "";
+    plot.replaceChildren();
     for (const tick of [0.7, 0.8, 0.9, 1]) {
       add("line", { x1: PAD.left, x2: WIDTH - PAD.right, y1: y(tick), y2: y(tick), class: "grid-line" });
       add("text", { x: PAD.left - 6, y: y(tick) + 4, class: "tick end" }, tick.toFixed(1));
@@ -102,9 +100,9 @@ export function fromOutline(studio) {
         "aria-valuenow": widths[k],
         "aria-valuetext": figure(widths[k], 2),
       });
-      handle.addEventListener("pointerdown", (event) => drag(/** @type {PointerEvent} */ (event), k));
+      handle.addEventListener("pointerdown", (event) => drag(event, k));
       handle.addEventListener("keydown", (event) => {
-        const step = { ArrowUp: 0.01, ArrowDown: -0.01 }[/** @type {KeyboardEvent} */ (event).key];
+        const step = { ArrowUp: 0.01, ArrowDown: -0.01 }[event.key];
         if (!step) return;
         event.preventDefault();
         event.stopPropagation();
@@ -126,7 +124,7 @@ export function fromOutline(studio) {
     window.addEventListener(
       "pointermove",
       ({ clientY }) => {
-        const box = svg.getBoundingClientRect();
+        const box = plot.getBoundingClientRect();
         const at = ((clientY - box.top) / box.height) * HEIGHT;
         set(k, HIGH - ((at - PAD.top) / (HEIGHT - PAD.top - PAD.bottom)) * (HIGH - LOW));
       },
@@ -173,23 +171,17 @@ export function fromOutline(studio) {
     const filled = Grid.fromText(found.chart);
     const good = found.largest <= 0.03;
     answer.replaceChildren(
-      h(
-        "p",
-        { class: good ? "inverse-verdict good" : "inverse-verdict" },
-        icon(good ? "check" : "info"),
-        h(
-          "span",
-          {},
-          `Stretched, the widths are ${percent(found.rms, 1)} off on average and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`,
-        ),
+      verdict(
+        good,
+        `Stretched, the widths are ${percent(found.rms, 1)} off on average and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`,
       ),
       h(
         "div",
-        { class: "inverse-preview" },
+        { class: "inverse-preview flex" },
         thumbnail({ chart: found.chart }, { side: 150, label: "The filled chart" }),
         h(
           "div",
-          { class: "preview-words" },
+          { class: "preview-words stack small shrinks-x grows gap-6" },
           h(
             "p",
             {},
@@ -208,18 +200,11 @@ export function fromOutline(studio) {
               },
               { class: "button primary", id: "outline-apply" },
             ),
-            h(
-              "button",
-              {
-                class: "button",
-                onclick: () => {
-                  reached = null;
-                  draw();
-                  answer.replaceChildren();
-                },
-              },
-              "Discard",
-            ),
+            textButton(null, "Discard", () => {
+              reached = null;
+              draw();
+              answer.replaceChildren();
+            }),
             textButton("wand", "Another try", () => {
               seed += 1;
               void fill();
@@ -230,54 +215,36 @@ export function fromOutline(studio) {
     );
   };
 
-  const pulls = h(
-    "div",
-    { class: "segmented", role: "radiogroup", "aria-label": "Pulled along" },
-    ...[
+  const pulls = segmented(
+    "Pulled along",
+    [
       ["wale", "Columns"],
       ["course", "Rows"],
-    ].map(([id, label]) =>
-      h(
-        "button",
-        {
-          class: "segment",
-          role: "radio",
-          "aria-checked": String(id === direction),
-          onclick: (/** @type {Event} */ { currentTarget }) => {
-            direction = /** @type {Direction} */ (id);
-            for (const other of pulls.children) other.setAttribute("aria-checked", String(other === currentTarget));
-            reached = null;
-            draw();
-          },
-        },
-        label,
-      ),
-    ),
+    ],
+    direction,
+    (way) => {
+      direction = /** @type {Direction} */ (way);
+      reached = null;
+      draw();
+    },
   );
   draw();
   const element = h(
     "div",
     { class: "inverse-section" },
-    h(
-      "form",
-      {
-        class: "inverse-form",
-        onsubmit: (/** @type {Event} */ event) => {
-          event.preventDefault();
-          void fill();
-        },
-      },
+    form(
+      fill,
       h(
         "p",
         { class: "muted inverse-hint" },
         "Drag the points: how wide the swatch should be when it is stretched between clamps. The whole chart is filled with bands.",
       ),
-      svg,
+      plot,
       h(
         "div",
         { class: "inverse-bar" },
         h("span", { class: "muted" }, "Pulled along"),
-        pulls,
+        pulls.element,
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
         h("label", { class: "check" }, "bands of at least", band, "lines"),
       ),

@@ -23,7 +23,7 @@ const PURE_NAMES = ["stockinette", "garter", "1×1 rib", "seed"];
  */
 export function scatter({ onHover, onPress, onChoose, onApply }) {
   const canvas = h("canvas", {
-    class: "inverse-scatter",
+    class: "inverse-scatter rounded full-width",
     id: "inverse-scatter",
     tabIndex: 0,
     role: "application",

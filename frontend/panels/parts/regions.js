@@ -23,13 +23,10 @@ import { iconButton, textButton } from "../../widgets/buttons.js";
 import { textLine } from "../../widgets/fields.js";
 import { docked, refreshed } from "../../widgets/dock.js";
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, context) {
   const { document: chart, selection, ink } = studio;
-  const list = h("ol", { class: "part-list", reversed: true });
+  const list = h("ol", { class: "plain-list", reversed: true });
   let chosen = chart.regions.at(-1)?.id ?? "";
 
   const fromSelection = textButton("select", "From selection", () => action("make-region").perform(context), {
@@ -80,7 +77,7 @@ export function create(studio, context) {
       { class: open ? "part open" : "part" },
       h(
         "div",
-        { class: "part-head" },
+        { class: "part-head line gap-2" },
         h("input", {
           type: "color",
           id: `${id}-colour`,
@@ -93,7 +90,7 @@ export function create(studio, context) {
         h(
           "button",
           {
-            class: "part-name",
+            class: "part-name bare flex spread shrinks-x grows gap-8",
             id: `${id}-open`,
             "aria-expanded": String(open),
             onclick: () => ((chosen = open ? "" : id), show()),
@@ -119,18 +116,18 @@ export function create(studio, context) {
       open &&
         h(
           "div",
-          { class: "part-body" },
+          { class: "part-body stack" },
           textLine("Name", name, (value) => chart.changeRegion(id, { name: value || name }, "Rename a region"), {
             id: `${id}-name`,
           }),
-          h("label", { class: "line-field" }, h("span", {}, "Fill"), fills(region, filled)),
+          h("label", { class: "line-field stack gap-8" }, h("span", {}, "Fill"), fills(region, filled)),
           textLine("Yarn", yarn ?? "", (value) => chart.changeRegion(id, { yarn: value || null }, "Yarn of a region"), {
             id: `${id}-yarn`,
             placeholder: "main yarn",
           }),
           h(
             "div",
-            { class: "part-buttons" },
+            { class: "flex wrap gap-5" },
             wide(
               "paint",
               "pencil",
@@ -154,7 +151,7 @@ export function create(studio, context) {
           ),
           h(
             "div",
-            { class: "part-foot" },
+            { class: "part-foot flex" },
             small("up", "up", "Further up", () => chart.orderRegion(id, at + 1), {
               disabled: at === chart.regions.length - 1,
             }),
@@ -212,7 +209,7 @@ export function create(studio, context) {
         : [
             h(
               "li",
-              { class: "muted part-empty" },
+              { class: "muted part-empty small" },
               "Regions name parts of the chart, such as a cuff or a heel: select some stitches (M, Q or W) and press “From selection”, or paint a new one.",
             ),
           ],

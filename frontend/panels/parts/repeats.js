@@ -20,13 +20,10 @@ import { docked, refreshed } from "../../widgets/dock.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { numberField, textLine } from "../../widgets/fields.js";
 
-/**
- * @param {Studio} studio
- * @param {ActionContext} context
- */
+/** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, context) {
   const { document: chart, selection, editing } = studio;
-  const list = h("ol", { class: "part-list" });
+  const list = h("ol", { class: "plain-list" });
   const fromSelection = textButton("select", "New from the selection", () => action("make-repeat").perform(context), {
     id: "repeat-from-selection",
   });
@@ -43,7 +40,7 @@ export function create(studio, context) {
     const edge = (field, label, value) =>
       h(
         "label",
-        { class: "edge-field" },
+        { class: "edge-field line gap-6" },
         label,
         numberField({
           id: `${id}-${field}`,
@@ -68,12 +65,12 @@ export function create(studio, context) {
       { class: open ? "part open" : "part" },
       h(
         "div",
-        { class: "part-head" },
+        { class: "part-head line gap-2" },
         thumbnail({ chart: motif.tiled(Math.max(6, motif.rows), Math.max(6, motif.columns)).text }, { side: 34 }),
         h(
           "button",
           {
-            class: "part-name",
+            class: "part-name bare flex spread shrinks-x grows gap-8",
             id: `${id}-open`,
             "aria-expanded": String(open),
             onclick: () => ((closed = open), (editing.repeatId.value = id), show()),
@@ -85,21 +82,21 @@ export function create(studio, context) {
       open &&
         h(
           "div",
-          { class: "part-body" },
+          { class: "part-body stack" },
           textLine("Name", name, (value) => chart.changeRepeat(id, { name: value || name }, "Rename a repeat"), {
             id: `${id}-name`,
           }),
           h("p", { class: "muted figures" }, repeat.rule[0].toUpperCase() + repeat.rule.slice(1)),
           h(
             "div",
-            { class: "edge-fields" },
+            { class: "line gap-12" },
             h("span", {}, "Edge"),
             edge("edgeColumns", "sts", edgeColumns),
             edge("edgeRows", "rows", edgeRows),
           ),
           h(
             "div",
-            { class: "part-buttons" },
+            { class: "flex wrap gap-5" },
             wide(
               "place",
               "repeat",
@@ -126,12 +123,12 @@ export function create(studio, context) {
             }),
           ),
           placements.length
-            ? h("ul", { class: "copies" }, ...placements.map((place, at) => copy(repeat, place, at)))
+            ? h("ul", { class: "plain-list" }, ...placements.map((place, at) => copy(repeat, place, at)))
             : h("p", { class: "muted" }, "Not placed yet."),
           h("p", { class: "muted" }, "Paint any copy: all follow."),
           h(
             "div",
-            { class: "part-foot" },
+            { class: "part-foot flex" },
             h("span", { class: "spacer" }),
             iconButton("trash", `Remove ${name}; its stitches stay`, () => chart.removeRepeat(id), {
               id: `${id}-remove`,
@@ -166,11 +163,11 @@ export function create(studio, context) {
     const stepper = (axis, word) =>
       h(
         "span",
-        { class: "stepper", role: "group", "aria-label": `Motifs ${word}` },
+        { class: "stepper inline", role: "group", "aria-label": `Motifs ${word}` },
         h(
           "button",
           {
-            class: "step",
+            class: "step bare",
             id: `${id}-${at}-${axis}-less`,
             "aria-label": `One motif less ${word}`,
             onclick: () => resize(axis, -1),
@@ -181,7 +178,7 @@ export function create(studio, context) {
         h(
           "button",
           {
-            class: "step",
+            class: "step bare",
             id: `${id}-${at}-${axis}-more`,
             "aria-label": `One motif more ${word}`,
             onclick: () => resize(axis, 1),
@@ -191,11 +188,11 @@ export function create(studio, context) {
       );
     return h(
       "li",
-      { class: "copy" },
+      { class: "copy line muted" },
       h(
         "button",
         {
-          class: "copy-name figures",
+          class: "copy-name figures bare shrinks-x grows nowrap clipped",
           title: "Select this copy",
           id: `${id}-${at}-select`,
           onclick: () => (selection.value = boxOf(place)),
@@ -222,7 +219,7 @@ export function create(studio, context) {
         : [
             h(
               "li",
-              { class: "muted part-empty" },
+              { class: "muted part-empty small" },
               "A linked repeat is one motif in many places: change one copy and all follow. Select a motif (M) and press “New from the selection”.",
             ),
           ],

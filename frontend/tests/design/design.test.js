@@ -44,6 +44,19 @@ const WHOLE = {
   shelf: [{ name: "Mine", motif: "KKP" }],
 };
 
+/**
+ * Set stitches.
+ *
+ * @param {ChartDocument} chart
+ * @param {Record<number, number>} values by index
+ * @param {string} label
+ * @param {Parameters<ChartDocument["set"]>[2]} [target]
+ */
+function paint(chart, values, label, target) {
+  const cells = Object.entries(values).map(([i, value]) => /** @type {[number, number]} */ ([Number(i), value]));
+  chart.set(cells, label, target);
+}
+
 /** @param {ChartDocument} chart */
 const undoAll = (chart) => {
   while (chart.undo());
@@ -91,23 +104,10 @@ test("a damaged design in the browser keeps its chart and all that is readable",
 
 test("no stitch: it cannot be painted, and is an edge for its neighbours", () => {
   const chart = new ChartDocument(Grid.fromText("KKP\nKKP"));
-  chart.set(
-    [
-      [2, 0],
-      [5, 0],
-    ],
-    "Outline",
-    "outline",
-  );
+  paint(chart, { 2: 0, 5: 0 }, "Outline", "outline");
   assert.equal(chart.content.outline, "xx.\nxx.");
   assert.deepEqual([...chart.codes.filter((_, i) => i % 3 < 2)], [0, 0, 0, 0]);
-  chart.set(
-    [
-      [2, 0],
-      [1, 1],
-    ],
-    "Pencil",
-  );
+  paint(chart, { 2: 0, 1: 1 }, "Pencil");
   assert.equal(chart.grid.text, "KKP\nKPP");
   chart.undo();
   chart.undo();
@@ -123,15 +123,7 @@ test("a region is painted, filled, locked, ordered, renamed and removed, and all
   assert.equal(chart.grid.text, "KKKK\nKKKK\nKPKP");
   const high = chart.addRegion({ name: "High", colour: "#993333" }, [1, 5]);
   assert.equal(chart.regionAt(1)?.id, high);
-  chart.set(
-    [
-      [4, 1],
-      [6, 1],
-      [1, 0],
-    ],
-    "Brush",
-    `region:${low}`,
-  );
+  paint(chart, { 4: 1, 6: 1, 1: 0 }, "Brush", `region:${low}`);
   assert.deepEqual(chart.region(low)?.written(4).runs, [
     [0, 0, 1],
     [0, 2, 2],
@@ -143,13 +135,7 @@ test("a region is painted, filled, locked, ordered, renamed and removed, and all
   /** @type {string[][]} */
   const refused = [];
   chart.onRefuse((names) => refused.push(names));
-  chart.set(
-    [
-      [0, 1],
-      [11, 1],
-    ],
-    "Pencil",
-  );
+  paint(chart, { 0: 1, 11: 1 }, "Pencil");
   assert.equal(chart.grid.text, "KKKP\nKKKK\nKPKP");
   assert.deepEqual(refused, [["Low"]]);
   chart.set([[5, 1]], "Brush", `region:${low}`);
@@ -184,13 +170,7 @@ test("a filled region that is put above another one covers it, and only there", 
   const chart = new ChartDocument(new Grid(1, 5));
   const low = chart.addRegion({ name: "Low", colour: "#336699", fill: Grid.fromText("P") }, [0, 1, 2]);
   const high = chart.addRegion({ name: "High", colour: "#993333", fill: Grid.fromText("K") }, [2, 3]);
-  chart.set(
-    [
-      [0, 0],
-      [3, 1],
-    ],
-    "Pencil",
-  );
+  paint(chart, { 0: 0, 3: 1 }, "Pencil");
   assert.equal(chart.grid.text, "KPKPK");
   chart.orderRegion(low, 1);
   assert.equal(chart.grid.text, "KPPPK", "what was painted on the fills stays");
@@ -215,13 +195,7 @@ test("painting one copy of a repeat paints all, and the motif follows", () => {
     ],
   });
   assert.equal(chart.grid.text, "KKKKKPK\nKKKKKKK\nKKPKKPK\nKKPKKPK");
-  chart.set(
-    [
-      [1, 1],
-      [14, 1],
-    ],
-    "Pencil",
-  );
+  paint(chart, { 1: 1, 14: 1 }, "Pencil");
   assert.equal(chart.grid.text, "KKKKPPK\nPKKKKKK\nKPPKPPK\nKPPKPPK");
   assert.equal(chart.content.repeats[0].motif, "KPP");
   chart.changeRepeat(id, { motif: Grid.fromText("PKK") }, "Motif");
@@ -242,13 +216,7 @@ test("a locked region keeps all copies of what is linked to it", () => {
   chart.addRepeat({ name: "A", motif: Grid.fromText("KK"), placements: [{ row: 0, column: 0, rows: 1, columns: 6 }] });
   const region = chart.addRegion({ name: "Locked", colour: "#336699" }, [0]);
   chart.changeRegion(region, { locked: true }, "Lock");
-  chart.set(
-    [
-      [2, 1],
-      [3, 1],
-    ],
-    "Pencil",
-  );
+  paint(chart, { 2: 1, 3: 1 }, "Pencil");
   assert.equal(chart.grid.text, "KPKPKP");
 });
 

@@ -9,10 +9,17 @@ import { surroundings } from "../../grid/segments.js";
 import { Brush } from "../../grid/stroke.js";
 import { random } from "../random.js";
 
-/** @param {ChartDocument} chart @param {[number, number][]} cells @param {boolean} [fresh] */
-function stroke(chart, cells, fresh = false) {
+/** @param {ChartDocument} chart @param {Record<number, number>} cells */
+const brush = (chart, cells) =>
+  Brush.of(
+    chart.grid.purl.length,
+    Object.entries(cells).map(([i, value]) => [Number(i), value]),
+  );
+
+/** @param {ChartDocument} chart @param {Record<number, number>} cells */
+function stroke(chart, cells) {
   chart.begin();
-  chart.paint(Brush.of(chart.grid.purl.length, cells), fresh);
+  chart.paint(brush(chart, cells), false);
   chart.commit("Pencil");
 }
 
@@ -26,11 +33,8 @@ test("runs and packed text hold a bitmap", () => {
 
 test("a stroke is one step; undo and redo go to and fro", () => {
   const chart = new ChartDocument(new Grid(2, 3));
-  stroke(chart, [
-    [0, 1],
-    [4, 1],
-  ]);
-  stroke(chart, [[4, 0]]);
+  stroke(chart, { 0: 1, 4: 1 });
+  stroke(chart, { 4: 0 });
   assert.equal(chart.grid.text, "KKK\nPKK");
   assert.equal(chart.undo(), "Pencil");
   assert.equal(chart.grid.text, "KPK\nPKK");
@@ -46,22 +50,9 @@ test("a stroke is one step; undo and redo go to and fro", () => {
 test("a shape being dragged leaves only its last form", () => {
   const chart = new ChartDocument(Grid.fromText("PKK"));
   chart.begin();
-  chart.paint(
-    Brush.of(3, [
-      [0, 1],
-      [1, 1],
-      [2, 1],
-    ]),
-    true,
-  );
+  chart.paint(brush(chart, { 0: 1, 1: 1, 2: 1 }), true);
   assert.equal(chart.grid.text, "PPP");
-  chart.paint(
-    Brush.of(3, [
-      [0, 0],
-      [1, 1],
-    ]),
-    true,
-  );
+  chart.paint(brush(chart, { 0: 0, 1: 1 }), true);
   assert.equal(chart.grid.text, "KPK");
   chart.commit("Rectangle");
   chart.undo();
@@ -70,9 +61,9 @@ test("a shape being dragged leaves only its last form", () => {
 
 test("a stroke that changes nothing, and one that is given up, are not steps", () => {
   const chart = new ChartDocument(Grid.fromText("PK"));
-  stroke(chart, [[0, 1]]);
+  stroke(chart, { 0: 1 });
   chart.begin();
-  chart.paint(Brush.of(2, [[1, 1]]), false);
+  chart.paint(brush(chart, { 1: 1 }), false);
   chart.cancel();
   assert.equal(chart.grid.text, "PK");
   assert.equal(chart.history.done.length, 0);
@@ -91,9 +82,9 @@ test("a new chart of another size can be taken back", () => {
 
 test("a new step forgets what was undone", () => {
   const chart = new ChartDocument(new Grid(1, 3));
-  stroke(chart, [[0, 1]]);
+  stroke(chart, { 0: 1 });
   chart.undo();
-  stroke(chart, [[2, 1]]);
+  stroke(chart, { 2: 1 });
   assert.equal(chart.redo(), undefined);
 });
 
@@ -106,7 +97,7 @@ test("the codes kept up to date are those computed afresh, and the box holds eve
     /** @type {import("../../grid/grid.js").Box[]} */
     const boxes = [];
     chart.onChange(({ box }) => boxes.push(box));
-    stroke(chart, [[i, 1 - grid.purl[i]]]);
+    stroke(chart, { [i]: 1 - grid.purl[i] });
     assert.deepEqual(chart.codes, surroundings(chart.grid));
     const { row0, row1, column0, column1 } = boxes[0];
     chart.codes.forEach((code, k) => {
@@ -120,7 +111,7 @@ test("the codes kept up to date are those computed afresh, and the box holds eve
 
 test("the history is kept across a reload, and shortened from its old end", () => {
   const chart = new ChartDocument(new Grid(1, 40));
-  for (let i = 0; i < 40; i++) stroke(chart, [[i, 1]]);
+  for (let i = 0; i < 40; i++) stroke(chart, { [i]: 1 });
   const again = new ChartDocument(Grid.fromText(chart.grid.text), History.parse(chart.history.serialised(1e6)));
   for (let i = 0; i < 40; i++) again.undo();
   assert.equal(again.grid.text, "K".repeat(40));
