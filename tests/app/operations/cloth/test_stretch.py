@@ -138,7 +138,7 @@ def test_a_lock_up_in_part_of_a_quarter_cell_is_reported(client: TestClient) -> 
         "steps": 8,
     }
     answer = client.post("/api/v1/stretch", json=body).json()
-    assert answer["nearest_lock_up"]["utilisation"] < 0.95
+    assert answer["nearest_lock_up"]["utilisation"] < 1.0
     assert "extrapolated" in answer["messages"][0]
 
 

@@ -112,10 +112,11 @@ def test_the_gauge_of_a_relaxation_makes_predictions_of_a_simulated_material_mor
     client: TestClient,
 ) -> None:
     """The prediction names the repeat; measured materials and held shapes have no such gauge."""
-    body = {"chart": "KKP\nPKP\nKPP\nKKP\nPKP\nKPP", "material": "acrylic:simulation"}
+    repeat = "KKP\nPKP\nKPK\nPPK"
+    body = {"chart": f"{repeat}\n{repeat}", "material": "acrylic:simulation"}
     learned = client.post("/api/v1/predict", json=body).json()
     asked = {"chart": learned["worth_relaxing"], "material": body["material"]}
-    assert asked["chart"] == "KKP\nPKP\nKPP"
+    assert asked["chart"] == repeat
     gauge = client.post("/api/v1/relax", json=asked).json()["gauge"]
     known = client.post("/api/v1/predict", json=body | {"gauge": gauge}).json()
     assert known["relaxed_source"] == gauge["known_by"] == "relaxation"
