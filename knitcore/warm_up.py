@@ -3,8 +3,6 @@
 Each calculation is small; numba keeps the machine code that it needs.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed

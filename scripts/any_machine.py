@@ -5,8 +5,6 @@ questions as a client would. The table gives, for every question and set, the la
 difference from the first set: of energies and sizes, and of all other numbers.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -3,8 +3,6 @@
 The requests are those of the schema, which shows the answers where they have been made.
 """
 
-from __future__ import annotations
-
 import json
 import tempfile
 import time

@@ -3,8 +3,6 @@
 It has the library's materials whose repeats are not in the store.
 """
 
-from __future__ import annotations
-
 import csv
 from dataclasses import fields
 from pathlib import Path

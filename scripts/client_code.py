@@ -4,8 +4,6 @@
 and ``sync.py`` from ``aio.py``.
 """
 
-from __future__ import annotations
-
 import keyword
 import shutil
 import textwrap

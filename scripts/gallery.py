@@ -1,7 +1,5 @@
 """The gallery of the documentation site: ten designs with their pictures, numbers and files."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

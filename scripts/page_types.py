@@ -4,8 +4,6 @@ Request types have optional fields; the types of answers have every field (excep
 the page also makes). TypeScript compares them with how the page uses them (``make lint``).
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path

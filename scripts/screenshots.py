@@ -3,8 +3,6 @@
 ``python -m scripts.screenshots [NAME …]`` needs Chromium and Node; names make only these pictures.
 """
 
-from __future__ import annotations
-
 import io
 import subprocess
 import sys

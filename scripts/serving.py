@@ -1,7 +1,5 @@
 """Run the real service in a process of its own, and the browser that visits it."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import subprocess

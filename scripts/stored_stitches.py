@@ -5,8 +5,6 @@ Relaxes and stretches every small repeat (:func:`charts_of_the_store`) for each 
 data folder. Finished repeats are kept in a folder, so an interrupted build can be resumed.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

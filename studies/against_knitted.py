@@ -5,8 +5,6 @@ relaxed width and height, strain at four stresses, and moduli. Prints rms factor
 are the deviations that :mod:`knitcore.materials.law_uncertainty` gives these models.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.chart.fabric import Direction, Fabric

@@ -7,8 +7,6 @@ bands of graded jersey from another paper (``graded``, see ``studies/graded_jers
 swatches knitted by others (``knitdb``, see ``studies/knitdb.py``). Takes some minutes.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 import textwrap

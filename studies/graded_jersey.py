@@ -11,8 +11,6 @@ tell neither width nor length: 50 mm, and 50 to 200 mm, are assumed. Nor do they
 ratios.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -12,8 +12,6 @@ folds, was fitted to 29 of these swatches: its optimum here and the leave-one-ou
 too.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 from collections.abc import Callable

@@ -12,8 +12,6 @@ the relaxed size known; and for the null model, in which a chart is like the mea
 the charts that were learned from.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections import defaultdict

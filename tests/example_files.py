@@ -3,8 +3,6 @@
 They are small measurements of which the truth is known, made as the tests make theirs.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Installs packages with entry points for a test, without pip: a folder on ``sys.path``."""
 
-from __future__ import annotations
-
 import sys
 import tomllib
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Dockerfile and compose file, as far as they can be checked without a container engine."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """Every Python example in the documentation runs, page by page, top to bottom."""
 
-from __future__ import annotations
-
 import pkgutil
 import re
 import shlex
@@ -32,9 +30,7 @@ FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SHELL = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 ROOMS = "app|client|deploy|docs|examples|frontend|knitcore|scripts|studies|tests"
-PATH = re.compile(
-    rf"`((?:[\w.-]+/)*[\w.-]+\.(?:js|mjs|py)|(?:[\w.-]+/)+|(?:{ROOMS})/[\w./-]+)`",
-)
+PATH = re.compile(rf"`((?:[\w.-]+/)*[\w.-]+\.(?:js|mjs|py)|(?:[\w.-]+/)+|(?:{ROOMS})/[\w./-]+)`")
 """A program, a folder with its slash, or a path that begins in one of our folders."""
 DOTTED = re.compile(r"`((?:knitcore|app|scripts|studies)(?:\.\w+)+)`")
 BUILT = {"frontend/dist"}

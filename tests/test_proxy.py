@@ -1,7 +1,5 @@
 """The shipped nginx configuration in front of the service; `apt-get install nginx-light`."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import os

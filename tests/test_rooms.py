@@ -1,7 +1,5 @@
 """The import contract: every package of the house imports from the floors below it only."""
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 import re

@@ -1,7 +1,5 @@
 """The documentation site: pages made from code, formulas, run cells, and the build itself."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 import subprocess

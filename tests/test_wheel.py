@@ -1,7 +1,5 @@
 """The wheels in empty environments: the whole tool, the library alone, the client alone."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -5,8 +5,6 @@ may have none. ``python -m tests.test_words`` prints the table as it would be to
 ``python -m tests.test_words FOLDER`` where a folder's faults are.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import sys
@@ -29,9 +27,7 @@ CODE = re.compile(r"^```.*?^```$|``.*?``|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 """Parts of prose that are not prose."""
 DOCTEST = re.compile(r"^ *>>> .*(?:\n *\S.*)*", re.MULTILINE)
 
-ALLOWED: dict[str, dict[str, int]] = {
-    "names": {"app/operations": 1},
-}
+ALLOWED: dict[str, dict[str, int]] = {"names": {"app/operations": 1}}
 """Faults that each folder may still have, by rule."""
 
 

@@ -7,8 +7,6 @@
 5. stdout gets the result, as JSON or as ``Command.lines``; stderr gets its remarks.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from functools import partial

@@ -12,8 +12,6 @@ anything else                 ``--name VALUE``
 ============================  ====================================================
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Options that operations declare for their commands, the files they write, and CHART."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import os

@@ -1,7 +1,5 @@
 """Colours of stitches in the 3D view: the same meaning and the same maps as on the page."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A design in the 3D view."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from enum import StrEnum

@@ -1,7 +1,5 @@
 """A fabric as a solid, for other programs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The colours of the stitches in the 3D view, by quantity."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from enum import StrEnum
 from typing import Literal

@@ -1,7 +1,5 @@
 """Running an operation in a worker process, which also packs the answer."""
 
-from __future__ import annotations
-
 import gzip
 import hashlib
 from collections.abc import Callable

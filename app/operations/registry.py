@@ -6,8 +6,6 @@ Each ``Operation`` that a module holds is one. Routes (:mod:`app.service.api.ope
 a new operation is one file here and its test.
 """
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import pkgutil

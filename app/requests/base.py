@@ -1,7 +1,5 @@
 """Bases of requests and results."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from inspect import signature
@@ -121,8 +119,6 @@ Positive = Annotated[float, Field(gt=0, le=1000)]
 Seed = Annotated[
     int,
     Field(
-        ge=0,
-        le=2**32 - 1,
-        description="Seed of random choices: the same one gives the same chart.",
+        ge=0, le=2**32 - 1, description="Seed of random choices: the same one gives the same chart."
     ),
 ]

@@ -1,7 +1,5 @@
 """Charts, outlines and materials in requests."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from pydantic import BaseModel, Discriminator, Field, Tag

@@ -1,7 +1,5 @@
 """Fabrics in requests and results: a chart of a material, its laws and its gauge."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated, Self
 

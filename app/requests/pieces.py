@@ -1,7 +1,5 @@
 """Cut pieces, conditions on their edges, and tests of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self, TypeVar
 

@@ -1,7 +1,5 @@
 """Requests that need the yarn's weight, and corners in answers."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import numpy as np

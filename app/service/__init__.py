@@ -15,8 +15,6 @@ The way of a request, from the network down:
 7. ``web/errors.py``: what was raised on the way becomes a problem (``problems.py``).
 """
 
-from __future__ import annotations
-
 from importlib.metadata import version
 
 VERSION = version("knitcore")

@@ -1,7 +1,5 @@
 """The user of a request: set by access control, read by everything behind it."""
 
-from __future__ import annotations
-
 from contextvars import ContextVar
 
 LOCAL_USER = "local"

@@ -1,7 +1,5 @@
 """News on their way to the event streams that wait for them."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import threading

@@ -1,7 +1,5 @@
 """Memory of the machine, and the return of unused memory to the system."""
 
-from __future__ import annotations
-
 import ctypes
 import gc
 import os

@@ -1,7 +1,5 @@
 """Problems as clients read them: their kinds, their fields, and the errors that become one."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Annotated, Any, NamedTuple

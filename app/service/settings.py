@@ -45,8 +45,7 @@ class Settings(BaseSettings):
         None, description="Token that every request must carry; required beyond loopback."
     )
     require_login: bool = Field(
-        False,
-        description="Require of every user a token of their own (`knitcore token create`).",
+        False, description="Require of every user a token of their own (`knitcore token create`)."
     )
     requests_per_s: float = Field(
         50.0, gt=0, description="Requests per second of one user, where a login is required."

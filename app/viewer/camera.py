@@ -1,7 +1,5 @@
 """Camera positions: the sides from which a fabric is seen."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 
 import numpy as np

@@ -1,7 +1,5 @@
 """viser's client page, with our scripts before its own."""
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path

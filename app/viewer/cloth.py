@@ -1,7 +1,5 @@
 """The yarn of a fabric in a viser scene: one node for every shape of stitch, drawn many times."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -5,8 +5,6 @@ the page needs, nothing large, and no picture: a picture is checked by its heade
 came, and a single pixel is passed on in its place.
 """
 
-from __future__ import annotations
-
 import struct
 from dataclasses import dataclass
 

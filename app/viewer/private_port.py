@@ -9,8 +9,6 @@ Its messages also wait in a queue that can fall asleep for good while a scene is
 :class:`NewsEvent`.
 """
 
-from __future__ import annotations
-
 import asyncio
 import http
 import secrets

@@ -1,7 +1,5 @@
 """viser's client page and websocket, served from the page's own port and origin."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import logging

@@ -1,7 +1,5 @@
 """The scene of a fabric in viser: yarn, rectangles, a mark."""
 
-from __future__ import annotations
-
 import threading
 from typing import Any
 

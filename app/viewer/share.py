@@ -1,7 +1,5 @@
 """Files of 3D views to give away: pictures, pages that need no service, recordings, solids."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path

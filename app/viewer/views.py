@@ -1,7 +1,5 @@
 """One private viser server per open design, closed when it is not watched for a while."""
 
-from __future__ import annotations
-
 import logging
 import threading
 import time
@@ -220,9 +218,7 @@ def new_view() -> View:
 
 
 def clicked_stitch(
-    ground: Ground,
-    origin: tuple[float, float, float],
-    direction: tuple[float, float, float],
+    ground: Ground, origin: tuple[float, float, float], direction: tuple[float, float, float]
 ) -> Cell | None:
     """The stitch where a ray meets the fabric's middle plane; None outside the fabric.
 

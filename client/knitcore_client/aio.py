@@ -1,7 +1,5 @@
 """The asynchronous client. ``scripts/client_code.py`` makes the one that waits from it."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import secrets

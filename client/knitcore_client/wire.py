@@ -1,7 +1,5 @@
 """What both clients share: requests as JSON, answers as models, and when to ask again."""
 
-from __future__ import annotations
-
 import base64
 from pathlib import Path
 from typing import Any

@@ -10,8 +10,6 @@ e85 = 0.85 of the largest strain, replaces beta: alpha and beta are correlated b
 tests, alpha and S much less.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stretch of a sheet under stress along one direction, the other free or held."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial

@@ -15,8 +15,6 @@ Two forms by name:
     order in the strain, ``w = s**3 + s**4``, in tension and compression. It never locks.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeVar

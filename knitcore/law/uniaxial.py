@@ -1,7 +1,5 @@
 """A uniaxial test of a homogeneous sheet: stress and transverse strain at given axial strains."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

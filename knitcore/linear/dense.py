@@ -8,8 +8,6 @@ nothing, and no product is fused with a sum.
 Matrices are ``[column, row]``, of which only the lower triangle counts: ``a[j, i]`` with i >= j.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Direct factors of any sparse positive definite matrix, in double precision."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

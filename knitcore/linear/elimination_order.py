@@ -5,8 +5,6 @@ touches cannot be known from the chart, so the cuts are found in the pattern its
 wave halves it, and a least vertex cover of what crosses the halves is the cut (König's theorem).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array

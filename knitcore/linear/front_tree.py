@@ -6,8 +6,6 @@ box that the first one is a half of. A tree has thousands of small fronts, so th
 are compiled, and two threads can work on two branches.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

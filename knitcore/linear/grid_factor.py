@@ -10,8 +10,6 @@ precision is enough for it: half the memory and half the time. Only where single
 decide whether the matrix is positive definite is it factorised again in double precision.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

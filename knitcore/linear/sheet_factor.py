@@ -6,8 +6,6 @@ of what crosses. Cuts are eliminated after what they part, each as a dense front
 sparse solvers do not know the sheet, and take several times as long where it is rolled up.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

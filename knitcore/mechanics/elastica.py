@@ -14,8 +14,6 @@ q² sinh q / (q cosh q - sinh q) for odd ones (two arches). Both solve one equat
 so f, f' and f'' come from one code, also for Q < 0 (a segment under compression).
 """
 
-from __future__ import annotations
-
 import math
 from enum import StrEnum
 

@@ -10,8 +10,6 @@ are symmetrised geometrically, which keeps both Young's moduli of every phase; t
 Poisson ratios is restored from the phases' own at the end.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -8,8 +8,6 @@ by their relaxed extent across. A stitch whose quarters are all of one phase has
 modulus exactly, and any other one lies between the moduli of its phases.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

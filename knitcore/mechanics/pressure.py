@@ -12,8 +12,6 @@ friction or by its ends). No medical class is reported: such classes are defined
 measurements.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Yarn and cloth in space, as plotly figures to turn and zoom."""
 
-from __future__ import annotations
-
 from functools import singledispatch
 from typing import Any
 

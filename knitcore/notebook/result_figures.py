@@ -1,7 +1,5 @@
 """Stress-strain curves as plotly figures."""
 
-from __future__ import annotations
-
 from functools import singledispatch
 from typing import Any
 

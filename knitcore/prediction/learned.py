@@ -15,8 +15,6 @@ their intervals on charts left out, and reports the errors for those. Real fabri
 the yarn level predicts: see :data:`MAX_FOLDED`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

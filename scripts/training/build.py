@@ -4,8 +4,6 @@ Every finished task is kept in a folder, so an interrupted build can be resumed.
 the tasks finished so far to ``library.json.xz``; the next build leaves those out.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

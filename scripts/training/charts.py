@@ -7,8 +7,6 @@ first part of the list is a fair sample of all kinds. :data:`YARN_POINTS` are ya
 dimensionless numbers of the library's materials.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain, zip_longest

@@ -3,8 +3,6 @@
 ``scripts/training/build.py`` packs them into ``library.json.xz``.
 """
 
-from __future__ import annotations
-
 import json
 import lzma
 from collections.abc import Mapping

@@ -5,8 +5,6 @@ samples, settings (largest marginal likelihood), slopes, and scales calibrated o
 ten folds. Prints the errors for the charts left out. A minute of CPU time.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass

@@ -1,7 +1,5 @@
 """Draw the shapes of ``docs/curl.md``: ``python -m studies.figures.curl`` (a minute)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

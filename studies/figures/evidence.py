@@ -1,7 +1,5 @@
 """Draw the charts of docs/evidence.md from the numbers that ``studies.evidence`` writes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Draw the figure of docs/yarn-level.md: ``python -m studies.figures.hysteresis``."""
 
-from __future__ import annotations
-
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.yarn.model.paper_samples import sample

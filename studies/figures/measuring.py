@@ -5,8 +5,6 @@
 Everything is computed from the library or from made measurements; no measured data is needed.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.chart.fabric import Direction, Fabric

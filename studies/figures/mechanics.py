@@ -1,7 +1,5 @@
 """Draw the figures of the pages on mechanics: ``python -m studies.figures.mechanics``."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

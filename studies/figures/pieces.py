@@ -1,7 +1,5 @@
 """Draw the figure of docs/piece.md: ``python -m studies.figures.pieces``."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.collections import PolyCollection
 

@@ -4,8 +4,6 @@ The colours are those of the page (``frontend/styles/tokens.css``), so a fabric 
 in the documentation as on the screen.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Draw the tests with weight of ``docs/curl.md``: ``python -m studies.figures.weight``."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw

@@ -3,8 +3,6 @@
 They are tests, but not of the suite, which needs nothing that a clone lacks.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

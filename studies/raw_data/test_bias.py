@@ -1,7 +1,5 @@
 """A measured bias strip, whose data are no part of the product."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Laws of the library in simulated tests, against the authors' tests."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

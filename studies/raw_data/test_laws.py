@@ -1,7 +1,5 @@
 """The paper's constants from the authors' tests."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

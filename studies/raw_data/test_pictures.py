@@ -1,7 +1,5 @@
 """Displacement fields of the authors' pictures."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The authors' tests of yarns: photos of hanging yarn, and compression."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -6,8 +6,6 @@ CPU seconds in one thread, after a first piece that compiles the code. To be rea
 30 x 30 stitches, 8 s for 60 x 60, 30 s for 100 x 100.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Callable

@@ -6,8 +6,6 @@ Prints CPU seconds with each target. ``--large`` also knits 200 x 200 stitches o
 machine, which takes minutes.
 """
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 import time

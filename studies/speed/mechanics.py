@@ -1,7 +1,5 @@
 """CPU times of predictions, local moduli and homogenisation."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

@@ -8,8 +8,6 @@ software), and forced to draw every frame whole through a software GPU.
     make bench                             (RUNS=5 STROKES=20)
 """
 
-from __future__ import annotations
-
 import json
 import os
 import random

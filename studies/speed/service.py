@@ -14,8 +14,6 @@ the pauses of a shared disk are in every stroke's time.
 and ``P95_MS=25`` sets the target of a quiet machine.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import os

@@ -7,8 +7,6 @@ as CPU time. The authors' public code, unmodified, needs about 250 CPU seconds f
 fabric.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 

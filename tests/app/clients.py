@@ -1,7 +1,5 @@
 """Services with the settings of a test, and what their clients need."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """Databases for tests: a fresh SQLite file, and a real PostgreSQL where it is installed."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil

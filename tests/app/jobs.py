@@ -1,7 +1,5 @@
 """Jobs for the tests of the workers, which import them by name."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time

@@ -1,7 +1,5 @@
 """Operations over REST in tests."""
 
-from __future__ import annotations
-
 import base64
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The real service in a process of its own, for tests that stop or kill it."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

@@ -1,7 +1,5 @@
 """A second process, in which somebody types commands beside the service."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

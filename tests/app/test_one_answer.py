@@ -1,7 +1,5 @@
 """One chart and one material: the same numbers wherever they are asked for."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Iterable
 from dataclasses import replace

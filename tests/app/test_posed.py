@@ -1,7 +1,5 @@
 """What cloth rests on, as other programs take it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

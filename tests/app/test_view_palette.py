@@ -1,7 +1,5 @@
 """The page and the 3D view paint with the same colours."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Threads of this process."""
 
-from __future__ import annotations
-
 import threading
 
 POOLS = ("asyncio_", "AnyIO worker", "service_", "drawing_", "pictures_", "QueueFeeder")

@@ -1,7 +1,5 @@
 """The page in Chromium, against the real service."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

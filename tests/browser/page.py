@@ -1,7 +1,5 @@
 """Steps that a person takes on the page, and views of it."""
 
-from __future__ import annotations
-
 import io
 import json
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Signing in and out: the page names the user, lists the browsers and forgets the design."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Files dropped on the page: pictures with a preview, projects, and what is broken."""
 
-from __future__ import annotations
-
 import io
 import json
 

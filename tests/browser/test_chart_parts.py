@@ -1,7 +1,5 @@
 """Regions and linked repeats."""
 
-from __future__ import annotations
-
 import pytest
 from playwright.sync_api import Page, expect
 

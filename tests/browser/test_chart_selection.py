@@ -1,7 +1,5 @@
 """Selections: made, combined, moved, copied, turned; rows and columns."""
 
-from __future__ import annotations
-
 import pytest
 from playwright.sync_api import Page, expect
 

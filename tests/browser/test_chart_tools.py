@@ -1,7 +1,5 @@
 """Every tool of the chart, on both sides of the cloth, and back to the start."""
 
-from __future__ import annotations
-
 import pytest
 from playwright.sync_api import Page, expect
 

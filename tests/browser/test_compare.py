@@ -1,7 +1,5 @@
 """Two pieces side by side, the pressure on a limb, own yarns: all with a clean console."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

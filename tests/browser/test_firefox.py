@@ -1,7 +1,5 @@
 """The main job in Firefox: paint, see, stretch; driven by WebDriver BiDi, which it has built in."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import re

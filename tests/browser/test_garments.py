@@ -1,7 +1,5 @@
 """Planning a garment and exporting it, on the page."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """From a target to a fabric, in the page."""
 
-from __future__ import annotations
-
 import pytest
 from playwright.sync_api import Page, Route, expect
 

@@ -1,7 +1,5 @@
 """The ten main tasks of a designer, without a pointer."""
 
-from __future__ import annotations
-
 import pytest
 from playwright.sync_api import Page, expect
 

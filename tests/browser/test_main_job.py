@@ -1,7 +1,5 @@
 """The main job: paint, see, stretch."""
 
-from __future__ import annotations
-
 import re
 
 import pytest
@@ -54,8 +52,7 @@ def test_painting_changes_chart_segments_and_moduli(flat_studio: Page) -> None:
     expect(flat_studio.locator("#segments-course")).to_contain_text("odd")
     wait_for_change(flat_studio, "#chart", before, 60)
     flat_studio.wait_for_function(
-        "old => document.querySelector('#modulus-course .value').textContent !== old",
-        arg=shown,
+        "old => document.querySelector('#modulus-course .value').textContent !== old", arg=shown
     )
     wait_for_numbers(flat_studio)
     assert number(flat_studio, "#modulus-course") < modulus
@@ -103,9 +100,7 @@ def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
 
 
 @pytest.mark.slow
-def test_a_change_marks_the_stretch_as_old_until_it_is_pulled_again(
-    flat_studio: Page,
-) -> None:
+def test_a_change_marks_the_stretch_as_old_until_it_is_pulled_again(flat_studio: Page) -> None:
     flat_studio.select_option("#stretch-unit", "N")
     flat_studio.fill("#stretch-amount", "0.5")
     flat_studio.click("#stretch-run")

@@ -1,7 +1,5 @@
 """Mechanics on the page: stretch tests, their intervals, measured curves, targets."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Reloads, bad input and an absent service leave the painting alone and say what to do."""
 
-from __future__ import annotations
-
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import CHART, wait_for_numbers

@@ -1,7 +1,5 @@
 """Tools, keys and selections on the chart."""
 
-from __future__ import annotations
-
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import wait_for_numbers

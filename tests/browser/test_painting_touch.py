@@ -1,7 +1,5 @@
 """Fingers on a tablet: one paints, two move and zoom."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import pytest

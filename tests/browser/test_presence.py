@@ -1,7 +1,5 @@
 """Two windows with one design: each knows of the other, and shows its strokes."""
 
-from __future__ import annotations
-
 import pytest
 from playwright.sync_api import Page, Route, expect
 

@@ -1,7 +1,5 @@
 """Everybody can use the page: axe finds nothing serious, keys reach everything."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 

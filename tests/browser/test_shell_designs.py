@@ -1,7 +1,5 @@
 """Designs are kept, listed, versioned and shared, and nothing is lost on the way."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

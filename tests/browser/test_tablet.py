@@ -1,7 +1,5 @@
 """On a tablet, 1024 x 768: nothing is cut off, and what needs scrolling shows that it is there."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import pytest

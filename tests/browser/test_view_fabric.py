@@ -1,7 +1,5 @@
 """The fabric in 3D: linked with the chart, stretched, private, and back after a lost connection."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from functools import partial
@@ -12,13 +10,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from knitcore.draw.instances import COARSE_LEVELS
-from tests.browser.conftest import (
-    CHART,
-    COLUMNS,
-    ROWS,
-    TIMEOUT_MS,
-    open_small_chart,
-)
+from tests.browser.conftest import CHART, COLUMNS, ROWS, TIMEOUT_MS, open_small_chart
 from tests.browser.page import (
     coloured,
     drag,

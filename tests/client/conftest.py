@@ -1,7 +1,5 @@
 """The client that these tests ask with: made from this service, in a folder of its own."""
 
-from __future__ import annotations
-
 import atexit
 import shutil
 import sys

@@ -1,7 +1,5 @@
 """The typed clients against the real service."""
 
-from __future__ import annotations
-
 import asyncio
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Clients that others generate from the schema compile."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

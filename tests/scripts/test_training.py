@@ -1,7 +1,5 @@
 """The training library: its charts, its tasks, and what is packaged of it."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

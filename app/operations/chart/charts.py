@@ -1,7 +1,5 @@
 """Charts to start from: a typed text, and named patterns."""
 
-from __future__ import annotations
-
 from knitcore.chart.patterns import PATTERNS
 from knitcore.chart.stitch_chart import StitchChart
 

@@ -1,7 +1,5 @@
 """The mechanics of a chart."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pydantic import Field

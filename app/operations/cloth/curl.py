@@ -1,7 +1,5 @@
 """Curling and folding of a piece under no load."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Literal
 

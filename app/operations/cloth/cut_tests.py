@@ -1,7 +1,5 @@
 """Tests of cut cloth: a strip at an angle, a rectangle pulled both ways, a sheared square."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """A piece that hangs under its own weight."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

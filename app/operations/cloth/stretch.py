@@ -1,7 +1,5 @@
 """The stretch test of a chart: request, result, and data for the 3D view."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """Tests in which cloth carries its own weight: over an edge, over a disc, and with a border."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """The atlas of a material: the mechanics of every small repeat."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A chart with a target stiffness, given as a map or part by part."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Literal
 

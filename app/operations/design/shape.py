@@ -1,7 +1,5 @@
 """A chart that takes a target outline when it is stretched."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 from typing import Annotated, Any, Literal

@@ -1,7 +1,5 @@
 """Charts to files."""
 
-from __future__ import annotations
-
 import base64
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,5 @@
 """Charts from files, and the schema of the project file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Programs that are installed here: the version of this one, and what packages add to it."""
 
-from __future__ import annotations
-
 from pydantic import Field
 
 from knitcore.base.extensions import ExtensionError, Group, Offer

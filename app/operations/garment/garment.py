@@ -1,7 +1,5 @@
 """Garments from measurements."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The glove on the hand that it is made for."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Fit and pressure of a knitted tube along a limb."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal, Self

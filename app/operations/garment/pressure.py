@@ -1,7 +1,5 @@
 """Pressure of a knitted tube on a limb."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial

@@ -1,7 +1,5 @@
 """Bending modulus of a yarn from photos."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from pydantic import Field

@@ -1,7 +1,5 @@
 """Contact constants of a yarn from squeezing it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Literal
 

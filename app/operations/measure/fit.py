@@ -1,7 +1,5 @@
 """Fitting a law to stretch tests."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Literal
 

@@ -1,7 +1,5 @@
 """Bending, curl and shear of a repeat at the yarn level."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, Literal
 

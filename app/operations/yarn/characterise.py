@@ -1,7 +1,5 @@
 """Characterise a yarn: its pure fabrics at the yarn level, as one table."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 from typing import Any, Literal, Self

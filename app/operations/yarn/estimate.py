@@ -1,7 +1,5 @@
 """A yarn that is not in the library."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

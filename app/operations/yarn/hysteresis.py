@@ -1,7 +1,5 @@
 """Loading, unloading and rest sizes of a repeat with friction between its yarns."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """The library of materials, with the user's own, and all that is known about one."""
 
-from __future__ import annotations
-
 import click
 import numpy as np
 from pydantic import Field

@@ -1,7 +1,5 @@
 """Relaxing a repeat at the yarn level."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The reduced-symmetry model of the four fabrics."""
 
-from __future__ import annotations
-
 from pydantic import Field
 
 from knitcore.chart.fabric import Direction, Fabric

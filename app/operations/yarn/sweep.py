@@ -1,7 +1,5 @@
 """Stretching a repeat at the yarn level, and fitting a law to it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Literal

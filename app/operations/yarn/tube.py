@@ -1,7 +1,5 @@
 """A repeat relaxed in the round: a long tube with a given number of wales."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from pydantic import Field

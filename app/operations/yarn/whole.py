@@ -1,7 +1,5 @@
 """Relaxing a whole chart at the yarn level, as a job that continues where it was stopped."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from typing import Annotated, Any, Literal
 

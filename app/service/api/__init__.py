@@ -1,7 +1,5 @@
 """Routers under ``/api/v1``, one module each."""
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 

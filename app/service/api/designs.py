@@ -1,7 +1,5 @@
 """Designs over REST: saved, listed, changed, versioned and shared."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
@@ -91,11 +89,7 @@ def get_designs(
 
 @router.post("/designs", status_code=201, summary="Save a new design", responses=CONFLICT)
 def post_design(
-    body: DesignDocument,
-    store: Store,
-    owner: Owner,
-    response: Response,
-    retry: RetryOf,
+    body: DesignDocument, store: Store, owner: Owner, response: Response, retry: RetryOf
 ) -> Design:
     """Save the document of a design file; its chart is kept in canonical text."""
     return _created(response, store.create(owner, body, retry(body)))
@@ -185,11 +179,7 @@ async def post_strokes(
     "/designs/{design}/duplicate", status_code=201, summary="Copy a design", responses=CONFLICT
 )
 def post_duplicate(
-    design: DesignId,
-    store: Store,
-    owner: Owner,
-    response: Response,
-    retry: RetryOf,
+    design: DesignId, store: Store, owner: Owner, response: Response, retry: RetryOf
 ) -> Design:
     """Make a new design with the same content."""
     return _created(response, store.duplicate(owner, design, retry()))
@@ -225,11 +215,7 @@ def get_versions(design: DesignId, store: Store, owner: Owner) -> Versions:
     responses=CONFLICT,
 )
 def post_version(
-    design: DesignId,
-    body: VersionRequest,
-    store: Store,
-    owner: Owner,
-    retry: RetryOf,
+    design: DesignId, body: VersionRequest, store: Store, owner: Owner, retry: RetryOf
 ) -> VersionSummary:
     """Save the present state as a version. Versions are never changed or overwritten."""
     return store.keep_version(owner, design, body.name, retry(body))
@@ -292,11 +278,7 @@ def get_shared(token: Token, links: Links) -> SharedDesign:
     responses=CONFLICT,
 )
 def post_copy(
-    token: Token,
-    links: Links,
-    owner: Owner,
-    response: Response,
-    retry: RetryOf,
+    token: Token, links: Links, owner: Owner, response: Response, retry: RetryOf
 ) -> Design:
     """Make a design of your own, if the link allows it."""
     return _created(response, links.copy(owner, token, retry()))

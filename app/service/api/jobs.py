@@ -1,7 +1,5 @@
 """Long computations in the background over REST."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 from collections.abc import AsyncGenerator
@@ -59,10 +57,7 @@ async def post_job(
 
 @router.get("/jobs", summary="Your jobs, latest first")
 async def get_jobs(
-    runner: Runner,
-    owner: Owner,
-    limit: Limit = 50,
-    cursor: Cursor = None,
+    runner: Runner, owner: Owner, limit: Limit = 50, cursor: Cursor = None
 ) -> JobPage:
     """List your jobs. They are kept for 30 days."""
     return await asyncio.to_thread(runner.store.page, owner, limit=limit, cursor=cursor)

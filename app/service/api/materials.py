@@ -1,7 +1,5 @@
 """A user's own materials over REST: added, given back as a file, removed."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Request

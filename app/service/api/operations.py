@@ -1,7 +1,5 @@
 """A route for every operation."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from functools import partial

@@ -1,7 +1,5 @@
 """The user of this request, and the browsers that are signed in."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response

@@ -1,7 +1,5 @@
 """The 3D view of a design."""
 
-from __future__ import annotations
-
 import asyncio
 import contextvars
 from collections.abc import AsyncGenerator, Callable
@@ -14,13 +12,7 @@ from fastapi.responses import StreamingResponse
 from pydantic import Field
 
 from ...drawing.computed import PosedView, StretchView
-from ...drawing.design_view import (
-    ViewRequest,
-    ViewResult,
-    build_drawing,
-    build_scene,
-    is_large,
-)
+from ...drawing.design_view import ViewRequest, ViewResult, build_drawing, build_scene, is_large
 from ...drawing.fabric import Box, Drawing
 from ...operations.perform import Reply
 from ...requests.base import RequestModel
@@ -128,9 +120,7 @@ async def put_camera(design: DesignId, body: CameraRequest, request: Request) ->
     "/views/{design}/events",
     summary="Follow clicks on stitches",
     response_class=StreamingResponse,
-    responses={
-        200: {"content": {"text/event-stream": {}}, "description": "Events `stitch`."},
-    },
+    responses={200: {"content": {"text/event-stream": {}}, "description": "Events `stitch`."}},
 )
 async def get_view_events(design: DesignId, request: Request) -> StreamingResponse:
     """Send an event for each click on a stitch in the view, with its row and column from 0.
@@ -230,11 +220,7 @@ async def post_still(
 
 
 async def _shared(
-    make: Callable[..., bytes],
-    body: SharedViewRequest,
-    request: Request,
-    media: str,
-    ending: str,
+    make: Callable[..., bytes], body: SharedViewRequest, request: Request, media: str, ending: str
 ) -> Response:
     data_dir = request.app.state.answers.context().data_dir
     content = await _by_worker(request, make, body, _computed(body, request), data_dir)

@@ -1,7 +1,5 @@
 """Answers of operations: from memory, or computed by a worker."""
 
-from __future__ import annotations
-
 from collections import OrderedDict
 from collections.abc import Awaitable, Callable
 from functools import partial

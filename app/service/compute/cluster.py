@@ -6,8 +6,6 @@ mid-job, the job is retried on another, as often as the scheduler's ``allowed-fa
 it fails.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import logging

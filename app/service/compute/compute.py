@@ -1,7 +1,5 @@
 """Heavy work outside the event loop; abandoned computations are stopped."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Sequence
@@ -12,13 +10,7 @@ from typing import Any, TypeVar
 from ..identity import current_user
 from ..limits.fair_queue import FairQueue
 from ..limits.user_limits import USER_LIMITS, CpuTimeLimit
-from .workers import (
-    AbandonedError,
-    NotBegunError,
-    TimeLimitError,
-    Worker,
-    WorkerDiedError,
-)
+from .workers import AbandonedError, NotBegunError, TimeLimitError, Worker, WorkerDiedError
 
 log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")

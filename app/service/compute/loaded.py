@@ -3,8 +3,6 @@
 Only the process that workers are forked from imports this module, once.
 """
 
-from __future__ import annotations
-
 import os
 import threading
 from pathlib import Path

@@ -5,8 +5,6 @@ Workers are forked from a process that has loaded what they need
 the memory of their modules.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import multiprocessing
@@ -138,13 +136,7 @@ class ProcessWorker:
             1,
             mp_context=CONTEXT,
             initializer=_adopt,
-            initargs=(
-                self._slots,
-                self._memory_bytes,
-                self._idle,
-                str(self._scratch),
-                self._begin,
-            ),
+            initargs=(self._slots, self._memory_bytes, self._idle, str(self._scratch), self._begin),
         )
 
 

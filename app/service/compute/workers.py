@@ -1,7 +1,5 @@
 """Jobs, the workers that run them, and the errors that end them without a result."""
 
-from __future__ import annotations
-
 import asyncio
 import inspect
 from collections.abc import Callable, Mapping

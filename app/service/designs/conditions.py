@@ -1,7 +1,5 @@
 """Conditional requests: every change says which state it was made on."""
 
-from __future__ import annotations
-
 from ..problems import ServiceError
 
 

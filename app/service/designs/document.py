@@ -1,7 +1,5 @@
 """A design in the API: the JSON document, its metadata, and requests that change it."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 from typing import Annotated, Literal
 

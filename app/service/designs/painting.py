@@ -1,7 +1,5 @@
 """Strokes on a chart text."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Parameters of requests about designs: the user, pages of a list, idempotency keys."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """Links to designs for people who do not own them. A link is a secret; only its hash is kept."""
 
-from __future__ import annotations
-
 import secrets
 
 from sqlalchemy import Connection, Row, func, insert, select, update

@@ -1,7 +1,5 @@
 """Designs in the database. Every method is one transaction; users see their own designs only."""
 
-from __future__ import annotations
-
 import secrets
 from collections.abc import Callable
 from functools import cache

@@ -1,7 +1,5 @@
 """Followers of open designs, who hear of changes by event streams."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncGenerator, Callable
 

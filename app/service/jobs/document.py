@@ -1,7 +1,5 @@
 """Jobs in the API."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 
 from pydantic import AwareDatetime, BaseModel, Field

@@ -1,7 +1,5 @@
 """Operations that run in the background because they may take longer than a page should wait."""
 
-from __future__ import annotations
-
 import hashlib
 import threading
 from collections.abc import Callable

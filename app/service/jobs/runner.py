@@ -1,7 +1,5 @@
 """Running jobs: one task each, which waits for its turn, computes, and stores the outcome."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 import secrets

@@ -1,7 +1,5 @@
 """Jobs and results in the database, which survive a restart."""
 
-from __future__ import annotations
-
 import contextlib
 import secrets
 from collections.abc import Mapping
@@ -289,9 +287,7 @@ def _one(connection: Connection, owner: str, job: str) -> Row[Any]:
     row = connection.execute(mine).one_or_none()
     if row is None:
         raise NotFoundError(
-            f"You have no job {job}.",
-            field="job",
-            remedy="Look it up in the list of your jobs.",
+            f"You have no job {job}.", field="job", remedy="Look it up in the list of your jobs."
         )
     return row
 

@@ -1,7 +1,5 @@
 """A queue for a few places, which many users get one after the other."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 from collections import Counter, OrderedDict, deque

@@ -1,7 +1,5 @@
 """Atlases of materials, kept in memory and in the data folder."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 from functools import lru_cache

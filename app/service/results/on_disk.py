@@ -5,8 +5,6 @@ result is never found for other inputs, nor after the solver or the operation ha
 appear as a whole or not at all, so any number of processes may share the folder.
 """
 
-from __future__ import annotations
-
 import logging
 import os
 import tempfile

@@ -1,7 +1,5 @@
 """All that differs between SQLite and PostgreSQL; no other code asks which one it is."""
 
-from __future__ import annotations
-
 import contextlib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping

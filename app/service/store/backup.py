@@ -3,8 +3,6 @@
 The same file moves an installation between SQLite and PostgreSQL.
 """
 
-from __future__ import annotations
-
 import gzip
 import json
 import os

@@ -1,7 +1,5 @@
 """Reading and writing; a write is durable before it is acknowledged."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import logging

@@ -1,7 +1,5 @@
 """PostgreSQL: a server of several services, each of which reserves its name by an advisory lock."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import secrets

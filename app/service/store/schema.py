@@ -1,7 +1,5 @@
 """The schema of the database, brought up to date by its migrations."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from alembic import command

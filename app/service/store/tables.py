@@ -3,8 +3,6 @@
 Every change here comes with a migration; a test compares the two.
 """
 
-from __future__ import annotations
-
 import hashlib
 import time
 

@@ -1,7 +1,5 @@
 """Progress of an answer that is handed to the server; it begins once and ends once."""
 
-from __future__ import annotations
-
 import asyncio
 
 from starlette.datastructures import Headers

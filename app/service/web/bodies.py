@@ -6,8 +6,6 @@ a design, it is decoded in its turn, one at a time, and has a lower limit. Decod
 would not help: Python runs one at a time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from typing import Any

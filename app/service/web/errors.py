@@ -1,7 +1,5 @@
 """Every error as a response: problem details (RFC 9457), with fields to blame and remedies."""
 
-from __future__ import annotations
-
 import errno
 import logging
 from collections.abc import Iterator, Mapping, Sequence

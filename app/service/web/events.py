@@ -1,7 +1,5 @@
 """Clients that wait: server-sent events, and whether somebody still waits for an answer."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import aclosing
 
@@ -16,10 +14,7 @@ QUIET_S = 15.0
 
 
 def event_stream(
-    request: Request,
-    events: AsyncGenerator[str | None],
-    period_s: float,
-    quiet_s: float = QUIET_S,
+    request: Request, events: AsyncGenerator[str | None], period_s: float, quiet_s: float = QUIET_S
 ) -> StreamingResponse:
     """A response that lasts as long as there are events.
 

@@ -1,7 +1,5 @@
 """Log lines and numbers for operators: one for every request, with an id to find it by."""
 
-from __future__ import annotations
-
 import json
 import logging
 import re

@@ -1,7 +1,5 @@
 """Responses, compressed by the workers."""
 
-from __future__ import annotations
-
 import gzip
 import hashlib
 from typing import Any

@@ -1,7 +1,5 @@
 """The page: the bundle that `make` builds, or its sources where there is no fresh bundle."""
 
-from __future__ import annotations
-
 import gzip
 import logging
 from functools import cache

@@ -6,8 +6,6 @@ there and call its origin "null", as they do for the frames of any other site; s
 asked for the view hands this secret to its frame.
 """
 
-from __future__ import annotations
-
 import hmac
 import secrets
 import threading

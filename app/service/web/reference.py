@@ -3,8 +3,6 @@
 The reference is made from the schema; the documentation site shows the same.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """The OpenAPI schema, with what FastAPI does not add: examples, headers, tags, ways to sign in."""
 
-from __future__ import annotations
-
 import json
 import threading
 from collections.abc import Iterator

@@ -4,8 +4,6 @@ A browser carries its user's network position to any page it shows, so even a se
 must refuse requests that another site's page makes it send.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Sessions of browsers: begun with a token, listed, and ended one by one."""
 
-from __future__ import annotations
-
 import secrets
 
 from pydantic import AwareDatetime, BaseModel, Field

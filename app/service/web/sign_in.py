@@ -1,7 +1,5 @@
 """Pages that sign in: with a token, and after a link, if another site led here."""
 
-from __future__ import annotations
-
 from html import escape
 from urllib.parse import parse_qs
 

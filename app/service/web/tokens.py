@@ -1,7 +1,5 @@
 """Users of the service: tokens made by a command, stored as hashes; sessions in signed cookies."""
 
-from __future__ import annotations
-
 import hmac
 import re
 import secrets

@@ -1,7 +1,5 @@
 """Energy, forces and tangent of a piece by scikit-fem's bases and forms."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

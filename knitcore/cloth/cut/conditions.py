@@ -1,7 +1,5 @@
 """Conditions on the edges of a piece."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

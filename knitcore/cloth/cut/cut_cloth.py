@@ -1,7 +1,5 @@
 """The cloth that a piece is cut from: a chart in material coordinates, with its laws."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ triangulation is cut along the outline. Where it leaves a side out, that side is
 triangulation is made again, so that every side is made of edges of triangles.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Loading a piece of cloth cut along any outline."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 

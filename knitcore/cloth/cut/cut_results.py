@@ -1,7 +1,5 @@
 """Results of a test of a piece: positions, forces and fields."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar

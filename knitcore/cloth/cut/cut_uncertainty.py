@@ -5,8 +5,6 @@ the laws moves the nodes by du/dp = -K⁻¹ dR/dp and changes the forces at the 
 du/dp. Variances of independent parameters add up.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np

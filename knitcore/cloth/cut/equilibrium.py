@@ -5,8 +5,6 @@ share of the sheet's tangent at rest is added to it, which shortens the step. A 
 only where its forces balance and its tangent is positive definite; a step that fails is halved.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Three standard tests of a fabric: a strip at any angle, biaxial stretch and a hinged frame."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

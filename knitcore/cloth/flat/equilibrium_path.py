@@ -8,8 +8,6 @@ its tangent is positive definite. A step that fails is halved; once it cannot be
 failure is reported with the part of the path that was reached.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass

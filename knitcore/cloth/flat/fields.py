@@ -1,7 +1,5 @@
 """Strain, stress and energy fields of a deformed sheet, at cells and at nodes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

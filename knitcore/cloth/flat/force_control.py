@@ -1,7 +1,5 @@
 """The strain of a sheet between clamps under a given force."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

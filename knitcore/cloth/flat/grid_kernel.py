@@ -12,8 +12,6 @@ no approximation). What is left is half as many unknowns on a plain grid of corn
 Corners are numbered in the order (0, 0), (1, 0), (1, 1), (0, 1) of (column, row).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple

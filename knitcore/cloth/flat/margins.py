@@ -1,7 +1,5 @@
 """The intervals of a strip test at every step, for the whole swatch and for each stitch."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Regions of different gauge in one fabric: their misfit, and the shape they relax to."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -10,8 +10,6 @@
     osculating quadratic.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum

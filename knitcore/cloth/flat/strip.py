@@ -1,7 +1,5 @@
 """The strip test: a swatch pulled between two clamps."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Figures of a test, after the paper's Fig. 4, for plotly."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Results of tests of a swatch."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Self

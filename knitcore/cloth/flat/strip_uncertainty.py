@@ -20,8 +20,6 @@ parameters add up. The parameters are
 The lock-up (1 / alpha) is itself uncertain, and its utilisation with it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Bending of the four fabrics of a material, from the yarn level."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, fields

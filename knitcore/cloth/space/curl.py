@@ -1,7 +1,5 @@
 """The shape in which a piece of knitting lies: curled, folded, pleated."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass
 from pathlib import Path

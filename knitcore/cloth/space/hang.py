@@ -1,7 +1,5 @@
 """A piece that hangs under its own weight."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

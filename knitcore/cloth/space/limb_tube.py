@@ -6,8 +6,6 @@ of a strip free to narrow (:mod:`knitcore.garment.limb`). Sizes at rest are thos
 surroundings, and so is the law (:meth:`knitcore.prediction.patches.Patches.lines`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

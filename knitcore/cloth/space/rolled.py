@@ -5,8 +5,6 @@ rolls from the sides, rolls from top and bottom, or folds. The best start is the
 among the two bent sheets and the flat one.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

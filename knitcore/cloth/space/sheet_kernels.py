@@ -18,8 +18,6 @@ Unknowns are the corners of the stitches, ``x`` (n, 3) in mm. Four parts, each a
   depth, for loose fibres give way first: it is k FIRM t at d = t (1 − FIRM).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

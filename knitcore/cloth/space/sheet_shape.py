@@ -6,8 +6,6 @@ around the factor of a convex part of the Hessian, made anew every few steps. No
 by more than a part of the thickness, so that the sheet cannot pass through itself.
 """
 
-from __future__ import annotations
-
 import time
 from collections import deque
 from dataclasses import dataclass

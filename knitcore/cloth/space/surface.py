@@ -1,7 +1,5 @@
 """Points on and above a curled piece."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline

@@ -1,7 +1,5 @@
 """Hessian of a sheet's energy as a sparse matrix, compiled."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

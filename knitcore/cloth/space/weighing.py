@@ -16,8 +16,6 @@ of rigidity D only (w D²)^(1/3) θ^(5/3) and gains m₀ θ, so where D is small
 scroll. A strip of piece and borders on a smooth table shows which of the two happens.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

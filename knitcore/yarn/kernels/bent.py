@@ -1,7 +1,5 @@
 """Contact of yarn with yarn in a cell that is curved or skewed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.base.arrays import Array

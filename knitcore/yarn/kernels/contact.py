@@ -1,7 +1,5 @@
 """Contact of yarn with yarn: the sum over near pairs of samples, and its Hessian."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.base.arrays import Array

@@ -1,7 +1,5 @@
 """The curve of a course at its samples, and which control points a sample depends on."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.base.arrays import Array

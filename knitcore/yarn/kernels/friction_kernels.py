@@ -7,8 +7,6 @@ change when both strands turn together. With e = g (c - rest) and y = |e| / slip
     energy = limit slip h(y),   h(y) = y² / 2 up to y = 1 (the pair sticks), y - 1/2 beyond.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -8,8 +8,6 @@ in N/mm² (energy per length of either yarn) when k is in N/mm³. Below ζ = 1e-
 continues it by ``V(R*) + 100 ((R - R*) / R*)²``: finite, but with a jump in slope at R*.
 """
 
-from __future__ import annotations
-
 from knitcore.base.compiled import compiled
 from knitcore.base.elementary import power
 

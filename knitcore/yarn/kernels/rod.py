@@ -10,8 +10,6 @@ them, whatever the parametrisation:
 The length, the spacing penalty and the weights w = |d1| dt of the contact sum are functions of √a.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.base.arrays import Array

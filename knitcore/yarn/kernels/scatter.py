@@ -1,7 +1,5 @@
 """From samples to unknowns: gradients and Hessian blocks added up."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.base.arrays import Array

@@ -1,7 +1,5 @@
 """Arguments of the kernels: arrays and numbers under their names."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

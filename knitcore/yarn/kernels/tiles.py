@@ -1,7 +1,5 @@
 """Symmetric matrices in square tiles, of which only those that are not zero are kept."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ One call is one task of a batch (:mod:`knitcore.base.batch`): its input can be p
 result is JSON, so that it runs the same in this process, in another, or on a cluster.
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from typing import Any
 

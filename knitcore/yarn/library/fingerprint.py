@@ -4,8 +4,6 @@ Modules are followed along their imports; comments, docstrings and layout do not
 count where a module names them.
 """
 
-from __future__ import annotations
-
 import ast
 import hashlib
 import json

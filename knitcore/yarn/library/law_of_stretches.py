@@ -6,8 +6,6 @@ problem a direction, solved by non-negative least squares in stiffness and beta 
 (:mod:`knitcore.law.least_squares`). The result depends on the range of stress: knits stiffen.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Relax a chart of a material: the library's yarn and loop length, the yarn level's solver."""
 
-from __future__ import annotations
-
 from typing import Any, overload
 
 import numpy as np

@@ -7,8 +7,6 @@ response to bending is four numbers there: moment (N), rigidity with the size ac
 (N·mm), and strain across per curvature (mm).
 """
 
-from __future__ import annotations
-
 import json
 from dataclasses import astuple, dataclass, fields
 from functools import cache

@@ -1,7 +1,5 @@
 """A characterised yarn as a material, usable like any other."""
 
-from __future__ import annotations
-
 from knitcore.base.errors import InputError
 from knitcore.materials.law_uncertainty import MODEL_POISSON_SD, YARN_LEVEL_LOG_SD, LawUncertainty
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn

@@ -6,8 +6,6 @@ table of the yarn; read along the settings they are the table of manufacturing t
 Supplementary Fig. 9: a machine that pulls harder puts less yarn into a stitch).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

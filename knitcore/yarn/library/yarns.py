@@ -11,8 +11,6 @@ time; the interval goes up to the static one and down to half the kinetic one, a
 waxed.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -10,8 +10,6 @@ A repeat of K and P is one curve per course. Two kinds of symmetry make it small
 Both are imposed in the ``mirrored`` branch and dropped in the ``free`` one.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

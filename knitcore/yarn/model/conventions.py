@@ -11,8 +11,6 @@ energies and moduli follow from the mixture called ``published`` here (all eight
 Supplementary Table 8 within 2 %), so it is the default, and the published core radii belong to it.
 """
 
-from __future__ import annotations
-
 from knitcore.base.choice import Choice
 
 REGULARISATION_N_MM4 = 0.002

@@ -1,7 +1,5 @@
 """Checks of the input of a relaxation or a stretch."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from knitcore.base.bounds import check_count, check_positive

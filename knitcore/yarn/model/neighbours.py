@@ -5,8 +5,6 @@ cells further along the course and ``up`` cells higher. Every pair is listed onc
 size of the cell: the bins of the list are repeated as often as the reach demands.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

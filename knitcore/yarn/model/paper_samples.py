@@ -1,7 +1,5 @@
 """The eight samples of the paper's simulations, with figures as printed and as used."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass
 from functools import cache

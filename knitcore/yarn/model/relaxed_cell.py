@@ -1,7 +1,5 @@
 """Results of relaxations and stretches at the yarn level, the same for every branch."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import ClassVar
 

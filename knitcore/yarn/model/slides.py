@@ -11,8 +11,6 @@ Both are bilinear in the unknowns. This is weaker than the paper's rule, whose c
 change their shape.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

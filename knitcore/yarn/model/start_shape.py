@@ -1,7 +1,5 @@
 """A first shape of the yarn for any repeat of knits and purls."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 

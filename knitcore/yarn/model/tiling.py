@@ -1,7 +1,5 @@
 """A solved cell laid out over a larger piece of the fabric."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.base.arrays import Array

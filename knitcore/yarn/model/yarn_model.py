@@ -1,7 +1,5 @@
 """The yarn in the yarn-level model: a rod with a soft shell around a hard core."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields
 

@@ -6,8 +6,6 @@ in z when ``m course_odd + n wale_odd`` is odd. Within a course (n = 0) a pair c
 yarn between its points is longer than 2.1 r.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

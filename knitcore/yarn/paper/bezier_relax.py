@@ -4,8 +4,6 @@
 divided by its loop length; this solver found them and a test shows that they are stationary.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import time

@@ -14,8 +14,6 @@ and reaches its other end likewise. The 34 parameters of this description are li
 :data:`PARAMETERS`; each fabric ties some of them (:func:`ties`).
 """
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

@@ -1,7 +1,5 @@
 """The energy of one stitch as a function of its fabric's unknowns."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 

@@ -5,8 +5,6 @@ straight lines, to which the argument of :mod:`knitcore.yarn.solve.topology` app
 long for that is halved in the unknowns.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.base.arrays import Array

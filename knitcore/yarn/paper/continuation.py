@@ -1,7 +1,5 @@
 """Continuation of a stitch from one size to another in small steps, always in equilibrium."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace

@@ -4,8 +4,6 @@ Per length, with the curvature vector c = ∂_s t, the density is ``bending |c|�
 |∂_s c|²``; ``|∂_s c|²`` keeps its tangential part, |c|⁴.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from math import comb
 

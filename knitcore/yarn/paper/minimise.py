@@ -4,8 +4,6 @@ The unknowns are made dimensionless with the loop length and the energy with B o
 tolerance serves thread and rope.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any

@@ -15,8 +15,6 @@ one, so the modulus of the determinant is an invariant. Courses that have come l
 of parallel lines, and a stitch on the wrong side yet another.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -9,8 +9,6 @@ potential: first those at its beginning, then those of the end so found. The mod
 rate. Rolling of one strand over the other is free.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass, replace
 

@@ -6,8 +6,6 @@ there, in an order of elimination by nested dissection. Blocks that are eliminat
 dense front.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ that fits, at a fixed size of the cell and with a stiffened shell, so that the s
 other apart; the core then grows as far as the distances allow until it is the real one.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -4,8 +4,6 @@ Images of one fabric have the same states, but a search that begins with each of
 different ones. So one image is relaxed (:meth:`StitchChart.canonical`) for all, and turned.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace

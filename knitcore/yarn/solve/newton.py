@@ -15,8 +15,6 @@ symmetry of the first shape; a saddle is left along its direction of most negati
 side that is fixed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial

@@ -10,8 +10,6 @@ shrinks evenly, so that no jammed pair of strands anywhere cuts these steps shor
 others in a large sheet.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass

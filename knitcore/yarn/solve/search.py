@@ -1,7 +1,5 @@
 """Several starts on one cell, and the outcome of each."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial

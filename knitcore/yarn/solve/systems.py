@@ -5,8 +5,6 @@ couple a whole course, is left out of the sparse matrix: it is the same for all 
 the prescribed lengths.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import replace
 

@@ -10,8 +10,6 @@ the topology. Stretches of one yarn nearer than 2.1 r along it are exempt: they 
 to cross.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -6,8 +6,6 @@ are held, and every course keeps the length of yarn that it has inside the windo
 number of windows can be relaxed one after the other and together lower the energy of the sheet.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise, product

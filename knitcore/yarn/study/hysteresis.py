@@ -1,7 +1,5 @@
 """Loading and unloading with friction: loops, lost energy, and rest sizes that remember."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any

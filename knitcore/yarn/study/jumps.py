@@ -1,7 +1,5 @@
 """Jumps along a stretch: steps at which the shape changes abruptly."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

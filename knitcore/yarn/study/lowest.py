@@ -5,8 +5,6 @@ has a negative curvature, the solver leaves along its lowest eigenvector, to eit
 descends.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Relax any repeat of knits and purls at the yarn level, in any branch."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal, TypedDict, Unpack, overload

@@ -9,8 +9,6 @@ regions, the separations, lengths and slopes agree with its tables 15 and 16
 of the contact energy and is as long as a uniform region of the same spread would be.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

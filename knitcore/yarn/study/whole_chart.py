@@ -11,8 +11,6 @@ every window is therefore asked for a direction of negative curvature, and leave
 of up to ``MAX_STITCHES`` stitches ends in Newton's method for the sheet, at a minimum.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress

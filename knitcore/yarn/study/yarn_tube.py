@@ -6,8 +6,6 @@ of a stitch along and across and the yarn's shape are free. The tube is long: it
 and its courses are closed rings.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

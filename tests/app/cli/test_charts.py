@@ -1,7 +1,5 @@
 """CHART is a file, standard input, a repeat in one line or a fabric, in every command."""
 
-from __future__ import annotations
-
 import io
 import json
 from collections.abc import Iterator

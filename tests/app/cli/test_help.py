@@ -1,7 +1,5 @@
 """The help of the command line."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The library without its extras: predictions work, and what needs more says what to install."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tomllib

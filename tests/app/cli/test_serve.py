@@ -1,7 +1,5 @@
 """The service as a process: it starts, tells its address, answers and stops."""
 
-from __future__ import annotations
-
 import contextlib
 import http.client
 import json

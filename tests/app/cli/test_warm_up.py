@@ -1,7 +1,5 @@
 """Kernels are compiled once on a machine, and a command says so."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

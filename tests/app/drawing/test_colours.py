@@ -1,7 +1,5 @@
 """Colours of yarns."""
 
-from __future__ import annotations
-
 import pytest
 
 from app.drawing.colours import UNDYED, named_colour, rgb

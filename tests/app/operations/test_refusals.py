@@ -1,7 +1,5 @@
 """Requests that no operation can carry out: refused in words, over REST and by commands."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What is made of operations: routes, commands, the page's types; and what they are read from."""
 
-from __future__ import annotations
-
 import math
 import re
 import sys

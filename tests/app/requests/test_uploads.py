@@ -3,8 +3,6 @@
 KNITCORE_HOSTILE_FILES sets how many each reader gets.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import random

@@ -1,7 +1,5 @@
 """One way to write intervals, rows and repeats, in every request and answer of the service."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

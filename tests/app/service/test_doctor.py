@@ -1,7 +1,5 @@
 """Broken set-ups: each is told in words, by the doctor and at the start."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

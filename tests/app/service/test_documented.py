@@ -69,8 +69,7 @@ def test_every_answer_is_documented(url: str) -> None:
             response = case.call(timeout=60)
             assert response.status_code < 500 or response.status_code == 503, response.text
             case.validate_response(
-                response,
-                checks=[checks.status_code_conformance, checks.content_type_conformance],
+                response, checks=[checks.status_code_conformance, checks.content_type_conformance]
             )
             faults = _faults(documented, case, response)
             assert not faults, faults

@@ -3,8 +3,6 @@
 KNITCORE_KILLS=50 makes it fifty kills instead of a few (``make test-hard``).
 """
 
-from __future__ import annotations
-
 import os
 import random
 import sqlite3

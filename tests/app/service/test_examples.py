@@ -1,7 +1,5 @@
 """The schema shows an example of everything, and the examples are what they say."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -3,8 +3,6 @@
 KNITCORE_OUTAGE_S sets how long the database is away (``make test-hard``: 30 s).
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

@@ -3,8 +3,6 @@
 :mod:`tests.app.service.test_documented` sends those that the schema describes, right and wrong.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from itertools import cycle

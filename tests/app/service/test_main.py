@@ -1,7 +1,5 @@
 """What operators rely on: logs, health, metrics, shutdown."""
 
-from __future__ import annotations
-
 import json
 import logging
 import sqlite3

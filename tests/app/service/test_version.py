@@ -1,7 +1,5 @@
 """One version, wherever it is asked for."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The camera sees the whole fabric from every side."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

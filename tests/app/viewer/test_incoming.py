@@ -1,7 +1,5 @@
 """What browsers send into views, and what they might."""
 
-from __future__ import annotations
-
 import io
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor

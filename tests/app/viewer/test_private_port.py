@@ -1,7 +1,5 @@
 """viser as it is changed here, and the version that this holds for."""
 
-from __future__ import annotations
-
 import asyncio
 import threading
 import urllib.error

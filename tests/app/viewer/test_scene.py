@@ -1,7 +1,5 @@
 """What browsers are sent of a cloth that changes, and close-ups that stay where they are."""
 
-from __future__ import annotations
-
 import contextlib
 import threading
 from collections.abc import Iterator

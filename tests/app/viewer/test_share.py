@@ -1,7 +1,5 @@
 """What can be given away of a 3D view, and what travels between it and the page."""
 
-from __future__ import annotations
-
 import asyncio
 import io
 import json

@@ -1,7 +1,5 @@
 """Pictures of a fabric that the service draws itself."""
 
-from __future__ import annotations
-
 import dataclasses
 import io
 from pathlib import Path

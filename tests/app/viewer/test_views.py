@@ -1,7 +1,5 @@
 """Views make room for each other, and leave nothing behind."""
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import os

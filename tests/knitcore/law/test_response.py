@@ -1,7 +1,5 @@
 """Responses of a sheet: through points, of laws, stiffened, and the other way round."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Factors of sheets, flat and folded, against the matrix."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -109,11 +109,7 @@ def test_measured_curves_that_are_none_are_refused(document, curve, field):
         ({"law": LAW | {"modulus_wale": None}}, "law", "modulus_course, modulus_wale"),
         ({"law": LAW | {"stifness": 1}}, "law.stifness", "not permitted"),
         ({"law": LAW | {"modulus_course": "soft"}}, "law.modulus_course", "number"),
-        (
-            {"law": LAW | stiffnesses(0.3, 0.5, 0.1, 0.2)},
-            "modulus_course",
-            "the stiffnesses give",
-        ),
+        ({"law": LAW | stiffnesses(0.3, 0.5, 0.1, 0.2)}, "modulus_course", "the stiffnesses give"),
         (
             {"law": STIFFENING | stiffnesses(0.099, 0.399, 0.870, 0.181)},
             "stiffness_xxyy",

@@ -1,7 +1,5 @@
 """Laplace pressure on a limb."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

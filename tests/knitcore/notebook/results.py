@@ -1,7 +1,5 @@
 """Results of the yarn level and of curling, made without solving."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore import Direction, StitchChart

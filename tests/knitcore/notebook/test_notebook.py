@@ -1,7 +1,5 @@
 """Figures and views of the notebook extra."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Repeats relaxed in a yarn of the paper's samples."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from knitcore.chart.fabric import Fabric

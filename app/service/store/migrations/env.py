@@ -1,7 +1,5 @@
 """Run Alembic on the connection that :func:`app.service.store.schema.migrate` hands over."""
 
-from __future__ import annotations
-
 from alembic import context
 from sqlalchemy import text
 

@@ -1,7 +1,5 @@
 """The prediction over REST and on the command line: the same numbers under the same names."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

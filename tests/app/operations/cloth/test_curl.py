@@ -1,7 +1,5 @@
 """``curl`` on the command line and over REST."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Tests of cut cloth: on the bias, in two directions and in a frame."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Cut pieces over REST and on the command line."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """``hang``, ``overhang``, ``drape`` and ``border`` on the command line and over REST."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Export and import over REST and on the command line."""
 
-from __future__ import annotations
-
 import base64
 import json
 from pathlib import Path

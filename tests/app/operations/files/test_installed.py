@@ -1,7 +1,5 @@
 """What extensions add, over REST and on the command line."""
 
-from __future__ import annotations
-
 import base64
 from pathlib import Path
 

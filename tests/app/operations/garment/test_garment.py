@@ -1,7 +1,5 @@
 """Garments over REST and on the command line."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

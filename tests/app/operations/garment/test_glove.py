@@ -1,7 +1,5 @@
 """The glove on a hand, over REST and on the command line."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 from typing import Any

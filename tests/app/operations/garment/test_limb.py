@@ -1,7 +1,5 @@
 """A tube along a limb, over REST."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

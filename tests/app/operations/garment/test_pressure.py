@@ -1,7 +1,5 @@
 """Pressure over REST and on the command line."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 
 import pytest

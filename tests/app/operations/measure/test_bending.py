@@ -1,7 +1,5 @@
 """``measure bending`` on the command line and over REST."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from fastapi.testclient import TestClient

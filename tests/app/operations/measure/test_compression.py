@@ -1,7 +1,5 @@
 """``measure compression`` on the command line and over REST."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

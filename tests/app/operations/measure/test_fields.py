@@ -1,7 +1,5 @@
 """``compare`` and ``calibrate``: command line and REST."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -63,11 +61,6 @@ def test_unusable_input_ends_with_code_2(field: Path, arguments: list[str], mess
 
 
 def test_rest_compares_too(client: TestClient, field: Path) -> None:
-    body = {
-        "field": upload(field),
-        "direction": "wale",
-        "material": "acrylic",
-        "fabric": "garter",
-    }
+    body = {"field": upload(field), "direction": "wale", "material": "acrylic", "fabric": "garter"}
     assert post(client, "compare", body)["frames"][1]["frame"] == 3
     assert client.post("/api/v1/compare", json=body | {"material": None}).status_code == 422

@@ -1,7 +1,5 @@
 """Fits over REST and on the command line: the same numbers, the same names."""
 
-from __future__ import annotations
-
 import base64
 import json
 from pathlib import Path

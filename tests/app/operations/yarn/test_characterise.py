@@ -1,7 +1,5 @@
 """``characterise`` on the command line, killed, resumed, on a cluster, and as an operation."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os

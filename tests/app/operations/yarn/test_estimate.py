@@ -1,7 +1,5 @@
 """Estimates over REST and on the command line."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from pathlib import Path
 

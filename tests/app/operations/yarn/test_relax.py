@@ -1,7 +1,5 @@
 """``relax`` on the command line and over REST."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``sweep`` on the command line and over REST."""
 
-from __future__ import annotations
-
 import pytest
 from fastapi.testclient import TestClient
 

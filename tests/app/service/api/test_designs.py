@@ -1,7 +1,5 @@
 """Designs over REST."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

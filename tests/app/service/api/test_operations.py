@@ -1,7 +1,5 @@
 """What is quick for a small chart is work for a limited process with a large one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """The contract of every kind of worker; tests of each kind derive from it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

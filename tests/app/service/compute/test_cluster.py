@@ -1,7 +1,5 @@
 """Jobs on a real Dask cluster: a scheduler and two worker processes on loopback."""
 
-from __future__ import annotations
-
 import asyncio
 import gzip
 import json

@@ -1,7 +1,5 @@
 """Work in processes: results, errors, cancelling, limits, dying workers and turns."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import os
@@ -20,11 +18,7 @@ import pytest
 from app.service.compute import compute as compute_module
 from app.service.compute.compute import Compute
 from app.service.compute.processes import NICENESS, SCRATCH, processes
-from app.service.compute.workers import (
-    MemoryLimitError,
-    NotBegunError,
-    WorkerDiedError,
-)
+from app.service.compute.workers import MemoryLimitError, NotBegunError, WorkerDiedError
 from app.service.problems import UnavailableError
 from tests.app import jobs
 from tests.app.jobs import never

@@ -1,7 +1,5 @@
 """The page checks designs itself (`frontend/design/design.js`): with the library's limits."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Strokes and the map of what they change."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

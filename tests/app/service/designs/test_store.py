@@ -1,7 +1,5 @@
 """Designs in the database, on SQLite and on PostgreSQL."""
 
-from __future__ import annotations
-
 import asyncio
 from concurrent.futures import ThreadPoolExecutor
 

@@ -1,7 +1,5 @@
 """Runners of jobs in tests, and ways to wait for their jobs."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path

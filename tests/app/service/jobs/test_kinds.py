@@ -1,7 +1,5 @@
 """Every kind of job: it answers, and a worker killed in the middle of it costs that job only."""
 
-from __future__ import annotations
-
 import asyncio
 import gzip
 from functools import partial

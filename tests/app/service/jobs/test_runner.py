@@ -1,7 +1,5 @@
 """Jobs in the background: over REST, over restarts, and when something dies."""
 
-from __future__ import annotations
-
 import gzip
 import json
 from pathlib import Path
@@ -24,14 +22,7 @@ from knitcore.base.extensions import Group
 from knitcore.yarn.library import fingerprint
 from tests.app.clients import LONG, served, state_of
 from tests.app.running import Service, wait_until
-from tests.app.service.jobs.helpers import (
-    counted,
-    ended,
-    runner_of,
-    running,
-    task,
-    until,
-)
+from tests.app.service.jobs.helpers import counted, ended, runner_of, running, task, until
 from tests.extension_package import install
 
 JOBS = "/api/v1/jobs"

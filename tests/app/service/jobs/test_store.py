@@ -1,7 +1,5 @@
 """Jobs in a database, where several processes know, cancel and survive each other's."""
 
-from __future__ import annotations
-
 import os
 import threading
 import time

@@ -1,7 +1,5 @@
 """Fair queue."""
 
-from __future__ import annotations
-
 import asyncio
 
 import pytest

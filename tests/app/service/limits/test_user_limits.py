@@ -1,7 +1,5 @@
 """What one user may hold and keep."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable, Iterator
 from dataclasses import fields

@@ -1,7 +1,5 @@
 """Results of the yarn level kept by their inputs."""
 
-from __future__ import annotations
-
 import json
 import logging
 import os

@@ -1,7 +1,5 @@
 """Material files beside the library, offered to every user of the service."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Backups: whole, readable, movable to another database, refused when they are not."""
 
-from __future__ import annotations
-
 import gzip
 import json
 from collections.abc import Iterator

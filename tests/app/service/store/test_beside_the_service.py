@@ -4,8 +4,6 @@ A process that closes an SQLite file and takes itself for the last one removes t
 newest changes are. It may do so only if no service has the file open.
 """
 
-from __future__ import annotations
-
 import contextlib
 import gzip
 import json

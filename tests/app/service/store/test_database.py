@@ -1,7 +1,5 @@
 """Durable writes, shared commits, and what happens when the database fails."""
 
-from __future__ import annotations
-
 import asyncio
 import hashlib
 import threading

@@ -1,7 +1,5 @@
 """The name of a process on PostgreSQL: watched, taken again, and respected if it is lost."""
 
-from __future__ import annotations
-
 import asyncio
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The locks and files of an SQLite database stay those of the process that has it open."""
 
-from __future__ import annotations
-
 import os
 import sqlite3
 import subprocess
@@ -114,8 +112,7 @@ def test_a_service_without_its_files_stops_writing(
 ) -> None:
     _write(database)
     with TestClient(
-        create_app(Settings(data_dir=file.parent, workers=1), database),
-        base_url="http://127.0.0.1",
+        create_app(Settings(data_dir=file.parent, workers=1), database), base_url="http://127.0.0.1"
     ) as client:
         assert client.get("/readyz").status_code == 200
         kept = _beside(file, end).rename(file.parent / "kept")

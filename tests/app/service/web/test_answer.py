@@ -1,7 +1,5 @@
 """An answer ends once, at whatever moment the token or session of its request ends."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import threading

@@ -1,7 +1,5 @@
 """Nothing large that a client sends is decoded by the event loop."""
 
-from __future__ import annotations
-
 import json
 import logging
 from typing import Any

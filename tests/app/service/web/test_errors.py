@@ -1,7 +1,5 @@
 """Refusals in words: what is to blame, and what would be accepted."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """Requests that nobody waits for any longer."""
 
-from __future__ import annotations
-
 import asyncio
 from types import SimpleNamespace
 from typing import Any

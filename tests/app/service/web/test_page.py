@@ -1,7 +1,5 @@
 """The page's files: which are served, how they are cached and packed."""
 
-from __future__ import annotations
-
 import gzip
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A pass lets the sandboxed frame of a view in, and nobody else."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

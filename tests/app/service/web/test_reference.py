@@ -1,7 +1,5 @@
 """The reference page of the API."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

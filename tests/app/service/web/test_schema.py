@@ -1,7 +1,5 @@
 """The schema as generators of clients need it, and the headers that it promises."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 import logging
 from collections.abc import Iterator
@@ -186,9 +184,7 @@ def test_views_are_private_too(lab: TestClient, monkeypatch: pytest.MonkeyPatch)
         pass
     assert closed.value.code == 1008
     with lab.websocket_connect(
-        "ws://knit.example/view/one-name",
-        headers=ada,
-        subprotocols=[f"viser-v{viser.__version__}"],
+        "ws://knit.example/view/one-name", headers=ada, subprotocols=[f"viser-v{viser.__version__}"]
     ) as socket:
         assert socket.receive_bytes()
 

@@ -1,7 +1,5 @@
 """Who is signed in: seen, listed, ended, and never replaced without a click."""
 
-from __future__ import annotations
-
 import re
 import time
 from collections.abc import Iterator

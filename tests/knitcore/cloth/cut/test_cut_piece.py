@@ -1,7 +1,5 @@
 """Equilibria of cut pieces: exact cases, derivatives, and the grid's compiled assembly."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

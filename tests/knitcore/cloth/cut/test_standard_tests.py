@@ -1,7 +1,5 @@
 """Bias, biaxial and trellis tests."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

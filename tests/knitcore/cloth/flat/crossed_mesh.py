@@ -1,7 +1,5 @@
 """The crossed triangulation of a quarter grid as a mesh of scikit-fem, to compare with."""
 
-from __future__ import annotations
-
 import numpy as np
 from skfem import MeshTri
 

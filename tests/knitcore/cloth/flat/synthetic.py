@@ -1,7 +1,5 @@
 """A displacement field as a camera would see it, made with a known law."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import griddata

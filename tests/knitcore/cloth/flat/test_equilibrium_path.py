@@ -1,7 +1,5 @@
 """Equilibria: exact solutions, the published demonstration, and what must never fail."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The compiled kernel against the laws, scikit-fem's assembly and finite differences."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

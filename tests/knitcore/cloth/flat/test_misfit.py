@@ -1,7 +1,5 @@
 """Cloth at rest whose textures differ in gauge."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

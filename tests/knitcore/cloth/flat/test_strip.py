@@ -1,7 +1,5 @@
 """The strip test of charts: symmetries, regions, outlines, files, and what is refused."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The figures show the fields of the test."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Intervals of a strip test: against tests of other laws, and what must hold for any."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import astuple, replace

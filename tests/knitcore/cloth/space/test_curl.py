@@ -1,7 +1,5 @@
 """Shapes that a knitter knows."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 

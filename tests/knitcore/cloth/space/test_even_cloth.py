@@ -1,7 +1,5 @@
 """Even cloth: its numbers are those of the answer and of the yarn level."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

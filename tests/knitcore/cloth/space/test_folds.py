@@ -1,7 +1,5 @@
 """Which stitches fold against each other, how far, and how large they are."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

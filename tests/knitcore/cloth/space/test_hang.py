@@ -1,7 +1,5 @@
 """Pieces that hang."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A whole piece worn as a tube."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Starts: a piece bent as a strip of it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Energy of a sheet of stitches: derivatives, symmetries, known solutions."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

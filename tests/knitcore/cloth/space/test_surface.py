@@ -1,7 +1,5 @@
 """Points on and above a curled piece."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.cloth.space.surface import Surface, corners_of, filled

@@ -1,7 +1,5 @@
 """Tests by weight: the heavy elastica, theory of plates, Cusick's cloth, borders on a table."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

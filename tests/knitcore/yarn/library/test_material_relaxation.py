@@ -1,7 +1,5 @@
 """Relaxations by the names of a chart and a material."""
 
-from __future__ import annotations
-
 import pytest
 
 from knitcore import InputError, StitchChart, material, relax

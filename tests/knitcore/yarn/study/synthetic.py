@@ -1,7 +1,5 @@
 """Sweeps made of numbers, for what only reads them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from knitcore.chart.fabric import Direction

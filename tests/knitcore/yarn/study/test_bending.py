@@ -1,7 +1,5 @@
 """Bending and shear by linear response of the relaxed cell."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """A curved cell, against the same points carried along by rotations in plain 3-D."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

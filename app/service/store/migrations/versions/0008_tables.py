@@ -1,7 +1,5 @@
 """All tables. A change of them is a migration after this one, which then lists them itself."""
 
-from __future__ import annotations
-
 from alembic import context, op
 
 revision = "0008"
