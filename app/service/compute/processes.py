@@ -24,6 +24,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 from weakref import WeakSet
 
+from knitcore.base.batch import end_with_parent
+
 from .workers import call
 
 T = TypeVar("T")
@@ -189,7 +191,7 @@ def _adopt(
     _slots, _memory_bytes = slots, memory_bytes
     tempfile.tempdir = scratch
     begin()
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    end_with_parent()
     _stand_back(idle)
     resource.setrlimit(resource.RLIMIT_DATA, (memory_bytes, memory_bytes))
 
@@ -210,14 +212,6 @@ def _stand_back(idle: bool) -> None:
 def be_nice() -> None:
     """Lower this process's priority, unless it is as low already."""
     os.setpriority(os.PRIO_PROCESS, 0, max(NICENESS, os.nice(0)))
-
-
-def _end_with_parent() -> None:
-    """End a worker whose service was killed; it would otherwise wait for work for ever."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
 
 
 def _run(job: Callable[..., T]) -> T:

@@ -158,3 +158,31 @@ def test_a_cluster_gives_the_same_though_a_worker_is_killed(
     found = run_batch(slow_square, TASKS, scheduler=address, progress=kill_one)
     assert [document["square"] for document in found.results.values()] == [0, 1, 4, 9, 16, 25]
     assert not found.failures
+
+
+def outlive(folder: str) -> dict[str, int]:
+    (Path(folder) / str(os.getpid())).touch()
+    time.sleep(120)
+    return {}
+
+
+def test_workers_of_a_killed_batch_end(tmp_path: Path) -> None:
+    program = (
+        "from knitcore.base.batch import run_batch\n"
+        "from tests.knitcore.base.test_batch import outlive\n"
+        f"tasks = dict.fromkeys('ab', {str(tmp_path)!r})\n"
+        "if __name__ == '__main__': run_batch(outlive, tasks, workers=2)"
+    )
+    main = tmp_path / "main.py"
+    main.write_text(program)
+    root = Path(__file__).parents[3]
+    batch = subprocess.Popen(
+        [sys.executable, str(main)], env=os.environ | {"PYTHONPATH": str(root)}
+    )
+    while len(workers := [int(f.name) for f in tmp_path.iterdir() if f.name.isdigit()]) < 2:
+        assert batch.poll() is None
+        time.sleep(0.05)
+    batch.kill()
+    batch.wait()
+    while any(Path(f"/proc/{worker}").exists() for worker in workers):
+        time.sleep(0.05)  # pytest's own limit of time ends a test that waits for ever
