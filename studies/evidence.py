@@ -419,7 +419,7 @@ def wrapped(text: str) -> str:
     lines = []
     for kept, group in groupby(text.split("\n"), lambda line: not line or line[0] in "|#!- "):
         part = list(group)
-        lines += part if kept else textwrap.wrap(" ".join(part), 100)
+        lines += part if kept else textwrap.wrap(" ".join(part), 100, break_on_hyphens=False)
     return "\n".join(lines)
 
 
