@@ -1,4 +1,4 @@
-/** Puts the page together, in pieces between which the browser has its turn: none keeps it waiting for long. */
+/** Puts the page together in small asynchronous steps, so that the browser stays responsive. */
 
 import { listenToKeys } from "./actions/registry.js";
 import { ApiError, api } from "./api.js";

@@ -146,7 +146,7 @@ export function create(studio, context) {
             !filled &&
               wide("refill", "fill", "Fill again", () => chart.fillRegion(id), {
                 disabled: locked,
-                title: "Puts the pattern back over what was painted since",
+                title: "Reapply the pattern over later changes",
               }),
           ),
           h(
