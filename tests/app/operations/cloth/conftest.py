@@ -1,0 +1,12 @@
+"""What the tests of operations on cloth share."""
+
+from pathlib import Path
+
+import pytest
+
+from app.context import Context
+
+
+@pytest.fixture
+def context(tmp_path: Path) -> Context:
+    return Context(tmp_path)
