@@ -12,7 +12,7 @@ import { hasRoom } from "../../actions/selection.js";
 import { nextRegionColour } from "../../state/palette.js";
 import { isFilled } from "../../design/regions.js";
 import { KNIT, regionInk } from "../../design/ink.js";
-import { motifGrid, motifText } from "../../grid/motif.js";
+import { motifGrid, motifText } from "../../grid/grid.js";
 import { selectedCells, selectionOf } from "../../design/selection.js";
 import { ownPatterns } from "../../design/shelf.js";
 import { loadShelf } from "../../design/store.js";
