@@ -1,4 +1,4 @@
-"""What the tests of operations on cloth share."""
+"""A context for operations on cloth."""
 
 from pathlib import Path
 
