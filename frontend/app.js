@@ -1,4 +1,4 @@
-/** Puts the page together, in pieces between which the browser has its turn: none keeps it waiting for long. */
+/** Puts the page together in small asynchronous steps, so that the browser stays responsive. */
 
 import { listenToKeys } from "./actions/registry.js";
 import { ApiError, api } from "./api.js";
@@ -7,10 +7,9 @@ import { isDark, onTheme } from "./state/palette.js";
 import { ChartView } from "./chart/view.js";
 import { ChartDocument } from "./design/document.js";
 import { exampleGrid } from "./grid/example.js";
-import { isChartText } from "./grid/grid.js";
 import { Ink } from "./design/ink.js";
 import { Latest } from "./services/latest.js";
-import { motifGrid } from "./grid/motif.js";
+import { isChartText, motifGrid } from "./grid/grid.js";
 import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./design/store.js";
 import { byId, firstPaint, isTyping, nextTask } from "./elements/dom.js";
 import { openAddressed } from "./sync/address.js";

@@ -33,7 +33,7 @@ ACRYLIC = material("acrylic")
 
 
 def yarn() -> None:
-    """Yarn that is free, bent, rubs, or is that of a whole piece: they share most kernels."""
+    """Yarn that is free, bent, rubbed or in a whole piece: all of them share most kernels."""
     used = yarn_for(ACRYLIC, CHART)
     repeat_bending(relax(CHART, used.yarn, used.loop_length_mm))
     mirrored = relax(CHART, used.yarn, used.loop_length_mm, branch="mirrored")
@@ -62,8 +62,10 @@ TASKS: tuple[Callable[[], None], ...] = (yarn, published, shape, cloth)
 
 
 def latter_half(module: str) -> None:
-    """Compile what a study needs last whose first functions, of ``module``, another process is
-    compiling: numba compiles on one core."""
+    """Compile what a study needs last, while another process compiles what it needs first.
+
+    numba compiles on one core only. ``module`` is where the other process has begun.
+    """
     for room, functions in (
         ("knitcore.yarn", _last_of_yarn),
         ("knitcore.cloth.space", _last_of_shape),

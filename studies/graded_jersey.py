@@ -61,7 +61,7 @@ class Graded:
     force_n: Array
 
     def sheared(self, ratio: float) -> tuple[ConstitutiveLaw, ...]:
-        """Laws with a shear modulus of so many times the geometric mean of Young's moduli."""
+        """Laws with a shear modulus of ``ratio`` times the geometric mean of Young's moduli."""
         return tuple(
             replace(law, shear_modulus=ratio * math.sqrt(law.modulus_course * law.modulus_wale))
             for law in self.laws

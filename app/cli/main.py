@@ -187,7 +187,7 @@ def _loaded(name: str, module: str, line: str) -> click.Command:
 
 
 def _not_installed(name: str, error: ModuleNotFoundError) -> click.Command:
-    """Takes the place of a command whose packages are not installed."""
+    """A command in place of one whose packages are not installed: it says what to install."""
     remedy = _remedy(error)
 
     def refuse() -> None:

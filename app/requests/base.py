@@ -20,7 +20,7 @@ class MissingError(InputError):
 
 
 class InvalidRequestError(Exception):
-    """A body that is not a request of its address."""
+    """Error: the body of a request does not have the form that its address takes."""
 
     def __init__(self, errors: list[Any]) -> None:
         super().__init__(errors)

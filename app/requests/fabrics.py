@@ -56,7 +56,7 @@ class FabricRequest(LawsRequest):
     material: MaterialName
 
     def fabric(self, context: Context) -> tuple[StitchChart, Material]:
-        """Both, as the library has them."""
+        """Look up the chart and the material that the request names."""
         return to_chart(self.chart), context.material(self.material)
 
 

@@ -14,7 +14,8 @@ MAX_BYTES = 64_000
 """Largest size of a message; clicks and cameras have less than 1,000 bytes."""
 MAX_PICTURE_BYTES = 16_000_000
 PER_S, BURST = 300.0, 1_200
-"""Messages of one browser; while the view is turned it sends one a frame."""
+"""Most messages of one browser, per second and at once. While the view is turned it sends one for
+each frame."""
 
 PNG_HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
 ONE_PIXEL = bytes.fromhex(

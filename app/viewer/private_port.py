@@ -48,7 +48,10 @@ def private_server() -> viser.ViserServer:
     server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     if _guarded_calls == before:
         server.stop()
-        raise RuntimeError("viser's port could not be closed to others; no view is opened")
+        raise RuntimeError(
+            "viser's port could not be closed to others, so no view is opened; "
+            f"use viser {TESTED_VISER}"
+        )
     return server
 
 

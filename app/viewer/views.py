@@ -195,7 +195,7 @@ def _owner(design: str) -> str:
 
 
 def new_view() -> View:
-    """A view of its own, of nothing yet."""
+    """An empty view, with a server of its own."""
     server = private_server()
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     scene = server.scene

@@ -7,7 +7,7 @@
 import { actionsOf } from "./action.js";
 import { Clip, Floating } from "../design/floating.js";
 import { MAX_ITEMS, MAX_MOTIF } from "../design/design.js";
-import { motifText } from "../grid/motif.js";
+import { motifText } from "../grid/grid.js";
 import { ownInk } from "../design/shelf.js";
 import { selectedCells, selectionOf } from "../design/selection.js";
 import { move } from "../tools/move.js";
@@ -156,7 +156,7 @@ const pattern = action(
   },
 );
 
-export const makeRepeat = action(
+const makeRepeat = action(
   "make-repeat",
   "Make it a linked repeat",
   ["Shift+P"],
@@ -176,7 +176,7 @@ export const makeRepeat = action(
   },
 );
 
-export const makeRegion = action(
+const makeRegion = action(
   "make-region",
   "Make it a region",
   ["Shift+G"],

@@ -8,7 +8,7 @@
  */
 
 /** Share of its stretch from which a stitch counts as taut. */
-export const TAUT = 0.95;
+const TAUT = 0.95;
 
 /**
  * Where the first stitch locks.

@@ -7,7 +7,7 @@
  */
 
 import { rowRuns } from "../grid/bits.js";
-import { motifGrid, motifText } from "../grid/motif.js";
+import { motifGrid, motifText } from "../grid/grid.js";
 import { Brush } from "../grid/stroke.js";
 
 /**

@@ -6,7 +6,7 @@
  * @import {Grid} from "../grid/grid.js"
  */
 
-import { motifGrid, motifText } from "../grid/motif.js";
+import { motifGrid, motifText } from "../grid/grid.js";
 import { Brush } from "../grid/stroke.js";
 
 /**

@@ -6,7 +6,7 @@
  */
 
 import { Ink } from "./ink.js";
-import { motifGrid } from "../grid/motif.js";
+import { motifGrid } from "../grid/grid.js";
 
 /**
  * Both lists, each motif once; the design's names count.

@@ -56,10 +56,6 @@ export class Grid {
     return row >= 0 && column >= 0 && row < this.rows && column < this.columns;
   }
 
-  clone() {
-    return new Grid(this.rows, this.columns, this.purl.slice());
-  }
-
   /**
    * A grid of the given size whose stitches come from a rule.
    *
@@ -153,4 +149,14 @@ export function isChartText(text) {
     lines.length <= MAX_SIDE &&
     lines.every((line) => line.length === columns && /^[KP]+$/.test(line))
   );
+}
+
+/** A repeat from one line of text, as a design document has it: "KP/PK", the top row first. @param {string} motif */
+export function motifGrid(motif) {
+  return Grid.fromText(motif.replaceAll("/", "\n"));
+}
+
+/** A repeat as one line of text. @param {Grid} grid */
+export function motifText(grid) {
+  return grid.text.replaceAll("\n", "/");
 }

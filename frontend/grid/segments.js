@@ -9,10 +9,10 @@
  * @import {Direction, Fabric, SegmentCountsResult} from "../types.js"
  */
 
-export const LEFT = 1;
-export const RIGHT = 2;
-export const BELOW = 4;
-export const ABOVE = 8;
+const LEFT = 1;
+const RIGHT = 2;
+const BELOW = 4;
+const ABOVE = 8;
 
 /** Fabrics by phase: 2 × course-wise odd + wale-wise odd. @type {Fabric[]} */
 export const FABRICS = ["stockinette", "garter", "rib", "seed"];

@@ -7,7 +7,7 @@
 import { toRuns } from "./bits.js";
 
 /** A stitch that a brush does not touch. */
-export const UNTOUCHED = 2;
+const UNTOUCHED = 2;
 
 /** The values that stitches (or groups of them) shall have: 0, 1 or unchanged. */
 export class Brush {
@@ -119,7 +119,7 @@ export class Layer {
 }
 
 /** @param {Box} a @param {Box} b @returns {Box} */
-export function union(a, b) {
+function union(a, b) {
   return {
     row0: Math.min(a.row0, b.row0),
     column0: Math.min(a.column0, b.column0),

@@ -13,7 +13,7 @@ import { idle, nextTask } from "../elements/dom.js";
 let loading = null;
 
 /** What a plot is to show, and its drawing while that is under way. @type {WeakMap<HTMLElement, [Trace[], object]>} */
-const wanted = new WeakMap();
+const latest = new WeakMap();
 /** @type {WeakMap<HTMLElement, Promise<void>>} */
 const drawings = new WeakMap();
 
@@ -27,7 +27,7 @@ export function loadPlotly() {
 
 /** Draw a plot, or draw it anew. @param {HTMLElement} host @param {Trace[]} traces @param {object} layout */
 export function drawPlot(host, traces, layout) {
-  wanted.set(host, [traces, layout]);
+  latest.set(host, [traces, layout]);
   let drawing = drawings.get(host);
   if (!drawing) drawings.set(host, (drawing = draw(host).finally(() => drawings.delete(host))));
   return drawing;
@@ -37,9 +37,9 @@ export function drawPlot(host, traces, layout) {
 async function draw(host) {
   const plotly = await loadPlotly();
   let share = host.classList.contains("js-plotly-plot") ? 1 : 0;
-  for (let shown; shown !== wanted.get(host); share = Math.min(1, share + 0.5)) {
+  for (let shown; shown !== latest.get(host); share = Math.min(1, share + 0.5)) {
     await nextTask();
-    const now = /** @type {[Trace[], object]} */ (wanted.get(host));
+    const now = /** @type {[Trace[], object]} */ (latest.get(host));
     await plotly.react(host, now[0].slice(0, share * now[0].length), now[1], CONFIG);
     if (share === 1) shown = now;
   }

@@ -76,7 +76,7 @@ function palette(dark) {
 }
 
 /** @param {string} hex #rrggbb @returns {number[]} */
-export function channels(hex) {
+function channels(hex) {
   const value = Number.parseInt(hex.slice(1), 16);
   return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
 }
@@ -102,7 +102,7 @@ export function lightness(value) {
 }
 
 /** For regions: apart from the fabrics' colours, and from each other also for the colour-blind. */
-export const REGION_COLOURS = ["#c2185b", "#b58900", "#00838f", "#6d4c41", "#0072b2", "#d55e00", "#7f7f7f", "#009e73"];
+const REGION_COLOURS = ["#c2185b", "#b58900", "#00838f", "#6d4c41", "#0072b2", "#d55e00", "#7f7f7f", "#009e73"];
 
 /** The one that is used least. @param {readonly {colour: string}[]} regions */
 export function nextRegionColour(regions) {

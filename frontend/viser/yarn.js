@@ -9,7 +9,7 @@
 
 (() => {
   const PLIES = 3;
-  /** A ply shows again after so many radii along the yarn. */
+  /** Radii along the yarn after which a ply shows again. */
   const PITCH = 3.4;
   /** Depth of the grooves over the yarn's radius. */
   const GROOVE = 0.4;

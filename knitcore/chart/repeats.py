@@ -57,7 +57,7 @@ def primitive_repeats(rows: int, columns: int) -> tuple[StitchChart, ...]:
 
 
 def repeats_up_to(rows: int, columns: int, *, stitches: int = LARGEST) -> tuple[StitchChart, ...]:
-    """All primitive repeats of at most so many rows, columns and stitches, small ones first.
+    """All primitive repeats up to these numbers of rows, columns and stitches, small ones first.
 
     Examples
     --------

@@ -179,5 +179,5 @@ class LinearFit:
 
 
 def _from_all(pulls: int) -> float:
-    """Squared error of a pull predicted from so many others, over that from one less."""
+    """Squared error of a pull predicted from ``pulls`` others, over that from ``pulls`` - 1."""
     return (1 + 1 / pulls) / (1 + 1 / (pulls - 1)) if pulls > 1 else 1.0

@@ -89,7 +89,7 @@ def load_grey(path: Path) -> Array:
         Image.DecompressionBombWarning,
     ) as e:
         raise InputError(
-            path.name, f"cannot be read as an image ({e}).", "The file may be cut off."
+            path.name, f"cannot be read as an image ({e}).", "It may be cut off: copy it again."
         ) from None
 
 

@@ -27,7 +27,9 @@ def view(of: object) -> Any:
     TypeError
         For anything else.
     """
-    raise TypeError(f"a {type(of).__name__} has no shape in space")
+    raise TypeError(
+        f"a {type(of).__name__} has no shape in space; give a relaxed cell or a curled piece"
+    )
 
 
 @view.register

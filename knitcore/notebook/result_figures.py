@@ -30,7 +30,10 @@ def figure(of: object) -> Any:
     ModuleNotFoundError
         If plotly is not installed.
     """
-    raise TypeError(f"a {type(of).__name__} has no stress-strain curve")
+    raise TypeError(
+        f"a {type(of).__name__} has no stress-strain curve; "
+        "give a prediction, a curve, a sweep or a strip test"
+    )
 
 
 @figure.register

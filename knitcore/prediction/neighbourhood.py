@@ -125,7 +125,7 @@ def _between(values: Array, places: Array, axis: int = 0) -> Array:
 
 
 def _sizes_and_folds(windows: Mask, material: Material) -> Array:
-    """(windows, 4) size, and size over the flat mixture's."""
+    """Relaxed size in mm, and over that of the flat mixture, (windows, 4)."""
     composition = densities_of(windows)
     phases = present(composition.shares)
     flat = composition.shares[:, phases] @ [material.record(PHASES[k]).stitch_mm for k in phases]

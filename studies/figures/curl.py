@@ -91,7 +91,7 @@ def drawn(
 
 
 def save(pictures: Mapping[str, Image.Image], path: Path, *, across: int) -> None:
-    """Pictures beside each other, so many in a row, each over its name; a colon ends its line."""
+    """Save pictures, ``across`` in a row, each over its name; a colon ends its line."""
     down = -(-len(pictures) // across)
     sheet = Image.new("RGB", (across * SIDE, down * (SIDE + CAPTION)), "white")
     pen = ImageDraw.Draw(sheet)

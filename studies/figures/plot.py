@@ -77,7 +77,7 @@ def chart(x_label: str = "", y_label: str = "", **properties: Any) -> Axes:
 
 
 def panels(count: int, *, width_in: float = 4.1) -> list[Axes]:
-    """Axes of charts beside each other, each so many inches wide."""
+    """Axes of charts beside each other, each as wide (in inches) as given."""
     _, axes = plt.subplots(1, count, figsize=(width_in * count, HEIGHT_IN), squeeze=False)
     return list(axes[0])
 

@@ -50,3 +50,9 @@ def watching(client: TestClient, address: str, **headers: str) -> Any:
     """The websocket of a browser that shows the view at an address."""
     url = f"{str(client.base_url).replace('http', 'ws')}/{address.lstrip('/')}"
     return client.websocket_connect(url, subprotocols=VIEW_PROTOCOLS, headers=headers)
+
+
+def drain(socket: Any) -> None:
+    """Receive until the service closes a websocket, which raises."""
+    while True:
+        socket.receive_bytes()

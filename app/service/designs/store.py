@@ -70,7 +70,7 @@ class DesignStore:
         return once(self._database, retry, Design, lambda c: add(c, owner, content))
 
     def duplicate(self, owner: str, design: str, retry: Retry | None = None) -> Design:
-        """A copy of the caller's design."""
+        """Keep a copy of the caller's design."""
 
         def action(connection: Connection) -> Design:
             return add(connection, owner, copied(find_design(connection, owner, design)))

@@ -10,7 +10,7 @@
 import { action } from "../../actions/registry.js";
 import { readPalette } from "../../state/palette.js";
 import { FLIP, KNIT, NO_STITCH, PURL } from "../../design/ink.js";
-import { motifText } from "../../grid/motif.js";
+import { motifText } from "../../grid/grid.js";
 import { QUARTERS, surroundings } from "../../grid/segments.js";
 import { ownInk, ownPatterns } from "../../design/shelf.js";
 import { loadShelf, saveShelf } from "../../design/store.js";

@@ -27,7 +27,7 @@ const DELAY_MS = 650;
 const BETWEEN_STROKES_MS = 600;
 /** A frame whose page did not come is loaded again after this time. */
 const RELOAD_MS = 2500;
-/** The service draws so many stitches as yarn at most; of larger charts only a part. */
+/** Most stitches that the service draws as yarn; of larger charts it draws a part. */
 const MAX_DRAWN = 40_000;
 
 const BLIND = {

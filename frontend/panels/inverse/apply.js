@@ -7,7 +7,7 @@
  * @typedef {{cells: number[], name: string}} Place
  */
 
-import { motifGrid } from "../../grid/motif.js";
+import { motifGrid } from "../../grid/grid.js";
 import { selectedCells, selects } from "../../design/selection.js";
 import { byId, h } from "../../elements/dom.js";
 import { thumbnail } from "../../widgets/thumbnail.js";

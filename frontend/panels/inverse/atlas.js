@@ -9,7 +9,7 @@
 
 import { figure, percent, range } from "../../core/format.js";
 import { Ink } from "../../design/ink.js";
-import { motifGrid } from "../../grid/motif.js";
+import { motifGrid } from "../../grid/grid.js";
 import { h } from "../../elements/dom.js";
 import { pencil } from "../../tools/pencil.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";

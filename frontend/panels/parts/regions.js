@@ -12,7 +12,7 @@ import { hasRoom } from "../../actions/selection.js";
 import { nextRegionColour } from "../../state/palette.js";
 import { isFilled } from "../../design/regions.js";
 import { KNIT, regionInk } from "../../design/ink.js";
-import { motifGrid, motifText } from "../../grid/motif.js";
+import { motifGrid, motifText } from "../../grid/grid.js";
 import { selectedCells, selectionOf } from "../../design/selection.js";
 import { ownPatterns } from "../../design/shelf.js";
 import { loadShelf } from "../../design/store.js";
@@ -146,7 +146,7 @@ export function create(studio, context) {
             !filled &&
               wide("refill", "fill", "Fill again", () => chart.fillRegion(id), {
                 disabled: locked,
-                title: "Puts the pattern back over what was painted since",
+                title: "Reapply the pattern over later changes",
               }),
           ),
           h(

@@ -2,9 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { contentOf, readDesign, salvageContent } from "../../design/design.js";
 import { ChartDocument } from "../../design/document.js";
-import { Grid } from "../../grid/grid.js";
 import { History } from "../../design/history.js";
-import { motifGrid } from "../../grid/motif.js";
+import { Grid, motifGrid } from "../../grid/grid.js";
 import { deleted, inserted, resized, turned } from "../../design/reshape.js";
 import { random } from "../random.js";
 

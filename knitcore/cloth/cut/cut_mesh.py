@@ -71,7 +71,7 @@ def mesh_of(piece: CutPiece, size_mm: float | None = None) -> Any:
 
 
 def size_for(piece: CutPiece, elements: int) -> float:
-    """Size (mm) of elements that gives a piece about that many, and no more along its boundary."""
+    """Size (mm) of elements: a piece has about ``elements``, and no more along its boundary."""
     left, bottom, right, top = piece.polygon.bounds
     covered = max(piece.area_mm2, (right - left) * (top - bottom) / MAX_EMPTY)
     return max(math.sqrt(covered / elements), float(piece.polygon.length) / elements)

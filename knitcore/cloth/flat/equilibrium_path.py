@@ -359,7 +359,7 @@ class PathSolver:
 def as_far_as_it_converges(
     path: Iterator[Balanced], steps: int, progress: Progress | None
 ) -> tuple[tuple[Balanced, ...], str | None]:
-    """Follow a path of so many steps; also say why it stopped early, if it did."""
+    """Follow a path of at most ``steps`` steps; also say why it stopped early, if it did."""
     reached: list[Balanced] = []
     try:
         with one_blas_thread():

@@ -102,7 +102,7 @@ def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise InputError(where, f"{name}: {first['msg']}.", "See the published schema.") from None
+        raise InputError(where, f"{name}: {first['msg']}.", "Correct or export it again.") from None
     check_layout(design.to_chart(), design)
     return design
 

@@ -82,7 +82,7 @@ def taken(stitches: Stitches) -> int:
 
 
 def read_row(line: Line, body: str, needle: int, yarns: int) -> Work:
-    """The words of a row, with ``needle`` stitches on the needle and so many yarns.
+    """The words of a row, with ``needle`` stitches on the needle and ``yarns`` yarns.
 
     Raises
     ------

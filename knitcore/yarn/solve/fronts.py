@@ -136,12 +136,12 @@ class Room:
         return array
 
     def take_back(self, array: Floats) -> None:
-        """The array is not used any more."""
+        """Take a lent array back; its memory is lent again."""
         flat = self._lent.pop(array.ctypes.data)
         self._spare[len(flat).bit_length() - 1].append(flat)
 
     def take_all_back(self) -> None:
-        """None of the arrays is used any more."""
+        """Take all lent arrays back."""
         for flat in self._lent.values():
             self._spare[len(flat).bit_length() - 1].append(flat)
         self._lent.clear()

@@ -40,7 +40,7 @@ class Symmetry:
     swap: bool
 
     def points(self, points: Array, wales: int) -> Array:
-        """Control points (rows, controls, 3) of an image of so many wales as those of the chart."""
+        """Control points (rows, controls, 3) of an image that has ``wales`` wales."""
         if self.mirror:  # the yarn runs the other way, from the same foot
             points = np.roll(points[:, ::-1], 1, axis=1) * (-1.0, 1.0, 1.0)
         if self.swap:

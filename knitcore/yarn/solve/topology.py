@@ -130,7 +130,7 @@ class Clearance:
 
 
 def clearance_at(energy: CellEnergy, state: Array, reach_radii: float = 2.0) -> Clearance:
-    """The clearance at a state of a cell, its pairs listed up to so many radii."""
+    """The clearance at a state of a cell, its pairs listed up to ``reach_radii``."""
     curve, reach = energy.curve(state), reach_radii * energy.yarn.radius_mm
     pairs, _ = energy.pairs(curve, state, reach)
     return Clearance(energy.cell, state, curve, pairs, reach, 2.0 * energy.yarn.radius_mm)

@@ -129,7 +129,7 @@ class Hysteresis:
 
     @property
     def lost_share(self) -> float:
-        """The same as a share of the work of the pull."""
+        """Energy that one cycle loses, as a share of the work of the pull."""
         return self.lost_per_cycle_n_per_mm / self.legs[-2].work_n_per_mm
 
     @property

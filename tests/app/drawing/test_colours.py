@@ -1,8 +1,14 @@
-"""Colours of yarns."""
+"""Colours of yarns, and those that the page and the 3D view share."""
+
+import re
+from pathlib import Path
 
 import pytest
 
-from app.drawing.colours import UNDYED, named_colour, rgb
+from app.drawing.colours import BATLOW, FABRIC_COLOURS, UNDYED, VIK, named_colour, rgb
+from app.drawing.stitch_colours import Palette
+
+FRONTEND = Path(__file__).resolve().parents[3] / "frontend"
 
 
 @pytest.mark.parametrize(
@@ -17,3 +23,27 @@ from app.drawing.colours import UNDYED, named_colour, rgb
 )
 def test_a_yarn_has_the_colour_of_its_name(name: str, colour: tuple[int, int, int]) -> None:
     assert named_colour(name) == colour
+
+
+def test_the_default_palette_is_the_page_s_light_theme() -> None:
+    styles = (FRONTEND / "styles" / "tokens.css").read_text(encoding="utf-8")
+    for fabric, colour in FABRIC_COLOURS.items():
+        assert f"--{fabric.value}: light-dark(#{colour}, " in styles
+
+
+def test_the_page_sends_the_colours_of_its_theme() -> None:
+    """So a dark page has a 3D view in its own colours, and nobody keeps a second list of them."""
+    fabrics = (FRONTEND / "grid" / "segments.js").read_text(encoding="utf-8")
+    declared = re.search(r"const FABRICS = .*?\[(.*?)\]", fabrics)
+    assert declared is not None
+    assert set(re.findall(r"\w+", declared[1])) == set(Palette.model_fields) - {"yarn"}
+    view = (FRONTEND / "panels" / "fabric" / "fabricview.js").read_text(encoding="utf-8")
+    assert "{ written: palette } = readPalette()" in view
+
+
+@pytest.mark.parametrize(("name", "stops"), [("BATLOW", BATLOW), ("VIK", VIK)])
+def test_maps_have_the_same_stops(name: str, stops: str) -> None:
+    script = (FRONTEND / "state" / "colormaps.js").read_text(encoding="utf-8")
+    declared = script[script.index(f"const {name} =") :]
+    declared = declared[: declared.index(";")]
+    assert re.findall(r"\b[0-9a-f]{6}\b", declared) == stops.split()

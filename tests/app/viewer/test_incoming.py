@@ -20,7 +20,7 @@ from app.viewer.incoming import (
     WantedPicture,
     passed_on,
 )
-from tests.app.clients import state_of, watching
+from tests.app.clients import drain, state_of, watching
 from tests.app.running import wait_until
 
 CAMERA = {
@@ -123,11 +123,6 @@ def _shown(client: TestClient, design: str) -> Any:
     return watching(client, f"/view/{design}")
 
 
-def _drain(socket: Any) -> None:
-    while True:
-        socket.receive_bytes()
-
-
 def _asked_for(socket: Any) -> str:
     """The id of the picture that the service asks a browser for."""
     while True:
@@ -163,7 +158,7 @@ def test_a_browser_that_floods_a_view_is_disconnected(client: TestClient) -> Non
     with _shown(client, "a-loud-view") as socket:
         socket.send_bytes(b"\0" * (MAX_BYTES + 1))
         with pytest.raises(WebSocketDisconnect) as closed:
-            _drain(socket)
+            drain(socket)
     assert closed.value.code == 1008
     with _shown(client, "a-loud-view") as socket:
         socket.send_text("no message at all")

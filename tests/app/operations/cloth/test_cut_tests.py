@@ -21,11 +21,6 @@ from knitcore.materials import material
 from tests.app.operations.cloth.test_piece import ASKED
 
 
-@pytest.fixture
-def context(tmp_path: Path) -> Context:
-    return Context(tmp_path)
-
-
 def test_a_bias_strip_has_an_interval(context: Context) -> None:
     told, straight = (
         bias(BiasRequest.model_validate(ASKED | {"strain": 0.2, "angle_deg": angle}), context)

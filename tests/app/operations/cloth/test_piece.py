@@ -26,11 +26,6 @@ PIECE: dict[str, Any] = {
 ASKED = {"chart": "K", "material": "acrylic", "steps": 2, "mesh_mm": 10}
 
 
-@pytest.fixture
-def context(tmp_path: Path) -> Context:
-    return Context(tmp_path)
-
-
 def loaded(**more: Any) -> PieceRequest:
     """A request with a piece that is changed so."""
     return PieceRequest.model_validate(ASKED | {"piece": PIECE | more, "fields": True})

@@ -4,7 +4,6 @@ import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
@@ -13,7 +12,7 @@ from starlette.websockets import WebSocketDisconnect
 from app.service import main as main_module
 from app.service.web import security, tokens
 from app.service.web.sessions import Sessions
-from tests.app.clients import LONG, bearing, served, state_of, tokens_of, watching
+from tests.app.clients import LONG, bearing, drain, served, state_of, tokens_of, watching
 from tests.app.running import wait_until
 
 SESSION = "/api/v1/session"
@@ -123,7 +122,7 @@ def test_a_revoked_token_ends_streams_views_and_jobs(lab: TestClient) -> None:
     with watching(lab, "/view/a-view") as socket:
         tokens_of(lab).revoke(ada.id)
         with pytest.raises(WebSocketDisconnect) as closed:
-            _drain(socket)
+            drain(socket)
     assert closed.value.code == 1008
     runner = state_of(lab).jobs
     wait_until(lambda: runner.store.get("ada", job).state == "cancelled")
@@ -138,8 +137,3 @@ def test_a_revoked_token_ends_an_event_stream(lab: TestClient) -> None:
     with lab.stream("GET", "/api/v1/views/a-view/events") as stream:
         tokens_of(lab).revoke(ada.id)
         assert "retry" in "".join(stream.iter_text())  # and then it ended
-
-
-def _drain(socket: Any) -> None:
-    while True:
-        socket.receive_bytes()

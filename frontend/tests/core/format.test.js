@@ -1,7 +1,5 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { batlow, vik } from "../../state/colormaps.js";
-import { logScale } from "../../state/overlays.js";
 import { figure, percent, percentRange, percents, range } from "../../core/format.js";
 
 test("three figures, with the zeros that count", () => {
@@ -23,21 +21,6 @@ test("intervals and percentages", () => {
   assert.equal(percentRange([-0.0072, 0.1352], 1), "−0.7 – 13.5");
   assert.equal(percentRange([0.28, 0.32]), "28 – 32");
   assert.equal(percentRange([]), "");
-});
-
-test("colour maps end where Crameri's end, and take what is outside to the ends", () => {
-  assert.deepEqual(batlow.at(0), [1, 25, 89]);
-  assert.deepEqual(batlow.at(1), [250, 204, 250]);
-  assert.deepEqual(vik.at(0.5), [236, 229, 224]);
-  assert.deepEqual(batlow.at(-3), batlow.at(0));
-  assert.deepEqual(batlow.at(Number.NaN), batlow.at(0));
-});
-
-test("a logarithmic scale halves ratios", () => {
-  const { low, high, at } = logScale([0.01, 1]);
-  assert.deepEqual([low, high], [0.01, 1]);
-  assert.ok(Math.abs(at(0.1) - 0.5) < 1e-12);
-  assert.equal(logScale([2, 2]).at(2), 0);
 });
 
 test("shares in percent add up, and what is there is never nothing", () => {

@@ -1,4 +1,4 @@
-"""What cloth rests on, as other programs take it."""
+"""Surfaces of what cloth rests on."""
 
 import numpy as np
 import pytest

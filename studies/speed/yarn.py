@@ -1,6 +1,6 @@
 """CPU seconds of relaxations and sweeps at the yarn level, with their targets.
 
-    python -m studies.speed.yarnlevel [--sides 1 2 4 8 16] [--charts 3] [--cells-only]
+    python -m studies.speed.yarn [--sides 1 2 4 8 16] [--charts 3] [--cells-only]
 
 Run with OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1: idle threads of the linear algebra would count
 as CPU time. The authors' public code, unmodified, needs about 250 CPU seconds for one point of one

@@ -11,7 +11,7 @@ from tests.browser.conftest import wait_for_numbers
 
 pytestmark = pytest.mark.slow
 
-EXAMPLES = Path(__file__).parents[2] / "app" / "examples"
+EXAMPLES = Path(__file__).parents[3] / "app" / "examples"
 
 
 def test_pieces_and_limbs_leave_the_console_clean(flat_studio: Page) -> None:
