@@ -82,9 +82,9 @@ def knitted_chart(program: str) -> KnittedChart:
     carriers = list(dict.fromkeys(loop.carriers for course in fabric.courses for loop in course))
     yarn_notes: list[str] = []
     if not yarns:
-        yarns = _yarns(sorted(carriers), knitting.colours)
+        yarns = _yarns(carriers, knitting.colours)
         if len(carriers) > 1:
-            names = ", ".join(named(names) for names in sorted(carriers))
+            names = ", ".join(named(names) for names in carriers)
             yarn_notes.append(f"The piece is knitted by carriers {names}; each is a yarn of it.")
     notes = [*part.notes, *yarn_notes, *fabric.notes, *knitting.notes]
     if any(len(names) > 1 for names in carriers):
