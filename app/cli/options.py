@@ -27,7 +27,7 @@ STITCHES = frozenset("KkPp|•–-")
 """Signs of stitches in a repeat in one line, as in a chart file."""
 SEPARATORS = frozenset("/, ")
 STANDARD_INPUT = "-"
-_KINDS = {b"\x89PNG": ".png", b"{": ".json", b";!knitout": ".k"}
+_KINDS = {b"\x89PNG": ".png", b"{": ".json", b";!knitout": ".k", b"\xef\xbb\xbf;!": ".k"}
 """First bytes of files, and the names that their readers expect; all others are texts."""
 
 

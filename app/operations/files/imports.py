@@ -9,7 +9,7 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
-from knitcore.formats.read.chart_files import read_chart, read_piece
+from knitcore.formats.read.chart_files import read_chart, read_noted_piece
 
 from ...context import Context
 from ...requests.base import NoRequest, RequestModel, ResultModel
@@ -57,14 +57,14 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
     """
     del context
     with stored([request.file]) as (path,):
-        design = design_in(path)
+        design, notes = _noted_design_in(path)
     chart = StitchChart.parse(design.chart)
     return ImportResult(
         **dict(design),
         rows=chart.rows,
         columns=chart.columns,
         repeat=chart.repeat_cut().key,
-        notes=layout_notes(chart, design),
+        notes=[*notes, *layout_notes(chart, design)],
     )
 
 
@@ -76,10 +76,14 @@ def design_in(path: Path) -> FoundDesign:
     InputError
         If it holds no chart.
     """
+    return _noted_design_in(path)[0]
+
+
+def _noted_design_in(path: Path) -> tuple[FoundDesign, tuple[str, ...]]:
     if path.suffix.lower() == ".json":
-        return FoundDesign.of(read_design(path), chart=read_chart(path).text)
-    piece = read_piece(path)
-    return FoundDesign.of(layout_of(piece), chart=piece.chart.text)
+        return FoundDesign.of(read_design(path), chart=read_chart(path).text), ()
+    content = read_noted_piece(path)
+    return FoundDesign.of(layout_of(content.piece), chart=content.piece.chart.text), content.notes
 
 
 class DesignSchema(RootModel[dict[str, Any]]):

@@ -11,14 +11,16 @@ import { readDesign } from "../../design/design.js";
 
 const WRITTEN = /^\s*(cast on|rows?|rounds?|rnds?)\s+\d/i;
 
+/** @param {string} text which may begin with a byte order mark */
+const isKnitout = (text) => /^\ufeff?\s*;!knitout/.test(text);
+
 /**
  * Whether a text is to be knitted rather than lines of K and P.
  *
  * @param {string} name of the file
  * @param {string} text
  */
-export const isKnitting = (name, text) =>
-  /\.(k|ks|knitout)$/i.test(name) || text.startsWith(";!knitout") || WRITTEN.test(text);
+export const isKnitting = (name, text) => /\.(k|ks|knitout)$/i.test(name) || isKnitout(text) || WRITTEN.test(text);
 
 /**
  * @param {ActionContext} context
@@ -29,9 +31,9 @@ export const isKnitting = (name, text) =>
 export async function importKnitting({ studio, keeper }, name, text) {
   const bytes = new TextEncoder().encode(text);
   const content = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
-  const suffixed = text.startsWith(";!knitout") && !/\.(k|knitout)$/i.test(name) ? `${name}.k` : name;
+  const suffixed = isKnitout(text) && !/\.(k|knitout)$/i.test(name) ? `${name}.k` : name;
   try {
-    /** @type {Pick<DesignDocument, "chart" | "outline" | "regions"> & {rows: number, columns: number}} */
+    /** @type {Pick<DesignDocument, "chart" | "outline" | "regions"> & {rows: number, columns: number, notes?: string[]}} */
     const found = await call("/import", { method: "POST", body: { file: { name: suffixed, content } } });
     const design = readDesign({
       format: "knitcore-design",
@@ -44,7 +46,11 @@ export async function importKnitting({ studio, keeper }, name, text) {
     });
     keeper.openNew(design);
     studio.tell(
-      `Opened ${found.columns} stitches × ${found.rows} rows from ${name}. The design before it is still among your designs.`,
+      [
+        `Opened ${found.columns} stitches × ${found.rows} rows from ${name}.`,
+        ...(found.notes ?? []),
+        "The design before it is still among your designs.",
+      ].join(" "),
     );
     return null;
   } catch (error) {

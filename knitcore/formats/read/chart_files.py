@@ -1,6 +1,7 @@
 """Reading a chart from a file of any kind that holds one."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from knitcore.base.errors import InputError
@@ -11,6 +12,14 @@ from knitcore.formats.read.written_reader import looks_written, read_piece_rows
 from knitcore.garment.piece import Piece
 
 MAX_FILE_BYTES = 16_000_000
+
+
+@dataclass(frozen=True)
+class PieceInFile:
+    """The piece in a file, and notes on what was left out or taken in one of several ways."""
+
+    piece: Piece
+    notes: tuple[str, ...] = ()
 
 
 def read_chart(path: str | Path) -> StitchChart:
@@ -44,8 +53,14 @@ def read_piece(path: str | Path) -> Piece:
     InputError
         If the file is missing, too large, of another kind, or its content does not match its name.
     """
+    return read_noted_piece(path).piece
+
+
+def read_noted_piece(path: str | Path) -> PieceInFile:
+    """Read a file as :func:`read_piece` does, with the notes of the reader."""
     file = _checked(Path(path))
-    return _READERS[file.suffix.lower()](file)
+    content = _READERS[file.suffix.lower()](file)
+    return content if isinstance(content, PieceInFile) else PieceInFile(content)
 
 
 def _checked(file: Path) -> Path:
@@ -66,17 +81,20 @@ def _checked(file: Path) -> Path:
     return file
 
 
-def _read_text(file: Path) -> Piece:
+def _read_text(file: Path) -> Piece | PieceInFile:
     text = _text(file)
+    if text.lstrip("\ufeff").startswith(";!knitout"):
+        return _read_knitout(file)
     if looks_knitspeak(text):
         return Piece.plain(read_knitspeak(text))
     return read_piece_rows(text) if looks_written(text) else Piece.plain(StitchChart.parse(text))
 
 
-def _read_knitout(file: Path) -> Piece:
+def _read_knitout(file: Path) -> PieceInFile:
     from knitcore.formats.read.knitout_reader import knitted_chart
 
-    return knitted_chart(_text(file)).piece
+    knitted = knitted_chart(_text(file))
+    return PieceInFile(knitted.piece, knitted.notes)
 
 
 def _text(file: Path) -> str:
@@ -94,7 +112,7 @@ def _picture(file: Path) -> Piece:
     return read_png_piece(file)
 
 
-_READERS: dict[str, Callable[[Path], Piece]] = {
+_READERS: dict[str, Callable[[Path], Piece | PieceInFile]] = {
     ".txt": _read_text,
     ".ks": lambda file: Piece.plain(read_knitspeak(_text(file))),
     ".png": _picture,

@@ -1,12 +1,11 @@
-"""Knitout programs executed on a virtual machine and read back as charts.
+"""Knitout programs read as charts.
 
-The one place that runs the package ``knitout-interpreter``. The interpreter checks every
-instruction against a machine's state and links the loops to a knit graph; the chart is read from
-that graph alone (which loop was pulled through which, from which bed and by which carrier), not
-from the program. A stitch of the chart is a loop that was pulled through others; loops that were
-pulled through none are cast on, or tucks that tie two yarns together. A bind-off chain along an
-edge differs from stitches by its yarn: the next loop that the machine makes is pulled through the
-chained one, on the next needle.
+A program is knitted (:mod:`knitcore.formats.read.knitout_machine`), the piece is told from waste
+(:mod:`knitcore.formats.read.knitout_parts`), and its stitches are put into courses and wales
+(:mod:`knitcore.formats.read.knitout_courses`): all from the graph of loops, not from names. A
+program of this library is executed by the package ``knitout-interpreter`` too before it is
+exported. That package checks every instruction against a machine's state, and its loops must be
+the same as those read here.
 """
 
 import re
@@ -16,26 +15,23 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
+from itertools import cycle
 from typing import Any
 
 import numpy as np
 
 from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.formats.write.knitout import (
-    MAX_NEEDLES,
-    TAG_STITCHES,
-    Finish,
-    KnitoutProgram,
-    knitout_program,
-)
+from knitcore.formats.read.knitout_courses import Fabric, fabric_of
+from knitcore.formats.read.knitout_machine import Loop, knitting_of
+from knitcore.formats.read.knitout_parts import main_part, named, part_knitted_by
+from knitcore.formats.write.knitout import MAX_NEEDLES, Finish, KnitoutProgram, knitout_program
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
 
 MAX_BYTES = 4_000_000
-_HOLDS = re.compile(r"^; carrier (\d{1,2}) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
-_REMEDY = "Give knits and purls, course by course, without tucks, misses, lace, cables, short rows."
+_HOLDS = re.compile(r"^; carrier (\S+) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
+_COLOURS = ("#efe9dd", "#1f3b70", "#b03a2e", "#2e7d5b", "#c99a2e", "#6b4a8a", "#3a8fb0", "#8a5a3c")
 
 
 class KnitoutMismatchError(KnitcoreError):
@@ -64,26 +60,62 @@ class KnittedChart:
 def knitted_chart(program: str) -> KnittedChart:
     """The face of a flat program of knits and purls.
 
-    The chart is knitted by the carriers that a comment ``; carrier 1 knits #rrggbb name`` names, or
-    else by the carrier that comes first; others are taken as waste.
+    Comments ``; carrier 1 knits #rrggbb name`` name the carriers that knit the chart. Without
+    them the piece is told from waste by the loops.
 
     Raises
     ------
     InputError
-        If the program is too long, violates the language or the machine, or makes anything but
-        knits and purls within an outline.
+        If the program is too long, is not knitout, or makes anything but knits and purls within
+        an outline; it names course, needle, line and kind.
     """
     if len(program.encode()) > MAX_BYTES:
         raise InputError("knitout", "the program is too long.", f"Use at most {MAX_BYTES} B.")
-    loops, said = _interpreted(program)
-    if not loops:
+    knitting = knitting_of(program)
+    if not knitting.loops:
         raise InputError("knitout", "the program makes no loops.", "Give one that knits.")
-    yarns = {int(m[1]): PieceYarn(m[3], m[2]) for m in _HOLDS.finditer(program)}
+    yarns: dict[tuple[str, ...], PieceYarn] = {
+        (m[1],): PieceYarn(m[3].strip(), m[2]) for m in _HOLDS.finditer(program)
+    }
+    part = part_knitted_by(knitting.loops, yarns) if yarns else main_part(knitting.loops)
+    fabric = fabric_of(knitting.loops, part.stitches)
+    carriers = list(dict.fromkeys(loop.carriers for course in fabric.courses for loop in course))
+    yarn_notes: list[str] = []
     if not yarns:
-        yarns = {_carrier(min(loops, key=_time)): MAIN_YARN}
-    others = sorted({_carrier(loop) for loop in loops} - set(yarns))
-    notes = [f"Yarn of carrier {c} counts as waste yarn." for c in others]
-    return KnittedChart(_piece_of_loops(loops, yarns), (*notes, *said))
+        yarns = _yarns(carriers, knitting.colours)
+        if len(carriers) > 1:
+            names = ", ".join(named(names) for names in carriers)
+            yarn_notes.append(f"The piece is knitted by carriers {names}; each is a yarn of it.")
+    notes = [*part.notes, *yarn_notes, *fabric.notes, *knitting.notes]
+    if any(len(names) > 1 for names in carriers):
+        notes.append("Yarns that knit together (plating) count as one yarn.")
+    return KnittedChart(_piece(fabric, yarns), tuple(notes))
+
+
+def _yarns(
+    carriers: Sequence[tuple[str, ...]], colours: Mapping[str, str]
+) -> dict[tuple[str, ...], PieceYarn]:
+    """Yarns that a program does not name: the main yarn, or one for each carrier."""
+    if len(carriers) == 1:
+        return {carriers[0]: MAIN_YARN}
+    palette = cycle(_COLOURS)
+    return {
+        names: PieceYarn(f"carrier {named(names)}", colours.get(names[0]) or next(palette))
+        for names in carriers
+    }
+
+
+def _piece(fabric: Fabric, yarns: Mapping[tuple[str, ...], PieceYarn]) -> Piece:
+    rows, columns = len(fabric.courses), fabric.columns
+    purl = np.zeros((rows, columns), dtype=bool)
+    stitch, yarn_of = purl.copy(), np.zeros(purl.shape, dtype=np.intp)
+    known = list(dict.fromkeys(yarns.values()))
+    for row, course in enumerate(fabric.courses):
+        for loop, column in course.items():
+            purl[row, column] = loop.bed == "b"
+            yarn_of[row, column] = known.index(yarns[loop.carriers])
+            stitch[row, column] = True
+    return Piece(ShapedChart(StitchChart(purl), stitch), tuple(known), yarn_of)
 
 
 def verified(
@@ -103,19 +135,27 @@ def verified(
         piece, finish=finish, needles=MAX_NEEDLES if needles is None else needles
     )
     try:
+        loops, warned = _interpreted(made.text)
         knitted = knitted_chart(made.text)
     except InputError as error:
         raise KnitoutMismatchError(f"the program was refused: {error}") from error
-    if knitted.piece != piece:
+    if loops != _graph(knitting_of(made.text).loops) or knitted.piece != piece:
         raise KnitoutMismatchError("the virtual machine knitted another chart.")
-    warned = [note for note in knitted.notes if "waste" not in note]
     if warned:
         raise KnitoutMismatchError(f"the virtual machine warned: {warned[0]}")
     return made
 
 
-def _interpreted(program: str) -> tuple[list[Any], list[str]]:
-    """All loops, and the warnings, of a program."""
+_Graph = list[tuple[str, tuple[str, ...], list[int]]]
+"""Needle, carriers and parents of each loop, in the order in which they are made."""
+
+
+def _graph(loops: Sequence[Loop]) -> _Graph:
+    return [(o.name, o.carriers, sorted(p.number for p in o.parents)) for o in loops]
+
+
+def _interpreted(program: str) -> tuple[_Graph, list[str]]:
+    """The loops that the virtual machine makes of a program, and its warnings."""
     from knitout_interpreter.knitout_errors.Knitout_Error import Knitout_Error
     from knitout_interpreter.knitout_execution import Knitout_Executer
     from virtual_knitting_machine.knitting_machine_exceptions.Knitting_Machine_Error import (
@@ -141,7 +181,17 @@ def _interpreted(program: str) -> tuple[list[Any], list[str]]:
             raise InputError(
                 "knitout", f"{_one_line(error)}.", "Correct that line: the machine stops there."
             ) from None
-    return list(graph.sorted_loops), [_one_line(w.message) for w in caught]
+    loops = sorted(graph.sorted_loops, key=lambda loop: loop.loop_count_on_machine)
+    number = {loop: index for index, loop in enumerate(loops)}
+    graph_of_machine: _Graph = [
+        (
+            f"{'f' if o.source_needle.is_front else 'b'}{o.source_needle.position}",
+            (str(o.yarn.carrier.carrier_id),),
+            sorted(number[parent] for parent in o.parent_loops),
+        )
+        for o in loops
+    ]
+    return graph_of_machine, [_one_line(w.message) for w in caught]
 
 
 @lru_cache(maxsize=1)
@@ -157,115 +207,3 @@ def _parser() -> Any:
 
 def _one_line(message: object) -> str:
     return " ".join(str(message).split()).rstrip(".")[:300]
-
-
-def _piece_of_loops(loops: Sequence[Any], yarns: Mapping[int, PieceYarn]) -> Piece:
-    """The piece that all loops of a machine make, with its yarns by carrier.
-
-    Loops of other carriers are waste or separate strands.
-    """
-    courses = _courses(sorted(loops, key=_time), frozenset(yarns))
-    if not courses:
-        raise InputError("knitout", "the program knits no stitch.", _REMEDY)
-    for row, course in enumerate(courses):
-        _check(row, course, courses[row - 1] if row else {})
-    first = min(min(course) for course in courses)
-    width = max(max(course) for course in courses) + 1 - first
-    purl = np.zeros((len(courses), width), dtype=bool)
-    stitch, yarn_of = purl.copy(), np.zeros(purl.shape, dtype=np.intp)
-    known = list(dict.fromkeys(yarns.values()))
-    for row, course in enumerate(courses):
-        for needle, loop in course.items():
-            purl[row, needle - first] = not loop.source_needle.is_front
-            yarn_of[row, needle - first] = known.index(yarns[_carrier(loop)])
-            stitch[row, needle - first] = True
-    return Piece(ShapedChart(StitchChart(purl), stitch), tuple(known), yarn_of)
-
-
-def _carrier(loop: Any) -> int:
-    """Number of the carrier that made a loop."""
-    return int(loop.yarn.carrier.carrier_id)
-
-
-def _time(loop: Any) -> int:
-    """Number of a loop in the order in which a machine makes them."""
-    return int(loop.loop_count_on_machine)
-
-
-def _needle(loop: Any) -> int:
-    return int(loop.source_needle.position)
-
-
-def _courses(loops: Sequence[Any], carriers: frozenset[int]) -> list[dict[int, Any]]:
-    """Stitches by needle, course by course.
-
-    A course ends where a needle knits again, and where something else is cast on or bound off.
-    """
-    child = {parent: loop for loop in loops for parent in loop.parent_loops}
-    courses: list[dict[int, Any]] = []
-    course: dict[int, Any] = {}
-    for loop in loops:
-        if not loop.parent_loops and _ties(loop, child):
-            continue
-        mine = _carrier(loop) in carriers
-        if not mine or not loop.parent_loops or _is_chained(loop, child):
-            courses, course = [*courses, course] if course else courses, {}
-            continue
-        if _needle(loop) in course:
-            courses, course = [*courses, course], {}
-        course[_needle(loop)] = loop
-    courses = [*courses, course] if course else courses
-    return courses if _carrier(loops[-1]) not in carriers else _without_tag(courses)
-
-
-def _ties(tuck: Any, child: Mapping[Any, Any]) -> bool:
-    """Say whether a tuck was laid onto a needle that held a loop already."""
-    stitch = child.get(tuck)
-    return stitch is not None and any(
-        other is not tuck and _needle(other) == _needle(tuck) and _time(other) < _time(tuck)
-        for other in stitch.parent_loops
-    )
-
-
-def _is_chained(loop: Any, child: Mapping[Any, Any]) -> bool:
-    before, after = loop.prior_loop_on_yarn, loop.next_loop_on_yarn
-    return (
-        before is not None
-        and after is not None
-        and before in loop.parent_loops
-        and _needle(before) != _needle(loop)
-        and child.get(loop) is after
-        and _time(after) == _time(loop) + 1
-        and _needle(after) != _needle(loop)
-    )
-
-
-def _without_tag(courses: list[dict[int, Any]]) -> list[dict[int, Any]]:
-    """Remove the few stitches on one needle that hold a bind-off: its last chain, and a tag."""
-    tag = TAG_STITCHES + 1
-    end = courses[-tag:]
-    wide_below = len(courses) > tag and len(courses[-tag - 1]) > 1
-    if wide_below and {tuple(course) for course in end} == {tuple(end[0])} and len(end[0]) == 1:
-        return courses[:-tag]
-    return courses
-
-
-def _check(row: int, course: Mapping[int, Any], below: Mapping[int, Any]) -> None:
-    """Refuse a course that does not stand on the course below."""
-    needles = sorted(course)
-    gap = next((a for a, b in pairwise(needles) if b != a + 1), None)
-    if gap is not None:
-        raise InputError("knitout", f"course {row + 1} skips the needle after {gap}.", _REMEDY)
-    for needle, loop in course.items():
-        own = below.get(needle)
-        if own is not None and own not in loop.parent_loops:
-            problem = f"on needle {needle}, course {row + 1} is not pulled through course {row}."
-            raise InputError("knitout", problem, _REMEDY)
-        places = {_needle(parent): parent for parent in loop.parent_loops}
-        if any(n != needle and n in course and below.get(n) is p for n, p in places.items()):
-            raise InputError(
-                "knitout", f"a loop moves to needle {needle} in course {row + 1}.", _REMEDY
-            )
-        if own is None and any(parent.parent_loops for parent in loop.parent_loops):
-            problem = f"needle {needle} begins in course {row + 1} with a loop from elsewhere."
-            raise InputError("knitout", problem, _REMEDY)

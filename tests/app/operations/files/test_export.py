@@ -94,6 +94,22 @@ def test_an_import_notes_doubtful_readings(tmp_path: Path) -> None:
     assert "Navy is lost" in note
 
 
+def test_an_import_tells_what_a_knitout_program_leaves_out(
+    client: TestClient, tmp_path: Path
+) -> None:
+    courses = ["knit - f2 1", "knit - f1 1", "knit + f1 1", "knit + f2 1"]
+    program = [";!knitout-2", ";;Machine: SWGXYZ", "x-speed-number 3", "in 1", *courses]
+    file = tmp_path / "strange.k"
+    file.write_text("\n".join(program), encoding="utf-8-sig")
+    content = base64.b64encode(file.read_bytes()).decode()
+    told = client.post("/api/v1/import", json={"file": {"name": file.name, "content": content}})
+    assert run("import", str(file)) == told.json()
+    assert told.json()["chart"] == "KK"
+    machine, extension = told.json()["notes"]
+    assert "SWGXYZ" in machine
+    assert "x-speed-number (1 line from line 3)" in extension
+
+
 @pytest.mark.parametrize(("name", "says"), [("none.png", "does not exist"), (".", "is a folder")])
 def test_a_missing_file_is_reported(name: str, says: str, tmp_path: Path) -> None:
     assert says in refused("import", str(tmp_path / name))

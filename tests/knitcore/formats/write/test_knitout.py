@@ -108,10 +108,10 @@ def _with(line: str, other: str) -> str:
     ("program", "says"),
     [
         ("", "no loops"),
-        (";!knitout-2\n;;Carriers: 1\nfly f1\n", "knitout"),
-        (";!knitout-2\n;;Carriers: 1\nknit - f1 1\n", "knitout"),
-        (_without("tuck - f2 1"), "needle 3 begins in course 3 with a loop from elsewhere"),
-        (_with("outhook 1", "outhook 0"), "Invalid carrier"),
+        (";!knitout-2\n;;Carriers: 1\nfly f1\n", "line 3: 'fly'"),
+        (";!knitout-2\n;;Carriers: 1\nknit - f1 1\n", "line 3: carrier 1 is not in"),
+        (_without("tuck - f2 1"), r"course 1, needle f2 \(line 17\): a loop begun"),
+        (_with("outhook 1", "outhook 0"), "carrier 0 is not in"),
         ("x" * 5_000_000, "too long"),
     ],
     ids=["empty", "no instruction", "carrier not in", "gap", "no such carrier", "long"],
@@ -124,5 +124,5 @@ def test_programs_that_cannot_be_read(program: str, says: str) -> None:
 def test_a_missed_stitch_is_refused() -> None:
     text = knitout_program(StitchChart.of_fabric("stockinette", rows=3, columns=4)).text
     head, course = text.split("; course 2\n")
-    with pytest.raises(InputError, match="course 2 skips the needle after 1"):
+    with pytest.raises(InputError, match=r"course 2, needle f2 .*: a missed stitch"):
         knitted_chart(head + "; course 2\n" + course.replace("f2 1\n", "f3 1\n", 1))

@@ -1,0 +1,227 @@
+"""The loops of a program that are the piece, told from waste and from other pieces.
+
+Decided by the graph of loops: what stands on what, and which yarn goes on. Programs knit waste
+yarn before and after a piece; it is what the piece stands on, or what hangs from it. Sections are
+compared by size. One that has a pattern of its own counts more than one that only repeats the beds
+below it, and one knitted on both beds at once (interlock, a tube) counts less, since only waste is
+knitted so around a piece of knits and purls. Sections that are not clearly smaller are stripes.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+
+from knitcore.base.errors import InputError
+from knitcore.formats.read.knitout_machine import Loop
+
+PATTERNED, TWO_BEDS = 4.0, 0.01
+CLEARLY_SMALLER = 0.5
+"""A section with less than this part of the main one's weight, before or after it, is waste."""
+
+Carriers = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Part:
+    """The stitches of the piece, in the order in which they are made."""
+
+    stitches: tuple[Loop, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass
+class _Section:
+    """Stitches of one yarn, or of yarns that take turns; named after the first."""
+
+    carriers: Carriers
+    stitches: list[Loop]
+    weight: float = 0.0
+
+    def told(self) -> str:
+        lines = f"lines {self.stitches[0].line} to {self.stitches[-1].line}"
+        number = len(self.stitches)
+        return f"{number} {'stitch' if number == 1 else 'stitches'}, {lines}"
+
+
+def is_chained(loop: Loop) -> bool:
+    """Say whether a loop is a link of a bind-off chain, rather than a stitch."""
+    before, after = loop.before, loop.after
+    return (
+        before is not None
+        and after is not None
+        and before in loop.parents
+        and before.needle != loop.needle
+        and loop.child is after
+        and after.number == loop.number + 1
+        and after.needle != loop.needle
+    )
+
+
+def part_knitted_by(loops: Sequence[Loop], carriers: Collection[Carriers]) -> Part:
+    """The stitches of carriers that the program itself names; others are waste."""
+    stitches = tuple(loop for loop in _stitches(loops) if loop.carriers in carriers)
+    others = dict.fromkeys(loop.carriers for loop in loops if loop.carriers not in carriers)
+    return Part(
+        stitches, tuple(f"Yarn of carrier {named(other)} counts as waste yarn." for other in others)
+    )
+
+
+def main_part(loops: Sequence[Loop]) -> Part:
+    """The piece among everything that a program knits.
+
+    Raises
+    ------
+    InputError
+        If it knits two pieces of similar size that are not joined.
+    """
+    knitted = _stitches(loops)
+    number = Counter(loop.strand for loop in knitted)
+    # A strand brought in to bind off begins its chain with what looks like a stitch.
+    knitted = [o for o in knitted if number[o.strand] > 1 or not _begins_chain(o)]
+    stitches, notes = _joined(knitted, loops)
+    if not stitches:
+        return Part((), ())
+    sections = _sections(stitches)
+    first, last = _span_of_piece(sections)
+    for is_before, side in ((True, sections[:first]), (False, sections[last + 1 :])):
+        for carriers in dict.fromkeys(section.carriers for section in side):
+            name = f"carrier {named(carriers)}"
+            relation = (
+                f"the piece stands on what {name} knits before it"
+                if is_before
+                else f"what {name} knits after the piece hangs from it"
+            )
+            sizes = "; ".join(s.told() for s in side if s.carriers == carriers)
+            notes.append(
+                f"Waste: {relation} ({sizes}). It is left out; if it belongs to the piece, name "
+                f"the yarns by lines such as: ; carrier {carriers[0]} knits #efe9dd wool"
+            )
+    inside = sections[first : last + 1]
+    return Part(tuple(loop for section in inside for loop in section.stitches), tuple(notes))
+
+
+def named(carriers: Carriers) -> str:
+    """Names of carriers that knit together."""
+    return " and ".join(carriers)
+
+
+def _stitches(loops: Iterable[Loop]) -> list[Loop]:
+    return [loop for loop in loops if loop.parents and not is_chained(loop)]
+
+
+def _begins_chain(loop: Loop) -> bool:
+    return loop.child is not None and loop.child is loop.after
+
+
+def _joined(stitches: list[Loop], loops: Sequence[Loop]) -> tuple[list[Loop], list[str]]:
+    """The largest set of stitches joined by loops or yarn, and notes on the rest."""
+    group = list(range(len(loops)))
+
+    def root(number: int) -> int:
+        while group[number] != number:
+            group[number] = group[group[number]]
+            number = group[number]
+        return number
+
+    for loop in loops:
+        for other in (*loop.parents, *([loop.before] if loop.before else [])):
+            group[root(other.number)] = root(loop.number)
+        if loop.onto and loop.child is not None:
+            group[root(loop.child.number)] = root(loop.number)
+    sizes = Counter(root(loop.number) for loop in stitches)
+    if len(sizes) < 2:
+        return stitches, []
+    (main, most), (second, next_most), *_ = sizes.most_common()
+    if next_most > CLEARLY_SMALLER * most:
+        line = next(loop.line for loop in stitches if root(loop.number) == second)
+        raise InputError(
+            "knitout",
+            f"the program knits {len(sizes)} pieces that are not joined; another one is that of "
+            f"line {line}.",
+            "Give a program for each piece.",
+        )
+    rest = [loop for loop in stitches if root(loop.number) != main]
+    note = (
+        f"{len(rest)} stitches from line {rest[0].line} on are not joined to the piece and are "
+        "left out."
+    )
+    return [loop for loop in stitches if root(loop.number) == main], [note]
+
+
+def _sections(stitches: Sequence[Loop]) -> list[_Section]:
+    """Split stitches where the yarn changes, but not where yarns take turns."""
+    turns: list[_Section] = []
+    for loop in stitches:
+        if not turns or turns[-1].carriers != loop.carriers:
+            turns.append(_Section(loop.carriers, []))
+        turns[-1].stitches.append(loop)
+    sections: list[_Section] = []
+    end = -1
+    last_of = _ends_of_turns([turn.carriers for turn in turns])
+    for index, turn in enumerate(turns):
+        if index > end:
+            sections.append(_Section(turn.carriers, []))
+        sections[-1].stitches += turn.stitches
+        end = max(end, last_of[index])
+    for section in sections:
+        section.weight = _weight(section.stitches)
+    return sections
+
+
+def _ends_of_turns(carriers: Sequence[Carriers]) -> list[int]:
+    """How far the yarns of a turn go on taking turns with others; else the turn itself.
+
+    They take turns if they come three times, or if two alternate. A yarn before and after all of
+    another is waste or a border.
+    """
+    places: dict[Carriers, list[int]] = {}
+    for index, name in enumerate(carriers):
+        places.setdefault(name, []).append(index)
+    spans = [(turns[0], turns[-1]) for turns in places.values()]
+    return [
+        places[name][-1]
+        if len(places[name]) > 2
+        or any(
+            a < places[name][0] < b < places[name][-1] or places[name][0] < a < places[name][-1] < b
+            for a, b in spans
+        )
+        else index
+        for index, name in enumerate(carriers)
+    ]
+
+
+def _weight(stitches: Sequence[Loop]) -> float:
+    """Number of stitches, more for a pattern of its own and less for one on both beds at once."""
+    inside = set(stitches)
+    below = [parent for loop in stitches for parent in loop.parents if parent not in inside]
+    changed = any(p.bed != loop.bed for loop in stitches for p in loop.parents if p.parents)
+    begun = all(not parent.parents for parent in below)
+    patterned = changed or (begun and len({loop.bed for loop in stitches}) > 1)
+    if is_on_two_beds(stitches):
+        return TWO_BEDS * len(stitches)
+    return len(stitches) * (PATTERNED if patterned else 1.0)
+
+
+def is_on_two_beds(stitches: Sequence[Loop]) -> bool:
+    """Say whether stitches that lie over each other are knitted in turn on both beds."""
+    last: dict[int, Loop] = {}
+    over, alone = 0, 0
+    for loop in stitches:
+        other = last.get(loop.needle)
+        if other is not None:
+            crossed = other.bed != loop.bed and other not in loop.parents
+            over, alone = over + crossed, alone + (not crossed)
+        last[loop.needle] = loop
+    return over > alone
+
+
+def _span_of_piece(sections: Sequence[_Section]) -> tuple[int, int]:
+    """The first and the last section of the piece."""
+    main = max(range(len(sections)), key=lambda index: sections[index].weight)
+    enough = CLEARLY_SMALLER * sections[main].weight
+    first = last = main
+    while first > 0 and sections[first - 1].weight >= enough:
+        first -= 1
+    while last + 1 < len(sections) and sections[last + 1].weight >= enough:
+        last += 1
+    return first, last

@@ -1,0 +1,298 @@
+"""Programs as other tools write them, small and by hand."""
+
+import time
+from collections.abc import Iterator, Sequence
+
+import pytest
+
+from knitcore import InputError
+from knitcore.formats.read.knitout_reader import KnittedChart, knitted_chart
+
+HEAD = [";!knitout-2", ";;Machine: SWG091N2", ";;Carriers: 1 2 3"]
+
+
+def tucks(carrier: str, width: int, step: int = 1) -> list[str]:
+    """An alternate tuck cast-on, leftwards and back."""
+    needles = range(step, step * width + 1, step)
+    back = list(needles)[-2::-2][::-1]
+    return [
+        f"inhook {carrier}",
+        *(f"tuck - f{n} {carrier}" for n in list(needles)[::-2]),
+        *(f"tuck + f{n} {carrier}" for n in back),
+        f"releasehook {carrier}",
+    ]
+
+
+def courses(carrier: str, beds: str, rows: int, *, first: int = 0, step: int = 1) -> Iterator[str]:
+    """Courses on the needles of the beds, ``f`` or ``b`` from left to right; odd ones leftwards."""
+    needles = [f"{bed}{step * (place + 1)}" for place, bed in enumerate(beds)]
+    for row in range(first, first + rows):
+        sign, order = ("+", needles) if row % 2 else ("-", needles[::-1])
+        yield from (f"knit {sign} {needle} {carrier}" for needle in order)
+
+
+def crossed(beds: str) -> list[str]:
+    """Transfers from the front bed to the back one."""
+    return [f"xfer f{n} b{n}" for n, bed in enumerate(beds, 1) if bed == "b"]
+
+
+def dropped(beds: str) -> list[str]:
+    return [f"drop {bed}{n}" for n, bed in enumerate(beds, 1)]
+
+
+def read(*lines: str, head: Sequence[str] = HEAD) -> KnittedChart:
+    return knitted_chart("\n".join([*head, *lines]) + "\n")
+
+
+def stockinette(rows: int = 4, *, width: int = 6, then: Sequence[str] = ()) -> list[str]:
+    return [*tucks("1", width), *courses("1", "f" * width, rows), *then]
+
+
+def test_extensions_headers_and_comments_are_told_and_have_no_effect() -> None:
+    head = [
+        ";!knitout-2",
+        ";;Machine: SWGXYZ",
+        ";;X-Loop-Length: 6.2",
+        ";;Width: 540",
+        ";;Carriers: 1 2 3 4 5 6 7 8 9 10 11 12",
+        ";",
+        "x-stitch-number 61",
+    ]
+    body = [*stockinette(3), "x-roller-advance 100", "outhook 1 ; the end"]
+    knitted = read(*body, head=head)
+    assert knitted.chart.text == "\n".join(["K" * 6] * 3)
+    told = "\n".join(knitted.notes)
+    assert "machine SWGXYZ" in told
+    assert "X-Loop-Length (line 3)" in told
+    assert "x-stitch-number (1 line from line 7)" in told
+    assert "Width" not in told
+
+
+@pytest.mark.parametrize("ends", ["\r\n", "\r", "\n"])
+def test_marks_and_line_ends_of_other_systems(ends: str) -> None:
+    program = "\ufeff" + ends.join([*HEAD, *stockinette(2), ""])
+    assert knitted_chart(program).chart.text == "KKKKKK\nKKKKKK"
+    with pytest.raises(InputError, match="line 7: 'fly'"):
+        knitted_chart("\ufeff" + ends.join([*HEAD, "", "", "", "fly f1"]))
+
+
+def test_needles_below_zero_and_carriers_of_any_name() -> None:
+    lines = ["in Yellow", *(f"tuck - f{n} Yellow" for n in (2, 0, -2))]
+    lines += [f"tuck + f{n} Yellow" for n in (-1, 1)]
+    lines += [f"knit - f{n} Yellow" for n in (2, 1, 0, -1, -2)]
+    assert read(*lines, head=[";!knitout-2", ";;Carriers: Yellow"]).chart.text == "KKKKK"
+
+
+def test_half_gauge() -> None:
+    lines = [*tucks("1", 5, step=2), *courses("1", "fffff", 2, step=2)]
+    lines += ["xfer f4 b4", "xfer f8 b8", *courses("1", "fbfbf", 2, step=2)]
+    knitted = read(*lines)
+    assert knitted.chart.text == "KPKPK\nKPKPK\nKKKKK\nKKKKK"
+    assert "Every second needle knits" in knitted.notes[0]
+
+
+def test_stitches_of_the_other_bed_lie_between() -> None:
+    """A rib cast on and knitted on alternate needles of both beds."""
+    beds = "bfbfbf"
+    lines = ["in 1", *(f"tuck - {bed}{n} 1" for n, bed in reversed(list(enumerate(beds, 1))))]
+    lines += list(courses("1", beds, 3, first=1))
+    assert read(*lines).chart.text == "\n".join(["PKPKPK"] * 3)
+
+
+def test_racked_beds_make_a_wale_of_every_needle() -> None:
+    needles = ["f1", "f2", "b2", "b3", "f4", "f5", "b5", "b6"]
+    lines = ["in 1", "rack 0.25"]
+    for row in range(4):
+        sign, order = ("+", needles) if row % 2 else ("-", needles[::-1])
+        lines += [f"knit {sign} {needle} 1" for needle in order]
+    assert read(*lines).chart.text == "\n".join(["KKPPKKPP"] * 3)
+
+
+def test_the_start_of_a_rib_on_other_needles_is_left_out() -> None:
+    width = 8
+    lines = [*tucks("1", width), *courses("1", "f" * width, 1), "rack 0.25"]
+    for row in range(1, 14):
+        needles = [f"{bed}{n}" for n in range(1, width + 1) for bed in "fb"]
+        sign, order = ("+", needles) if row % 2 else ("-", needles[::-1])
+        lines += [f"knit {sign} {needle} 1" for needle in order]
+    knitted = read(*lines)
+    assert knitted.chart.text == "\n".join(["KP" * width] * 12)
+    assert any("knitted on other needles before the piece" in note for note in knitted.notes)
+
+
+def test_a_first_course_that_closes_the_cast_on() -> None:
+    lines = [
+        "in 1",
+        *(f"tuck - f{n} 1" for n in (4, 3, 2, 1)),
+        *(f"knit + f{n} 1" for n in (2, 3, 4)),
+    ]
+    knitted = read(*lines, *courses("1", "ffff", 3))
+    assert knitted.chart.text == "\n".join(["KKKK"] * 3)
+    assert "does not reach needle f1" in knitted.notes[0]
+
+
+def test_an_edge_slipped_in_every_second_course_is_left_out() -> None:
+    lines = stockinette(1)
+    for row in range(1, 9):
+        sign, order = ("+", range(1, 7)) if row % 2 else ("-", range(6, 0, -1))
+        lines += [f"knit {sign} f{n} 1" for n in order if n < 6 or row % 2]
+    knitted = read(*lines[: len(tucks("1", 6))], *lines[len(tucks("1", 6)) + 6 :])
+    assert knitted.chart.text == "\n".join(["K" * 5] * 8)
+    assert "slipped" in knitted.notes[0]
+
+
+RIB = "bfbfbf"
+
+
+def test_waste_before_a_piece_is_what_it_stands_on() -> None:
+    waste = [*tucks("2", 6), *courses("2", "f" * 6, 4), "outhook 2"]
+    knitted = read(*waste, *crossed(RIB), "inhook 1", *courses("1", RIB, 5), *dropped(RIB))
+    assert knitted.chart.text == "\n".join(["PKPKPK"] * 5)
+    assert (
+        "stands on what carrier 2 knits before it (24 stitches, lines 12 to 35)"
+        in (knitted.notes[0])
+    )
+
+
+def test_waste_of_interlock_may_be_larger_than_the_piece() -> None:
+    waste = ["in 2"]
+    for row in range(30):
+        beds = "fb" * 3 if row % 2 else "bf" * 3
+        waste += courses("2", beds, 1, first=row)
+    waste += [f"drop b{n}" for n in range(1, 7)]
+    knitted = read(*waste, "in 1", *courses("1", "f" * 6, 4))
+    assert knitted.chart.text == "\n".join(["KKKKKK"] * 4)
+    assert "carrier 2" in knitted.notes[0]
+
+
+def test_waste_and_a_draw_thread_on_both_sides() -> None:
+    lines = [*tucks("2", 6), *courses("2", "f" * 6, 4), "in 3", *courses("3", "f" * 6, 1)]
+    lines += ["in 1", *courses("1", "f" * 6, 12), *courses("3", "f" * 6, 1)]
+    knitted = read(*lines, *courses("2", "f" * 6, 4))
+    assert knitted.chart.rows == 12
+    assert len([note for note in knitted.notes if note.startswith("Waste")]) == 4
+
+
+def test_waste_after_a_piece_hangs_from_it() -> None:
+    """More waste than piece, but only the piece makes its pattern."""
+    lines = ["in 1", *(f"tuck - {b}{n} 1" for n, b in reversed(list(enumerate(RIB, 1))))]
+    lines += [*courses("1", RIB, 4, first=1), "out 1", "in 2", *courses("2", RIB, 6)]
+    knitted = read(*lines, *dropped(RIB))
+    assert knitted.chart.text == "\n".join(["PKPKPK"] * 4)
+    assert "hangs from it" in knitted.notes[0]
+
+
+def test_stripes_are_yarns_of_the_piece() -> None:
+    lines = [*tucks("1", 6), *courses("1", "f" * 6, 2), "inhook 3", *courses("3", "f" * 6, 2)]
+    lines += [*courses("1", "f" * 6, 2), *courses("3", "f" * 6, 2), "outhook 1", "outhook 3"]
+    knitted = read(*lines)
+    assert [yarn.name for yarn in knitted.piece.yarns] == ["carrier 1", "carrier 3"]
+    assert knitted.piece.yarn_of[:, 0].tolist() == [0, 0, 1, 1, 0, 0, 1, 1]
+    assert "carriers 1, 3" in knitted.notes[0]
+
+
+def test_colours_of_carriers_are_taken() -> None:
+    head = [*HEAD, "x-vis-color #ff0000 1", "x-vis-color #00ff00 3"]
+    lines = [*tucks("1", 6), *courses("1", "f" * 6, 2), "in 3", *courses("3", "f" * 6, 2)]
+    assert [y.colour for y in read(*lines, head=head).piece.yarns] == ["#ff0000", "#00ff00"]
+
+
+def test_stranded_colours_are_read_without_their_floats() -> None:
+    lines = [*tucks("1", 6), *courses("1", "f" * 6, 1), "in 2"]
+    lines += [f"knit - f{n} 2" for n in (6, 4, 2)] + [f"knit + f{n} 1" for n in (1, 3, 5)]
+    knitted = read(*lines)
+    assert knitted.piece.yarn_of[1].tolist() == [0, 1, 0, 1, 0, 1]
+    assert "float" in knitted.notes[-1]
+
+
+def test_transfers_and_racks_that_return() -> None:
+    lines = stockinette(2)
+    lines += ["xfer f3 b3", "rack 1", "rack 0", "xfer b3 f3", "rack -2", "rack 0"]
+    assert read(*lines, *courses("1", "f" * 6, 2)).chart.rows == 4
+
+
+RIGHTWARDS = [f"knit + f{n} 1" for n in range(1, 7)]
+
+
+def leftwards(*without: int) -> list[str]:
+    """A course of six needles without those in question."""
+    return [f"knit - f{n} 1" for n in range(6, 0, -1) if n not in without]
+
+
+CROSSING = ["xfer f3 b3", "xfer f4 b4", "rack 1", "xfer b3 f4", "rack -1", "xfer b4 f3", "rack 0"]
+CROSSING += leftwards()
+
+
+@pytest.mark.parametrize(
+    ("then", "says"),
+    [
+        (
+            ["knit - f6 1", "knit - f5 1", "tuck - f4 1", *leftwards(4, 5, 6), *RIGHTWARDS],
+            r"course 3, needle f4 \(line 26\): a tuck",
+        ),
+        ([*leftwards(4), *RIGHTWARDS], "course 3, needle f4 .*: a missed"),
+        (
+            ["xfer f3 b3", "rack 1", "xfer b3 f4", "rack 0", *leftwards()],
+            r"course 3, needle f[34] .*: a lace",
+        ),
+        (CROSSING, r"course 3, needle f4 .*: a cable"),
+        (["split - f4 b4 1", *leftwards(4)], r"needle f4 \(line 24\): a split"),
+        (["drop f4", *leftwards(4)], "needle f4 .*: a dropped"),
+        ([*leftwards(1, 2), *(f"knit + f{n} 1" for n in range(3, 7)), *leftwards()], "short row"),
+        (
+            [
+                f"knit {'+' if row % 2 else '-'} {'b' if row % 2 else 'f'}{n} 1"
+                for row in range(6)
+                for n in (range(1, 7) if row % 2 else range(6, 0, -1))
+            ],
+            "both beds",
+        ),
+    ],
+    ids=["tuck", "miss", "lace", "cable", "split", "drop", "short row", "tube"],
+)
+def test_other_kinds_of_stitch_are_refused_by_place(then: list[str], says: str) -> None:
+    with pytest.raises(InputError, match=says) as refused:
+        read(*stockinette(2), *then)
+    assert "shaped at the edges" in refused.value.remedy
+
+
+def test_interlock_is_refused() -> None:
+    lines = ["in 3"]
+    for row in range(8):
+        lines += courses("3", "bf" * 4 if row % 2 else "fb" * 4, 1, first=row)
+    with pytest.raises(InputError, match=r"course 1, .*interlock"):
+        read(*lines)
+
+
+def test_two_pieces_are_refused() -> None:
+    other = [line.replace(" f", " f10") for line in [*tucks("2", 6), *courses("2", "f" * 6, 4)]]
+    with pytest.raises(InputError, match="not joined"):
+        read(*stockinette(4), *other)
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("knit * f1 1", "line 4: .* not a direction"),
+        ("knit + q1 1", "line 4: 'q1' is not a needle"),
+        ("knit + f1 1", "line 4: carrier 1 is not in"),
+        ("knit +", "line 4: an operand is missing"),
+        ("rack left", "line 4: .* not a number"),
+        ("xfer f1 b2", "line 4: f1 and b2 do not face each other at rack 0"),
+        ("out 1", "line 4: carrier 1 is not in"),
+    ],
+)
+def test_mistakes_are_named_by_line(line: str, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        read(line)
+
+
+def test_long_programs_take_time_in_proportion() -> None:
+    head = [*HEAD, *(f";;X-Note-{n}: {'-' * 20}" for n in range(1200))]
+    seconds = []
+    for rows in (100, 400):
+        program = "\n".join([*head, *stockinette(rows, width=200)])
+        begin = time.process_time()
+        assert knitted_chart(program).chart.rows == rows
+        seconds.append(time.process_time() - begin)
+    assert seconds[1] < 10 * seconds[0] + 1
