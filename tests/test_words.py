@@ -26,6 +26,19 @@ BARE_NUMBER = re.compile(r"(?<![\w.)\]}/*:-])[-−]?\.\d")
 CODE = re.compile(r"^```.*?^```$|``.*?``|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 """Parts of prose that are not prose."""
 DOCTEST = re.compile(r"^ *>>> .*(?:\n *\S.*)*", re.MULTILINE)
+_LIST = r"((?:[^()]|\([^()]*\))*)"
+PAGE_NAMES = re.compile(
+    rf"\b(?:const|let|var)\s+([\w$]+(?:,\s*[\w$]+)*|[{{[][^;]*?[}}\]](?=\s*(?:=(?![=>])|of\b)))"
+    rf"|\({_LIST}\)\s*=>"
+    rf"|(?:[\w$]|\bfunction\*? |\bcatch )\({_LIST}\) \{{"
+)
+"""Declared names in the page's code, and parameters: of arrow functions, of other functions."""
+PAGE_VAGUE = re.compile(rf"(?<![\w$-])(?<![^.]\.)({'|'.join(sorted(VAGUE))})(?![\w$-]|\s*[:(.\[])")
+"""A vague name among such names, not the name of a field."""
+PAGE_PARAMETER = re.compile(rf"@param \{{.*?\}} \[?({'|'.join(sorted(VAGUE))})\b")
+"""The description of a parameter with a vague name."""
+PAGE_PROSE = re.compile(r"/\*.*?\*/|(?<![:\\])//[^\n]*|\"(?:[^\"\\\n]|\\.)*\"", re.DOTALL)
+"""Comments and strings of the page's code."""
 
 ALLOWED: dict[str, dict[str, int]] = {"names": {"app/operations": 1}}
 """Faults that each folder may still have, by rule."""
@@ -48,6 +61,9 @@ def faults() -> tuple[Fault, ...]:
         for file in sorted((ROOT / top).rglob("*.py")):
             if not file.name.startswith("test_"):
                 every += faults_of_code(file)
+    for file in page_files():
+        lines = vague_page_names(file.read_text(encoding="utf-8"))
+        every += (fault("names", file, line, name) for line, name in lines)
     for file in sorted((ROOT / "docs").glob("*.md")):
         text = blanked(CODE, file.read_text(encoding="utf-8"))
         every += (fault("numbers", file, line, what) for line, what in bare_numbers(text))
@@ -75,6 +91,25 @@ def faults_of_code(file: Path) -> Iterator[Fault]:
             prose = blanked(CODE, blanked(DOCTEST, text))
             for line, what in bare_numbers(prose):
                 yield fault("numbers", file, string.lineno + line - 1, what)
+
+
+def page_files() -> Iterator[Path]:
+    """The page's code, tests included, without what is installed or built."""
+    page = ROOT / "frontend"
+    yield from sorted(page.glob("*.js"))
+    for folder in sorted(page.iterdir()):
+        if folder.is_dir() and folder.name not in {"node_modules", "dist"}:
+            yield from sorted(folder.rglob("*.js"))
+
+
+def vague_page_names(text: str) -> Iterator[tuple[int, str]]:
+    """Lines and names of the vague variables and parameters in JavaScript."""
+    for match in PAGE_PARAMETER.finditer(text):
+        yield text.count("\n", 0, match.start()) + 1, match[1]
+    code = blanked(PAGE_PROSE, text)
+    for declared in PAGE_NAMES.finditer(code):
+        for name in PAGE_VAGUE.finditer(code, *declared.span(declared.lastindex or 0)):
+            yield code.count("\n", 0, name.start()) + 1, name[1]
 
 
 def docstrings(node: ast.AST) -> Iterator[ast.Constant]:
@@ -127,6 +162,22 @@ def test_the_command_line_has_no_vague_names_nor_fragments() -> None:
 )
 def test_bare_numbers_are_seen(text: str, count: int) -> None:
     assert len(list(bare_numbers(text))) == count
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("const found = 1;\nlet low, told;\nfor (const one of ones) {}", ["found", "told", "one"]),
+        ("const { a = 1, found, asked: b, c: told } = one; [one] = found;", ["found", "told"]),
+        ("const [a,\n  wanted] = pairs.map(([one, two]) => one);", ["wanted", "one"]),
+        ("set(a, ...told) { if (found) { tell(one); } }", ["told"]),
+        ("function* of(a, asked = f()) {}\ntry {} catch (wanted) {}", ["asked", "wanted"]),
+        ("/** @param {{a: 1}} one @param {B} [told] */\nlet b = c.found;", ["one", "told"]),
+        ('say("let one (one) => 1"); // const found\nlet a = { found, one: 1 };', []),
+    ],
+)
+def test_vague_names_in_the_page_are_seen(text: str, names: list[str]) -> None:
+    assert [name for _, name in vague_page_names(text)] == names
 
 
 def _report(folder: str | None) -> str:

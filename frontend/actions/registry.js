@@ -28,9 +28,9 @@ export const ACTIONS = [...CHOOSE, undo, redo, ...SELECTION, ...TRANSFORM, ...DE
 
 /** @param {string} id */
 export function action(id) {
-  const found = ACTIONS.find((candidate) => candidate.id === id);
-  if (!found) throw new Error(`There is no action ${id}.`);
-  return found;
+  const match = ACTIONS.find((candidate) => candidate.id === id);
+  if (!match) throw new Error(`There is no action ${id}.`);
+  return match;
 }
 
 /**
@@ -62,9 +62,9 @@ export function shown(shortcut = "") {
 export function listenToKeys(context, isTyping) {
   window.addEventListener("keydown", (event) => {
     if (isTyping() || document.querySelector("dialog[open]") || event.defaultPrevented) return;
-    const found = ACTIONS.find(({ keys }) => keys.some((key) => matches(key, event)));
-    if (!found || found.native) return;
+    const match = ACTIONS.find(({ keys }) => keys.some((key) => matches(key, event)));
+    if (!match || match.native) return;
     event.preventDefault();
-    if (found.enabled?.(context.studio) !== false) found.perform(context);
+    if (match.enabled?.(context.studio) !== false) match.perform(context);
   });
 }

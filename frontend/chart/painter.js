@@ -126,8 +126,8 @@ export class Painter {
     const { studio } = this;
     const { document: chart, selection } = studio;
     if (!selection.value || !selects(selection.value, ...cell)) {
-      const found = boxAt(chart, cell);
-      if (found) selection.value = found;
+      const box = boxAt(chart, cell);
+      if (box) selection.value = box;
       else if (!selection.value) {
         studio.tell("Select stitches first (M, Q or W); then drag them.");
         return false;

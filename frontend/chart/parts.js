@@ -125,7 +125,7 @@ export function drawRepeatLabels(context, view, { grid, repeats }, palette) {
       /** @param {number} n @param {number} of */
       const times = (n, of) => String(Math.floor(n / of));
       const count = `${times(columns, motif.columns)} × ${times(rows, motif.rows)}`;
-      const text = [`${name}  ${count}`, count].find((one) => context.measureText(one).width + 12 <= width);
+      const text = [`${name}  ${count}`, count].find((label) => context.measureText(label).width + 12 <= width);
       if (!text || height < 57) continue;
       const wide = context.measureText(text).width + 10;
       context.fillStyle = palette.text;
@@ -137,15 +137,15 @@ export function drawRepeatLabels(context, view, { grid, repeats }, palette) {
 }
 
 /** Edges of bitmaps, as long as these do not change. @type {WeakMap<Uint8Array, {edition: number, edges: Edges}>} */
-const found = new WeakMap();
+const knownEdges = new WeakMap();
 
 /** @param {Uint8Array} cells of the chart @param {ChartDocument} chart */
 function known(cells, chart) {
   const edition = chart.edition(cells);
-  let entry = found.get(cells);
+  let entry = knownEdges.get(cells);
   if (entry?.edition !== edition) {
     entry = { edition, edges: edgesOf(cells, chart.grid.rows, chart.grid.columns) };
-    found.set(cells, entry);
+    knownEdges.set(cells, entry);
   }
   return entry.edges;
 }
@@ -158,7 +158,7 @@ function known(cells, chart) {
  * @param {Box & {mask: Uint8Array}} selection
  */
 export function selectionEdge(view, grid, { mask, row0, column0, row1, column1 }) {
-  let entry = found.get(mask);
-  if (!entry) found.set(mask, (entry = { edition: 0, edges: edgesOf(mask, row1 - row0, column1 - column0) }));
+  let entry = knownEdges.get(mask);
+  if (!entry) knownEdges.set(mask, (entry = { edition: 0, edges: edgesOf(mask, row1 - row0, column1 - column0) }));
   return edgePath(view, grid, entry.edges, view.visible(grid), { row: row0, column: column0 });
 }

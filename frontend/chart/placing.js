@@ -26,7 +26,7 @@ import { selectionOf } from "../design/selection.js";
 export function placedBox(repeat, grid, start, current) {
   if (!repeat) return null;
   const { motif, edgeRows, edgeColumns } = repeat;
-  const wanted = repeat.snapped(Math.abs(current[0] - start[0]) + 1, Math.abs(current[1] - start[1]) + 1);
+  const snapped = repeat.snapped(Math.abs(current[0] - start[0]) + 1, Math.abs(current[1] - start[1]) + 1);
   /** @param {number} from @param {number} to @param {number} size @param {number} n @param {number} m @param {number} limit */
   const along = (from, to, size, n, m, limit) => {
     const most = to >= from ? limit - from : from + 1;
@@ -34,8 +34,8 @@ export function placedBox(repeat, grid, start, current) {
     if (fits < n + m) return null;
     return to >= from ? [from, from + fits] : [from + 1 - fits, from + 1];
   };
-  const rows = along(start[0], current[0], wanted.rows, motif.rows, edgeRows, grid.rows);
-  const columns = along(start[1], current[1], wanted.columns, motif.columns, edgeColumns, grid.columns);
+  const rows = along(start[0], current[0], snapped.rows, motif.rows, edgeRows, grid.rows);
+  const columns = along(start[1], current[1], snapped.columns, motif.columns, edgeColumns, grid.columns);
   if (!rows || !columns) return null;
   return { row0: rows[0], row1: rows[1], column0: columns[0], column1: columns[1] };
 }

@@ -95,12 +95,12 @@ export class ChartDocument extends ChartState {
     }
     const { locked } = this.links;
     const own = target === "outline" ? null : this.region(target.slice(7));
-    const wanted = new Brush(this.grid.purl.length);
+    const allowed = new Brush(this.grid.purl.length);
     for (const i of brush.touched) {
       if (own ? own.locked : locked[i]) stroke.refused = i;
-      else if (!own || this.outline[i]) wanted.set(i, brush.values[i]);
+      else if (!own || this.outline[i]) allowed.set(i, brush.values[i]);
     }
-    this.#lay(target, wanted, fresh);
+    this.#lay(target, allowed, fresh);
     if (own?.fill) {
       this.#lay("stitches", this.#linked(filling(own, this, stroke.layers.get(target))), true);
     }
@@ -352,7 +352,7 @@ export class ChartDocument extends ChartState {
    */
   #linked(brush, everywhere = false) {
     const links = this.links;
-    const wanted = new Brush(this.grid.purl.length);
+    const spread = new Brush(this.grid.purl.length);
     const motifs = new Brush(links.groups);
     for (const i of brush.touched) {
       if (!this.outline[i] && !everywhere) continue;
@@ -360,12 +360,12 @@ export class ChartDocument extends ChartState {
       if (links.locked[i]) {
         if (this.#stroke && brush.values[i] !== this.grid.purl[i]) this.#stroke.refused = i;
       } else if (group) motifs.set(group, brush.values[i]);
-      else wanted.set(i, brush.values[i]);
+      else spread.set(i, brush.values[i]);
     }
     for (const group of motifs.touched) {
-      for (const i of links.members(group)) wanted.set(i, motifs.values[group]);
+      for (const i of links.members(group)) spread.set(i, motifs.values[group]);
     }
-    return wanted;
+    return spread;
   }
 
   /** Motifs become what their copies show. @returns {Patch[]} */
@@ -382,14 +382,14 @@ export class ChartDocument extends ChartState {
     });
   }
 
-  /** @param {string} on @param {Brush} wanted @param {boolean} fresh */
-  #lay(on, wanted, fresh) {
+  /** @param {string} on @param {Brush} brush @param {boolean} fresh */
+  #lay(on, brush, fresh) {
     const stroke = this.#stroke;
     const bitmap = this.bitmap(on);
     if (!stroke || !bitmap) return;
     let layer = stroke.layers.get(on);
     if (!layer) stroke.layers.set(on, (layer = new Layer(bitmap, this.grid.columns)));
-    this.refresh(on, layer.apply(wanted, fresh));
+    this.refresh(on, layer.apply(brush, fresh));
   }
 
   /** @param {number} refused a stitch that was locked, or -1 */

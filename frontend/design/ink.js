@@ -48,22 +48,22 @@ export class Ink {
 }
 
 /** @param {number} value */
-const one = (value) => new ChartGrid(1, 1, Uint8Array.of(value));
+const stitch = (value) => new ChartGrid(1, 1, Uint8Array.of(value));
 
 export const FLIP = new Ink("flip", "Flip", null, "The opposite of the stitch you touch first");
-export const KNIT = new Ink("knit", "Knit", one(0));
-export const PURL = new Ink("purl", "Purl", one(1));
+export const KNIT = new Ink("knit", "Knit", stitch(0));
+export const PURL = new Ink("purl", "Purl", stitch(1));
 export const NO_STITCH = new Ink(
   "no-stitch",
   "No stitch",
-  one(0),
+  stitch(0),
   "Cut the chart's outline; the right button puts stitches back",
   "outline",
 );
 
 /** Painting with a region adds stitches to it, the right button takes them out. @param {{id: string, name: string}} region */
 export function regionInk({ id, name }) {
-  return new Ink(`region-${id}`, name, one(1), `Add stitches to ${name}`, `region:${id}`);
+  return new Ink(`region-${id}`, name, stitch(1), `Add stitches to ${name}`, `region:${id}`);
 }
 
 /**

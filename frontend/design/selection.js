@@ -43,7 +43,7 @@ export function selectionOf(bitmap, { rows, columns }) {
     row1 = row + 1;
     column0 = Math.min(column0, first);
     column1 = Math.max(column1, line.lastIndexOf(1) + 1);
-    for (const one of line) count += one;
+    for (const selected of line) count += selected;
   }
   if (!count) return null;
   const box = { row0, column0, row1, column1 };

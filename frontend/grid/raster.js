@@ -66,10 +66,10 @@ export function thick(path, size) {
  * @returns {Span[]}
  */
 export function flood({ rows, columns }, values, [row, column]) {
-  const wanted = values[row * columns + column];
+  const startValue = values[row * columns + column];
   const seen = new Uint8Array(values.length);
   /** @param {number} i */
-  const free = (i) => !seen[i] && values[i] === wanted;
+  const free = (i) => !seen[i] && values[i] === startValue;
   /** @type {Span[]} */
   const spans = [];
   /** @type {Cell[]} */

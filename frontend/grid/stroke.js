@@ -69,11 +69,11 @@ export class Layer {
   /**
    * Make stitches what is wanted.
    *
-   * @param {Brush} wanted
+   * @param {Brush} brush
    * @param {boolean} fresh whether the stroke is only this: what it flipped before goes back
    * @returns {Box | null} what changed
    */
-  apply(wanted, fresh) {
+  apply(brush, fresh) {
     const { bitmap, columns } = this;
     const flipped = this.#flipped;
     const box = { row0: Infinity, column0: Infinity, row1: 0, column1: 0 };
@@ -91,12 +91,12 @@ export class Layer {
       for (let row = row0; row < row1; row++) {
         for (let column = column0; column < column1; column++) {
           const i = row * columns + column;
-          if (flipped[i] && wanted.values[i] === UNTOUCHED) toggle(i, row, column);
+          if (flipped[i] && brush.values[i] === UNTOUCHED) toggle(i, row, column);
         }
       }
     }
-    for (const i of wanted.touched) {
-      if (bitmap[i] === wanted.values[i]) continue;
+    for (const i of brush.touched) {
+      if (bitmap[i] === brush.values[i]) continue;
       const row = Math.floor(i / columns);
       toggle(i, row, i - row * columns);
     }

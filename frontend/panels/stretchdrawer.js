@@ -58,9 +58,9 @@ export function stretchdrawer(host, studio, stretcher) {
     ],
   );
   const start = () => {
-    const wanted = Number(amount.value);
+    const pull = Number(amount.value);
     const toForce = unit.value === "N";
-    if (!(wanted > 0)) {
+    if (!(pull > 0)) {
       studio.tellProblem({
         type: "input",
         status: 422,
@@ -77,7 +77,7 @@ export function stretchdrawer(host, studio, stretcher) {
       model: /** @type {"full" | "published"} */ (options.model.value),
       shear_modulus_n_per_mm: shear > 0 ? shear : null,
     };
-    void stretcher.run(direction, toForce ? { force_n: wanted } : { strain: wanted / 100 }, how);
+    void stretcher.run(direction, toForce ? { force_n: pull } : { strain: pull / 100 }, how);
   };
   /** @param {number} most @param {Unit} of */
   const pullBy = (most, of) => {

@@ -229,7 +229,7 @@ function exportMenu(studio, context) {
 /**
  * An action as an item of a menu.
  *
- * @param {import("../actions/action.js").Action} one
+ * @param {import("../actions/action.js").Action} action
  * @param {ActionContext} context
  * @param {string} [label]
  */
@@ -252,17 +252,17 @@ function designsMenu(context) {
     class: "button quiet brand flex",
   });
   /** @param {string} id */
-  const one = (id) => item(action(id), context);
+  const menuItem = (id) => item(action(id), context);
   setItems([
-    ...["gallery", "garments", "open-find", "open-atlas"].map(one),
+    ...["gallery", "garments", "open-find", "open-atlas"].map(menuItem),
     null,
-    ...["designs", "duplicate"].map(one),
+    ...["designs", "duplicate"].map(menuItem),
     null,
-    ...["versions", "compare", "share"].map(one),
+    ...["versions", "compare", "share"].map(menuItem),
     null,
-    ...["import", "project-file"].map(one),
+    ...["import", "project-file"].map(menuItem),
     null,
-    ...["palette", "tour", "help"].map(one),
+    ...["palette", "tour", "help"].map(menuItem),
   ]);
   return root;
 }

@@ -181,7 +181,7 @@ function traces(studio, own) {
 function stressBand(stretch) {
   if (!stretch) return { x: [], y: [] };
   const { force_n: force, stress_n_per_mm: stress } = stretch;
-  const strain = stretch.strain.map((one) => 100 * one);
+  const strain = stretch.strain.map((fraction) => 100 * fraction);
   const [low, high] = stretch.force_interval_n.map((ends) => ends.map((end, i) => (end * stress[i]) / force[i]));
   return { x: [0, ...strain, ...strain.toReversed()], y: [0, ...low, ...high.toReversed()] };
 }

@@ -31,8 +31,8 @@ export function rigidityPlot(host, studio) {
     plot.replaceChildren();
     const points = studio.materials.value.flatMap(({ id, name, fabrics }) =>
       FABRICS.flatMap((fabric) => {
-        const one = fabrics[fabric];
-        return one ? [{ id, name, fabric, x: one.modulus_course_n_per_mm, y: one.modulus_wale_n_per_mm }] : [];
+        const moduli = fabrics[fabric];
+        return moduli ? [{ id, name, fabric, x: moduli.modulus_course_n_per_mm, y: moduli.modulus_wale_n_per_mm }] : [];
       }),
     );
     const { value, scope } = studio.prediction.value;

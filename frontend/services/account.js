@@ -16,8 +16,8 @@ export const nameOf = ({ user }) => (user === NAMELESS ? "Signed in" : user);
 /** Show the user's name, if this browser has a session. @param {Studio} studio */
 export async function showUser(studio) {
   try {
-    const found = await api.session();
-    if (found.sessions.some(({ is_this }) => is_this)) studio.user.value = nameOf(found);
+    const signedIn = await api.session();
+    if (signedIn.sessions.some(({ is_this }) => is_this)) studio.user.value = nameOf(signedIn);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error; // the name is shown at the next visit
   }

@@ -26,10 +26,10 @@ export function startPoser(studio) {
   const latest = new Latest(DELAY_MS);
   const { pose, posed, limb, curling } = studio.seeing;
   /** @returns {Posed["pose"]} */
-  const wanted = () => (pose.value === "flat" && curling.value && studio.currentStrain() ? "pulled" : pose.value);
+  const poseToShow = () => (pose.value === "flat" && curling.value && studio.currentStrain() ? "pulled" : pose.value);
   const ask = () => {
     latest.cancel();
-    const now = wanted();
+    const now = poseToShow();
     const shapes = SHAPES[now];
     const { rows, columns } = studio.document.grid;
     const old = posed.value;
@@ -38,10 +38,10 @@ export function startPoser(studio) {
     if (!shapes) return;
     latest.run(
       async (signal) => {
-        for await (const found of shapes(studio, signal)) {
+        for await (const shape of shapes(studio, signal)) {
           if (signal.aborted) return;
-          posed.value = found;
-          if (found.converged) return;
+          posed.value = shape;
+          if (shape.converged) return;
         }
       },
       ({ offline, problem }) => {
@@ -55,7 +55,7 @@ export function startPoser(studio) {
   const again = () => {
     if (pose.value === "tested")
       pose.value = "flat"; // it was a piece of the chart before
-    else if (wanted() !== "flat") ask();
+    else if (poseToShow() !== "flat") ask();
   };
   pose.listen((now) => now !== "tested" && ask());
   studio.weight.listen(() => pose.value === "hung" && ask());
@@ -72,8 +72,8 @@ export function startPoser(studio) {
 
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* lying(studio, signal) {
-  for await (const found of curled(studio, signal, null)) {
-    yield { ...found, pose: "lying", words: "As it lies, without friction" };
+  for await (const shape of curled(studio, signal, null)) {
+    yield { ...shape, pose: "lying", words: "As it lies, without friction" };
   }
 }
 
@@ -81,19 +81,19 @@ async function* lying(studio, signal) {
 async function* pulled(studio, signal) {
   const [direction, strain] = [studio.stretchDirection(), studio.currentStrain() ?? 0];
   const words = `Stretched ${along(direction)} by ${(100 * strain).toFixed(0)} %, free edges curl`;
-  for await (const found of curled(studio, signal, { direction, strain })) {
-    yield { ...found, pose: "pulled", words };
+  for await (const shape of curled(studio, signal, { direction, strain })) {
+    yield { ...shape, pose: "pulled", words };
   }
 }
 
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* hung(studio, signal) {
   const { rows, columns } = studio.document.grid;
-  const asked = { ...studio.request, outline: outlineOf(studio), linear_density_g_per_m: studio.weight.value };
+  const request = { ...studio.request, outline: outlineOf(studio), linear_density_g_per_m: studio.weight.value };
   for (const time_limit_s of PATIENCE_S) {
     const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.run(
       "hang",
-      { ...asked, time_limit_s },
+      { ...request, time_limit_s },
       signal,
     );
     const length = `reaches ${figure(drop_mm / 10, 3)} cm down, stitches ${percent(lengthening, 1)} longer`;
@@ -104,11 +104,11 @@ async function* hung(studio, signal) {
 
 /** @param {Studio} studio @param {AbortSignal} signal @param {import("../types.js").CurlRequest["pull"]} pull */
 async function* curled(studio, signal, pull) {
-  const asked = { ...studio.request, outline: outlineOf(studio), pull };
+  const request = { ...studio.request, outline: outlineOf(studio), pull };
   /** The first shape begins at the old one; the last one depends on the chart only. */
   let after = studio.seeing.posed.value?.id ?? null;
   for (const time_limit_s of PATIENCE_S) {
-    const { id, rows, columns, converged, notes } = await api.run("curl", { ...asked, after, time_limit_s }, signal);
+    const { id, rows, columns, converged, notes } = await api.run("curl", { ...request, after, time_limit_s }, signal);
     yield { id, rows, columns, converged: converged && !after, note: notes[0] };
     after = null;
   }

@@ -67,7 +67,7 @@ function partOf(box, chart, kind, title) {
   const common = { kind, title, shaped: null, counted };
   if (!mask || !inside) return { ...common, size: `${grid.columns} × ${grid.rows}`, grid, note: "" };
   const part = grid.region(inside);
-  const stitches = mask.reduce((sum, one) => sum + one, 0);
+  const stitches = mask.reduce((sum, bit) => sum + bit, 0);
   const note = `Moduli of the largest rectangle inside it, ${part.columns} × ${part.rows} stitches.`;
   return { ...common, size: `${stitches} stitches`, grid: part, note };
 }

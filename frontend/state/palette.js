@@ -27,9 +27,9 @@ const known = new Map();
 /** @returns {Palette} */
 export function readPalette() {
   const dark = isDark();
-  let found = known.get(dark);
-  if (!found) known.set(dark, (found = palette(dark)));
-  return found;
+  let colours = known.get(dark);
+  if (!colours) known.set(dark, (colours = palette(dark)));
+  return colours;
 }
 
 /** Whether the page is in its dark theme now. */

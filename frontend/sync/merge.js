@@ -37,11 +37,11 @@ export function merge(base, mine, theirs) {
   return { document, conflicts };
 }
 
-/** Whether two documents are the same. @param {DesignDocument} one @param {DesignDocument} other */
-export function same(one, other) {
+/** Whether two documents are the same. @param {DesignDocument} first @param {DesignDocument} second */
+export function same(first, second) {
   return (
-    [...PLAIN, /** @type {const} */ ("chart")].every((part) => one[part] === other[part]) &&
-    LISTS.every((part) => alike(one[part], other[part]))
+    [...PLAIN, /** @type {const} */ ("chart")].every((part) => first[part] === second[part]) &&
+    LISTS.every((part) => alike(first[part], second[part]))
   );
 }
 
@@ -124,13 +124,13 @@ function either(base, mine, theirs) {
 /**
  * Whether two values say the same, in whatever order their fields are.
  *
- * @param {unknown} one
- * @param {unknown} other
+ * @param {unknown} first
+ * @param {unknown} second
  */
-function alike(one, other) {
-  if (one === other) return true;
-  if (typeof one !== "object" || typeof other !== "object") return false;
-  return JSON.stringify(one, inOrder) === JSON.stringify(other, inOrder);
+function alike(first, second) {
+  if (first === second) return true;
+  if (typeof first !== "object" || typeof second !== "object") return false;
+  return JSON.stringify(first, inOrder) === JSON.stringify(second, inOrder);
 }
 
 /** @param {string} _key @param {unknown} value */
@@ -139,7 +139,7 @@ function inOrder(_key, value) {
   return Object.fromEntries(Object.entries(value).sort(([a], [b]) => (a < b ? -1 : 1)));
 }
 
-/** @param {string} one @param {string} other */
-function sameShape(one, other) {
-  return one.length === other.length && one.indexOf("\n") === other.indexOf("\n");
+/** @param {string} first @param {string} second */
+function sameShape(first, second) {
+  return first.length === second.length && first.indexOf("\n") === second.indexOf("\n");
 }

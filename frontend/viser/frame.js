@@ -332,9 +332,9 @@
   /** @param {WebGL2RenderingContext | null} gl */
   const drawnBySoftware = (gl) => {
     const info = gl?.getExtension("WEBGL_debug_renderer_info");
-    const found = info && SOFTWARE.test(gl?.getParameter(info.UNMASKED_RENDERER_WEBGL));
+    const isSoftware = info && SOFTWARE.test(gl?.getParameter(info.UNMASKED_RENDERER_WEBGL));
     gl?.getExtension("WEBGL_lose_context")?.loseContext();
-    return Boolean(found);
+    return Boolean(isSoftware);
   };
   const withoutGpu = () =>
     (software ??= drawnBySoftware(

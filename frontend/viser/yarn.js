@@ -95,12 +95,12 @@
   }
 
   /** Colour of words, if a page around tells it. */
-  let told = "";
+  let givenInk = "";
   addEventListener("message", ({ source, data }) => {
-    if (source === parent && data.ink) told = data.ink;
+    if (source === parent && data.ink) givenInk = data.ink;
   });
   const ink = () =>
-    (told || getComputedStyle(document.body).color)
+    (givenInk || getComputedStyle(document.body).color)
       .match(/[\d.]+/g)
       ?.slice(0, 3)
       .map((part) => Number(part) / 255) ?? [0, 0, 0];
@@ -115,13 +115,13 @@
   gl.useProgram = function (program) {
     useProgram.call(this, program);
     if (!program) return;
-    let found = places.get(program);
-    if (!found)
+    let uniforms = places.get(program);
+    if (!uniforms)
       places.set(
         program,
-        (found = ["yarn", "yarnPixels", "ink"].map((name) => this.getUniformLocation(program, name))),
+        (uniforms = ["yarn", "yarnPixels", "ink"].map((name) => this.getUniformLocation(program, name))),
       );
-    const [place, pixels, words] = found;
+    const [place, pixels, words] = uniforms;
     if (words) this.uniform3fv(words, ink());
     if (!place) return;
     this.uniform3fv(place, yarn);

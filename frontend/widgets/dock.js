@@ -48,7 +48,7 @@ export function docked(studio, name, title, ...content) {
   dock.append(section);
   panel.watch((open) => {
     section.hidden = open !== name;
-    dock.hidden = [...dock.children].every((one) => one instanceof HTMLElement && one.hidden);
+    dock.hidden = [...dock.children].every((child) => child instanceof HTMLElement && child.hidden);
   });
   return () => (panel.value = name);
 }

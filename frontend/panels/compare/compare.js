@@ -92,7 +92,7 @@ export function create(studio, { keeper }) {
   );
 
   /** @type {{piece: Piece, answers: Answers}[]} */
-  let found = [];
+  let compared = [];
   const latest = new Latest(0);
   const load = () => {
     element.classList.add("busy");
@@ -100,13 +100,13 @@ export function create(studio, { keeper }) {
       async (signal) => {
         const all = await Promise.all(
           sides.map(async ({ which, yarnId }) => {
-            const one = await piece(studio, keeper, which.value);
-            const material = yarnId || one.material;
-            return { piece: { ...one, material }, answers: await answers(one.scope, material, signal) };
+            const sidePiece = await piece(studio, keeper, which.value);
+            const material = yarnId || sidePiece.material;
+            return { piece: { ...sidePiece, material }, answers: await answers(sidePiece.scope, material, signal) };
           }),
         );
         if (signal.aborted) return;
-        found = all;
+        compared = all;
         status.replaceChildren();
         element.classList.remove("busy");
         draw();
@@ -118,13 +118,13 @@ export function create(studio, { keeper }) {
     );
   };
   const draw = () => {
-    if (!found.length) return;
-    const sizes = found.map(({ piece: { scope }, answers: { predicted } }) => {
+    if (!compared.length) return;
+    const sizes = compared.map(({ piece: { scope }, answers: { predicted } }) => {
       const { course, wale } = sizeAtRest(scope, predicted);
       return { width: course.value / 10, height: wale.value / 10 };
     });
     const scale = PICTURE_PX / Math.max(...sizes.flatMap(({ width, height }) => [width, height]));
-    found.forEach(({ piece: { chart, outline, material, scope }, answers: { predicted } }, k) => {
+    compared.forEach(({ piece: { chart, outline, material, scope }, answers: { predicted } }, k) => {
       const { width, height } = sizes[k];
       const picture = thumbnail({ chart, outline }, { side: PICTURE_PX });
       picture.style.cssText = `width: ${width * scale}px; height: ${height * scale}px; aspect-ratio: auto`;
@@ -135,15 +135,15 @@ export function create(studio, { keeper }) {
     });
     fill(
       table,
-      found.map((one) => one.answers),
+      compared.map((side) => side.answers),
     );
     drawRectangles(
       rectangles,
-      found.map((one) => one.answers.predicted),
+      compared.map((side) => side.answers.predicted),
     );
     void drawPair(
       plot,
-      found.map(({ answers: { curves } }, k) => ({
+      compared.map(({ answers: { curves } }, k) => ({
         name: SIDES[k].letter,
         colour: SIDES[k].colour,
         curve: curves[direction],
@@ -178,8 +178,8 @@ export function create(studio, { keeper }) {
       offer(which, all);
       // Opened for a version, or with what was compared last; else with the latest other thing there is.
       const last = against.value ? "" : before;
-      const wanted = last || (k ? (against.value ?? all[1]?.value ?? NOW) : NOW);
-      which.value = all.some(({ value }) => value === wanted) ? wanted : NOW;
+      const preferred = last || (k ? (against.value ?? all[1]?.value ?? NOW) : NOW);
+      which.value = all.some(({ value }) => value === preferred) ? preferred : NOW;
       if (which.value !== before) side.yarnId = "";
     });
     against.value = null;
@@ -218,7 +218,7 @@ function yarns(select, studio, chosen) {
 
 /** @param {HTMLTableElement} table @param {Answers[]} pair */
 function fill(table, pair) {
-  /** @type {{label: string, unit: string, of: (one: Answers) => Answer}[]} */
+  /** @type {{label: string, unit: string, of: (answers: Answers) => Answer}[]} */
   const rows = [];
   for (const way of /** @type {Direction[]} */ (["course", "wale"])) {
     rows.push(
@@ -298,7 +298,10 @@ const note = () => h("span", { class: "interval" }, "intervals meet");
 
 /** Rectangles of both pieces on one scale, one in the other. @param {HTMLElement} host @param {PredictResult[]} pair */
 function drawRectangles(host, pair) {
-  const sides = pair.map((one) => [one.extensibility_course_mm_per_n, one.extensibility_wale_mm_per_n]);
+  const sides = pair.map((predicted) => [
+    predicted.extensibility_course_mm_per_n,
+    predicted.extensibility_wale_mm_per_n,
+  ]);
   // The square root keeps stiff fabrics visible beside ribs that give fifty times as much.
   const scale = RECTANGLES_PX / Math.sqrt(Math.max(...sides.flat()));
   host.replaceChildren(

@@ -101,13 +101,13 @@ export function create(studio, context) {
     filter();
   };
   const filter = () => {
-    const wanted = search.value.trim().toLowerCase();
+    const query = search.value.trim().toLowerCase();
     const items = /** @type {HTMLElement[]} */ ([...list.querySelectorAll(".card")]);
-    for (const item of items) item.hidden = !(item.dataset.name ?? "").includes(wanted);
+    for (const item of items) item.hidden = !(item.dataset.name ?? "").includes(query);
     const none = items.every(({ hidden }) => hidden);
     list.querySelector(".empty")?.remove();
     if (!none) return;
-    const text = wanted
+    const text = query
       ? ["No design has that in its name.", ""]
       : deleted
         ? ["Nothing was deleted.", "Deleted designs stay here for 30 days."]
@@ -175,17 +175,17 @@ export function create(studio, context) {
       "aria-label": "New name",
     });
     const done = async () => {
-      const wanted = field.value.trim();
+      const newName = field.value.trim();
       field.replaceWith(name);
-      if (!wanted || wanted === design.name) return;
+      if (!newName || newName === design.name) return;
       if (design.id === keeper.remoteId)
-        studio.name.value = wanted; // the keeper delivers it
+        studio.name.value = newName; // the keeper delivers it
       else {
-        const kept = await attempt(status, () => designs.rename(design.id, wanted, design.revision));
+        const kept = await attempt(status, () => designs.rename(design.id, newName, design.revision));
         if (!kept) return;
         design.revision = kept.revision;
       }
-      design.name = name.textContent = wanted;
+      design.name = name.textContent = newName;
     };
     field.addEventListener("keydown", (event) => {
       event.stopPropagation();

@@ -98,8 +98,8 @@ export function create(_studio, { keeper }) {
   const remote = () => keptName(keeper, status, ", so it cannot be shared now.");
   const load = async () => {
     const id = keeper.remoteId;
-    const found = id ? await attempt(status, () => designs.shares(id), load) : { shares: [] };
-    list.replaceChildren(...(found?.shares ?? []).map(row));
+    const listed = id ? await attempt(status, () => designs.shares(id), load) : { shares: [] };
+    list.replaceChildren(...(listed?.shares ?? []).map(row));
   };
   /** @param {Share} share */
   const row = (share) =>

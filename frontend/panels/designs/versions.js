@@ -35,9 +35,9 @@ export function create(studio, { keeper, open }) {
       onsubmit: async (/** @type {SubmitEvent} */ event) => {
         event.preventDefault();
         const id = await remote();
-        const wanted =
+        const versionName =
           name.value.trim() || new Date().toLocaleString("en", { dateStyle: "medium", timeStyle: "short" });
-        if (id && (await attempt(status, () => designs.keepVersion(id, wanted)))) {
+        if (id && (await attempt(status, () => designs.keepVersion(id, versionName)))) {
           name.value = "";
           await load();
         }
@@ -62,9 +62,9 @@ export function create(studio, { keeper, open }) {
   const remote = () => keptName(keeper, status, "; versions are kept there.");
   const load = async () => {
     const id = keeper.remoteId;
-    const found = id ? await attempt(status, () => designs.versions(id), load) : { versions: [] };
-    if (!found) return;
-    const { versions } = found;
+    const listed = id ? await attempt(status, () => designs.versions(id), load) : { versions: [] };
+    if (!listed) return;
+    const { versions } = listed;
     list.replaceChildren(...versions.reverse().map(row));
     if (!versions.length) list.append(h("li", { class: "empty" }, h("strong", {}, "No versions yet.")));
   };

@@ -62,26 +62,26 @@ export function create(_studio, { keeper }) {
   );
 
   const load = async () => {
-    const found = await attempt(status, api.session, load);
-    if (found) show(found);
+    const signedIn = await attempt(status, api.session, load);
+    if (signedIn) show(signedIn);
   };
 
-  /** @param {SignedIn} found */
-  const show = (found) => {
+  /** @param {SignedIn} signedIn */
+  const show = (signedIn) => {
     who.replaceChildren(
       "You are signed in",
-      ...(found.user === "local" ? [] : [" as ", h("strong", {}, nameOf(found))]),
+      ...(signedIn.user === "local" ? [] : [" as ", h("strong", {}, nameOf(signedIn))]),
       ".",
     );
-    list.replaceChildren(...found.sessions.map(row));
+    list.replaceChildren(...signedIn.sessions.map(row));
     used.replaceChildren(
-      ...LIMITS.filter(([name]) => name in found.use).map(([name, text, written]) =>
+      ...LIMITS.filter(([name]) => name in signedIn.use).map(([name, text, written]) =>
         h(
           "tr",
           {},
           h("th", { scope: "row" }, text),
-          h("td", {}, written(found.use[name].used)),
-          h("td", {}, written(found.use[name].most)),
+          h("td", {}, written(signedIn.use[name].used)),
+          h("td", {}, written(signedIn.use[name].most)),
         ),
       ),
     );

@@ -29,9 +29,14 @@ export function create() {
           h(
             "dl",
             { class: "keys stack" },
-            ...ACTIONS.filter((one) => one.group === group).flatMap((one) => [
-              h("dt", {}, ...one.keys.slice(0, 2).map((key) => h("kbd", {}, shown(key)))),
-              h("dd", {}, one.label, hints.has(one.id) && h("span", { class: "muted" }, ` – ${hints.get(one.id)}`)),
+            ...ACTIONS.filter((action) => action.group === group).flatMap((action) => [
+              h("dt", {}, ...action.keys.slice(0, 2).map((key) => h("kbd", {}, shown(key)))),
+              h(
+                "dd",
+                {},
+                action.label,
+                hints.has(action.id) && h("span", { class: "muted" }, ` – ${hints.get(action.id)}`),
+              ),
             ]),
           ),
         ),
@@ -41,7 +46,7 @@ export function create() {
   );
   return async () => {
     element.showModal();
-    const found = await api.version().catch(() => undefined); // unreachable: the line is left out
-    if (found) version.replaceChildren(`Knitcore ${found.version} · `, h("a", { href: "/docs" }, "for programs"));
+    const release = await api.version().catch(() => undefined); // unreachable: the line is left out
+    if (release) version.replaceChildren(`Knitcore ${release.version} · `, h("a", { href: "/docs" }, "for programs"));
   };
 }

@@ -34,21 +34,21 @@ export async function importKnitting({ studio, keeper }, name, text) {
   const suffixed = isKnitout(text) && !/\.(k|knitout)$/i.test(name) ? `${name}.k` : name;
   try {
     /** @type {Pick<DesignDocument, "chart" | "outline" | "regions"> & {rows: number, columns: number, notes?: string[]}} */
-    const found = await call("/import", { method: "POST", body: { file: { name: suffixed, content } } });
+    const imported = await call("/import", { method: "POST", body: { file: { name: suffixed, content } } });
     const design = readDesign({
       format: "knitcore-design",
       version: 2,
       name: name.replace(/\.\w+$/, "") || "Imported",
       material: studio.materialId.value,
-      chart: found.chart,
-      outline: found.outline,
-      regions: found.regions,
+      chart: imported.chart,
+      outline: imported.outline,
+      regions: imported.regions,
     });
     keeper.openNew(design);
     studio.tell(
       [
-        `Opened ${found.columns} stitches × ${found.rows} rows from ${name}.`,
-        ...(found.notes ?? []),
+        `Opened ${imported.columns} stitches × ${imported.rows} rows from ${name}.`,
+        ...(imported.notes ?? []),
         "The design before it is still among your designs.",
       ].join(" "),
     );

@@ -48,12 +48,12 @@ function entries(context) {
   const { studio } = context;
   const patterns = studio.shelf.value.filter(({ repeat }) => repeat);
   return [
-    ...ACTIONS.filter(({ id, enabled }) => id !== "palette" && enabled?.(studio) !== false).map((one) => ({
-      label: one.label,
-      words: WORDS[one.id] ?? "",
-      icon: one.icon,
-      key: one.keys[0],
-      perform: () => one.perform(context),
+    ...ACTIONS.filter(({ id, enabled }) => id !== "palette" && enabled?.(studio) !== false).map((action) => ({
+      label: action.label,
+      words: WORDS[action.id] ?? "",
+      icon: action.icon,
+      key: action.keys[0],
+      perform: () => action.perform(context),
     })),
     ...OVERLAYS.filter((overlay) => overlay.available(studio)).map((overlay) => ({
       label: `Colour the chart by: ${overlay.label.toLowerCase()}`,
@@ -115,15 +115,15 @@ export function create(_studio, context) {
     },
   });
   const show = () => {
-    const wanted = plain(search.value).split(/\s+/);
+    const terms = plain(search.value).split(/\s+/);
     const all = entries(context);
-    const has = (/** @type {string} */ text) => wanted.every((word) => plain(text).includes(word));
+    const has = (/** @type {string} */ text) => terms.every((word) => plain(text).includes(word));
     const named = all.filter(({ label }) => has(label));
-    const meant = all.filter((one) => !named.includes(one) && has(`${one.label} ${one.words}`));
-    const found = [...named, ...meant];
-    nothing.textContent = found.length ? "" : "Nothing of that name. Try a tool, a yarn, a pattern or a colouring.";
+    const meant = all.filter((entry) => !named.includes(entry) && has(`${entry.label} ${entry.words}`));
+    const matching = [...named, ...meant];
+    nothing.textContent = matching.length ? "" : "Nothing of that name. Try a tool, a yarn, a pattern or a colouring.";
     list.replaceChildren(
-      ...found.map((one, i) =>
+      ...matching.map((entry, i) =>
         h(
           "button",
           {
@@ -133,12 +133,12 @@ export function create(_studio, context) {
             "aria-selected": String(i === 0),
             onclick: () => {
               element.close();
-              one.perform();
+              entry.perform();
             },
           },
-          one.icon ? icon(one.icon) : h("span", { class: "icon" }),
-          h("span", {}, one.label),
-          one.key && h("kbd", {}, shown(one.key)),
+          entry.icon ? icon(entry.icon) : h("span", { class: "icon" }),
+          h("span", {}, entry.label),
+          entry.key && h("kbd", {}, shown(entry.key)),
         ),
       ),
     );

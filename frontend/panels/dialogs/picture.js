@@ -58,10 +58,10 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
   document.getElementById("picture-dialog")?.remove();
   const stitch = (aspect?.stitch_wale_mm ?? 0.8) / (aspect?.stitch_course_mm ?? 1);
   const each = Math.max(bitmap.width, bitmap.height) <= MAX_SIDE;
-  const found = detectedGrid(values, width, height);
+  const detected = detectedGrid(values, width, height);
   const guess = Math.min(60, width);
   const cells =
-    found ??
+    detected ??
     (each
       ? { columns: bitmap.width, rows: bitmap.height }
       : { columns: guess, rows: Math.min(MAX_SIDE, Math.max(1, Math.round((guess * height) / width / stitch))) });
@@ -196,7 +196,7 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
         "div",
         { class: "picture-sizes flex wrap gap-8" },
         each && size("picture-each", "A pixel a stitch", { columns: bitmap.width, rows: bitmap.height }),
-        found && size("picture-found", `Grid found: ${found.columns} × ${found.rows}`, found),
+        detected && size("picture-found", `Grid found: ${detected.columns} × ${detected.rows}`, detected),
       ),
     ),
     problem,

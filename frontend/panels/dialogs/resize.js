@@ -55,7 +55,7 @@ export function create(studio) {
     }),
   );
 
-  const wanted = () => {
+  const validSize = () => {
     const size = [rows.input, columns.input].map(({ valueAsNumber }) => valueAsNumber);
     const well = size.every((n) => Number.isInteger(n) && n >= 1 && n <= MAX_SIDE);
     problem.textContent = well ? "" : `Use whole numbers from 1 to ${MAX_SIDE}.`;
@@ -63,14 +63,14 @@ export function create(studio) {
   };
   /** @param {(rows: number, columns: number) => void} make */
   const apply = (make) => {
-    const size = wanted();
+    const size = validSize();
     if (!size) return;
     make(size[0], size[1]);
     element.close();
   };
   /** Repeats that span the chart stay whole only at some sizes: offer the nearest. */
   const advise = () => {
-    const size = wanted();
+    const size = validSize();
     const { grid, repeats } = document;
     const spanning = repeats.filter(({ placements }) =>
       placements.some((place) => place.columns === grid.columns || place.rows === grid.rows),

@@ -59,14 +59,14 @@ export function yarnMaker(studio, made) {
       return say("Something is missing", "Choose photos, and give the yarn's weight and the length that hangs.");
     }
     /** @type {BendingResult | null} */
-    const found = await run.run("bending", await bendingRequest(chosen, given), "Tracing the yarn …");
-    if (!found) return;
-    const spread = found.standard_deviation;
-    bending.value = milli(found.bending_modulus_n_mm2);
+    const traced = await run.run("bending", await bendingRequest(chosen, given), "Tracing the yarn …");
+    if (!traced) return;
+    const spread = traced.standard_deviation;
+    bending.value = milli(traced.bending_modulus_n_mm2);
     measured = { ...measured, bending_modulus_sd_n_mm2: spread };
-    const words = `${milli(found.bending_modulus_n_mm2)}${spread ? ` ± ${milli(spread)}` : ""} mN·mm² from ${counted(found.photos.length, "photo")}`;
+    const words = `${milli(traced.bending_modulus_n_mm2)}${spread ? ` ± ${milli(spread)}` : ""} mN·mm² from ${counted(traced.photos.length, "photo")}`;
     evidence.set("bending", `Bending modulus ${words}.`);
-    bent.textContent = [`${words}.`, ...found.notes].join(" ");
+    bent.textContent = [`${words}.`, ...traced.notes].join(" ");
   };
 
   // Contact, from squeezing.
@@ -86,8 +86,10 @@ export function yarnMaker(studio, made) {
     if (!compression || !mean) return;
     stiffness.value = milli(mean.k_n_per_mm3);
     exponent.value = mean.p.toFixed(2);
-    const diameters = compression.samples.filter((one) => one.yarn === mean.yarn).map((one) => one.diameter_mm);
-    measured = { ...measured, diameter_mm: diameters.reduce((sum, one) => sum + one, 0) / diameters.length };
+    const diameters = compression.samples
+      .filter((sample) => sample.yarn === mean.yarn)
+      .map((sample) => sample.diameter_mm);
+    measured = { ...measured, diameter_mm: diameters.reduce((sum, mm) => sum + mm, 0) / diameters.length };
     const words = `k ${stiffness.value} mN/mm³, p ${exponent.value} from ${counted(mean.samples, "sample")} of ${squeezes.files?.[0]?.name}`;
     evidence.set("contact", `Contact law ${words}.`);
     squeezed.textContent = `${words}.`;
@@ -259,7 +261,7 @@ export function yarnMaker(studio, made) {
       evidence.clear();
       compression = null;
       for (const field of [photos, weight, hanging, squeezes, diameter]) field.value = "";
-      for (const told of [bent, squeezed, status]) told.replaceChildren();
+      for (const message of [bent, squeezed, status]) message.replaceChildren();
       which.hidden = true;
       title.textContent = yarn ? `Change ${yarn.name}` : "Make a yarn";
       name.value = yarn?.name ?? "";

@@ -105,19 +105,19 @@ export function create(studio) {
     );
   /** What a yarn's figures rest on, asked for when it is opened. @param {string} id */
   const evidence = (id) => {
-    const told = h("ul", { class: "notes" });
+    const notes = h("ul", { class: "notes" });
     return h(
       "details",
       {
         class: "row-more small",
         ontoggle: async () => {
-          if (told.hasChildNodes()) return;
+          if (notes.hasChildNodes()) return;
           const document = await attempt(status, () => yarns.file(id));
-          if (document) told.replaceChildren(...evidenceOf(document).map((line) => h("li", {}, line)));
+          if (document) notes.replaceChildren(...evidenceOf(document).map((line) => h("li", {}, line)));
         },
       },
       h("summary", {}, "Evidence"),
-      told,
+      notes,
     );
   };
   studio.materials.watch(show);

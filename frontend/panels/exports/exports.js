@@ -85,36 +85,39 @@ export function create(studio, { view }) {
   const outcome = h("div", { class: "exports-options", id: "export-outcome", "aria-live": "polite" });
   const make = textButton("export", "Make the file", () => void run(), { class: "button primary", id: "export-make" });
 
-  /** @param {ExportKind} one */
-  const choose = (one) => {
-    kind = one;
-    for (const [name, row] of Object.entries(options)) row.hidden = !one.options.includes(/** @type {Option} */ (name));
+  /** @param {ExportKind} format */
+  const choose = (format) => {
+    kind = format;
+    for (const [name, row] of Object.entries(options))
+      row.hidden = !format.options.includes(/** @type {Option} */ (name));
     outcome.replaceChildren();
     status.replaceChildren();
   };
-  /** @param {ExportKind} one */
-  const entry = (one) => ({
-    one,
+  /** @param {ExportKind} format */
+  const entry = (format) => ({
+    format,
     input: h("input", {
       type: "radio",
       name: "export-kind",
-      value: one.to,
-      checked: one === kind,
-      onchange: () => choose(one),
+      value: format.to,
+      checked: format === kind,
+      onchange: () => choose(format),
     }),
     note: h("span", { class: "muted" }),
   });
   const entries = KINDS.map(entry);
   /** @param {ReturnType<typeof entry>[]} some */
   const fieldsets = (some) =>
-    [...new Set(some.map(({ one }) => one.group))].map((group) =>
+    [...new Set(some.map(({ format }) => format.group))].map((group) =>
       h(
         "fieldset",
         { class: "exports-kinds stack gap-2" },
         h("legend", {}, group),
         ...some
-          .filter(({ one }) => one.group === group)
-          .map(({ one, input, note }) => h("label", { class: "exports-kind" }, input, h("span", {}, one.name, note))),
+          .filter(({ format }) => format.group === group)
+          .map(({ format, input, note }) =>
+            h("label", { class: "exports-kind" }, input, h("span", {}, format.name, note)),
+          ),
       ),
     );
   const formats = h("div", {}, ...fieldsets(entries));
@@ -137,15 +140,19 @@ export function create(studio, { view }) {
   );
 
   async function addExtensions() {
-    const found = await attempt(status, () => /** @type {Promise<Extensions>} */ (call("/extensions")), addExtensions);
-    if (!found) return;
-    asked = true;
-    const added = ofExtensions(found.extensions).map(entry);
-    for (const { one, note } of added) note.textContent = one.note;
+    const installed = await attempt(
+      status,
+      () => /** @type {Promise<Extensions>} */ (call("/extensions")),
+      addExtensions,
+    );
+    if (!installed) return;
+    extensionsAdded = true;
+    const added = ofExtensions(installed.extensions).map(entry);
+    for (const { format, note } of added) note.textContent = format.note;
     entries.push(...added);
     formats.append(...fieldsets(added));
   }
-  let asked = false;
+  let extensionsAdded = false;
 
   async function run() {
     make.disabled = true;
@@ -199,7 +206,7 @@ export function create(studio, { view }) {
     const sort = kind.to === "report" ? " report" : isPattern(kind.to) ? " pattern" : "";
     const name = file.name.replace(/(\.\w+)$/, `${sort}$1`);
     const save = () => download(name, new Blob([bytes], { type: file.media_type }));
-    const found = [
+    const facts = [
       `${name}, ${(file.bytes / 1000).toFixed(1)} kB`,
       ...(file.transfers === null
         ? []
@@ -211,7 +218,7 @@ export function create(studio, { view }) {
     const text =
       kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MAX_SHOWN)) : "";
     outcome.replaceChildren(
-      h("ul", { class: "planner-notes plain-list" }, ...found.map((words) => h("li", {}, icon("check"), words))),
+      h("ul", { class: "planner-notes plain-list" }, ...facts.map((words) => h("li", {}, icon("check"), words))),
       text && !kind.to.endsWith("svg")
         ? h("pre", { class: "exports-text rounded sunken", tabIndex: 0, "aria-label": "The file" }, text)
         : "",
@@ -224,14 +231,14 @@ export function create(studio, { view }) {
   return () => {
     const { regions, outline } = studio.toDocument();
     const { document: chart } = studio;
-    for (const { one, input, note: words } of entries) {
-      const why = hindrance(one.to, { shaped: chart.shaped, stitches: chart.grid.purl.length });
+    for (const { format, input, note: words } of entries) {
+      const why = hindrance(format.to, { shaped: chart.shaped, stitches: chart.grid.purl.length });
       input.disabled = why !== "";
-      words.textContent = why || one.note;
+      words.textContent = why || format.note;
     }
     if (entries.some(({ input }) => input.checked && input.disabled)) {
       entries[0].input.checked = true;
-      choose(entries[0].one);
+      choose(entries[0].format);
     }
     const yarns = new Set(regions.flatMap(({ yarn }) => yarn ?? []));
     note.textContent = [
@@ -243,6 +250,6 @@ export function create(studio, { view }) {
       .join(" ");
     choose(kind);
     element.showModal();
-    if (!asked) void addExtensions();
+    if (!extensionsAdded) void addExtensions();
   };
 }

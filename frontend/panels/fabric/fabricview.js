@@ -180,9 +180,9 @@ export function fabricview(host, studio, view) {
       return;
     }
     open(`/view/${encodeURIComponent(studio.designId)}/`); // it loads while the scene is being made
-    const asked = request();
-    const told = words();
-    const text = JSON.stringify(asked);
+    const scene = request();
+    const sceneWords = words();
+    const text = JSON.stringify(scene);
     if (text === sent) return;
     sending = true;
     host.toggleAttribute("data-sending", true);
@@ -190,12 +190,12 @@ export function fabricview(host, studio, view) {
     await nextTask();
     try {
       sent = "";
-      const answer = await api.view(studio.designId, asked);
+      const answer = await api.view(studio.designId, scene);
       sent = text;
       if (problem) status.replaceChildren();
       problem = false;
       source = answer.source;
-      confirmed = told;
+      confirmed = sceneWords;
       describe();
       studio.online.value = true;
       pass = answer.url.slice(answer.url.indexOf("#") + 1);
@@ -269,11 +269,11 @@ export function fabricview(host, studio, view) {
   }
   yarnColours.listen(now);
   let form = posed.value?.id;
-  posed.listen((found) => {
-    const same = found?.id === form; // it waits for the next one: sent now, it would hold that up
-    form = found?.id;
+  posed.listen((shape) => {
+    const same = shape?.id === form; // it waits for the next one: sent now, it would hold that up
+    form = shape?.id;
     if (!same) now();
-    if (found && !same && !drawing.slow) release();
+    if (shape && !same && !drawing.slow) release();
     describe();
   });
   pose.listen(() => {

@@ -27,9 +27,9 @@ export class Still {
 
   /** At most one is being drawn; of the requests meanwhile only the last is. @param {ViewRequest} request @param {() => void} shown */
   async draw(request, shown) {
-    const asked = JSON.stringify(request);
-    if (asked === this.#asked) return;
-    this.#asked = asked;
+    const requestText = JSON.stringify(request);
+    if (requestText === this.#asked) return;
+    this.#asked = requestText;
     if (this.#busy) return;
     this.#busy = true;
     const design = this.#design;
@@ -46,7 +46,7 @@ export class Still {
     } finally {
       this.#busy = false;
     }
-    if (this.#asked && (this.#asked !== asked || design !== this.#design)) {
+    if (this.#asked && (this.#asked !== requestText || design !== this.#design)) {
       const next = JSON.parse(this.#asked);
       this.#asked = "";
       await this.draw(next, shown);

@@ -83,14 +83,14 @@ export function create(studio, { keeper, open }) {
     for (const example of GARMENTS) {
       if (fitted.has(example.id)) continue;
       const { garment, material } = example;
-      const found = await attempt(
+      const plan = await attempt(
         status,
         () =>
           /** @type {Promise<import("./examples.js").Garment>} */ (
             call("/garment", { method: "POST", body: { garment, material } })
           ),
       );
-      if (found) fitted.set(example.id, garmentDesign(example, found));
+      if (plan) fitted.set(example.id, garmentDesign(example, plan));
     }
     garments.replaceChildren(
       ...GARMENTS.flatMap(({ id, name, note }) => {

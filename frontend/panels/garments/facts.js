@@ -61,17 +61,21 @@ function regions({ regions: all }, unit) {
     h(
       "tbody",
       {},
-      ...all.map((one) => {
+      ...all.map((region) => {
         const swatch = h("span", { class: "planner-swatch" });
-        swatch.style.background = one.colour;
+        swatch.style.background = region.colour;
         return h(
           "tr",
           {},
-          h("th", { scope: "row" }, swatch, one.name),
-          h("td", {}, `${one.columns} × ${one.rows}`),
-          h("td", {}, `${long(one.width_mm, unit)} × ${long(one.height_mm, unit)}`),
-          h("td", {}, `${figure(one.yarn_m)} m${one.yarn_g === null ? "" : `, ${figure(one.yarn_g)} g`}`),
-          h("td", {}, `${figure(one.extensibility_course_mm_per_n)} × ${figure(one.extensibility_wale_mm_per_n)}`),
+          h("th", { scope: "row" }, swatch, region.name),
+          h("td", {}, `${region.columns} × ${region.rows}`),
+          h("td", {}, `${long(region.width_mm, unit)} × ${long(region.height_mm, unit)}`),
+          h("td", {}, `${figure(region.yarn_m)} m${region.yarn_g === null ? "" : `, ${figure(region.yarn_g)} g`}`),
+          h(
+            "td",
+            {},
+            `${figure(region.extensibility_course_mm_per_n)} × ${figure(region.extensibility_wale_mm_per_n)}`,
+          ),
         );
       }),
     ),

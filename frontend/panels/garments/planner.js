@@ -114,12 +114,12 @@ export function create(studio, { keeper }) {
   const per = h(
     "select",
     { class: "text-field", "aria-label": "Counted over", onchange: changed },
-    ...["10 cm", "4 in", "5 cm"].map((one) => h("option", {}, one)),
+    ...["10 cm", "4 in", "5 cm"].map((span) => h("option", {}, span)),
   );
   const of = h(
     "select",
     { class: "text-field", "aria-label": "Fabric of the swatch", onchange: changed },
-    ...["stockinette", "garter", "rib", "seed"].map((one) => h("option", {}, one)),
+    ...["stockinette", "garter", "rib", "seed"].map((fabric) => h("option", {}, fabric)),
   );
   const gaugeRow = h(
     "div",
@@ -168,7 +168,7 @@ export function create(studio, { keeper }) {
           TEMPLATES.map(({ id, name }) => [id, name]),
           template.id,
           (id) => {
-            template = TEMPLATES.find((one) => one.id === id) ?? template;
+            template = TEMPLATES.find((candidate) => candidate.id === id) ?? template;
             showTemplate();
             changed();
           },
@@ -373,15 +373,15 @@ export function create(studio, { keeper }) {
     make.disabled = garment === null;
   }
 
-  /** @param {Garment} found */
-  function show(found) {
-    const gauge = found.gauges.find(({ fabric }) => fabric === "stockinette") ?? found.gauges[0];
-    drawGarment(canvas, found.design, gauge.stitches_per_10_cm / gauge.rows_per_10_cm);
+  /** @param {Garment} fitted */
+  function show(fitted) {
+    const gauge = fitted.gauges.find(({ fabric }) => fabric === "stockinette") ?? fitted.gauges[0];
+    drawGarment(canvas, fitted.design, gauge.stitches_per_10_cm / gauge.rows_per_10_cm);
     canvas.setAttribute(
       "aria-label",
-      `${found.name}: ${found.columns} stitches by ${found.rows} rows, with ${found.regions.map(({ name }) => name).join(", ")}`,
+      `${fitted.name}: ${fitted.columns} stitches by ${fitted.rows} rows, with ${fitted.regions.map(({ name }) => name).join(", ")}`,
     );
-    result.replaceChildren(...facts(found, unit));
+    result.replaceChildren(...facts(fitted, unit));
   }
 
   showTemplate();

@@ -34,15 +34,17 @@ const TESTS = [
     id: "overhang",
     label: "Over an edge",
     hint: "A strip that hangs over the edge of a table: Peirce's bending length",
-    tell: async (asked, signal) => {
+    tell: async (request, signal) => {
       const ways = /** @type {const} */ (["course", "wale"]);
-      const found = await Promise.all(ways.map((direction) => api.run("overhang", { ...asked, direction }, signal)));
-      const [rows, columns] = found.map(({ bending_length_mm: mm }) => figure(mm / 10, 2));
+      const overhangs = await Promise.all(
+        ways.map((direction) => api.run("overhang", { ...request, direction }, signal)),
+      );
+      const [rows, columns] = overhangs.map(({ bending_length_mm: mm }) => figure(mm / 10, 2));
       return {
         words: [`Bending length ${rows} cm along the rows, ${columns} cm along the columns.`],
-        notes: found[0].notes,
-        converged: found[0].converged,
-        piece: found[0].piece,
+        notes: overhangs[0].notes,
+        converged: overhangs[0].converged,
+        piece: overhangs[0].piece,
       };
     },
   },
@@ -50,9 +52,9 @@ const TESTS = [
     id: "drape",
     label: "Over a disc",
     hint: "A round piece of 30 cm over a disc of 18 cm: the drape coefficient",
-    tell: async (asked, signal) => {
-      const found = await api.run("drape", asked, signal);
-      const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, converged, piece } = found;
+    tell: async (request, signal) => {
+      const draped = await api.run("drape", request, signal);
+      const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, converged, piece } = draped;
       const states = ends.map((end) => percent(end)).join(" to ");
       return {
         words: [
@@ -69,14 +71,14 @@ const TESTS = [
     id: "border",
     label: "Border",
     hint: "How wide a border of garter, seed or rib holds it flat by its weight",
-    tell: async (asked, signal) => {
-      const found = await Promise.all(BORDERS.map((border) => api.run("border", { ...asked, border }, signal)));
-      const words = found.map(({ sides, ends }, i) => {
+    tell: async (request, signal) => {
+      const borders = await Promise.all(BORDERS.map((border) => api.run("border", { ...request, border }, signal)));
+      const words = borders.map(({ sides, ends }, i) => {
         const [wide, high] = [sides, ends].map(({ width_mm: mm }) => figure(mm / 10, 2));
         const lies = sides.holds && ends.holds ? "" : ", and wider would roll up, too";
         return `A ${BORDERS[i]} border by its weight alone: ${wide} cm at the sides, ${high} cm at the ends${lies}.`;
       });
-      return { words, notes: found[0].notes };
+      return { words, notes: borders[0].notes };
     },
   },
 ];
@@ -107,7 +109,7 @@ export function drape(host, studio) {
   /** @param {(typeof TESTS)[number]} test */
   const run = ({ label, tell }) => {
     const { grid } = scopeOf(studio);
-    const asked = {
+    const request = {
       chart: grid.text,
       material: studio.materialId.value,
       linear_density_g_per_m: studio.weight.value,
@@ -115,7 +117,7 @@ export function drape(host, studio) {
     answer.replaceChildren(h("span", { class: "spinner" }), `${label}: being computed`);
     latest.run(
       async (signal) => {
-        const { words, notes, converged = false, piece } = await tell(asked, signal);
+        const { words, notes, converged = false, piece } = await tell(request, signal);
         if (piece) show(label, piece, converged, notes[0]);
         answer.replaceChildren(
           ...words.map((text) => h("p", { class: "figures" }, text)),

@@ -97,9 +97,9 @@ export function inspector(host, studio) {
   /** @param {Plot} id */
   const choose = (id) => {
     pulls.element.hidden = id !== "curve";
-    for (const one of PLOTS) {
-      plots[one].hidden = one !== id;
-      tabs[one].setAttribute("aria-selected", String(one === id));
+    for (const plot of PLOTS) {
+      plots[plot].hidden = plot !== id;
+      tabs[plot].setAttribute("aria-selected", String(plot === id));
     }
     draw[id]();
   };
@@ -145,9 +145,9 @@ export function inspector(host, studio) {
     fill(table, scope === part.kind ? value : null, part);
     source.hidden = !value;
     if (value) {
-      const told = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
+      const lines = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
       name();
-      notes.replaceChildren(...told.map((note) => h("li", {}, note)));
+      notes.replaceChildren(...lines.map((note) => h("li", {}, note)));
       gauge.show();
     }
   };

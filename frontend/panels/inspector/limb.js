@@ -55,11 +55,11 @@ export function limb(host, studio) {
   const table = h("tbody", {});
   /** Girths as they stand in the fields; those without a number, or out of order, are left out. */
   const given = () => {
-    const found = [...table.rows].map((row) => {
+    const girths = [...table.rows].map((row) => {
       const [at, girth] = [...row.querySelectorAll("input")].map((field) => field.valueAsNumber);
       return { at_mm: at, girth_mm: girth };
     });
-    return found
+    return girths
       .filter(({ at_mm, girth_mm }) => at_mm >= 0 && girth_mm > 0)
       .sort((a, b) => a.at_mm - b.at_mm)
       .filter(({ at_mm }, i, all) => at_mm !== all[i - 1]?.at_mm);
@@ -114,9 +114,9 @@ export function limb(host, studio) {
   showGirths(chosen.value.girths ?? []);
 
   const answer = h("div", { role: "status", id: "limb-answer" });
-  /** @param {LimbResult} found */
-  const show = (found) => {
-    const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm, interval_source } = found;
+  /** @param {LimbResult} fit */
+  const show = (fit) => {
+    const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm, interval_source } = fit;
     const pressed = places.filter(({ mmhg }) => mmhg);
     const ends = (/** @type {"mmhg" | "mmhg_with_spread"} */ name) => {
       const all = pressed.map((place) => /** @type {[number, number]} */ (place[name]));

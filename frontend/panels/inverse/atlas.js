@@ -171,8 +171,8 @@ export function atlasTab(studio, context) {
     const id = `${material} ${extent}`;
     if (!loaded.has(id)) {
       /** @type {AtlasResult | null} */
-      const found = await run.run("atlas", { material, repeats: extent }, "Predicting all repeats");
-      if (found) loaded.set(id, found);
+      const atlas = await run.run("atlas", { material, repeats: extent }, "Predicting all repeats");
+      if (atlas) loaded.set(id, atlas);
       if (`${studio.materialId.value} ${extent}` !== id) return;
     }
     table = loaded.get(id) ?? null;

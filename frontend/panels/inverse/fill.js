@@ -79,8 +79,8 @@ export function fromStiffness(studio) {
     if (!inside || size !== sizeNow()) return;
     const body = { chart: grid.region(inside).text, material: studio.materialId.value };
     try {
-      const found = await api.run("predict", body);
-      part.now = { course: found.modulus_course_n_per_mm, wale: found.modulus_wale_n_per_mm };
+      const predicted = await api.run("predict", body);
+      part.now = { course: predicted.modulus_course_n_per_mm, wale: predicted.modulus_wale_n_per_mm };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       part.now = null; // the inspector says why
@@ -119,10 +119,10 @@ export function fromStiffness(studio) {
       if (!part.wish) like.value = "";
       AXES.forEach(({ axis }, i) => {
         now[i].textContent = figure(part.now?.[axis]);
-        const wanted = part[axis];
+        const target = part[axis];
         // What is being typed ("1.") stays as it is.
-        if (inputs[i] !== document.activeElement) inputs[i].value = wanted === null ? "" : String(wanted);
-        verdicts[i].textContent = wanted && part.now ? against(part.now[axis], wanted) : "";
+        if (inputs[i] !== document.activeElement) inputs[i].value = target === null ? "" : String(target);
+        verdicts[i].textContent = target && part.now ? against(part.now[axis], target) : "";
       });
     };
     const others = parts.filter((other) => other !== part);
@@ -150,8 +150,8 @@ export function fromStiffness(studio) {
       const { now: mine } = part;
       if (chosen in STEPS) return mine && scaled(mine, STEPS[chosen]);
       if (chosen.startsWith("part ")) return others[Number(chosen.slice(5))].now;
-      const one = fabricsNow()[/** @type {typeof FABRICS[number]} */ (chosen)];
-      return one ? { course: one.modulus_course_n_per_mm, wale: one.modulus_wale_n_per_mm } : null;
+      const fabric = fabricsNow()[/** @type {typeof FABRICS[number]} */ (chosen)];
+      return fabric ? { course: fabric.modulus_course_n_per_mm, wale: fabric.modulus_wale_n_per_mm } : null;
     };
     part.tell();
     return h(
@@ -234,7 +234,7 @@ export function fromStiffness(studio) {
     }
     answer.replaceChildren();
     /** @type {FillResult | null} */
-    const found = await run.run(
+    const fillResult = await run.run(
       "fill",
       {
         material: studio.materialId.value,
@@ -255,18 +255,18 @@ export function fromStiffness(studio) {
       },
       "Filling",
     );
-    if (found) preview(found, targeted);
+    if (fillResult) preview(fillResult, targeted);
   };
 
   /**
    * The result goes onto the chart at once, so that chart, 3D and numbers show it.
    *
-   * @param {FillResult} found
+   * @param {FillResult} fillResult
    * @param {Part[]} targeted
    */
-  const preview = (found, targeted) => {
+  const preview = (fillResult, targeted) => {
     if (size !== sizeNow()) return;
-    const filled = Grid.fromText(found.chart);
+    const filled = Grid.fromText(fillResult.chart);
     const cells = [...new Set(targeted.flatMap((part) => part.cells))];
     const before = cells.map((i) => chart.grid.purl[i]);
     /** @param {(at: number, i: number) => number} label @param {string} words */
@@ -299,14 +299,14 @@ export function fromStiffness(studio) {
       void fill();
     });
     answer.replaceChildren(
-      verdict(found.off_share <= 0.05, inWords(found.off_share)),
+      verdict(fillResult.off_share <= 0.05, inWords(fillResult.off_share)),
       h("div", { class: "inverse-buttons" }, keep, back, other),
       h(
         "details",
         {},
         h("summary", {}, "Which patterns, and how near they come"),
-        found.patches.length > 0 && patchList(found, targeted),
-        ...found.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
+        fillResult.patches.length > 0 && patchList(fillResult, targeted),
+        ...fillResult.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
       ),
     );
     keep.focus();
@@ -356,9 +356,9 @@ function inWords(off) {
 /** @param {Stiffness} now @param {number} times @returns {Stiffness} */
 const scaled = ({ course, wale }, times) => ({ course: course * times, wale: wale * times });
 
-/** How a stiffness compares with the wanted one, in words. @param {number} now @param {number} wanted */
-function against(now, wanted) {
-  const share = now / wanted;
+/** How a stiffness compares with the wanted one, in words. @param {number} now @param {number} target */
+function against(now, target) {
+  const share = now / target;
   if (Math.abs(share - 1) <= NEAR) return "as wanted";
   const times = Math.max(share, 1 / share);
   const more = times >= 2 ? `${times.toFixed(1)} times ` : `${percent(times - 1)} `;
@@ -372,7 +372,7 @@ const inKnitting = (message) =>
     .replaceAll("wale-wise", "along columns")
     .replace(/[KP/]+(?= comes nearest)/, nameOf);
 
-/** @param {FillResult} found @param {Part[]} targeted */
+/** @param {FillResult} fillResult @param {Part[]} targeted */
 function patchList({ patches, columns }, targeted) {
   /** @param {{row: number, column: number}} patch */
   const partOf = ({ row, column }) => targeted.find(({ cells }) => cells.includes(row * columns + column));
@@ -400,12 +400,12 @@ function patchList({ patches, columns }, targeted) {
           ...AXES.map(({ axis, label }) => {
             const value = patch[`modulus_${axis}_n_per_mm`];
             const [low, high] = patch[`modulus_${axis}_interval_n_per_mm`];
-            const wanted = part?.[axis];
+            const target = part?.[axis];
             return h(
               "div",
               { class: "figures" },
               `${label} ${figure(value)} (${figure(low, 2)} – ${figure(high, 2)})`,
-              wanted && h("div", { class: "muted" }, against(value, wanted)),
+              target && h("div", { class: "muted" }, against(value, target)),
             );
           }),
         ),

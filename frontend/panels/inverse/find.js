@@ -113,15 +113,15 @@ export function findTab(studio, context) {
       const numbers = [number, tolerance, load, rest, worn].map(({ valueAsNumber }) => valueAsNumber);
       if (!Number.isFinite(numbers[0]) || !(numbers[1] > 0)) return null;
       /** @type {TargetInput} */
-      const wanted = {
+      const target = {
         quantity: /** @type {TargetInput["quantity"]} */ (q.id),
         value: q.percent ? numbers[0] / 100 : numbers[0],
         tolerance: q.difference ? numbers[1] : numbers[1] / 100,
         weight: Number(weight.value),
       };
-      if (q.needs === "load") wanted.load_n_per_mm = numbers[2];
-      if (q.needs === "limb") wanted.limb = { rest_mm: numbers[3], worn_mm: numbers[4] };
-      return wanted;
+      if (q.needs === "load") target.load_n_per_mm = numbers[2];
+      if (q.needs === "limb") target.limb = { rest_mm: numbers[3], worn_mm: numbers[4] };
+      return target;
     };
     show();
     readers.push(read);
@@ -158,7 +158,7 @@ export function findTab(studio, context) {
   ]);
 
   const search = async () => {
-    const targets = readers.map((read) => read()).filter((wanted) => wanted !== null);
+    const targets = readers.map((read) => read()).filter((target) => target !== null);
     if (targets.length < readers.length || !targets.length) {
       run.say({
         title: "A target is incomplete",
@@ -180,22 +180,22 @@ export function findTab(studio, context) {
       elsewhere: false,
     };
     /** @type {FindResult | null} */
-    const found = await run.run("find", request, "Searching");
-    if (!found) return;
-    show(found, targets);
-    if (found.reached || materials.length === all.length) return;
+    const findResult = await run.run("find", request, "Searching");
+    if (!findResult) return;
+    show(findResult, targets);
+    if (findResult.reached || materials.length === all.length) return;
     /** @type {FindResult | null} */
     const more = await run.run("find", { ...request, repeats: "small", elsewhere: true }, "Searching the other yarns");
-    if (more) show({ ...found, elsewhere: more.elsewhere }, targets);
+    if (more) show({ ...findResult, elsewhere: more.elsewhere }, targets);
   };
 
-  /** @param {FindResult} found @param {TargetInput[]} targets */
-  const show = (found, targets) => {
+  /** @param {FindResult} findResult @param {TargetInput[]} targets */
+  const show = (findResult, targets) => {
     answer.replaceChildren(
-      verdict(found.reached, inWords(found, targets)),
-      h("ol", { class: "candidates" }, ...found.candidates.map(item)),
-      ...(found.elsewhere.length
-        ? [h("h3", {}, "In other yarns"), h("ol", { class: "candidates" }, ...found.elsewhere.map(item))]
+      verdict(findResult.reached, inWords(findResult, targets)),
+      h("ol", { class: "candidates" }, ...findResult.candidates.map(item)),
+      ...(findResult.elsewhere.length
+        ? [h("h3", {}, "In other yarns"), h("ol", { class: "candidates" }, ...findResult.elsewhere.map(item))]
         : []),
     );
   };
@@ -286,7 +286,7 @@ export function findTab(studio, context) {
   return { element, open: () => {}, retheme: () => {} };
 }
 
-/** @param {FindResult} found @param {TargetInput[]} targets */
+/** @param {FindResult} findResult @param {TargetInput[]} targets */
 function inWords({ reached, candidates, searched, ranges, elsewhere }, targets) {
   const within = candidates.filter((candidate) => candidate.reached).length;
   if (reached)
@@ -296,9 +296,9 @@ function inWords({ reached, candidates, searched, ranges, elsewhere }, targets) 
     ].join(" ");
   const beyond = Object.entries(ranges).flatMap(([label, [low, high]]) => {
     const q = quantityOf(label);
-    const wanted = targets.find(({ quantity }) => quantity === q.id)?.value ?? low;
+    const targetValue = targets.find(({ quantity }) => quantity === q.id)?.value ?? low;
     const scale = q.percent ? 100 : 1;
-    return wanted < low || wanted > high
+    return targetValue < low || targetValue > high
       ? [`${q.label}: all span ${figure(scale * low)} to ${figure(scale * high)} ${q.unit}.`]
       : [];
   });

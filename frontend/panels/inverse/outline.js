@@ -47,7 +47,7 @@ export function fromOutline(studio) {
     PAD.top + ((HIGH - width) / (HIGH - LOW)) * (HEIGHT - PAD.top - PAD.bottom);
 
   /** The wanted width at a share of the length. @param {number} share */
-  const wanted = (share) => {
+  const targetWidth = (share) => {
     const at = [0, ...PLACES, 1];
     const values = [1, ...widths, 1];
     const k = Math.max(
@@ -80,7 +80,7 @@ export function fromOutline(studio) {
       "stretched width over width at rest",
     );
     const shares = Array.from({ length: 81 }, (_, i) => i / 80);
-    add("path", { d: path(shares.map((s) => [x(s), y(wanted(s))])), class: "outline-wanted" });
+    add("path", { d: path(shares.map((s) => [x(s), y(targetWidth(s))])), class: "outline-wanted" });
     if (reached) {
       const { length } = reached;
       add("path", { d: path(reached.map((w, i) => [x((i + 0.5) / length), y(w)])), class: "outline-reached" });
@@ -149,45 +149,45 @@ export function fromOutline(studio) {
     reached = null;
     draw();
     /** @type {ShapeResult | null} */
-    const found = await run.run(
+    const shapeResult = await run.run(
       "shape",
       {
         material: studio.materialId.value,
         direction,
         strain: strain.valueAsNumber / 100,
-        width: Array.from({ length: lines }, (_, i) => Number(wanted((i + 0.5) / lines).toFixed(4))),
+        width: Array.from({ length: lines }, (_, i) => Number(targetWidth((i + 0.5) / lines).toFixed(4))),
         across: direction === "wale" ? columns : rows,
         smallest_band: Math.min(band.valueAsNumber || 4, lines),
         seed,
       },
       "Pulling swatches",
     );
-    if (found) show(found);
+    if (shapeResult) show(shapeResult);
   };
-  /** @param {ShapeResult} found */
-  const show = (found) => {
-    reached = found.width;
+  /** @param {ShapeResult} shapeResult */
+  const show = (shapeResult) => {
+    reached = shapeResult.width;
     draw();
-    const filled = Grid.fromText(found.chart);
-    const good = found.largest <= 0.03;
+    const filled = Grid.fromText(shapeResult.chart);
+    const good = shapeResult.largest <= 0.03;
     answer.replaceChildren(
       verdict(
         good,
-        `Stretched, the widths are ${percent(found.rms, 1)} off on average and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`,
+        `Stretched, the widths are ${percent(shapeResult.rms, 1)} off on average and ${percent(shapeResult.largest, 1)} at most (${figure(shapeResult.force_n, 2)} N; ${shapeResult.pulls} swatches pulled).`,
       ),
       h(
         "div",
         { class: "inverse-preview flex" },
-        thumbnail({ chart: found.chart }, { side: 150, label: "The filled chart" }),
+        thumbnail({ chart: shapeResult.chart }, { side: 150, label: "The filled chart" }),
         h(
           "div",
           { class: "preview-words stack small shrinks-x grows gap-6" },
           h(
             "p",
             {},
-            `From the ${direction === "wale" ? "bottom" : "left"}: ${found.bands.map(({ repeat, lines }) => `${lines} of ${nameOf(repeat)}`).join(", ")}.`,
+            `From the ${direction === "wale" ? "bottom" : "left"}: ${shapeResult.bands.map(({ repeat, lines }) => `${lines} of ${nameOf(repeat)}`).join(", ")}.`,
           ),
-          ...found.messages.map((message) => h("p", {}, message)),
+          ...shapeResult.messages.map((message) => h("p", {}, message)),
           h(
             "div",
             { class: "inverse-buttons" },

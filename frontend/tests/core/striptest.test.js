@@ -13,9 +13,9 @@ const TEST = {
     ],
   },
 };
-/** @param {number | null} value @param {number} wanted */
-const near = (value, wanted) =>
-  assert.ok(value !== null && Math.abs(value - wanted) < 1e-12, `${value}, not ${wanted}`);
+/** @param {number | null} value @param {number} expected */
+const near = (value, expected) =>
+  assert.ok(value !== null && Math.abs(value - expected) < 1e-12, `${value}, not ${expected}`);
 
 test("the first stitch locks at a strain and a force, if one does", () => {
   const lock = firstLock(TEST);

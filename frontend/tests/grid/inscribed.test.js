@@ -39,8 +39,8 @@ test("it is inside, and no rectangle inside is larger", () => {
         }
       }
     }
-    const found = largestRectangle(inside, columns);
-    assert.ok(found && full(found));
-    assert.equal((found.row1 - found.row0) * (found.column1 - found.column0), most);
+    const largest = largestRectangle(inside, columns);
+    assert.ok(largest && full(largest));
+    assert.equal((largest.row1 - largest.row0) * (largest.column1 - largest.column0), most);
   }
 });

@@ -44,10 +44,10 @@ test("larger cells are found and read, with and without lines", () => {
     [20, 20, true],
   ])) {
     const { values, width, height } = drawn(grid, wide, high, lines);
-    const found = detectedGrid(values, width, height);
-    assert.deepEqual(found, { columns: 14, rows: 9 }, `${wide} x ${high}`);
+    const detected = detectedGrid(values, width, height);
+    assert.deepEqual(detected, { columns: 14, rows: 9 }, `${wide} x ${high}`);
     const threshold = bestThreshold(values);
-    assert.ok(found && stitchesOf(values, width, height, { ...found, threshold }).equals(grid));
+    assert.ok(detected && stitchesOf(values, width, height, { ...detected, threshold }).equals(grid));
   }
 });
 

@@ -31,19 +31,19 @@ function studio() {
 /** Shapes that are shown one after the other, until `count` are there. @param {any} page @param {number} count */
 function shown(page, count) {
   /** @type {any[]} */
-  const found = [];
+  const shapes = [];
   return new Promise((resolve) => {
     page.seeing.posed.listen((/** @type {any} */ posed) => {
-      if (posed && found.push(posed) === count) resolve(found);
+      if (posed && shapes.push(posed) === count) resolve(shapes);
     });
   });
 }
 
 /** A service that answers so often that a shape is not at rest. @param {number} previews */
 function answering(previews) {
-  let asked = 0;
+  let calls = 0;
   /** @type {any} */ (api).run = () =>
-    Promise.resolve({ id: `shape ${asked}`, rows: 1, columns: 2, converged: asked++ >= previews, notes: [] });
+    Promise.resolve({ id: `shape ${calls}`, rows: 1, columns: 2, converged: calls++ >= previews, notes: [] });
 }
 
 test("a shape that is not at rest is called a preview until the one at rest has come", async () => {

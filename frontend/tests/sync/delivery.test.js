@@ -96,8 +96,8 @@ async function kept(parcel, service) {
 
 test("strokes between two charts make one of the other", async () => {
   for (let seed = 0; seed < 50; seed++) {
-    const one = random(seed);
-    const [before, after] = [one.text, random(seed + 100).tiled(one.rows, one.columns).text];
+    const grid = random(seed);
+    const [before, after] = [grid.text, random(seed + 100).tiled(grid.rows, grid.columns).text];
     const service = new OneDesign();
     service.kept = { document: design(before), revision: 1 };
     await service.paint("", strokesBetween(before, after));
@@ -155,11 +155,11 @@ test("lists merge item by item", () => {
 });
 
 test("the order of fields makes no difference", () => {
-  const [one, other] = [
+  const [first, second] = [
     { name: "Mine", motif: "KP" },
     { motif: "KP", name: "Mine" },
   ];
-  assert.ok(same(design("K", { shelf: [one] }), design("K", { shelf: [other] })));
+  assert.ok(same(design("K", { shelf: [first] }), design("K", { shelf: [second] })));
 });
 
 test("a first delivery whose answer is lost happens once", async () => {

@@ -20,7 +20,7 @@ import { random } from "../random.js";
  * @param {{ink?: Ink, size?: number, constrain?: boolean, symmetry?: import("../../design/ink.js").Symmetry}} [options]
  */
 function draw(id, grid, start, end, { ink = PURL, size = 1, constrain = false, symmetry = "none" } = {}) {
-  const tool = TOOLS.find((one) => one.id === id);
+  const tool = TOOLS.find((candidate) => candidate.id === id);
   assert.ok(tool);
   const gesture = { start, previous: start, current: end, path: [start, end], constrain };
   const outline = grid.purl.map(() => 1);
@@ -69,7 +69,7 @@ test("a flood stays among connected like stitches", () => {
 test("a flood is every stitch that can be reached", () => {
   for (let seed = 1; seed < 60; seed++) {
     const { rows, columns, purl } = random(seed);
-    const found = cellsOf(flood(new Grid(rows, columns, purl), purl, [0, 0]));
+    const flooded = cellsOf(flood(new Grid(rows, columns, purl), purl, [0, 0]));
     const reached = new Set(["0,0"]);
     for (const at of reached) {
       const [row, column] = at.split(",").map(Number);
@@ -83,7 +83,7 @@ test("a flood is every stitch that can be reached", () => {
         if (inside && purl[r * columns + c] === purl[0]) reached.add(`${r},${c}`);
       }
     }
-    assert.deepEqual(found, reached);
+    assert.deepEqual(flooded, reached);
   }
 });
 
@@ -201,7 +201,7 @@ test("flip paints the opposite of the stitch first touched; the other button swa
 test("ids are unique, and no key starts two things", () => {
   const ids = ACTIONS.map(({ id }) => id);
   assert.equal(new Set(ids).size, ids.length);
-  const keys = ACTIONS.flatMap((one) => one.keys);
+  const keys = ACTIONS.flatMap((action) => action.keys);
   assert.equal(new Set(keys).size, keys.length);
 });
 

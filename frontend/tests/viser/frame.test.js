@@ -153,9 +153,9 @@ async function slowClient(renderer = "") {
       drawImage() {}
     },
     MutationObserver: class {
-      /** @param {() => void} told */
-      constructor(told) {
-        client.resized = told;
+      /** @param {() => void} listener */
+      constructor(listener) {
+        client.resized = listener;
       }
       observe() {}
     },
@@ -253,9 +253,9 @@ async function withCloth() {
   const nodeRefFromName = {};
   page.__viserMutable = { nodeRefFromName, requestRender: () => client.invalidate() };
   /** @type {string[]} */
-  const told = [];
+  const messages = [];
   thread.onmessage = (/** @type {any} */ { data }) =>
-    told.push(...data.messages.map((/** @type {any} */ { type, name = "" }) => `${type} ${name}`.trim()));
+    messages.push(...data.messages.map((/** @type {any} */ { type, name = "" }) => `${type} ${name}`.trim()));
   const built = (/** @type {string} */ name) => {
     nodeRefFromName[name] = { traverse: (look) => look({ instancesCount: 120 }) };
   };
@@ -267,8 +267,8 @@ async function withCloth() {
   };
   thread.answer("message_batch", [{ ...NEW, name: "/fabric/1" }]);
   built("/fabric/1");
-  told.length = 0;
-  return { client, thread, told, built, drawn };
+  messages.length = 0;
+  return { client, thread, messages, built, drawn };
 }
 
 /** Where stitches are. @param {number} stitches */
@@ -285,16 +285,16 @@ const MOVED = { type: "SceneNodeUpdateMessage", name: "/fabric/1" };
 const GONE = { type: "RemoveSceneNodeMessage", name: "/fabric/1" };
 
 test("stitches move and go once new shapes are built, however late messages come", async () => {
-  const { thread, told, built, drawn } = await withCloth();
+  const { thread, messages, built, drawn } = await withCloth();
   thread.answer("message_batch", [MOVED, NEW, GONE]);
   drawn();
-  assert.deepEqual(told, ["BatchedMeshesMessage /fabric/2"], "there is a hole in the cloth");
+  assert.deepEqual(messages, ["BatchedMeshesMessage /fabric/2"], "there is a hole in the cloth");
   thread.answer("message_batch", [{ type: "GetRenderRequestMessage" }]);
   drawn();
-  assert.equal(told.length, 1, "a picture was taken of half a cloth");
+  assert.equal(messages.length, 1, "a picture was taken of half a cloth");
   built("/fabric/2");
   drawn();
-  assert.deepEqual(told.slice(1), [
+  assert.deepEqual(messages.slice(1), [
     "SceneNodeUpdateMessage /fabric/1",
     "RemoveSceneNodeMessage /fabric/1",
     "GetRenderRequestMessage",
@@ -302,13 +302,13 @@ test("stitches move and go once new shapes are built, however late messages come
 });
 
 test("the camera and all that is no cloth never wait", async () => {
-  const { thread, told } = await withCloth();
+  const { thread, messages } = await withCloth();
   const others = ["SetCameraPositionMessage", "SetCameraLookAtMessage", "SetCameraUpDirectionMessage"];
   thread.answer("message_batch", [NEW, GONE, ...others.map((type) => ({ type }))]);
   const rest = [{ type: "SetCameraFovMessage" }, { type: "RemoveSceneNodeMessage", name: "/mark" }];
   thread.answer("message_batch", rest);
   const want = ["BatchedMeshesMessage /fabric/2", ...others, "SetCameraFovMessage", "RemoveSceneNodeMessage /mark"];
-  assert.deepEqual(told, want);
+  assert.deepEqual(messages, want);
 });
 
 test("what is new of a shape comes at once, for one number of stitches", async () => {
@@ -333,16 +333,16 @@ test("what is new of a shape comes at once, for one number of stitches", async (
 });
 
 test("a cloth that only moves does not wait", async () => {
-  const { thread, told } = await withCloth();
+  const { thread, messages } = await withCloth();
   thread.answer("message_batch", [MOVED]);
-  assert.deepEqual(told, ["SceneNodeUpdateMessage /fabric/1"]);
+  assert.deepEqual(messages, ["SceneNodeUpdateMessage /fabric/1"]);
 });
 
 test("shapes that are never built keep nothing waiting for ever", async () => {
-  const { thread, told, drawn } = await withCloth();
+  const { thread, messages, drawn } = await withCloth();
   thread.answer("message_batch", [NEW, GONE]);
   for (let frame = 0; frame < 320; frame++) drawn();
-  assert.deepEqual(told, ["BatchedMeshesMessage /fabric/2", "RemoveSceneNodeMessage /fabric/1"]);
+  assert.deepEqual(messages, ["BatchedMeshesMessage /fabric/2", "RemoveSceneNodeMessage /fabric/1"]);
 });
 
 test("nothing is drawn while shapes are built, and the whole cloth afterwards", async () => {

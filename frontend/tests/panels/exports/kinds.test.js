@@ -12,14 +12,14 @@ test("what the service would refuse is not offered", () => {
 
 test("formats of extensions are offered, with the package that they come from", () => {
   const house = { name: "house", package: "knit-house 1.0", problem: null };
-  const found = ofExtensions([
+  const offered = ofExtensions([
     { ...house, group: "knitcore.exporters", offers: ["punchcard", "jacquard"] },
     { ...house, group: "knitcore.materials", offers: ["waffle"] },
     { ...house, group: "knitcore.exporters", offers: ["broken"], problem: "It cannot be loaded." },
   ]);
   assert.deepEqual(
-    found.map(({ to }) => to),
+    offered.map(({ to }) => to),
     ["punchcard", "jacquard"],
   );
-  assert.match(found[0].note, /knit-house 1\.0/);
+  assert.match(offered[0].note, /knit-house 1\.0/);
 });
