@@ -68,22 +68,17 @@ async def _watched(socket: WebSocket, name: str, view: View, views: Views) -> No
     try:
         if coarse:
             await asyncio.to_thread(view.writer.redraw)  # nothing finer is sent
-        await _joined(socket, view)
+        async with websockets.connect(
+            f"ws://127.0.0.1:{view.port}",
+            subprotocols=list(socket.scope["subprotocols"]) or None,
+            additional_headers=RELAY_HEADERS,
+            max_size=None,
+            compression=None,
+        ) as inner:
+            await socket.accept(subprotocol=inner.subprotocol)
+            await _carry(socket, inner, view)
     finally:
         views.watch(name, -1, coarse=coarse)
-
-
-async def _joined(socket: WebSocket, view: View) -> None:
-    offered = list(socket.scope["subprotocols"])
-    async with websockets.connect(
-        f"ws://127.0.0.1:{view.port}",
-        subprotocols=offered or None,
-        additional_headers=RELAY_HEADERS,
-        max_size=None,
-        compression=None,
-    ) as inner:
-        await socket.accept(subprotocol=inner.subprotocol)
-        await _carry(socket, inner, view)
 
 
 async def _opened(views: Views, name: str) -> View | None:
