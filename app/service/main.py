@@ -26,7 +26,7 @@ from .compute.answers import Answers, RecentResults
 from .compute.compute import Compute
 from .compute.processes import processes
 from .compute.workers import Worker
-from .designs.idempotency import forget_old_keys
+from .designs.conditions import forget_old_keys
 from .designs.store import DesignStore
 from .designs.watching import Watched
 from .jobs.runner import JobRunner
@@ -44,8 +44,7 @@ from .web.passes import ViewPasses
 from .web.reference import serve_kinds, serve_reference
 from .web.schema import install_schema
 from .web.security import AccessControl
-from .web.sessions import Sessions
-from .web.tokens import REMEMBERED_S, Login, Tokens
+from .web.sessions import REMEMBERED_S, Login, Sessions, Tokens
 
 if TYPE_CHECKING:
     from .compute.cluster import Cluster
