@@ -18,7 +18,6 @@ from fastapi import FastAPI
 from ..context import Context
 from ..operations.chart.predict import PredictRequest, predict
 from ..viewer import relay
-from ..viewer.client import viewer_page
 from ..viewer.views import Views
 from . import VERSION, health, memory
 from .api import routers
@@ -79,7 +78,7 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
     app.state.recent = RecentResults()
     app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
-    app.state.viewer_page = viewer_page()
+    app.state.viewer_page = relay.viewer_page()
     job_store = JobStore(app.state.database, chosen.process_name)
     app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
     await app.state.jobs.resume()

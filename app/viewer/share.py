@@ -16,8 +16,8 @@ from ..drawing.design_view import StretchStep, ViewRequest, build_scene
 from ..drawing.fabric import MAX_SOLID, FabricScene, solid_glb
 from ..requests.charts import to_chart
 from ..service.problems import ServiceError
-from .client import with_scripts
 from .incoming import WantedPicture
+from .relay import with_scripts
 from .still import still_png
 from .views import View, new_view
 

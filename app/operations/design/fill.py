@@ -50,11 +50,7 @@ StitchRun = tuple[
 ]
 
 
-def _rounded(values: Any) -> Any:
-    return np.round(values, 5).tolist()
-
-
-Rounded = Annotated[list[float], BeforeValidator(_rounded)]
+Rounded = Annotated[list[float], BeforeValidator(lambda values: np.round(values, 5).tolist())]
 Gaps = Annotated[list[Known], BeforeValidator(list)]
 Width = Annotated[float, Field(gt=0.05, lt=3)] | None
 

@@ -79,7 +79,7 @@ class DesignStore:
     def get(self, owner: str, design: str) -> Design:
         """A design that is not deleted."""
         with self._database.read() as connection:
-            return design_of(find_design(connection, owner, design))
+            return _design_of(find_design(connection, owner, design))
 
     def page(
         self, owner: str, *, limit: int, cursor: str | None, deleted: bool, part: str = ""
@@ -231,7 +231,12 @@ class DesignStore:
         def action(connection: Connection) -> Design:
             row = find_design(connection, owner, design, change=True, deleted=deleted)
             check_match(if_match, row.revision)
-            return _changed(connection, row, values(connection, row))
+            changes = values(connection, row)
+            if not changes.keys().isdisjoint(_SIZED):
+                changes = _sized(connection, owner, changes, row)
+            stamped = changes | {"revision": row.revision + 1, "changed_at": now()}
+            connection.execute(_CHANGE, stamped | {"design": design})
+            return _stored(connection, design)
 
         changed = self._database.write(action)
         self._tell(owner, design, changed.revision)
@@ -294,7 +299,7 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
         "changed_at": at,
     }
     connection.execute(insert(designs).values(values))
-    return design_of(connection.execute(select(designs).where(designs.c.id == values["id"])).one())
+    return _stored(connection, values["id"])
 
 
 def _count(connection: Connection, owner: str) -> int:
@@ -325,7 +330,11 @@ def copied(row: Row[Any]) -> dict[str, Any]:
     return {n: getattr(row, n) for n in kept} | {"name": f"{row.name[:190]} (copy)"}
 
 
-def design_of(row: Row[Any]) -> Design:
+def _stored(connection: Connection, design: str) -> Design:
+    return _design_of(connection.execute(select(designs).where(designs.c.id == design)).one())
+
+
+def _design_of(row: Row[Any]) -> Design:
     """A row as clients get it."""
     return Design.model_validate({**row._mapping, "document": document_of(row)})
 
@@ -340,14 +349,6 @@ def document_of(row: Row[Any], name: str | None = None) -> DesignDocument:
         note=row.note,
         **dict(layout),
     )
-
-
-def _changed(connection: Connection, row: Row[Any], values: dict[str, Any]) -> Design:
-    if not values.keys().isdisjoint(_SIZED):
-        values = _sized(connection, row.owner, values, row)
-    stamped = values | {"revision": row.revision + 1, "changed_at": now()}
-    connection.execute(_CHANGE, stamped | {"design": row.id})
-    return design_of(connection.execute(select(designs).where(designs.c.id == row.id)).one())
 
 
 def _content(document: DesignDocument) -> dict[str, Any]:

@@ -307,7 +307,8 @@ class AccessControl:
 
     async def _begin(self, scope: Scope, identifier: str, user: str, to: str) -> Response:
         login: Login = scope["app"].state.login
-        response = RedirectResponse(_own_path(to), 303)
+        own = "/" + to.lstrip("/\\")  # //evil.example would lead to another service
+        response = RedirectResponse(own, 303)
         response.set_cookie(
             SESSION_COOKIE,
             await asyncio.to_thread(login.begin, identifier, user),
@@ -394,11 +395,6 @@ def _place_of(origin: str) -> str | None:
         return urlsplit(origin).netloc.lower()
     except ValueError:
         return None
-
-
-def _own_path(path: str) -> str:
-    """A path of this service: ``//evil.example`` would lead to another."""
-    return "/" + path.lstrip("/\\")
 
 
 def _bearer(headers: Headers) -> str:
