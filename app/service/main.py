@@ -67,7 +67,9 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     current_default_thread_limiter().total_tokens = THREADS  # FastAPI's
     given: Database | None = app.state.database
     app.state.database = given or await asyncio.to_thread(_open_database, chosen)
-    app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
+    token = chosen.token.get_secret_value() if chosen.token else None
+    tokens, sessions = Tokens(app.state.database), Sessions(app.state.database)
+    app.state.login = await asyncio.to_thread(Login, tokens, sessions, token)
     app.state.cluster = _cluster(chosen)
     app.state.compute = Compute(
         _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
@@ -88,7 +90,7 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(asyncio.to_thread(_warm_up)),
     ]
     if chosen.require_login:
-        ending = _end_jobs_of_the_revoked(Tokens(app.state.database), app.state.jobs)
+        ending = _end_jobs_of_the_revoked(tokens, app.state.jobs)
         janitors.append(asyncio.create_task(ending))
     yield
     for janitor in janitors:
@@ -217,11 +219,6 @@ def _open_database(settings: Settings) -> Database:
     database = Database(settings.store_url)
     migrate(database)
     return database
-
-
-def _login(database: Database, settings: Settings) -> Login:
-    token = settings.token.get_secret_value() if settings.token else None
-    return Login(Tokens(database), Sessions(database), token)
 
 
 async def _end_jobs_of_the_revoked(tokens: Tokens, jobs: JobRunner) -> None:
