@@ -94,7 +94,10 @@ class NoRequest(RequestModel):
 
 
 class ResultModel(BaseModel):
-    """A result, or a part of one, read from the attributes of a library result."""
+    """A result, or a part of one, read from the attributes of a library result.
+
+    A model that has all fields of a dataclass of the library inherits them from it.
+    """
 
     model_config = ConfigDict(from_attributes=True)
 

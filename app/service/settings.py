@@ -22,16 +22,9 @@ from knitcore.base.errors import InputError
 
 from .memory import machine_bytes
 
-NO_SETTINGS = frozenset(
-    f"KNITCORE_{name}"
-    for name in (
-        "CONFIG",
-        "STUDY_DATA",
-        # of tests:
-        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES"),
-        "WORKER_NICENESS",
-    )
-)
+OTHERS = ("CONFIG", "STUDY_DATA", "WORKER_NICENESS")
+OF_TESTS = ("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES")
+"""Variables of the environment that are no settings."""
 
 
 class Settings(BaseSettings):
@@ -226,7 +219,8 @@ class Settings(BaseSettings):
 def _check_names(environment: Mapping[str, str]) -> None:
     """Refuse a misspelt variable: without its login, a service would be open. Refuse an empty one:
     an empty folder would be the present one."""
-    known = {f"KNITCORE_{name.upper()}" for name in Settings.model_fields} | NO_SETTINGS
+    names = (*Settings.model_fields, *OTHERS, *OF_TESTS)
+    known = {f"KNITCORE_{name.upper()}" for name in names}
     for name in sorted(environment):
         if name.upper().startswith("KNITCORE_") and name.upper() not in known:
             near = get_close_matches(name.upper(), known, 1)

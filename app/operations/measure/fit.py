@@ -19,13 +19,7 @@ from knitcore.measure.uniaxial_files import read_stretch_test
 from ...cli.options import out_option, write_table
 from ...context import Context
 from ...requests.base import Floats, RequestModel, ResultModel
-from ...requests.fabrics import (
-    ElasticConstants,
-    LawConstants,
-    LawResult,
-    elastic_constants_of,
-    law_constants,
-)
+from ...requests.fabrics import ElasticConstants, LawConstants, LawResult, law_fields
 from ...requests.faults import CheckedBy
 from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
@@ -142,8 +136,7 @@ def _result(fit: LawFit, *, residuals: bool) -> FitResult:
     names = {name: name.removesuffix("_n_per_mm") for name in LawErrors.model_fields}
     return FitResult.of(
         fit,
-        **elastic_constants_of(fit.law),
-        **law_constants(fit.law),
+        **law_fields(fit.law, ElasticConstants, LawResult),
         standard_errors={name: errors.get(constant) for name, constant in names.items()},
         residuals={d: _points(r) for d, r in fit.residuals.items()} if residuals else None,
         curves={d: CurveDocument.from_curve(c) for d, c in fit.curves.items()},

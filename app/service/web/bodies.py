@@ -13,7 +13,7 @@ from typing import Any
 
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
-from pydantic import ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import WrapValidator
 from starlette.types import Message, Receive
 
 from ...requests.base import unrepeated
@@ -39,11 +39,9 @@ class Undecoded:
     content: bytes
 
 
-def _pass_on(value: Any, decode: ValidatorFunctionWrapHandler) -> Any:
-    return value if isinstance(value, Undecoded) else decode(value)
-
-
-OrUndecoded = WrapValidator(_pass_on)
+OrUndecoded = WrapValidator(
+    lambda value, decode: value if isinstance(value, Undecoded) else decode(value)
+)
 """Mark of a body's model: a worker may decode the body if it is large."""
 
 

@@ -10,7 +10,7 @@ from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from app.service import main as main_module
-from app.service.web import security, tokens
+from app.service.web import security, sessions
 from app.service.web.sessions import MAX_SESSIONS, Sessions
 from tests.app.clients import LONG, bearing, drain, served, state_of, tokens_of, watching
 from tests.app.running import wait_until
@@ -21,7 +21,7 @@ SESSION = "/api/v1/session"
 @pytest.fixture
 def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
     """A service with logins that looks every instant whether they still hold."""
-    for module in (security, tokens, main_module):
+    for module in (security, sessions, main_module):
         monkeypatch.setattr(module, "REMEMBERED_S", 0.05)
     with served(require_login=True, data_dir=tmp_path) as client:
         yield client
