@@ -1,4 +1,4 @@
-"""What a stretch test cannot be: corrected where certain, told where rare, else refused."""
+"""Stretch tests that cannot be: corrected where certain, told where rare, else refused."""
 
 from dataclasses import replace
 

@@ -74,9 +74,6 @@ def test_names_of_columns_may_carry_units_in_brackets(tmp_path: Path) -> None:
     close_to(fit_files(*files).law, LAW, 0.02)
 
 
-# -- bad input -----------------------------------------------------------------------------------
-
-
 def _cell(lines: list[str], row: int, column: int, text: str) -> None:
     cells = lines[row - 1].split(",")
     cells[column] = text
