@@ -67,7 +67,8 @@ class Densities:
     excess : (…, densities) less those of the pure fabrics, weighted by the shares.
     straight : (…, 2) straightness of the fold lines, from 0 to 1. First along columns, which folds
         the width: 1 in a rib, 0 in a welt and in stockinette; then along rows: 1 in a welt.
-    even : (…, 2) how even the runs beside those lines are, from 0 to 1: 1 in KKPP, 0.4 in KKKP.
+    even_changes : (…, 2) changes along the course, and along the wale, twice a stitch, each times
+        how even the runs beside it are.
     ways : (…, 4) parts, adding up to 1, in which the chart is a rib, a welt, and neither, by its
         odd segments: along the course, along the wale, and at one stitch along both. Of the last,
         sparse purls (or knits) come last: all of it where they are a seventh of all stitches, none
@@ -77,13 +78,28 @@ class Densities:
     shares: Array
     excess: Array
     straight: Array
-    even: Array
+    even_changes: Array
     ways: Array
 
     @property
     def arrays(self) -> tuple[Array, Array, Array, Array, Array]:
         """All of them, in the order in which they are given."""
-        return self.shares, self.excess, self.straight, self.even, self.ways
+        return self.shares, self.excess, self.straight, self.even_changes, self.ways
+
+    @property
+    def even(self) -> Array:
+        """(…, 2) evenness of the runs beside the fold lines, from 0 to 1: 1 in KKPP, 0.4 in KKKP.
+
+        In a folded rib the shorter runs hide behind the longer ones, so the width falls at most to
+        the share of the longer: by ln 2 if the runs are equal, by ln 6/5 if one column in six is
+        purl (Spencer, *Knitting Technology*, on 1×1 and 6×3 ribs). This is that logarithm over
+        ln 2, the mean over all changes.
+        """
+        garter, rib, seed = np.moveaxis(self.shares[..., 1:], -1, 0)
+        changes = 2 * np.stack([rib + seed, garter + seed], axis=-1)
+        even = np.zeros_like(changes)
+        np.divide(self.even_changes, changes, out=even, where=changes > _NO_CHANGE)
+        return np.asarray(np.clip(even, 0.0, 1.0))
 
     @property
     def mixed(self) -> Array:
@@ -155,7 +171,7 @@ def densities_of(purl: NDArray[np.bool_], mean: Mean = _mean) -> Densities:
     sparse = 4 * one_sided * (1 - one_sided)
     parts = course * (1 - neither), (1 - course) * (1 - neither)
     ways = np.stack([*parts, neither * (1 - sparse), neither * sparse], axis=-1)
-    return Densities(shares, values - shares @ _pure(), straight, _evenness(sign, mean), ways)
+    return Densities(shares, values - shares @ _pure(), straight, _even_changes(sign, mean), ways)
 
 
 @cache
@@ -197,22 +213,13 @@ def _lines(sign: Array, mean: Mean) -> Array:
     return np.stack(shares, axis=-1)
 
 
-def _evenness(sign: Array, mean: Mean) -> Array:
-    """(…, 2) how even runs of K and P are beside the changes along the course, then the wale.
-
-    In a folded rib the shorter runs hide behind the longer ones, so the width falls at most to the
-    share of the longer: by ln 2 if the runs are equal, by ln 6/5 if one column in six is purl
-    (Spencer, *Knitting Technology*, on 1×1 and 6×3 ribs). This is that logarithm over ln 2, the
-    mean over all changes.
-    """
+def _even_changes(sign: Array, mean: Mean) -> Array:
+    """(…, 2) see :attr:`Densities.even_changes`; the share of the longer run is taken nearby."""
     kx, ky, back = _waves(sign)
     means = []
     for across, axis in ((kx, -1), (ky, -2)):
         longer = 1 + np.abs(back(_weights(across, _SMOOTHED_OVER[-1])))
-        changes = _odd_sides(sign, axis)
-        even = mean(changes * (1 - np.log2(np.minimum(longer, 2.0))))
-        number = mean(changes)
-        means.append(np.divide(even, number, out=np.zeros_like(even), where=number > _NO_CHANGE))
+        means.append(mean(_odd_sides(sign, axis) * (1 - np.log2(np.minimum(longer, 2.0)))))
     return np.stack(means, axis=-1)
 
 

@@ -35,7 +35,7 @@ from knitcore.prediction.size import RelaxedSize
 STRESS_GRID = np.array([400.0, 800.0, 2000.0, 4000.0, 8000.0, 12000.0])
 """Stresses over B / L³ at which strains are learned: about 0.01 to 0.3 N/mm."""
 
-MAX_FOLDED = 1.0
+MAX_FOLDED = 0.87
 """Knitted fabric folds less than the yarn level predicts, which has no friction and no set. In
 logarithms a fold f becomes f / (1 + |f| / MAX_FOLDED), times the squared straightness of the fold
 lines, since folds that cross hinder each other, and the evenness of the runs beside them, since a
