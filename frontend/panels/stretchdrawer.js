@@ -47,7 +47,7 @@ export function stretchdrawer(host, studio, stretcher) {
   });
   const unit = selectField(
     {
-      class: "chip-select",
+      class: "chip-select small",
       id: "stretch-unit",
       "aria-label": "Unit of the pull",
       onchange: () => (amount.value = DEFAULTS[/** @type {Unit} */ (unit.value)]),
@@ -103,7 +103,7 @@ export function stretchdrawer(host, studio, stretcher) {
     () => void import("../services/exporter.js").then(({ exportStretch }) => exportStretch(studio)),
     { id: "stretch-save" },
   );
-  const note = h("div", { class: "stretch-note", role: "status", id: "stretch-note" });
+  const note = h("div", { class: "stretch-note gap-6 small muted", role: "status", id: "stretch-note" });
 
   const play = h("button", {
     class: "button icon-only",
@@ -196,7 +196,7 @@ export function stretchdrawer(host, studio, stretcher) {
     slider.disabled = play.disabled = save.disabled = !current;
     if (value) slider.max = String(value.strain.length - 1);
     showStep();
-    note.className = problem ? "stretch-note error" : "stretch-note";
+    note.className = `stretch-note gap-6 small muted ${problem ? "error" : ""}`;
     note.replaceChildren();
     if (problem) {
       note.append(icon("warning"), refused(problem, pullBy));
@@ -238,11 +238,11 @@ function locking(test) {
 
 /** How the ends are held, what is computed and shown; the usual choice is made. @param {Studio} studio */
 function stretchOptions(studio) {
-  const clamps = selectField({ class: "select", id: "stretch-clamps" }, [
+  const clamps = selectField({ class: "select small", id: "stretch-clamps" }, [
     ["clamped", "gripped"],
     ["sliding", "free to slide sideways"],
   ]);
-  const model = selectField({ class: "select", id: "stretch-model" }, [
+  const model = selectField({ class: "select small", id: "stretch-model" }, [
     ["full", "with lock-up"],
     ["published", "as published, without lock-up"],
   ]);

@@ -16,10 +16,11 @@ import { menu } from "../widgets/menu.js";
 /** @param {HTMLElement} host @param {Studio} studio @param {ActionContext} context */
 export function topbar(host, studio, context) {
   const name = h("input", {
-    class: "design-name",
+    class: "design-name rounded",
     type: "text",
     value: studio.name.value,
     maxLength: 80,
+    size: 18,
     spellcheck: false,
     "aria-label": "Name of the design",
     onchange: () => {
@@ -77,14 +78,14 @@ export function topbar(host, studio, context) {
     designsMenu(context),
     name,
     saveState(context),
-    h("div", { class: "group" }, button("undo"), button("redo")),
+    h("div", { class: "group flex gap-2" }, button("undo"), button("redo")),
     size,
     h("div", { class: "spacer" }),
     materialMenu(studio, context),
     button("import", "Import"),
     button("share", "Share"),
     exportMenu(studio, context),
-    h("div", { class: "group" }, button("theme"), button("help")),
+    h("div", { class: "group flex gap-2" }, button("theme"), button("help")),
     accountButton(studio, context),
   );
 }
@@ -249,7 +250,7 @@ function designsMenu(context) {
       h("span", { class: "visually-hidden" }, "Knitcore: designs and help"),
       icon("down"),
     ],
-    class: "button quiet brand flex",
+    class: "button quiet brand flex gap-2",
   });
   /** @param {string} id */
   const menuItem = (id) => item(action(id), context);

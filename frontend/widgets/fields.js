@@ -24,7 +24,7 @@ export const textLine = (label, value, changed, more) =>
     h("span", {}, label),
     h("input", {
       type: "text",
-      class: "text",
+      class: "text full-width",
       value,
       maxLength: 80,
       onchange: (/** @type {Event} */ { target }) => changed(/** @type {HTMLInputElement} */ (target).value.trim()),

@@ -31,7 +31,7 @@ export function chartstrip(host, context) {
     const entry = (kind, label) =>
       h(
         "span",
-        { class: "legend-item" },
+        { class: "legend-item gap-5" },
         h("span", { class: `key-cell relative ${kind} ${drawn}${look === "symbols" ? " paper" : ""}` }),
         label,
       );
@@ -84,7 +84,7 @@ export function chartstrip(host, context) {
         [true, "Round"],
       ]),
       look,
-      h("div", { class: "group" }, small("zoom-out"), small("zoom-in"), small("fit")),
+      h("div", { class: "group flex gap-2" }, small("zoom-out"), small("zoom-in"), small("fit")),
     ),
   );
 }

@@ -20,7 +20,7 @@ export function rail(host, studio, context) {
     h(
       "button",
       {
-        class: "tool",
+        class: "tool relative rounded",
         id: `tool-${tool.id}`,
         title: `${tool.label} (${tool.key})\n${tool.hint}`,
         "aria-label": tool.label,
@@ -35,7 +35,7 @@ export function rail(host, studio, context) {
   );
 
   const size = h("button", {
-    class: "tool size",
+    class: "tool size relative rounded",
     id: "brush-size",
     onclick: () => {
       studio.size.value = SIZES[(SIZES.indexOf(studio.size.value) + 1) % SIZES.length];
@@ -51,7 +51,7 @@ export function rail(host, studio, context) {
   studio.tool.watch(({ sized }) => (size.disabled = !sized));
 
   /** @param {string} id */
-  const small = (id) => actionButton(action(id), context, "tool");
+  const small = (id) => actionButton(action(id), context, "tool relative rounded");
   const symmetry = small("symmetry");
   studio.symmetry.watch((value) => {
     symmetry.setAttribute("aria-pressed", String(value !== "none"));
@@ -68,7 +68,7 @@ export function rail(host, studio, context) {
     const button = h(
       "button",
       {
-        class: "tool",
+        class: "tool relative rounded",
         id: `open-${name}`,
         title: `${label} (${shown(action(name).keys[0])})`,
         "aria-label": label,

@@ -37,7 +37,7 @@ const LOAD_N_PER_MM = 0.1;
 export function create(studio, { keeper }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const table = h("table", { class: "numbers compare-numbers full-width", id: "compare-numbers" });
-  const plot = h("div", { class: "plot", id: "compare-plot" });
+  const plot = h("div", { class: "plot relative shrinks-x shrinks-y clipped", id: "compare-plot" });
   const rectangles = h("div", { class: "compare-rectangles stack" });
   /** @type {Direction} */
   let direction = "course";
@@ -50,13 +50,13 @@ export function create(studio, { keeper }) {
   });
   const sides = SIDES.map(({ id, letter }) => {
     const which = h("select", {
-      class: "select",
+      class: "select small",
       id: `compare-${id}`,
       "aria-label": `Piece ${letter}`,
       onchange: () => ((side.yarnId = ""), load()),
     });
     const yarn = h("select", {
-      class: "select",
+      class: "select small",
       id: `compare-${id}-yarn`,
       "aria-label": `Yarn of piece ${letter}`,
       onchange: () => ((side.yarnId = yarn.value), load()),

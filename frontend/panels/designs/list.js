@@ -23,10 +23,10 @@ export function create(studio, context) {
   /** @type {string | null} */ let cursor = null;
 
   const status = h("div", { class: "dialog-status", role: "status" });
-  const list = h("ul", { class: "cards", id: "designs-list" });
+  const list = h("ul", { class: "cards stack", id: "designs-list" });
   const search = h("input", {
     type: "search",
-    class: "text-field",
+    class: "text-field grows shrinks-x rounded",
     id: "designs-search",
     placeholder: "Find by name",
     "aria-label": "Find a design by its name",
@@ -50,7 +50,7 @@ export function create(studio, context) {
     "My designs",
     h(
       "div",
-      { class: "dialog-tools" },
+      { class: "dialog-tools wrap gap-10" },
       search,
       tabs.element,
       h("span", { class: "spacer" }),
@@ -169,7 +169,7 @@ export function create(studio, context) {
   /** @param {Summary} design @param {HTMLElement} name */
   const rename = (design, name) => {
     const field = h("input", {
-      class: "text-field card-rename",
+      class: "text-field card-rename grows shrinks-x rounded",
       value: design.name,
       maxLength: 80,
       "aria-label": "New name",

@@ -28,7 +28,7 @@ export function create(_studio, { keeper }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ul", { class: "rows-list", id: "share-list" });
   const link = h("input", {
-    class: "text-field",
+    class: "text-field grows shrinks-x rounded",
     id: "share-link",
     readOnly: true,
     "aria-label": "The link",
@@ -47,7 +47,7 @@ export function create(_studio, { keeper }) {
   const result = h(
     "div",
     { class: "stack gap-6", hidden: true },
-    h("div", { class: "dialog-tools" }, link, copy),
+    h("div", { class: "dialog-tools wrap gap-10" }, link, copy),
     copied,
   );
 
@@ -57,7 +57,7 @@ export function create(_studio, { keeper }) {
     .../** @type {ShareMode[]} */ (["read", "copy"]).map((which) =>
       h(
         "label",
-        { class: "choice flex gap-10" },
+        { class: "choice flex gap-10 rounded" },
         h("input", {
           type: "radio",
           name: "share-mode",
@@ -105,11 +105,11 @@ export function create(_studio, { keeper }) {
   const row = (share) =>
     h(
       "li",
-      { class: "row" },
+      { class: "row wrap" },
       icon("share"),
       h(
         "span",
-        { class: "row-text" },
+        { class: "row-text stack shrinks-x" },
         h("span", {}, MODES[share.mode][0]),
         h("span", { class: "muted" }, `made ${ago(share.created_at)}`),
       ),

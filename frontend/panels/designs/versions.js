@@ -21,7 +21,7 @@ export function create(studio, { keeper, open }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ol", { class: "rows-list", id: "versions-list" });
   const name = h("input", {
-    class: "text-field",
+    class: "text-field grows shrinks-x rounded",
     id: "version-name",
     type: "text",
     maxLength: 80,
@@ -31,7 +31,7 @@ export function create(studio, { keeper, open }) {
   const form = h(
     "form",
     {
-      class: "dialog-tools",
+      class: "dialog-tools wrap gap-10",
       onsubmit: async (/** @type {SubmitEvent} */ event) => {
         event.preventDefault();
         const id = await remote();
@@ -79,11 +79,11 @@ export function create(studio, { keeper, open }) {
     );
     return h(
       "li",
-      { class: "row" },
+      { class: "row wrap" },
       picture,
       h(
         "span",
-        { class: "row-text" },
+        { class: "row-text stack shrinks-x" },
         h("span", { class: "ellipsis" }, version.name),
         h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept automatically" : ""}`),
       ),

@@ -91,10 +91,10 @@ export function create(_studio, { keeper }) {
   const row = ({ id, created_at, is_this }) =>
     h(
       "li",
-      { class: "row" },
+      { class: "row wrap" },
       h(
         "span",
-        { class: "row-text" },
+        { class: "row-text stack shrinks-x" },
         h("span", {}, is_this ? "This browser" : "Another browser"),
         h("span", { class: "muted" }, `signed in ${ago(created_at)}`),
       ),

@@ -41,7 +41,7 @@ export function yarnMaker(studio, made) {
   /** @param {string} title @param {string} detail */
   const say = (title, detail) => run.say({ title, detail, remedy: null });
 
-  const name = h("input", { type: "text", class: "text-field", id: "yarn-name", maxLength: 80 });
+  const name = h("input", { class: "text-field grows shrinks-x rounded", id: "yarn-name", maxLength: 80 });
   const bending = figure("yarn-bending", { min: ".01", max: "10000" });
   const loop = figure("yarn-loop", { min: "1", max: "200" });
   const stiffness = figure("yarn-stiffness", { min: ".0001", max: "100000" });

@@ -45,7 +45,7 @@ export function create(studio) {
     list,
     h(
       "div",
-      { class: "dialog-tools" },
+      { class: "dialog-tools wrap gap-10" },
       h("label", { class: "button", for: "yarn-file" }, "Add a yarn file …"),
       file,
       textButton("plus", "Make a yarn …", () => maker.open(null), { id: "yarn-new" }),
@@ -64,10 +64,10 @@ export function create(studio) {
   const item = ({ id, name: label, description, fabrics, added_by_you: mine }) =>
     h(
       "li",
-      { class: "row" },
+      { class: "row wrap" },
       h(
         "span",
-        { class: "row-text" },
+        { class: "row-text stack shrinks-x" },
         h("span", { class: "ellipsis" }, label),
         h(
           "span",

@@ -52,7 +52,7 @@ export function create(studio, { view }) {
   const options = {
     worked: h(
       "div",
-      { class: "exports-options" },
+      { class: "exports-options gap-12 shrinks-x" },
       choice(
         "export-worked",
         "Worked",
@@ -82,7 +82,7 @@ export function create(studio, { view }) {
     note,
   };
   const status = h("div", { class: "dialog-status", role: "status" });
-  const outcome = h("div", { class: "exports-options", id: "export-outcome", "aria-live": "polite" });
+  const outcome = h("div", { class: "exports-options gap-12 shrinks-x", id: "export-outcome", "aria-live": "polite" });
   const make = textButton("export", "Make the file", () => void run(), { class: "button primary", id: "export-make" });
 
   /** @param {ExportKind} format */
@@ -116,7 +116,7 @@ export function create(studio, { view }) {
         ...some
           .filter(({ format }) => format.group === group)
           .map(({ format, input, note }) =>
-            h("label", { class: "exports-kind" }, input, h("span", {}, format.name, note)),
+            h("label", { class: "exports-kind stack gap-8" }, input, h("span", {}, format.name, note)),
           ),
       ),
     );
@@ -130,7 +130,7 @@ export function create(studio, { view }) {
       formats,
       h(
         "section",
-        { class: "exports-options", "aria-label": "Options and file" },
+        { class: "exports-options gap-12 shrinks-x", "aria-label": "Options and file" },
         ...Object.values(options),
         status,
         outcome,
@@ -218,7 +218,11 @@ export function create(studio, { view }) {
     const text =
       kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MAX_SHOWN)) : "";
     outcome.replaceChildren(
-      h("ul", { class: "planner-notes plain-list" }, ...facts.map((words) => h("li", {}, icon("check"), words))),
+      h(
+        "ul",
+        { class: "planner-notes plain-list stack gap-5 small" },
+        ...facts.map((words) => h("li", {}, icon("check"), words)),
+      ),
       text && !kind.to.endsWith("svg")
         ? h("pre", { class: "exports-text rounded sunken", tabIndex: 0, "aria-label": "The file" }, text)
         : "",

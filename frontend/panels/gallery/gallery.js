@@ -19,8 +19,8 @@ import { EXAMPLES, GARMENTS, garmentDesign } from "./examples.js";
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper, open }) {
   const status = h("div", { class: "dialog-status", role: "status" });
-  const examples = h("ul", { class: "cards", id: "gallery-examples" });
-  const garments = h("ul", { class: "cards", id: "gallery-garments" });
+  const examples = h("ul", { class: "cards stack", id: "gallery-examples" });
+  const garments = h("ul", { class: "cards stack", id: "gallery-garments" });
   const element = dialog(
     "gallery-dialog",
     "New design",

@@ -31,7 +31,7 @@ export function facts(garment, unit) {
     ...pressure(garment, unit),
     h(
       "ul",
-      { class: "planner-notes plain-list" },
+      { class: "planner-notes plain-list stack gap-5 small" },
       ...garment.warnings.map((words) => h("li", { class: "warned" }, icon("warning"), words)),
       ...garment.notes.map((words) => h("li", {}, icon("info"), words)),
       h("li", {}, icon("info"), `To close: ${garment.closing}.`),
@@ -46,7 +46,7 @@ const long = (mm, unit) => (unit === "in" ? `${(mm / 25.4).toFixed(1)} in` : `${
 function regions({ regions: all }, unit) {
   return h(
     "table",
-    { class: "planner-table figures" },
+    { class: "planner-table figures full-width small" },
     h(
       "thead",
       {},
@@ -90,7 +90,7 @@ function pressure({ worn }, unit) {
   return [
     h(
       "table",
-      { class: "planner-table figures", id: "planner-pressure" },
+      { class: "planner-table figures full-width small", id: "planner-pressure" },
       h(
         "thead",
         {},

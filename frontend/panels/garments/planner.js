@@ -91,7 +91,7 @@ export function create(studio, { keeper }) {
       changed();
     },
   );
-  const yarn = h("select", { class: "text-field", id: "planner-material", onchange: changed });
+  const yarn = h("select", { class: "text-field grows shrinks-x rounded", id: "planner-material", onchange: changed });
   const tex = numberField({
     min: "1",
     step: "any",
@@ -113,12 +113,12 @@ export function create(studio, { keeper }) {
   const [stitches, rows] = [count("Stitches", "22"), count("Rows", "30")];
   const per = h(
     "select",
-    { class: "text-field", "aria-label": "Counted over", onchange: changed },
+    { class: "text-field grows shrinks-x rounded", "aria-label": "Counted over", onchange: changed },
     ...["10 cm", "4 in", "5 cm"].map((span) => h("option", {}, span)),
   );
   const of = h(
     "select",
-    { class: "text-field", "aria-label": "Fabric of the swatch", onchange: changed },
+    { class: "text-field grows shrinks-x rounded", "aria-label": "Fabric of the swatch", onchange: changed },
     ...["stockinette", "garter", "rib", "seed"].map((fabric) => h("option", {}, fabric)),
   );
   const gaugeRow = h(
@@ -161,7 +161,10 @@ export function create(studio, { keeper }) {
       { class: "planner stack" },
       h(
         "form",
-        { class: "planner-form column shrinks-x", onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
+        {
+          class: "planner-form column shrinks-x gap-12",
+          onsubmit: (/** @type {Event} */ event) => event.preventDefault(),
+        },
         choice(
           "planner-template",
           "Garment",
@@ -206,7 +209,7 @@ export function create(studio, { keeper }) {
       ),
       h(
         "section",
-        { class: "planner-result column shrinks-x", "aria-label": "The garment" },
+        { class: "planner-result column shrinks-x gap-12", "aria-label": "The garment" },
         h("div", { class: "planner-picture centred rounded sunken" }, canvas),
         status,
         result,
@@ -256,7 +259,7 @@ export function create(studio, { keeper }) {
         ? [
             h(
               "table",
-              { class: "planner-table" },
+              { class: "planner-table full-width small" },
               h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "Length"), h("th", {}, "Around"))),
               h(
                 "tbody",
@@ -315,7 +318,7 @@ export function create(studio, { keeper }) {
       {},
       h(
         "table",
-        { class: "planner-table" },
+        { class: "planner-table full-width small" },
         h("thead", {}, h("tr", {}, h("th", {}, "Along the limb"), h("th", {}, "Around it"), h("th", {}, ""))),
         body,
       ),

@@ -29,7 +29,7 @@ const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb", "drape"]);
 export function inspector(host, studio) {
   const title = h("h2", {});
   const scopes = h("select", {
-    class: "chip-select",
+    class: "chip-select small",
     id: "inspector-scope",
     title: "What these numbers describe",
     "aria-label": "What these numbers describe",
@@ -42,11 +42,11 @@ export function inspector(host, studio) {
   const provenance = h("summary", { id: "provenance", title: "Where these numbers come from" });
   const notes = h("ul", { class: "notes" });
   const source = h("details", { class: "source small muted" }, provenance, gauge.element, notes);
-  const problem = h("div", { class: "problem", hidden: true });
+  const problem = h("div", { class: "problem flex gap-8 rounded small", hidden: true });
   const table = h("table", { class: "numbers full-width" });
   const shares = h("div", { class: "shares stack gap-6" });
-  const rigidity = h("div", { class: "plot", id: "plot-rigidity" });
-  const curve = h("div", { class: "plot", id: "plot-curve" });
+  const rigidity = h("div", { class: "plot relative shrinks-x shrinks-y clipped", id: "plot-rigidity" });
+  const curve = h("div", { class: "plot relative shrinks-x shrinks-y clipped", id: "plot-curve" });
   const worn = h("div", { class: "limb stack shrinks-x shrinks-y gap-10", id: "plot-limb" });
   const weighed = h("div", { class: "limb stack shrinks-x shrinks-y gap-10", id: "plot-drape" });
   const plots = { rigidity, curve, limb: worn, drape: weighed };
@@ -111,7 +111,7 @@ export function inspector(host, studio) {
       h(
         "div",
         { class: "inspector-head stack" },
-        h("div", { class: "inspector-title line gap-8" }, title, scopes),
+        h("div", { class: "inspector-title line gap-8 spread" }, title, scopes),
         source,
       ),
       problem,
@@ -317,7 +317,7 @@ function shareBar(id, parts, direction) {
     bar.append(piece);
     const key = h("span", { class: "key" });
     key.style.backgroundColor = colour;
-    return h("span", { class: "legend-item" }, key, text);
+    return h("span", { class: "legend-item gap-5" }, key, text);
   });
   const title = direction ? `Segments ${along(direction)}` : "Shares of the four fabrics, by quarters of stitches";
   return h(

@@ -43,7 +43,7 @@ export function limb(host, studio) {
   const around = h(
     "select",
     {
-      class: "select",
+      class: "select small",
       id: "limb-around",
       onchange: () => (chosen.value = { ...chosen.value, direction: /** @type {Direction} */ (around.value) }),
     },

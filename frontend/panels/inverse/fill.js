@@ -129,7 +129,7 @@ export function fromStiffness(studio) {
     const like = h(
       "select",
       {
-        class: "text part-like",
+        class: "text part-like full-width",
         id: `part-${at}-like`,
         "aria-label": `Make ${part.name} …`,
         onchange: () => {
@@ -156,13 +156,13 @@ export function fromStiffness(studio) {
     part.tell();
     return h(
       "li",
-      { class: "target sunken" },
+      { class: "target sunken rounded" },
       h(
         "div",
         { class: "target-line line wrap gap-6" },
         h("input", {
           type: "text",
-          class: "text part-title",
+          class: "text part-title full-width",
           value: part.name,
           maxLength: 80,
           "aria-label": "Name",
@@ -390,7 +390,7 @@ function patchList({ patches, columns }, targeted) {
       const part = partOf(patch);
       return h(
         "li",
-        { class: "candidate" },
+        { class: "candidate flex gap-12" },
         repeatPicture(patch.repeat, 60),
         h(
           "div",

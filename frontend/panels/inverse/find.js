@@ -62,7 +62,7 @@ export function findTab(studio, context) {
   const addRow = (first, value = first.start) => {
     const select = h(
       "select",
-      { class: "text", "aria-label": "Quantity" },
+      { class: "text full-width", "aria-label": "Quantity" },
       ...QUANTITIES.map((q) => h("option", { value: q.id, selected: q === first }, q.label)),
     );
     const number = field("Value", value, { step: "any", class: "number figures target-value framed rounded" });
@@ -71,7 +71,7 @@ export function findTab(studio, context) {
     const toleranceUnit = h("span", { class: "muted" }, "%");
     const weight = h(
       "select",
-      { class: "text", "aria-label": "Weight" },
+      { class: "text full-width", "aria-label": "Weight" },
       ...[
         ["0.25", "minor"],
         ["1", "normal"],
@@ -127,7 +127,7 @@ export function findTab(studio, context) {
     readers.push(read);
     const row = h(
       "div",
-      { class: "target sunken" },
+      { class: "target sunken rounded" },
       h(
         "div",
         { class: "target-line line wrap gap-6" },
@@ -210,7 +210,7 @@ export function findTab(studio, context) {
     );
     return h(
       "li",
-      { class: candidate.reached ? "candidate reached" : "candidate" },
+      { class: candidate.reached ? "candidate reached flex gap-12" : "candidate flex gap-12" },
       picture,
       h(
         "div",
@@ -334,7 +334,7 @@ function valueOf(candidate, label) {
 
 /** @param {string} label @param {[string, string][]} options */
 function limit(label, options) {
-  const select = selectField({ class: "text" }, options);
+  const select = selectField({ class: "text full-width" }, options);
   return { select, label: h("label", { class: "check" }, label, select) };
 }
 

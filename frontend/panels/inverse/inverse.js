@@ -73,7 +73,7 @@ function panel(studio, context) {
   const section = h(
     "section",
     {
-      class: "inverse beside",
+      class: "inverse beside stack panelled",
       id: "inverse",
       "aria-label": "Inverse design",
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
