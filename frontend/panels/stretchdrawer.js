@@ -52,10 +52,7 @@ export function stretchdrawer(host, studio, stretcher) {
       "aria-label": "Unit of the pull",
       onchange: () => (amount.value = DEFAULTS[/** @type {Unit} */ (unit.value)]),
     },
-    [
-      ["%", "%"],
-      ["N", "N"],
-    ],
+    { "%": "%", N: "N" },
   );
   const start = () => {
     const pull = Number(amount.value);
@@ -238,21 +235,21 @@ function locking(test) {
 
 /** How the ends are held, what is computed and shown; the usual choice is made. @param {Studio} studio */
 function stretchOptions(studio) {
-  const clamps = selectField({ class: "select small", id: "stretch-clamps" }, [
-    ["clamped", "gripped"],
-    ["sliding", "free to slide sideways"],
-  ]);
-  const model = selectField({ class: "select small", id: "stretch-model" }, [
-    ["full", "with lock-up"],
-    ["published", "as published, without lock-up"],
-  ]);
-  const shear = numberField({
-    id: "stretch-shear",
-    min: "0.0001",
-    max: "10",
-    step: "0.001",
-    placeholder: "assumed",
-  });
+  const clamps = selectField(
+    { class: "select small", id: "stretch-clamps" },
+    {
+      clamped: "gripped",
+      sliding: "free to slide sideways",
+    },
+  );
+  const model = selectField(
+    { class: "select small", id: "stretch-model" },
+    {
+      full: "with lock-up",
+      published: "as published, without lock-up",
+    },
+  );
+  const shear = numberField({ id: "stretch-shear", min: "0.0001", max: "10", step: "0.001", placeholder: "assumed" });
   const curling = h("input", {
     type: "checkbox",
     id: "stretch-curling",

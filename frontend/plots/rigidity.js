@@ -72,7 +72,11 @@ export function rigidityPlot(host, studio) {
       const chosen = point.id === studio.materialId.value;
       const tip = `${point.name}, ${point.fabric}: ${figure(point.x)} and ${figure(point.y)} N/mm`;
       const place = { cx: x.at(point.x), cy: y.at(point.y), r: chosen ? 6 : 3.2 };
-      add("circle", { ...place, fill: `var(--${point.fabric})`, class: chosen ? "fabric-dot chosen" : "fabric-dot" }, svg("title", {}, tip));
+      add(
+        "circle",
+        { ...place, fill: `var(--${point.fabric})`, class: chosen ? "fabric-dot chosen" : "fabric-dot" },
+        svg("title", {}, tip),
+      );
     }
     if (own && value) {
       const intervals = [value.modulus_course_interval_n_per_mm, value.modulus_wale_interval_n_per_mm];

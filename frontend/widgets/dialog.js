@@ -47,7 +47,7 @@ export function dialog(id, title, ...content) {
 export function problemBox(problem, again) {
   return h(
     "div",
-    { class: "problem flex gap-8 rounded small", role: "alert" },
+    { class: "problem", role: "alert" },
     icon("warning"),
     problemText(problem, again && h("button", { class: "button", onclick: again }, "Try again")),
   );

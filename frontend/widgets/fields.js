@@ -71,7 +71,7 @@ export class LengthField {
  *
  * @param {string} name
  * @param {string} label
- * @param {[string, string][]} choices value and words
+ * @param {Record<string, string>} choices values and their words
  * @param {string} chosen
  * @param {(value: string) => void} changed
  */
@@ -80,7 +80,7 @@ export function choice(name, label, choices, chosen, changed) {
     "fieldset",
     { class: "planner-choice flex wrap gap-6" },
     h("legend", { class: "visually-hidden" }, label),
-    ...choices.map(([value, words]) =>
+    ...Object.entries(choices).map(([value, words]) =>
       h(
         "label",
         { class: "planner-choice-item relative" },
@@ -102,10 +102,13 @@ export const labelled = (label, field, hint) =>
 
 /**
  * @param {Record<string, unknown>} more its properties
- * @param {Iterable<readonly [value: string, words: string]>} options
+ * @param {Record<string, string>} options values and their words
  */
 export const selectField = (more, options) =>
-  h("select", more, ...Array.from(options, ([value, words]) => h("option", { value }, words)));
+  h("select", more, ...Object.entries(options).map(([value, words]) => h("option", { value }, words)));
+
+/** Options whose values are their words. @param {readonly string[]} words */
+export const sameWords = (words) => Object.fromEntries(words.map((word) => [word, word]));
 
 /**
  * Segments side by side of which one is chosen.

@@ -22,7 +22,7 @@ export class Run {
     this.#text,
     textButton("stop", "Cancel", () => this.cancel()),
   );
-  #problem = h("div", { class: "problem flex gap-8 rounded small", role: "alert", hidden: true });
+  #problem = h("div", { class: "problem", role: "alert", hidden: true });
   element = h("div", { class: "inverse-status", "aria-live": "polite" }, this.#busy, this.#problem);
 
   get busy() {

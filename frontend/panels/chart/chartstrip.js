@@ -11,13 +11,8 @@ import { h } from "../../elements/dom.js";
 import { segmented, selectField } from "../../widgets/fields.js";
 import { actionButton } from "../../widgets/buttons.js";
 
-/** @type {[Look, string][]} */
-const LOOKS = [
-  ["both", "Dots"],
-  ["colours", "Colours"],
-  ["symbols", "Symbols"],
-  ["loops", "Loops"],
-];
+/** @type {Record<Look, string>} */
+const LOOKS = { both: "Dots", colours: "Colours", symbols: "Symbols", loops: "Loops" };
 
 /** @param {HTMLElement} host @param {ActionContext} context */
 export function chartstrip(host, context) {

@@ -18,12 +18,7 @@ import { icon } from "../../elements/icons.js";
 export async function keptName(keeper, status, unable) {
   if (await keeper.flush()) return keeper.remoteId;
   status.replaceChildren(
-    h(
-      "div",
-      { class: "problem flex gap-8 rounded small", role: "alert" },
-      icon("warning"),
-      `The design is not at the service yet${unable}`,
-    ),
+    h("div", { class: "problem", role: "alert" }, icon("warning"), `The design is not at the service yet${unable}`),
   );
   return null;
 }

@@ -11,6 +11,7 @@ import { icon } from "../../elements/icons.js";
 import { linkTo } from "../../sync/address.js";
 import { designs } from "../../sync/designs.js";
 import { dialog } from "../../widgets/dialog.js";
+import { listRow } from "../../widgets/listrow.js";
 import { keptName } from "./kept.js";
 import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
@@ -103,16 +104,10 @@ export function create(_studio, { keeper }) {
   };
   /** @param {Share} share */
   const row = (share) =>
-    h(
-      "li",
-      { class: "row wrap" },
+    listRow(
       icon("share"),
-      h(
-        "span",
-        { class: "row-text stack shrinks-x" },
-        h("span", {}, MODES[share.mode][0]),
-        h("span", { class: "muted" }, `made ${ago(share.created_at)}`),
-      ),
+      MODES[share.mode][0],
+      `made ${ago(share.created_at)}`,
       textButton(null, "Take back", async () => {
         const id = keeper.remoteId;
         if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();

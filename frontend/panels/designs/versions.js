@@ -12,6 +12,7 @@ import { designs } from "../../sync/designs.js";
 import { textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
+import { listRow } from "../../widgets/listrow.js";
 import { keptName } from "./kept.js";
 import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
@@ -77,16 +78,10 @@ export function create(studio, { keeper, open }) {
       ({ document }) => picture.replaceChildren(thumbnail(document, { side: 44 })),
       () => {}, // the name is enough
     );
-    return h(
-      "li",
-      { class: "row wrap" },
+    return listRow(
       picture,
-      h(
-        "span",
-        { class: "row-text stack shrinks-x" },
-        h("span", { class: "ellipsis" }, version.name),
-        h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept automatically" : ""}`),
-      ),
+      version.name,
+      `${ago(version.created_at)}${version.automatic ? " · kept automatically" : ""}`,
       textButton(
         "compare",
         "Compare",

@@ -21,12 +21,7 @@ export function create(_, context) {
     placeholder: "KPKPKP\nPKPKPK",
     "aria-label": "Chart as lines of K and P, top row first",
   });
-  const problem = h("div", {
-    class: "problem flex gap-8 rounded small",
-    role: "alert",
-    id: "import-problem",
-    hidden: true,
-  });
+  const problem = h("div", { class: "problem", role: "alert", id: "import-problem", hidden: true });
   /** @param {Promise<import("../../types.js").Problem | null>} outcome */
   const settle = async (outcome) => {
     const wrong = await outcome;

@@ -23,6 +23,7 @@ import { attempt } from "../../widgets/attempt.js";
 import { textButton } from "../../widgets/buttons.js";
 import { labelled, numberField } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
+import { table, tableRow } from "../../widgets/table.js";
 
 const ESTIMATED = "estimated from the library's yarns";
 const TABLES = ".csv,.xlsx,.xls";
@@ -222,24 +223,9 @@ export function yarnMaker(studio, made) {
     h(
       "div",
       { class: "yarn-fabrics" },
-      h(
-        "table",
+      table(
         { class: "yarn-table small full-width" },
-        h(
-          "thead",
-          {},
-          h(
-            "tr",
-            {},
-            ...[
-              "Fabric",
-              "Stitches per 10 cm",
-              "Rows per 10 cm",
-              "Pulled along the rows",
-              "Pulled along the columns",
-            ].map((text) => h("th", { scope: "col" }, text)),
-          ),
-        ),
+        ["Fabric", "Stitches per 10 cm", "Rows per 10 cm", "Pulled along the rows", "Pulled along the columns"],
         h("tbody", {}, ...rows.map((row) => row.element)),
       ),
     ),
@@ -310,12 +296,7 @@ function fabricRow(fabric) {
     rows.value = record ? perTenCm(record.stitch_wale_mm) : "";
     known.textContent = record ? ` ${record.origin === "estimated" ? "estimated" : "tested"}` : "";
   };
-  const element = h(
-    "tr",
-    {},
-    h("th", { scope: "row" }, fabric, known),
-    ...[stitches, rows, course, wale].map((field) => h("td", {}, field)),
-  );
+  const element = tableRow(h("span", {}, fabric, known), stitches, rows, course, wale);
   return { fabric, gauge, tests, incomplete, show, element };
 }
 

@@ -11,6 +11,7 @@ import { OWN, adopt, evidenceOf, isYarnFile, refresh, yarns } from "../../servic
 import { attempt } from "../../widgets/attempt.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog, problemBox } from "../../widgets/dialog.js";
+import { listRow } from "../../widgets/listrow.js";
 import { yarnMaker } from "./yarnmaker.js";
 
 /** @param {Studio} studio */
@@ -62,19 +63,10 @@ export function create(studio) {
   };
   /** @param {MaterialSummary} yarn */
   const item = ({ id, name: label, description, fabrics, added_by_you: mine }) =>
-    h(
-      "li",
-      { class: "row wrap" },
-      h(
-        "span",
-        { class: "row-text stack shrinks-x" },
-        h("span", { class: "ellipsis" }, label),
-        h(
-          "span",
-          { class: "muted" },
-          [description, `${Object.keys(fabrics).length} of 4 fabrics`].filter(Boolean).join(" · "),
-        ),
-      ),
+    listRow(
+      null,
+      label,
+      [description, `${Object.keys(fabrics).length} of 4 fabrics`].filter(Boolean).join(" · "),
       evidence(id),
       mine &&
         textButton(

@@ -40,10 +40,7 @@ export function create(studio, { view }) {
   const sides = choice(
     "export-side",
     "Side of row 1",
-    [
-      ["RS", "row 1 is a right side"],
-      ["WS", "a wrong side"],
-    ],
+    { RS: "row 1 is a right side", WS: "a wrong side" },
     "RS",
     (value) => (chosen.first_side = value),
   );
@@ -53,28 +50,16 @@ export function create(studio, { view }) {
     worked: h(
       "div",
       { class: "exports-options gap-12 shrinks-x" },
-      choice(
-        "export-worked",
-        "Worked",
-        [
-          ["flat", "worked flat"],
-          ["round", "in the round"],
-        ],
-        "flat",
-        (value) => {
-          chosen.construction = value;
-          sides.hidden = value === "round";
-        },
-      ),
+      choice("export-worked", "Worked", { flat: "worked flat", round: "in the round" }, "flat", (value) => {
+        chosen.construction = value;
+        sides.hidden = value === "round";
+      }),
       sides,
     ),
     finish: choice(
       "export-finish",
       "The last row",
-      [
-        ["waste", "ends in waste yarn"],
-        ["bind-off", "is bound off"],
-      ],
+      { waste: "ends in waste yarn", "bind-off": "is bound off" },
       "waste",
       (value) => (chosen.finish = value),
     ),

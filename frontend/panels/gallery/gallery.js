@@ -6,7 +6,7 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
-import { call } from "../../api.js";
+import { api } from "../../api.js";
 import { plainDesign } from "../../design/design.js";
 import { Grid } from "../../grid/grid.js";
 import { h } from "../../elements/dom.js";
@@ -14,7 +14,7 @@ import { icon } from "../../elements/icons.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
-import { EXAMPLES, GARMENTS, garmentDesign } from "./examples.js";
+import { EXAMPLES, GARMENTS } from "./examples.js";
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper, open }) {
@@ -82,15 +82,11 @@ export function create(studio, { keeper, open }) {
     garments.replaceChildren(...GARMENTS.map(() => h("li", { class: "card loading", "aria-hidden": "true" })));
     for (const example of GARMENTS) {
       if (fitted.has(example.id)) continue;
-      const { garment, material } = example;
-      const plan = await attempt(
-        status,
-        () =>
-          /** @type {Promise<import("./examples.js").Garment>} */ (
-            call("/garment", { method: "POST", body: { garment, material } })
-          ),
-      );
-      if (plan) fitted.set(example.id, garmentDesign(example, plan));
+      const { garment, material, name } = example;
+      const plan = await attempt(status, () => api.run("garment", { garment, material }));
+      if (!plan) continue;
+      const note = [...plan.notes, ...plan.warnings].join("\n");
+      fitted.set(example.id, { ...plan.design, name, material, note });
     }
     garments.replaceChildren(
       ...GARMENTS.flatMap(({ id, name, note }) => {
