@@ -3,7 +3,7 @@
  * to do, or the browser's own AbortError if the call was given up.
  *
  * @import {Box} from "./grid/grid.js"
- * @import {CameraSide, JobStatus, MaterialDetail, Operations, Problem, SignedIn, VersionResult, ViewRequest,
+ * @import {CameraSide, Extensions, JobStatus, MaterialDetail, Operations, Problem, SignedIn, VersionResult, ViewRequest,
  *   ViewResult} from "./types.js"
  */
 
@@ -119,6 +119,9 @@ export const api = {
 
   /** @type {() => Promise<VersionResult>} */
   version: () => call("/version"),
+
+  /** @type {() => Promise<Extensions>} */
+  extensions: () => call("/extensions"),
 
   /** @type {() => Promise<{materials: import("./types.js").MaterialSummary[]}>} */
   materials: () => call("/materials"),

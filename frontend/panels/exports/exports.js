@@ -3,14 +3,11 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../state/studio.js"
- * @import {Extensions} from "../../types.js"
+ * @import {ExportRequest, ExportResult, Extensions} from "../../types.js"
  * @import {ExportKind, Option} from "./kinds.js"
- *
- * @typedef {{name: string, media_type: string, content: string, bytes: number, notes: string[],
- *   transfers: number | null, carriers: number | null}} ExportedFile
  */
 
-import { ApiError, call, fetched } from "../../api.js";
+import { ApiError, api, fetched } from "../../api.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { download } from "../../services/exporter.js";
@@ -124,20 +121,29 @@ export function create(studio, { view }) {
     h("div", { class: "dialog-buttons" }, make),
   );
 
-  async function addExtensions() {
-    const installed = await attempt(
-      status,
-      () => /** @type {Promise<Extensions>} */ (call("/extensions")),
-      addExtensions,
-    );
-    if (!installed) return;
-    extensionsAdded = true;
-    const added = ofExtensions(installed.extensions).map(entry);
-    for (const { format, note } of added) note.textContent = format.note;
+  /** What the service exports: formats of extensions, and how large a chart may be. @type {Extensions | null} */
+  let offered = null;
+  async function askOffered() {
+    offered = await attempt(status, api.extensions, askOffered);
+    if (!offered) return;
+    const added = ofExtensions(offered.extensions).map(entry);
     entries.push(...added);
     formats.append(...fieldsets(added));
+    showHindrances();
   }
-  let extensionsAdded = false;
+
+  function showHindrances() {
+    const { shaped, grid } = studio.document;
+    for (const { format, input, note: words } of entries) {
+      const why = hindrance(format.to, { shaped, stitches: grid.purl.length }, offered?.largest_exports ?? {});
+      input.disabled = why !== "";
+      words.textContent = why || format.note;
+    }
+    if (entries.some(({ input }) => input.checked && input.disabled)) {
+      entries[0].input.checked = true;
+      choose(entries[0].format);
+    }
+  }
 
   async function run() {
     make.disabled = true;
@@ -155,10 +161,7 @@ export function create(studio, { view }) {
       photo: isPattern(kind.to) ? await photo() : null,
     };
     const bare = isPattern(kind.to) && body.photo === null;
-    const file = await attempt(
-      status,
-      () => /** @type {Promise<ExportedFile>} */ (call("/export", { method: "POST", body })),
-    );
+    const file = await attempt(status, () => api.run("export", /** @type {ExportRequest} */ (body)));
     make.disabled = false;
     outcome.replaceChildren();
     if (file) show(bare ? { ...file, notes: [...file.notes, "without a picture: none could be made"] } : file);
@@ -184,7 +187,7 @@ export function create(studio, { view }) {
     return null;
   }
 
-  /** @param {ExportedFile} file */
+  /** @param {ExportResult} file */
   function show(file) {
     const bytes = Uint8Array.from(atob(file.content), (c) => c.charCodeAt(0));
     // Report, pattern and chart of one design have the same ending.
@@ -219,16 +222,7 @@ export function create(studio, { view }) {
   choose(kind);
   return () => {
     const { regions, outline } = studio.toDocument();
-    const { document: chart } = studio;
-    for (const { format, input, note: words } of entries) {
-      const why = hindrance(format.to, { shaped: chart.shaped, stitches: chart.grid.purl.length });
-      input.disabled = why !== "";
-      words.textContent = why || format.note;
-    }
-    if (entries.some(({ input }) => input.checked && input.disabled)) {
-      entries[0].input.checked = true;
-      choose(entries[0].format);
-    }
+    showHindrances();
     const yarns = new Set(regions.flatMap(({ yarn }) => yarn ?? []));
     note.textContent = [
       studio.note.value ? "The design's note goes with it." : "A note of the design would go with it.",
@@ -239,6 +233,6 @@ export function create(studio, { view }) {
       .join(" ");
     choose(kind);
     element.showModal();
-    if (!extensionsAdded) void addExtensions();
+    if (!offered) void askOffered();
   };
 }
