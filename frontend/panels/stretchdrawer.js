@@ -47,7 +47,7 @@ export function stretchdrawer(host, studio, stretcher) {
   });
   const unit = selectField(
     {
-      class: "chip-select small",
+      class: "chip-select",
       id: "stretch-unit",
       "aria-label": "Unit of the pull",
       onchange: () => (amount.value = DEFAULTS[/** @type {Unit} */ (unit.value)]),
@@ -236,14 +236,14 @@ function locking(test) {
 /** How the ends are held, what is computed and shown; the usual choice is made. @param {Studio} studio */
 function stretchOptions(studio) {
   const clamps = selectField(
-    { class: "select small", id: "stretch-clamps" },
+    { class: "select shrinks-x", id: "stretch-clamps" },
     {
       clamped: "gripped",
       sliding: "free to slide sideways",
     },
   );
   const model = selectField(
-    { class: "select small", id: "stretch-model" },
+    { class: "select shrinks-x", id: "stretch-model" },
     {
       full: "with lock-up",
       published: "as published, without lock-up",
@@ -258,7 +258,7 @@ function stretchOptions(studio) {
   studio.seeing.curling.watch((on) => (curling.checked = on));
   /** @param {string} text @param {HTMLElement} field */
   const row = (text, field, unit = "") =>
-    h("label", {}, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
+    h("label", { class: "stack gap-8" }, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
   const panel = h(
     "div",
     { class: "stretch-options raised rounded shadowed", id: "stretch-options", popover: "auto" },
@@ -268,7 +268,7 @@ function stretchOptions(studio) {
     row("Free edges curl in 3D", curling),
     h(
       "p",
-      { class: "muted" },
+      { class: "muted small" },
       "Stretch tests hardly determine the shear modulus. Left empty, that of the law is used.",
     ),
   );

@@ -250,7 +250,7 @@ function designsMenu(context) {
       h("span", { class: "visually-hidden" }, "Knitcore: designs and help"),
       icon("down"),
     ],
-    class: "button quiet brand flex gap-2",
+    class: "button quiet brand flex",
   });
   /** @param {string} id */
   const menuItem = (id) => item(action(id), context);

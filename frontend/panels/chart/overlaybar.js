@@ -61,7 +61,7 @@ export function overlaybar(host, studio, view) {
   const grouping = h(
     "select",
     {
-      class: "chip-select small",
+      class: "chip-select",
       id: "rectangle-groups",
       title: "What one rectangle stands for",
       "aria-label": "What one rectangle stands for",

@@ -35,7 +35,7 @@ export function rail(host, studio, context) {
   );
 
   const size = h("button", {
-    class: "tool size relative rounded",
+    class: "tool size relative rounded gap-2 small",
     id: "brush-size",
     onclick: () => {
       studio.size.value = SIZES[(SIZES.indexOf(studio.size.value) + 1) % SIZES.length];

@@ -50,13 +50,13 @@ export function create(studio, { keeper }) {
   });
   const sides = SIDES.map(({ id, letter }) => {
     const which = h("select", {
-      class: "select small",
+      class: "select grows shrinks-x full-width",
       id: `compare-${id}`,
       "aria-label": `Piece ${letter}`,
       onchange: () => ((side.yarnId = ""), load()),
     });
     const yarn = h("select", {
-      class: "select small",
+      class: "select grows shrinks-x full-width",
       id: `compare-${id}-yarn`,
       "aria-label": `Yarn of piece ${letter}`,
       onchange: () => ((side.yarnId = yarn.value), load()),
@@ -66,7 +66,7 @@ export function create(studio, { keeper }) {
       yarn,
       yarnId: "", // chosen instead of the piece's own
       picture: h("div", { class: "compare-picture centred rounded sunken" }),
-      size: h("p", { class: "muted figures" }),
+      size: h("p", { class: "muted figures small" }),
     };
     return side;
   });
@@ -79,7 +79,7 @@ export function create(studio, { keeper }) {
       ...sides.map(({ which, yarn, picture, size }, k) =>
         h(
           "section",
-          { "aria-label": `Piece ${SIDES[k].letter}` },
+          { class: "stack gap-6 shrinks-x", "aria-label": `Piece ${SIDES[k].letter}` },
           h("div", { class: "line gap-8" }, badge(k), which),
           yarn,
           picture,
@@ -316,7 +316,7 @@ function drawRectangles(host, pair) {
     ),
     h(
       "p",
-      { class: "muted" },
+      { class: "muted small" },
       "Extensibility rectangles: as wide and as high as the cloth stretches along rows and columns (sides grow as its square root).",
     ),
   );

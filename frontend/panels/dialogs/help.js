@@ -30,7 +30,7 @@ export function create() {
             "dl",
             { class: "keys stack" },
             ...ACTIONS.filter((action) => action.group === group).flatMap((action) => [
-              h("dt", {}, ...action.keys.slice(0, 2).map((key) => h("kbd", {}, shown(key)))),
+              h("dt", { class: "flex wrap gap-4" }, ...action.keys.slice(0, 2).map((key) => h("kbd", {}, shown(key)))),
               h(
                 "dd",
                 {},

@@ -183,9 +183,9 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
         "figure",
         {},
         source,
-        h("figcaption", { class: "muted ellipsis" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`),
+        h("figcaption", { class: "muted ellipsis small" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`),
       ),
-      h("figure", {}, preview, h("figcaption", { class: "muted" }, "The chart, as seen from the face")),
+      h("figure", {}, preview, h("figcaption", { class: "muted small" }, "The chart, as seen from the face")),
     ),
     h(
       "div",

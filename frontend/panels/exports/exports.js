@@ -85,7 +85,7 @@ export function create(studio, { view }) {
       checked: format === kind,
       onchange: () => choose(format),
     }),
-    note: h("span", { class: "muted" }),
+    note: h("span", { class: "muted small" }),
   });
   const entries = KINDS.map(entry);
   /** @param {ReturnType<typeof entry>[]} some */
@@ -94,7 +94,7 @@ export function create(studio, { view }) {
       h(
         "fieldset",
         { class: "exports-kinds stack gap-2" },
-        h("legend", {}, group),
+        h("legend", { class: "muted small" }, group),
         ...some
           .filter(({ format }) => format.group === group)
           .map(({ format, input, note }) =>

@@ -29,7 +29,7 @@ const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb", "drape"]);
 export function inspector(host, studio) {
   const title = h("h2", {});
   const scopes = h("select", {
-    class: "chip-select small",
+    class: "chip-select",
     id: "inspector-scope",
     title: "What these numbers describe",
     "aria-label": "What these numbers describe",

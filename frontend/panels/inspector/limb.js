@@ -43,7 +43,7 @@ export function limb(host, studio) {
   const tube = numberField({ id: "limb-tube", min: "10", max: "3000", placeholder: "chart", oninput: ask });
   const around = selectField(
     {
-      class: "select small",
+      class: "select shrinks-x",
       id: "limb-around",
       onchange: () => (chosen.value = { ...chosen.value, direction: /** @type {Direction} */ (around.value) }),
     },
