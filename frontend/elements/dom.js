@@ -42,6 +42,22 @@ export function svg(tag, attributes, ...children) {
   return element;
 }
 
+/**
+ * A drawing, and what adds an element to it.
+ *
+ * @param {Record<string, string | number>} attributes
+ */
+export function drawing(attributes) {
+  const plot = svg("svg", attributes);
+  /** @type {typeof svg} */
+  const add = (...mark) => {
+    const element = svg(...mark);
+    plot.append(element);
+    return element;
+  };
+  return { plot, add };
+}
+
 /** @param {Child} child @returns {child is Node | string | number} */
 function isShown(child) {
   return child !== null && child !== undefined && child !== false;

@@ -10,6 +10,7 @@ import { action, shown } from "../actions/registry.js";
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
 import { iconButton } from "../widgets/buttons.js";
+import { isComplete } from "../state/studio.js";
 import { saveState } from "./savestate.js";
 import { menu } from "../widgets/menu.js";
 
@@ -150,14 +151,13 @@ function materialMenu(studio, context) {
   });
   const show = () => {
     const all = studio.materials.value;
-    const chosen = all.find(({ id }) => id === studio.materialId.value);
-    label.textContent = chosen?.name ?? studio.materialId.value;
+    label.textContent = studio.yarn?.name ?? studio.materialId.value;
     setItems([
       ...all.map((material) => ({
         id: `material-${material.id}`,
         content: materialItem(material),
         checked: material.id === studio.materialId.value,
-        disabled: Object.keys(material.fabrics).length < 4,
+        disabled: !isComplete(material),
         perform: () => (studio.materialId.value = material.id),
       })),
       null,
@@ -172,7 +172,6 @@ function materialMenu(studio, context) {
 /** @param {MaterialSummary} material */
 function materialItem({ name, description, fabrics }) {
   const gauge = fabrics.stockinette;
-  const complete = Object.keys(fabrics).length === 4;
   const stitches =
     gauge?.stitch_course_mm && gauge.stitch_wale_mm
       ? `${(100 / gauge.stitch_course_mm).toFixed(0)} sts × ${(100 / gauge.stitch_wale_mm).toFixed(0)} rows per 10 cm`
@@ -184,7 +183,7 @@ function materialItem({ name, description, fabrics }) {
     h(
       "span",
       { class: "muted figures" },
-      complete
+      isComplete({ fabrics })
         ? [description, stitches].filter(Boolean).join(" · ")
         : "Not all four fabrics were measured: cannot be mixed in a chart",
     ),

@@ -7,22 +7,15 @@
 
 import { figure } from "../core/format.js";
 import { paced } from "../core/paced.js";
-import { svg } from "../elements/dom.js";
+import { drawing, svg } from "../elements/dom.js";
 import { FABRICS } from "../grid/segments.js";
 
 const PAD = { left: 50, right: 10, top: 8, bottom: 40 };
 
 /** @param {HTMLElement} host @param {Studio} studio @returns {() => void} draws anew */
 export function rigidityPlot(host, studio) {
-  const plot = svg("svg", { role: "img" });
+  const { plot, add } = drawing({ role: "img" });
   host.append(plot);
-
-  /** @type {typeof svg} */
-  const add = (...mark) => {
-    const element = svg(...mark);
-    plot.append(element);
-    return element;
-  };
 
   const draw = () => {
     const { clientWidth: width, clientHeight: height } = host;

@@ -9,9 +9,13 @@
  */
 
 import { api, call } from "../api.js";
+import { isComplete } from "../state/studio.js";
 
 /** Longest side of a photo of yarn as it is sent; a hand's length of yarn is still some pixels wide. */
 const PHOTO_SIDE_PX = 2400;
+
+/** Names of the constants of a law in a fit. */
+const CONSTANT = /^(stiffness|alpha|beta|shear_modulus|kappa)_/;
 
 export const OWN = "own:";
 
@@ -38,7 +42,7 @@ export const yarns = {
 export async function adopt(studio, document) {
   const added = await yarns.add(document);
   await refresh(studio);
-  const complete = Object.keys(added.fabrics).length === 4;
+  const complete = isComplete(added);
   if (complete) studio.materialId.value = added.id;
   studio.tell(
     complete
@@ -197,12 +201,7 @@ const fabricOf = ({ tests, fit }) => ({
   law: lawOf(fit),
   ...sizes(tests),
   law_source: `fitted to ${tests.course.name} and ${tests.wale.name}, ${fit.rms_n_per_mm.toFixed(4)} N/mm rms`,
-  standard_deviation: {
-    modulus_course: fit.standard_errors.modulus_course_n_per_mm,
-    modulus_wale: fit.standard_errors.modulus_wale_n_per_mm,
-    poisson_yx: fit.standard_errors.poisson_yx,
-    poisson_xy: fit.standard_errors.poisson_xy,
-  },
+  standard_deviation: withoutUnits(Object.entries(fit.standard_errors)),
   measured: fit.curves,
 });
 
@@ -218,20 +217,9 @@ function identifierOf(name) {
   return plain || "yarn";
 }
 
-/** Constants of a law, without the units in their names. @param {FitResult} fit */
-function lawOf(fit) {
-  const names = /** @type {const} */ ([
-    "stiffness_xxxx_n_per_mm",
-    "stiffness_yyyy_n_per_mm",
-    "stiffness_xxyy_n_per_mm",
-    "stiffness_yyxx_n_per_mm",
-    "alpha_xx",
-    "alpha_yy",
-    "beta_xx_n_per_mm",
-    "beta_yy_n_per_mm",
-    "shear_modulus_n_per_mm",
-    "kappa_xx",
-    "kappa_yy",
-  ]);
-  return Object.fromEntries(names.map((name) => [name.replace("_n_per_mm", ""), fit[name]]));
-}
+/** A fit's constants, without the units in their names. @param {FitResult} fit */
+const lawOf = (fit) => withoutUnits(Object.entries(fit).filter(([name]) => CONSTANT.test(name)));
+
+/** @param {[string, unknown][]} numbers by their names in answers of the service */
+const withoutUnits = (numbers) =>
+  Object.fromEntries(numbers.map(([name, value]) => [name.replace("_n_per_mm", ""), value]));

@@ -211,8 +211,7 @@ function offer(select, all) {
 
 /** @param {HTMLSelectElement} select @param {Studio} studio @param {string} chosen */
 function yarns(select, studio, chosen) {
-  const complete = studio.materials.value.filter(({ fabrics }) => Object.keys(fabrics).length === 4);
-  select.replaceChildren(...complete.map(({ id, name }) => h("option", { value: id }, name)));
+  select.replaceChildren(...studio.completeYarns.map(({ id, name }) => h("option", { value: id }, name)));
   select.value = chosen;
 }
 

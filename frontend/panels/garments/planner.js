@@ -278,9 +278,7 @@ export function create(studio, { keeper }) {
 
   /** @param {string} chosen */
   function showMaterials(chosen) {
-    const all = studio.materials.value
-      .filter(({ fabrics }) => Object.keys(fabrics).length === 4)
-      .map(({ id, name }) => ({ id, name }));
+    const all = studio.completeYarns.map(({ id, name }) => ({ id, name }));
     if (!all.some(({ id }) => id === "glove-wool:glove")) {
       all.push({ id: "glove-wool:glove", name: "Glove wool, stockinette on 2.0 mm needles as in the study" });
     }

@@ -16,7 +16,6 @@ import { Grid } from "../../grid/grid.js";
 import { largestRectangle } from "../../grid/inscribed.js";
 import { FABRICS } from "../../grid/segments.js";
 import { selectedCells } from "../../design/selection.js";
-import { outlineText } from "../../design/snapshot.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { nameOf, repeatPicture } from "./apply.js";
@@ -46,9 +45,8 @@ export function fromStiffness(studio) {
   let size = "";
 
   const sizeNow = () => `${chart.grid.rows} ${chart.grid.columns}`;
-  const outlineNow = () => (chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null);
   /** What is known of the yarn's pure fabrics. */
-  const fabricsNow = () => studio.materials.value.find(({ id }) => id === studio.materialId.value)?.fabrics ?? {};
+  const fabricsNow = () => studio.yarn?.fabrics ?? {};
   const add = (/** @type {string} */ name, /** @type {number[]} */ all) => {
     const cells = all.filter((i) => chart.outline[i]);
     if (!cells.length) return;
@@ -241,7 +239,7 @@ export function fromStiffness(studio) {
         rows,
         columns,
         chart: chart.grid.text,
-        outline: outlineNow(),
+        outline: chart.outlineText,
         wishes: targeted.map(({ name, cells, course, wale }) => ({
           name,
           runs: runsOf(cells, columns),

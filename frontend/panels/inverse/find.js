@@ -153,7 +153,7 @@ export function findTab(studio, context) {
       });
       return;
     }
-    const all = studio.materials.value.filter(({ fabrics }) => Object.keys(fabrics).length === 4).map(({ id }) => id);
+    const all = studio.completeYarns.map(({ id }) => id);
     const materials = across.checked
       ? [studio.materialId.value, ...all.filter((id) => id !== studio.materialId.value)]
       : [studio.materialId.value];

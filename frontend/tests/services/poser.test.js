@@ -21,7 +21,7 @@ function studio() {
     currentStrain: () => null,
     document: {
       grid: { rows: 1, columns: 2 },
-      shaped: false,
+      outlineText: null,
       onChange: (/** @type {() => void} */ heard) => (change = heard),
     },
     paint: () => change(),
