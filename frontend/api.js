@@ -7,6 +7,11 @@
  *   ViewResult} from "./types.js"
  */
 
+/**
+ * @typedef {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
+ *   keepalive?: boolean}} CallOptions
+ */
+
 /** A refused or failed call. */
 export class ApiError extends Error {
   /** @param {Problem} problem @param {boolean} [passing] whether the service asks to try again later */
@@ -56,8 +61,7 @@ async function problemOf(response) {
 /**
  * @template T
  * @param {string} path below /api/v1
- * @param {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
- *   keepalive?: boolean}} [options]
+ * @param {CallOptions} [options]
  * @returns {Promise<T>} undefined where the service has nothing to say (204, 304)
  */
 export async function call(path, options) {
@@ -68,13 +72,7 @@ export async function call(path, options) {
   return /** @type {Promise<T>} */ (response.json());
 }
 
-/**
- * The same, for answers that are not JSON.
- *
- * @param {string} path below /api/v1
- * @param {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
- *   keepalive?: boolean}} [options]
- */
+/** The same, for answers that are not JSON. @param {string} path below /api/v1 @param {CallOptions} [options] */
 export async function fetched(path, { method = "GET", body, signal, headers = {}, keepalive } = {}) {
   /** @type {Response} */
   let response;

@@ -2,7 +2,7 @@
  * All designs that the service keeps: open, rename, duplicate, delete, and bring back.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Summary} from "../../sync/designs.js"
+ * @import {DesignSummary} from "../../types.js"
  * @import {Studio} from "../../state/studio.js"
  */
 
@@ -115,7 +115,7 @@ export function create(studio, context) {
     list.append(h("li", { class: "empty" }, h("strong", {}, text[0]), h("p", { class: "muted" }, text[1])));
   };
 
-  /** @param {Summary} design */
+  /** @param {DesignSummary} design */
   const card = (design) => {
     const name = h("span", { class: "card-name ellipsis", title: design.name }, design.name);
     const here = design.id === keeper.remoteId;
@@ -166,7 +166,7 @@ export function create(studio, context) {
     return item;
   };
 
-  /** @param {Summary} design @param {HTMLElement} name */
+  /** @param {DesignSummary} design @param {HTMLElement} name */
   const rename = (design, name) => {
     const field = h("input", {
       class: "text-field card-rename grows shrinks-x rounded",
@@ -201,13 +201,13 @@ export function create(studio, context) {
     field.select();
   };
 
-  /** @param {Summary} design */
+  /** @param {DesignSummary} design */
   const duplicate = async (design) => {
     if (design.id === keeper.remoteId) await keeper.flush();
     if (await attempt(status, () => designs.duplicate(design.id))) await reload();
   };
 
-  /** @param {Summary} design @param {HTMLElement} item */
+  /** @param {DesignSummary} design @param {HTMLElement} item */
   const remove = async (design, item) => {
     if ((await attempt(status, () => designs.remove(design.id).then(() => true))) === null) return;
     const next = /** @type {HTMLElement | null} */ (item.nextElementSibling ?? item.previousElementSibling);
@@ -224,7 +224,7 @@ export function create(studio, context) {
     /** @type {HTMLElement | null | undefined} */ (next?.querySelector("button"))?.focus();
   };
 
-  /** @param {Summary} design @param {HTMLElement | null} item */
+  /** @param {DesignSummary} design @param {HTMLElement | null} item */
   const recover = async (design, item) => {
     if (!(await attempt(status, () => designs.recover(design.id)))) return;
     item?.remove();

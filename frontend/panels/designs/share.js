@@ -2,7 +2,7 @@
  * Links to the design for others: to look at it, or to copy it.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Share, ShareMode} from "../../sync/designs.js"
+ * @import {Share, ShareMode} from "../../types.js"
  * @import {Studio} from "../../state/studio.js"
  */
 

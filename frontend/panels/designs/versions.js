@@ -2,7 +2,7 @@
  * States of the design that were kept under a name: keep another one, look at them, go back.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Version} from "../../sync/designs.js"
+ * @import {VersionSummary} from "../../types.js"
  * @import {Studio} from "../../state/studio.js"
  */
 
@@ -70,7 +70,7 @@ export function create(studio, { keeper, open }) {
     if (!versions.length) list.append(h("li", { class: "empty" }, h("strong", {}, "No versions yet.")));
   };
 
-  /** @param {Version} version */
+  /** @param {VersionSummary} version */
   const row = (version) => {
     const picture = h("span", { class: "row-picture centred sunken" });
     const id = keeper.remoteId ?? "";
