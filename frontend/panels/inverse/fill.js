@@ -6,7 +6,7 @@
  *
  * @typedef {{course: number, wale: number}} Stiffness moduli in N/mm
  * @typedef {{name: string, cells: number[], course: number | null, wale: number | null, now: Stiffness | null,
- *   wish: (() => Stiffness | null) | null, tell?: () => void}} Part
+ *   wish: (() => Stiffness | null) | null, show?: () => void}} Part
  * `wish` is what was asked for in words, until the numbers that it goes by have come
  */
 
@@ -83,7 +83,7 @@ export function fromStiffness(studio) {
       if (!(error instanceof ApiError)) throw error;
       part.now = null; // the inspector says why
     }
-    for (const each of parts) each.tell?.(); // another part may wait for these numbers
+    for (const each of parts) each.show?.(); // another part may wait for these numbers
   };
   const measureAll = async () => {
     if (parts.length && element.checkVisibility()) await Promise.all(parts.map(measure));
@@ -102,13 +102,13 @@ export function fromStiffness(studio) {
       input.oninput = () => {
         part[axis] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : null;
         part.wish = null;
-        part.tell?.();
+        part.show?.();
       };
       return input;
     });
     const now = AXES.map(({ axis }) => h("span", { class: "figures", id: `part-${at}-${axis}-now` }, "…"));
     const verdicts = AXES.map(() => h("span", { class: "muted part-verdict" }));
-    part.tell = () => {
+    part.show = () => {
       const numbers = part.wish?.();
       if (numbers) {
         for (const { axis } of AXES) part[axis] = Number(numbers[axis].toPrecision(3));
@@ -132,8 +132,8 @@ export function fromStiffness(studio) {
         "aria-label": `Make ${part.name} …`,
         onchange: () => {
           const chosen = like.value;
-          part.wish = chosen ? () => wantedAs(chosen) : null;
-          part.tell?.();
+          part.wish = chosen ? () => targetAs(chosen) : null;
+          part.show?.();
         },
       },
       h("option", { value: "" }, "make it …"),
@@ -144,14 +144,14 @@ export function fromStiffness(studio) {
       ...others.map(({ name }, i) => h("option", { value: `part ${i}` }, `as stretchy as ${name} now`)),
     );
     /** @param {string} chosen @returns {Stiffness | null} */
-    const wantedAs = (chosen) => {
+    const targetAs = (chosen) => {
       const { now: mine } = part;
       if (chosen in STEPS) return mine && scaled(mine, STEPS[chosen]);
       if (chosen.startsWith("part ")) return others[Number(chosen.slice(5))].now;
       const fabric = fabricsNow()[/** @type {typeof FABRICS[number]} */ (chosen)];
       return fabric ? { course: fabric.modulus_course_n_per_mm, wale: fabric.modulus_wale_n_per_mm } : null;
     };
-    part.tell();
+    part.show();
     return h(
       "li",
       { class: "target sunken rounded" },
