@@ -27,6 +27,9 @@ export function h(tag, properties = {}, ...children) {
   return element;
 }
 
+/** A quiet paragraph. @param {...Child} content */
+export const remark = (...content) => h("p", { class: "muted" }, ...content);
+
 /**
  * An element of a drawing.
  *

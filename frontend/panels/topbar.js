@@ -9,7 +9,7 @@
 import { action, shown } from "../actions/registry.js";
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
-import { iconButton } from "../widgets/buttons.js";
+import { actionButton, iconButton } from "../widgets/buttons.js";
 import { isComplete } from "../state/studio.js";
 import { saveState } from "./savestate.js";
 import { menu } from "../widgets/menu.js";
@@ -37,19 +37,11 @@ export function topbar(host, studio, context) {
 
   /** @param {string} id @param {string} [text] */
   const button = (id, text) => {
-    const { label, icon: picture, keys, perform, enabled } = action(id);
-    const element = h(
-      "button",
-      {
-        class: text ? "button quiet" : "button quiet icon-only",
-        id: `action-${id}`,
-        title: keys[0] ? `${label} (${shown(keys[0])})` : label,
-        "aria-label": text ?? label,
-        onclick: () => perform(context),
-      },
-      picture && icon(picture),
-      text && h("span", { class: "label" }, text),
-    );
+    const described = action(id);
+    const { label, enabled } = described;
+    const look = text ? "button quiet" : "button quiet icon-only";
+    const words = text && h("span", { class: "label" }, text);
+    const element = actionButton(described, context, look, { "aria-label": text ?? label }, words);
     if (enabled) {
       const update = () => (element.disabled = !enabled(studio));
       studio.document.onSettle(update);

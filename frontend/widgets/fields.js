@@ -32,6 +32,42 @@ export const textLine = (label, value, changed, more) =>
     }),
   );
 
+/**
+ * Fields for a chart's size.
+ *
+ * @param {string} prefix of their ids
+ * @param {number} most a side
+ * @param {() => void} changed
+ */
+export function sizeFields(prefix, most, changed) {
+  /** @param {string} label @param {string} id */
+  const field = (label, id) => {
+    const input = numberField({ id: `${prefix}-${id}`, min: 1, max: most, required: true, oninput: changed });
+    return { input, row: h("label", { class: "field stack gap-4" }, h("span", {}, label), input) };
+  };
+  const columns = field("Stitches", "columns");
+  const rows = field("Rows", "rows");
+  const problem = h("p", { class: "problem-text", role: "alert" });
+  return {
+    columns: columns.input,
+    rows: rows.input,
+    problem,
+    elements: [columns.row, rows.row],
+    /** @param {{rows: number, columns: number}} size */
+    show: (size) => {
+      columns.input.value = String(size.columns);
+      rows.input.value = String(size.rows);
+    },
+    /** Null, and a problem on show, where it is no size. @returns {{rows: number, columns: number} | null} */
+    read: () => {
+      const size = { rows: rows.input.valueAsNumber, columns: columns.input.valueAsNumber };
+      const well = Object.values(size).every((n) => Number.isInteger(n) && n >= 1 && n <= most);
+      problem.textContent = well ? "" : `Use whole numbers from 1 to ${most}.`;
+      return well ? size : null;
+    },
+  };
+}
+
 /** A field for a length that can change its unit. */
 export class LengthField {
   /** @param {string} label @param {number} mm @param {() => void} changed */

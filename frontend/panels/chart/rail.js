@@ -6,7 +6,7 @@
  */
 
 import { SIZES } from "../../actions/look.js";
-import { action, shown } from "../../actions/registry.js";
+import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { TOOLS } from "../../tools/registry.js";
@@ -63,19 +63,9 @@ export function rail(host, studio, context) {
     );
   });
 
-  /** @param {"regions" | "repeats"} name @param {string} label */
-  const panel = (name, label) => {
-    const button = h(
-      "button",
-      {
-        class: "tool relative rounded",
-        id: `open-${name}`,
-        title: `${label} (${shown(action(name).keys[0])})`,
-        "aria-label": label,
-        onclick: () => action(name).perform(context),
-      },
-      icon(name === "regions" ? "regions" : "link"),
-    );
+  /** @param {"regions" | "repeats"} name @param {"regions" | "link"} sign */
+  const panel = (name, sign) => {
+    const button = actionButton(action(name), context, "tool relative rounded", { id: `open-${name}` }, icon(sign));
     studio.editing.panel.watch((open) => button.setAttribute("aria-pressed", String(open === name)));
     return button;
   };
@@ -86,8 +76,8 @@ export function rail(host, studio, context) {
     size,
     symmetry,
     h("hr"),
-    panel("regions", "Regions"),
-    panel("repeats", "Linked repeats"),
+    panel("regions", "regions"),
+    panel("repeats", "link"),
     small("open-atlas"),
   );
 }

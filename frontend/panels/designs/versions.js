@@ -6,7 +6,7 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { designs } from "../../sync/designs.js";
 import { textButton } from "../../widgets/buttons.js";
@@ -50,9 +50,7 @@ export function create(studio, { keeper, open }) {
   const element = dialog(
     "versions-dialog",
     "Versions",
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "Every stroke is saved automatically. A version is a state that you can come back to; restoring one also saves the present state.",
     ),
     form,

@@ -8,7 +8,7 @@
  */
 
 import { FABRICS } from "../../grid/segments.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import {
   adopt,
   bendingRequest,
@@ -184,9 +184,7 @@ export function yarnMaker(studio, made) {
       "details",
       { id: "yarn-bend" },
       h("summary", {}, "Measure the bending modulus on photos"),
-      h(
-        "p",
-        { class: "muted" },
+      remark(
         "Let a known length hang over the edge of a table, 10 to 25 cm, before a plain background. Photograph it level from the side, crop the photo at the edge, and take five.",
       ),
       h(
@@ -215,9 +213,7 @@ export function yarnMaker(studio, made) {
       squeezed,
     ),
     h("h4", {}, "2. The fabrics"),
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "Stitches and rows per 10 cm of a swatch at rest; and, for one fabric or more, two stretch tests (CSV, XLSX or HDF5), pulled along its rows and along its columns. A fabric without tests is estimated from the bending modulus, the yarn in a stitch and the fabrics that have them.",
     ),
     h(

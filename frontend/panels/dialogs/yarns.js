@@ -5,7 +5,7 @@
  * @import {MaterialSummary} from "../../types.js"
  */
 
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { download } from "../../services/exporter.js";
 import { OWN, adopt, evidenceOf, isYarnFile, refresh, yarns } from "../../services/yarns.js";
 import { attempt } from "../../widgets/attempt.js";
@@ -37,9 +37,7 @@ export function create(studio) {
   const element = dialog(
     "yarns-dialog",
     "Own yarns",
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "They are offered to everybody who uses this service, and are part of its backups. Only the person who added a yarn can change or remove it.",
     ),
     status,

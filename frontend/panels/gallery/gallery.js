@@ -9,7 +9,7 @@
 import { api } from "../../api.js";
 import { plainDesign } from "../../design/design.js";
 import { Grid } from "../../grid/grid.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
@@ -24,11 +24,7 @@ export function create(studio, { keeper, open }) {
   const element = dialog(
     "gallery-dialog",
     "New design",
-    h(
-      "p",
-      { class: "muted" },
-      "Begin with one of these and change it. The design on show is kept: it stays among your designs.",
-    ),
+    remark("Begin with one of these and change it. The design on show is kept: it stays among your designs."),
     status,
     h("h3", {}, "Charts"),
     examples,

@@ -5,7 +5,7 @@
  */
 
 import { figure, percent } from "../../core/format.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { table, tableRow } from "../../widgets/table.js";
 
@@ -24,9 +24,7 @@ export function facts(garment, unit) {
       ` · ${stitches} stitches · ${figure(yarn_m)} m of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
     ),
     regions(garment, unit),
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "Sizes are those of each fabric by itself, from which its stitches are counted. In the piece its neighbours widen or narrow it; a pattern gives those sizes.",
     ),
     ...pressure(garment, unit),

@@ -9,7 +9,7 @@
 import { api } from "../../api.js";
 import { percent, range } from "../../core/format.js";
 import { Latest } from "../../services/latest.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { pressurePlot } from "../../plots/pressure.js";
 import { scopeOf } from "../../services/scope.js";
 import { iconButton } from "../../widgets/buttons.js";
@@ -132,7 +132,7 @@ export function limb(host, studio) {
       pressurePlot(places),
       h("p", { class: "muted figures" }, words.filter(Boolean).join(" ")),
       problem ? h("p", { class: "muted" }, problem) : "",
-      h("p", { class: "muted" }, "A mean over the limb, without friction or posture; not a medical class."),
+      remark("A mean over the limb, without friction or posture; not a medical class."),
     );
   };
   host.append(

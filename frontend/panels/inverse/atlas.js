@@ -10,7 +10,7 @@
 import { figure, percent, range } from "../../core/format.js";
 import { Ink } from "../../design/ink.js";
 import { motifGrid } from "../../grid/grid.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { pencil } from "../../tools/pencil.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { Run } from "../../widgets/jobrun.js";
@@ -74,9 +74,7 @@ export function atlasTab(studio, context) {
   const describe = () => {
     if (!chosen || !table) {
       detail.replaceChildren(
-        h(
-          "p",
-          { class: "muted" },
+        remark(
           "Every dot is a repeat. Point at one to see it, press it for its numbers, or drag it onto the chart, a region or the selection.",
         ),
         h(
