@@ -42,6 +42,15 @@ const UNREACHABLE = {
   remedy: "Your chart is saved in this browser. Continue painting; the numbers return when the service does.",
 };
 
+/** What is said of a file that cannot be imported. @param {string} detail @param {string} remedy @returns {Problem} */
+export const refusal = (detail, remedy) => ({
+  type: "input",
+  title: "This chart cannot be imported",
+  status: 422,
+  detail,
+  remedy,
+});
+
 /** @param {Response} response @returns {Promise<Problem>} */
 async function problemOf(response) {
   /** @type {Problem} */

@@ -107,7 +107,7 @@ def kept_design(page: Page) -> dict[str, Any]:
 
 
 def sent_view(page: Page, words: str = "") -> AbstractContextManager[Any]:
-    """What begins within lets the page send a view with these words; its answer."""
+    """Wait, at the end of a block, for the answer to a view that has these words."""
     return page.expect_response(
         lambda r: (
             "/api/v1/views/" in r.url
@@ -146,7 +146,7 @@ def exported(page: Page, kind: str) -> Download:
 
 
 def complaints(page: Page) -> list[str]:
-    """What the console and the service complain of from now on."""
+    """List what the console and the service complain of from now on."""
     heard: list[str] = []
     page.on("console", lambda m: heard.append(m.text) if m.type not in ("log", "info") else None)
     page.on("pageerror", lambda error: heard.append(error.message))

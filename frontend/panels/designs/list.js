@@ -13,8 +13,8 @@ import { iconButton, textButton } from "../../widgets/buttons.js";
 import { segmented } from "../../widgets/fields.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
-import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, context) {

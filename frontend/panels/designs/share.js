@@ -13,9 +13,9 @@ import { designs } from "../../sync/designs.js";
 import { dialog } from "../../widgets/dialog.js";
 import { listRow } from "../../widgets/listrow.js";
 import { keptName } from "./kept.js";
-import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
 import { textButton } from "../../widgets/buttons.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @type {Record<ShareMode, [string, string]>} */
 const MODES = {

@@ -14,8 +14,8 @@ import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { listRow } from "../../widgets/listrow.js";
 import { keptName } from "./kept.js";
-import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper, open }) {

@@ -10,11 +10,11 @@ import { api } from "../../api.js";
 import { ago } from "../../core/ago.js";
 import { h } from "../../elements/dom.js";
 import { nameOf } from "../../services/account.js";
-import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { listRow } from "../../widgets/listrow.js";
 import { textButton } from "../../widgets/buttons.js";
 import { table, tableRow } from "../../widgets/table.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {number} n */
 const count = (n) => n.toLocaleString("en");

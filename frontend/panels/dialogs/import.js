@@ -8,8 +8,8 @@
 import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { importFile, importText } from "./importer.js";
-import { problemText } from "../../widgets/problem.js";
 import { dialog } from "../../widgets/dialog.js";
+import { problemText } from "../../widgets/problem.js";
 
 /** @param {Studio} _ @param {ActionContext} context */
 export function create(_, context) {

@@ -7,10 +7,9 @@
  */
 
 import { action } from "../../actions/registry.js";
-import { ApiError, api } from "../../api.js";
+import { ApiError, api, refusal } from "../../api.js";
 import { DesignError, readDesign } from "../../design/design.js";
 import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
-import { refusal } from "../../services/refusal.js";
 
 const MAX_FILE_BYTES = 12_000_000;
 

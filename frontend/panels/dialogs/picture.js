@@ -11,7 +11,7 @@ import { plainDesign } from "../../design/design.js";
 import { MAX_SIDE } from "../../grid/grid.js";
 import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../grid/picture.js";
 import { h } from "../../elements/dom.js";
-import { refusal } from "../../services/refusal.js";
+import { refusal } from "../../api.js";
 import { dialog } from "../../widgets/dialog.js";
 import { sizeFields } from "../../widgets/fields.js";
 import { textButton } from "../../widgets/buttons.js";

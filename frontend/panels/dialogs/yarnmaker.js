@@ -19,11 +19,11 @@ import {
   withGauges,
   yarnOf,
 } from "../../services/yarns.js";
-import { attempt } from "../../widgets/attempt.js";
 import { textButton } from "../../widgets/buttons.js";
 import { labelled, numberField } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
 import { table, tableRow } from "../../widgets/table.js";
+import { attempt } from "../../widgets/problem.js";
 
 const ESTIMATED = "estimated from the library's yarns";
 const TABLES = ".csv,.xlsx,.xls";

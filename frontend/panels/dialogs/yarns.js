@@ -8,11 +8,11 @@
 import { h, remark } from "../../elements/dom.js";
 import { download } from "../../services/exporter.js";
 import { OWN, adopt, evidenceOf, isYarnFile, refresh, yarns } from "../../services/yarns.js";
-import { attempt } from "../../widgets/attempt.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
-import { dialog, problemBox } from "../../widgets/dialog.js";
+import { dialog } from "../../widgets/dialog.js";
 import { listRow } from "../../widgets/listrow.js";
 import { yarnMaker } from "./yarnmaker.js";
+import { attempt, problemBox } from "../../widgets/problem.js";
 
 /** @param {Studio} studio */
 export function create(studio) {

@@ -12,13 +12,13 @@ import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { download } from "../../services/exporter.js";
 import { scopeIn } from "../../services/scope.js";
-import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
 import { viewRequest } from "../fabric/fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
 import { textButton } from "../../widgets/buttons.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** Characters of a text file that are shown. */
 const MAX_SHOWN = 6000;

@@ -16,9 +16,9 @@ import { icon } from "../../elements/icons.js";
 import { ViewLink } from "./link.js";
 import { Still } from "./still.js";
 import { toolbar } from "./toolbar.js";
-import { problemText } from "../../widgets/problem.js";
 import { POSES, wordsOf } from "../../state/seeing.js";
 import { REST } from "../../state/studio.js";
+import { problemText } from "../../widgets/problem.js";
 
 /** Delay before the 3D view updates: without a GPU, drawing can block painting. */
 const DELAY_MS = 650;

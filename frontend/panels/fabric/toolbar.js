@@ -50,14 +50,13 @@ export function toolbar(studio, look, request) {
   );
   const poses = segmented("Shape", segments, pose.value, (id) => (pose.value = id));
   pose.listen(poses.show);
-  const { root, setItems, button } = menu({
+  const { root, setItems } = menu({
     id: "fabric-colours",
     label: "Colours of the yarn",
     content: [icon("yarn"), h("span", { class: "label" }, "Colours"), icon("down")],
     class: "button",
+    title: "Colours of the yarn",
   });
-  button.title = "Colours of the yarn";
-  button.ariaLabel = "Colours of the yarn";
   studio.seeing.yarnColours.watch((chosen) =>
     setItems(
       COLOURS.map(([id, content]) => ({
@@ -80,14 +79,13 @@ export function toolbar(studio, look, request) {
 
 /** @param {Studio} studio @param {import("./share.js").RequestOfView} request */
 function shareMenu(studio, request) {
-  const { root, setItems, button } = menu({
+  const { root, setItems } = menu({
     id: "fabric-share",
     label: "Save the view",
     content: [icon("camera"), h("span", { class: "label" }, "Save"), icon("down")],
     class: "button",
+    title: "A picture, page, recording or solid of this fabric",
   });
-  button.title = "A picture, page, recording or solid of this fabric";
-  button.ariaLabel = "Save the view";
   const share = () => import("./share.js");
   /** @param {string} id @param {string} content @param {number} side */
   const picture = (id, content, side) => ({

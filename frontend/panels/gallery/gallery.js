@@ -11,10 +11,10 @@ import { plainDesign } from "../../design/design.js";
 import { Grid } from "../../grid/grid.js";
 import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
-import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { EXAMPLES, GARMENTS } from "./examples.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper, open }) {

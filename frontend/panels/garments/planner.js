@@ -12,12 +12,13 @@ import { FABRICS } from "../../grid/segments.js";
 import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
-import { dialog, problemBox } from "../../widgets/dialog.js";
+import { dialog } from "../../widgets/dialog.js";
 import { table, tableRow } from "../../widgets/table.js";
 import { LengthField, choice, labelled, numberField, sameWords, selectField } from "../../widgets/fields.js";
 import { drawGarment } from "./preview.js";
 import { facts } from "./facts.js";
 import { DIGITS, TEMPLATES } from "./templates.js";
+import { problemBox } from "../../widgets/problem.js";
 
 const TYPING_MS = 250;
 /** The middle of the range that the paper wanted for its glove, 20 to 30. */

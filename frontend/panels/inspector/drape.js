@@ -11,8 +11,8 @@ import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { scopeOf } from "../../services/scope.js";
 import { labelled, numberField } from "../../widgets/fields.js";
-import { problemText } from "../../widgets/problem.js";
 import { textButton } from "../../widgets/buttons.js";
+import { problemText } from "../../widgets/problem.js";
 
 /** @typedef {{chart: string, material: string, linear_density_g_per_m: number}} Weighed */
 /**

@@ -6,7 +6,7 @@
  * @import {Scope} from "../../services/scope.js"
  */
 
-import { LINES, along } from "../../core/directions.js";
+import { DIRECTIONS, LINES, along } from "../../core/directions.js";
 import { figure, percents, range } from "../../core/format.js";
 import { paced } from "../../core/paced.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
@@ -81,7 +81,7 @@ export function inspector(host, studio) {
     limb: tab("limb", "Limb"),
     drape: tab("drape", "Drape"),
   };
-  const ways = /** @type {Direction[]} */ (["course", "wale"]).map(
+  const ways = DIRECTIONS.map(
     (way) =>
       /** @type {const} */ ([
         way,
@@ -166,7 +166,7 @@ export function inspector(host, studio) {
         "share-fabrics",
         FABRICS.map((fabric, i) => ({ share: mix[i], colour: `var(--${fabric})`, text: `${fabric} ${rounded[i]}` })),
       ),
-      .../** @type {Direction[]} */ (["course", "wale"]).map((direction) => {
+      ...DIRECTIONS.map((direction) => {
         const { even, odd } = segments[direction];
         const all = even + odd || 1;
         return shareBar(
