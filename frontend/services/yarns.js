@@ -2,13 +2,14 @@
  * Yarns of one's own: kept at the service from a file, or made of what was measured.
  *
  * @import {Studio} from "../state/studio.js"
- * @import {EstimateResult, Fabric, FabricDocument, FitResult, MaterialDocument, MaterialSummary, YarnDocument} from "../types.js"
+ * @import {EstimateRequest, EstimateResult, Fabric, FabricDocument, FitResult, MaterialDocument, MaterialSummary, YarnDocument} from "../types.js"
  *
  * @typedef {{stitches: number, rows: number}} Gauge per 10 cm
  * @typedef {Gauge & {course: File, wale: File}} Tests of a fabric: pulled along rows and columns
  */
 
 import { api, call } from "../api.js";
+import { base64 } from "../grid/bits.js";
 import { isComplete } from "../state/studio.js";
 
 /** Longest side of a photo of yarn as it is sent; a hand's length of yarn is still some pixels wide. */
@@ -68,10 +69,7 @@ export async function fitRequest({ course, wale }) {
 
 /** @param {File} file */
 async function uploaded(file) {
-  const bytes = new Uint8Array(await file.arrayBuffer());
-  let text = "";
-  for (let i = 0; i < bytes.length; i += 0x8000) text += String.fromCharCode(...bytes.subarray(i, i + 0x8000));
-  return { name: file.name, content: btoa(text) };
+  return { name: file.name, content: base64(new Uint8Array(await file.arrayBuffer())) };
 }
 
 /**
@@ -122,7 +120,7 @@ export function estimated(yarn, loopMm) {
     loop_length_mm: loop_length_mm ?? loopMm,
   }));
   const body = { bending_modulus_n_mm2: yarn.yarn?.bending_modulus_n_mm2, loop_length_mm: loopMm, swatches };
-  return call("/estimate", { method: "POST", body });
+  return api.run("estimate", /** @type {EstimateRequest} */ (body));
 }
 
 /**

@@ -8,6 +8,7 @@
  */
 
 import { ApiError, api, fetched } from "../../api.js";
+import { base64 } from "../../grid/bits.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { download } from "../../services/exporter.js";
@@ -25,9 +26,6 @@ const MAX_SHOWN = 6000;
 
 /** Size of the picture in a pattern; one of the view has the proportions of that. */
 const PHOTO_PX = { width: 1400, height: 800 };
-
-/** @param {ArrayBuffer} buffer */
-const toBase64 = (buffer) => btoa(Array.from(new Uint8Array(buffer), (byte) => String.fromCharCode(byte)).join(""));
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { view }) {
@@ -179,7 +177,7 @@ export function create(studio, { view }) {
     ];
     for (const picture of ways) {
       try {
-        return toBase64(await (await picture()).arrayBuffer());
+        return base64(new Uint8Array(await (await picture()).arrayBuffer()));
       } catch (error) {
         if (!(error instanceof ApiError)) throw error;
       }

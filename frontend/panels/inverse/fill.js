@@ -61,11 +61,7 @@ export function fromStiffness(studio) {
     add(selection.value ? `Part ${parts.length + 1}` : "Whole chart", cells);
   };
   const addRegions = () => {
-    for (const region of chart.regions) {
-      const cells = [];
-      for (let i = 0; i < region.cells.length; i++) if (region.cells[i]) cells.push(i);
-      if (!parts.some(({ name }) => name === region.name)) add(region.name, cells);
-    }
+    for (const { name, stitches } of chart.regions) if (!parts.some((part) => part.name === name)) add(name, stitches);
   };
 
   /** Ask what a part does now, and say so in its card. @param {Part} part */
