@@ -3,8 +3,13 @@
  * to do, or the browser's own AbortError if the call was given up.
  *
  * @import {Box} from "./grid/grid.js"
- * @import {CameraSide, JobStatus, MaterialDetail, Operations, Problem, SignedIn, VersionResult, ViewRequest,
+ * @import {CameraSide, Extensions, JobStatus, MaterialDetail, Operations, Problem, SignedIn, VersionResult, ViewRequest,
  *   ViewResult} from "./types.js"
+ */
+
+/**
+ * @typedef {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
+ *   keepalive?: boolean}} CallOptions
  */
 
 /** A refused or failed call. */
@@ -37,6 +42,15 @@ const UNREACHABLE = {
   remedy: "Your chart is saved in this browser. Continue painting; the numbers return when the service does.",
 };
 
+/** What is said of a file that cannot be imported. @param {string} detail @param {string} remedy @returns {Problem} */
+export const refusal = (detail, remedy) => ({
+  type: "input",
+  title: "This chart cannot be imported",
+  status: 422,
+  detail,
+  remedy,
+});
+
 /** @param {Response} response @returns {Promise<Problem>} */
 async function problemOf(response) {
   /** @type {Problem} */
@@ -56,8 +70,7 @@ async function problemOf(response) {
 /**
  * @template T
  * @param {string} path below /api/v1
- * @param {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
- *   keepalive?: boolean}} [options]
+ * @param {CallOptions} [options]
  * @returns {Promise<T>} undefined where the service has nothing to say (204, 304)
  */
 export async function call(path, options) {
@@ -68,13 +81,7 @@ export async function call(path, options) {
   return /** @type {Promise<T>} */ (response.json());
 }
 
-/**
- * The same, for answers that are not JSON.
- *
- * @param {string} path below /api/v1
- * @param {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
- *   keepalive?: boolean}} [options]
- */
+/** The same, for answers that are not JSON. @param {string} path below /api/v1 @param {CallOptions} [options] */
 export async function fetched(path, { method = "GET", body, signal, headers = {}, keepalive } = {}) {
   /** @type {Response} */
   let response;
@@ -119,6 +126,9 @@ export const api = {
 
   /** @type {() => Promise<VersionResult>} */
   version: () => call("/version"),
+
+  /** @type {() => Promise<Extensions>} */
+  extensions: () => call("/extensions"),
 
   /** @type {() => Promise<{materials: import("./types.js").MaterialSummary[]}>} */
   materials: () => call("/materials"),

@@ -1,8 +1,9 @@
-/** Designs: beginning, opening, keeping and sharing them. */
+/** Designs: beginning, opening, keeping and sharing them; and from a target to a fabric. */
 
 import { actionsOf } from "./action.js";
 
 const action = actionsOf("Designs");
+const target = actionsOf("From a target to a fabric");
 
 export const DESIGNS = [
   action("designs", "My designs …", ["Mod+O"], { icon: "folder" }, ({ open }) => open("designs")),
@@ -29,4 +30,10 @@ export const DESIGNS = [
     open("account"),
   ),
   action("tour", "Tour of the page", [], { icon: "tour" }, ({ open }) => open("tour")),
+];
+
+export const INVERSE = [
+  target("open-atlas", "Atlas of all repeats", ["A"], { icon: "scatter" }, ({ open }) => open("atlas")),
+  target("open-find", "Find a fabric by its numbers", ["Shift+F"], { icon: "search" }, ({ open }) => open("find")),
+  target("open-fill", "Fill the chart from a target", ["Shift+W"], { icon: "target" }, ({ open }) => open("fill")),
 ];

@@ -1,9 +1,12 @@
 /**
- * How the chart is seen and painted.
+ * How the chart is seen, painted and pulled.
  *
  * @import {Symmetry} from "../design/ink.js"
+ * @import {Studio} from "../state/studio.js"
  */
 
+import { byId } from "../elements/dom.js";
+import { REST } from "../state/studio.js";
 import { actionsOf } from "./action.js";
 
 /** @type {Symmetry[]} */
@@ -13,6 +16,8 @@ export const SIZES = [1, 2, 3, 5, 8];
 const LOOKS = ["both", "colours", "symbols", "loops"];
 
 const action = actionsOf("View");
+const test = actionsOf("Stretch test");
+const enabled = (/** @type {Studio} */ studio) => studio.currentStretch() !== null;
 
 export const LOOK = [
   action("fit", "Show the whole chart", ["0"], { icon: "fit" }, ({ view }) => view.fit()),
@@ -59,4 +64,19 @@ export const LOOK = [
   action("import", "Import a chart …", ["I"], { group: "Edit", icon: "import" }, ({ open }) => open("import")),
   action("palette", "Find a command …", ["Mod+K", "/"], {}, ({ open }) => open("palette")),
   action("help", "Keys and tools", ["?"], { icon: "help" }, ({ open }) => open("help")),
+];
+
+export const STRETCH = [
+  test("stretch", "Stretch the chart, or cancel", ["J"], { icon: "wale" }, () => byId("stretch-run").click()),
+  test("play", "Play or pause the stretch", ["Shift+J"], { icon: "play", enabled }, () => byId("stretch-play").click()),
+  test("save-stretch", "Save the stretch test as a table (CSV)", [], { icon: "export", enabled }, () =>
+    byId("stretch-save").click(),
+  ),
+  test("step-back", "One step of the stretch back", [","], { enabled }, ({ studio }) => {
+    studio.step.value = Math.max(REST, studio.step.value - 1);
+  }),
+  test("step-on", "One step of the stretch on", ["."], { enabled }, ({ studio }) => {
+    const last = (studio.currentStretch()?.strain.length ?? 1) - 1;
+    studio.step.value = Math.min(last, studio.step.value + 1);
+  }),
 ];

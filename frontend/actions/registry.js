@@ -6,11 +6,9 @@
 
 import { TOOLS } from "../tools/registry.js";
 import { redo, undo } from "./history.js";
-import { DESIGNS } from "./designs.js";
-import { INVERSE } from "./inverse.js";
-import { LOOK } from "./look.js";
+import { DESIGNS, INVERSE } from "./designs.js";
+import { LOOK, STRETCH } from "./look.js";
 import { SELECTION } from "./selection.js";
-import { STRETCH } from "./stretch.js";
 import { TRANSFORM } from "./transform.js";
 
 /** @type {Action[]} */

@@ -37,80 +37,6 @@ function clearPart({ document, selection }, label) {
   );
 }
 
-const selectAll = action(
-  "select-all",
-  "Select all",
-  ["Mod+A"],
-  { icon: "select" },
-  ({ studio: { document, selection } }) => (selection.value = selectionOf(document.outline, document.grid)),
-);
-
-const deselect = action(
-  "deselect",
-  "Select nothing",
-  ["Escape"],
-  { icon: "close", enabled: some },
-  ({ studio }) => (studio.selection.value = null),
-);
-
-const invert = action(
-  "invert",
-  "Select the rest",
-  ["Mod+Shift+I"],
-  { enabled: some },
-  ({ studio: { document, selection } }) => {
-    const rest = document.outline.slice();
-    if (selection.value) for (const i of selectedCells(selection.value, document.grid)) rest[i] = 0;
-    selection.value = selectionOf(rest, document.grid);
-  },
-);
-
-const copy = action("copy", "Copy", ["Mod+C"], { icon: "copy", enabled: some }, ({ studio }) => {
-  copyPart(studio);
-  studio.tell("Copied. Paste (Ctrl+V) puts it at the pointer.");
-});
-
-const cut = action("cut", "Cut", ["Mod+X"], { icon: "cut", enabled: some }, ({ studio }) => {
-  copyPart(studio);
-  clearPart(studio, "Cut");
-});
-
-// The browser's own paste event brings it, or what another program has copied.
-export const paste = action(
-  "paste",
-  "Paste at the pointer",
-  ["Mod+V"],
-  { icon: "paste", native: true },
-  ({ studio, view }) => {
-    const { document, editing, selection } = studio;
-    const { clip } = editing;
-    if (!clip) {
-      studio.tell("Nothing is copied yet: select stitches, then copy them (Ctrl+C).");
-      return;
-    }
-    const { grid } = document;
-    const corner = selection.value && /** @type {const} */ ([selection.value.row0, selection.value.column0]);
-    const [row, column] = view.hover.value ?? corner ?? [0, 0];
-    /** @type {[number, number]} */
-    const place = [
-      Math.max(0, Math.min(row, grid.rows - clip.part.rows)),
-      Math.max(0, Math.min(column, grid.columns - clip.part.columns)),
-    ];
-    const under = grid.purl.slice();
-    document.set(clip.at(grid, place), "Paste");
-    editing.hold(new Floating(clip, place, under));
-    studio.tool.value = move;
-  },
-);
-
-const clear = action(
-  "clear",
-  "Turn it into knits",
-  ["Delete", "Backspace"],
-  { icon: "trash", enabled: some },
-  ({ studio }) => clearPart(studio, "Clear"),
-);
-
 /** The selected box as a motif, if it is small enough for one. @param {Studio} studio */
 function selectedMotif(studio) {
   const box = studio.selection.value;
@@ -136,101 +62,129 @@ export function hasRoom(studio, list, what) {
   return room;
 }
 
-const pattern = action(
-  "keep-pattern",
-  "Keep as a pattern on the shelf",
-  ["Shift+S"],
-  { icon: "stamp", enabled: some },
-  ({ studio }) => {
-    const part = selectedMotif(studio);
-    if (!part || !hasRoom(studio, "shelf", "own patterns")) return;
-    const { document } = studio;
-    const motif = motifText(part);
-    const known = document.shelf.find((item) => item.motif === motif);
-    const name = known?.name ?? `Mine ${document.shelf.length + 1}`;
-    if (!known) document.changeShelf([...document.shelf, { name, motif }], "Keep a pattern");
-    studio.ink.value = ownInk({ name, motif });
-    studio.tool.value = stamp;
-    studio.selection.value = null;
-    studio.tell(`${name} is on the shelf. Click to stamp it, or paint with it.`);
-  },
-);
-
-const makeRepeat = action(
-  "make-repeat",
-  "Make it a linked repeat",
-  ["Shift+P"],
-  { icon: "repeat", enabled: some },
-  ({ studio, open }) => {
-    const box = studio.selection.value;
-    const motif = selectedMotif(studio);
-    if (!box || !motif || !hasRoom(studio, "repeats", "linked repeats")) return;
-    const { document, editing } = studio;
-    const place = { row: box.row0, column: box.column0, rows: motif.rows, columns: motif.columns };
-    const name = `Repeat ${document.repeats.length + 1}`;
-    editing.repeatId.value = document.addRepeat({ name, motif, placements: [place] });
-    studio.selection.value = null;
-    studio.tool.value = placeTool;
-    open("repeats");
-    studio.tell(`${name}: drag to place copies. Paint one, and all follow.`);
-  },
-);
-
-const makeRegion = action(
-  "make-region",
-  "Make it a region",
-  ["Shift+G"],
-  { icon: "regions", enabled: some },
-  ({ studio, open }) => {
+export const SELECTION = [
+  action(
+    "select-all",
+    "Select all",
+    ["Mod+A"],
+    { icon: "select" },
+    ({ studio: { document, selection } }) => (selection.value = selectionOf(document.outline, document.grid)),
+  ),
+  action(
+    "deselect",
+    "Select nothing",
+    ["Escape"],
+    { icon: "close", enabled: some },
+    ({ studio }) => (studio.selection.value = null),
+  ),
+  action("invert", "Select the rest", ["Mod+Shift+I"], { enabled: some }, ({ studio: { document, selection } }) => {
+    const rest = document.outline.slice();
+    if (selection.value) for (const i of selectedCells(selection.value, document.grid)) rest[i] = 0;
+    selection.value = selectionOf(rest, document.grid);
+  }),
+  action("copy", "Copy", ["Mod+C"], { icon: "copy", enabled: some }, ({ studio }) => {
+    copyPart(studio);
+    studio.tell("Copied. Paste (Ctrl+V) puts it at the pointer.");
+  }),
+  action("cut", "Cut", ["Mod+X"], { icon: "cut", enabled: some }, ({ studio }) => {
+    copyPart(studio);
+    clearPart(studio, "Cut");
+  }),
+  // The browser's own paste event brings it, or what another program has copied.
+  action("paste", "Paste at the pointer", ["Mod+V"], { icon: "paste", native: true }, ({ studio, view }) => {
+    const { document, editing, selection } = studio;
+    const { clip } = editing;
+    if (!clip) {
+      studio.tell("Nothing is copied yet: select stitches, then copy them (Ctrl+C).");
+      return;
+    }
+    const { grid } = document;
+    const corner = selection.value && /** @type {const} */ ([selection.value.row0, selection.value.column0]);
+    const [row, column] = view.hover.value ?? corner ?? [0, 0];
+    /** @type {[number, number]} */
+    const place = [
+      Math.max(0, Math.min(row, grid.rows - clip.part.rows)),
+      Math.max(0, Math.min(column, grid.columns - clip.part.columns)),
+    ];
+    const under = grid.purl.slice();
+    document.set(clip.at(grid, place), "Paste");
+    editing.hold(new Floating(clip, place, under));
+    studio.tool.value = move;
+  }),
+  action("clear", "Turn it into knits", ["Delete", "Backspace"], { icon: "trash", enabled: some }, ({ studio }) =>
+    clearPart(studio, "Clear"),
+  ),
+  action(
+    "keep-pattern",
+    "Keep as a pattern on the shelf",
+    ["Shift+S"],
+    { icon: "stamp", enabled: some },
+    ({ studio }) => {
+      const part = selectedMotif(studio);
+      if (!part || !hasRoom(studio, "shelf", "own patterns")) return;
+      const { document } = studio;
+      const motif = motifText(part);
+      const known = document.shelf.find((item) => item.motif === motif);
+      const name = known?.name ?? `Mine ${document.shelf.length + 1}`;
+      if (!known) document.changeShelf([...document.shelf, { name, motif }], "Keep a pattern");
+      studio.ink.value = ownInk({ name, motif });
+      studio.tool.value = stamp;
+      studio.selection.value = null;
+      studio.tell(`${name} is on the shelf. Click to stamp it, or paint with it.`);
+    },
+  ),
+  action(
+    "make-repeat",
+    "Make it a linked repeat",
+    ["Shift+P"],
+    { icon: "repeat", enabled: some },
+    ({ studio, open }) => {
+      const box = studio.selection.value;
+      const motif = selectedMotif(studio);
+      if (!box || !motif || !hasRoom(studio, "repeats", "linked repeats")) return;
+      const { document, editing } = studio;
+      const place = { row: box.row0, column: box.column0, rows: motif.rows, columns: motif.columns };
+      const name = `Repeat ${document.repeats.length + 1}`;
+      editing.repeatId.value = document.addRepeat({ name, motif, placements: [place] });
+      studio.selection.value = null;
+      studio.tool.value = placeTool;
+      open("repeats");
+      studio.tell(`${name}: drag to place copies. Paint one, and all follow.`);
+    },
+  ),
+  action("make-region", "Make it a region", ["Shift+G"], { icon: "regions", enabled: some }, ({ studio, open }) => {
     const { document, selection } = studio;
     if (!selection.value || !hasRoom(studio, "regions", "regions")) return;
     const look = { name: `Region ${document.regions.length + 1}`, colour: nextRegionColour(document.regions) };
     document.addRegion(look, selectedCells(selection.value, document.grid));
     selection.value = null;
     open("regions");
-  },
-);
-
-const cutOutline = action(
-  "cut-outline",
-  "Cut the outline to the selection",
-  [],
-  { icon: "cut", enabled: some },
-  ({ studio: { document, selection } }) => {
-    if (!selection.value) return;
-    const kept = new Set(selectedCells(selection.value, document.grid));
-    document.set(
-      Array.from(document.outline, (_, i) => [i, kept.has(i) ? 1 : 0]),
-      "Outline",
-      "outline",
-    );
-  },
-);
-
-const fullOutline = action(
-  "full-outline",
-  "Make the outline a full rectangle",
-  [],
-  { group: "Edit", enabled: ({ document }) => document.shaped },
-  ({ studio: { document } }) =>
-    void document.set(
-      Array.from(document.outline, (_, i) => [i, 1]),
-      "Outline",
-      "outline",
-    ),
-);
-
-export const SELECTION = [
-  selectAll,
-  deselect,
-  invert,
-  copy,
-  cut,
-  paste,
-  clear,
-  pattern,
-  makeRepeat,
-  makeRegion,
-  cutOutline,
-  fullOutline,
+  }),
+  action(
+    "cut-outline",
+    "Cut the outline to the selection",
+    [],
+    { icon: "cut", enabled: some },
+    ({ studio: { document, selection } }) => {
+      if (!selection.value) return;
+      const kept = new Set(selectedCells(selection.value, document.grid));
+      document.set(
+        Array.from(document.outline, (_, i) => [i, kept.has(i) ? 1 : 0]),
+        "Outline",
+        "outline",
+      );
+    },
+  ),
+  action(
+    "full-outline",
+    "Make the outline a full rectangle",
+    [],
+    { group: "Edit", enabled: ({ document }) => document.shaped },
+    ({ studio: { document } }) =>
+      void document.set(
+        Array.from(document.outline, (_, i) => [i, 1]),
+        "Outline",
+        "outline",
+      ),
+  ),
 ];

@@ -20,37 +20,32 @@ const PIECE = 6;
 export function edgesOf(cells, rows, columns) {
   /** @type {number[]} */
   const pieces = [];
-  /** @param {number} row @param {number} column */
-  const has = (row, column) =>
-    row >= 0 && column >= 0 && row < rows && column < columns && cells[row * columns + column] === 1;
-  for (let row = 0; row <= rows; row++) {
-    for (let column = 0; column < columns; column++) {
-      const above = row < rows && cells[row * columns + column] === 1;
-      const below = row > 0 && cells[(row - 1) * columns + column] === 1;
-      if (above === below) continue;
-      const from = column;
-      do column++;
-      while (column < columns && has(row, column) === above && has(row - 1, column) === below);
-      const outer = above ? row - 1 : row;
-      const inner = (has(outer, from - 1) ? 1 : 0) + (has(outer, column) ? 2 : 0);
-      pieces.push(0, row, from, column, above ? 1 : -1, inner);
-      column--;
+  /** @param {boolean} upright whether lines go up, and lie between columns @param {number} lines @param {number} length */
+  const scan = (upright, lines, length) => {
+    /** @param {number} line @param {number} place along it */
+    const has = (line, place) =>
+      line >= 0 &&
+      line < lines &&
+      place >= 0 &&
+      place < length &&
+      cells[upright ? place * columns + line : line * columns + place] === 1;
+    for (let line = 0; line <= lines; line++) {
+      for (let place = 0; place < length; place++) {
+        const beyond = has(line, place);
+        const before = has(line - 1, place);
+        if (beyond === before) continue;
+        const from = place;
+        do place++;
+        while (place < length && has(line, place) === beyond && has(line - 1, place) === before);
+        const outer = beyond ? line - 1 : line;
+        const inner = (has(outer, from - 1) ? 1 : 0) + (has(outer, place) ? 2 : 0);
+        pieces.push(upright ? 1 : 0, line, from, place, beyond ? 1 : -1, inner);
+        place--;
+      }
     }
-  }
-  for (let column = 0; column <= columns; column++) {
-    for (let row = 0; row < rows; row++) {
-      const right = column < columns && cells[row * columns + column] === 1;
-      const left = column > 0 && cells[row * columns + column - 1] === 1;
-      if (right === left) continue;
-      const from = row;
-      do row++;
-      while (row < rows && has(row, column) === right && has(row, column - 1) === left);
-      const outer = right ? column - 1 : column;
-      const inner = (has(from - 1, outer) ? 1 : 0) + (has(row, outer) ? 2 : 0);
-      pieces.push(1, column, from, row, right ? 1 : -1, inner);
-      row--;
-    }
-  }
+  };
+  scan(false, rows, columns);
+  scan(true, columns, rows);
   return Int16Array.from(pieces);
 }
 

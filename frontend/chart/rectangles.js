@@ -124,12 +124,10 @@ function blockGroup({ document: { grid } }, row0, column0, size) {
 
 /** @param {Studio} studio @param {import("../design/regions.js").Region} region @returns {Group} */
 function regionGroup({ document: { grid } }, region) {
-  const cells = [];
+  const cells = region.stitches;
   let row = 0;
   let column = 0;
-  for (let i = 0; i < region.cells.length; i++) {
-    if (!region.cells[i]) continue;
-    cells.push(i);
+  for (const i of cells) {
     row += Math.floor(i / grid.columns);
     column += i % grid.columns;
   }

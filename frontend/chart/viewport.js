@@ -20,7 +20,7 @@ export class Viewport {
   cellWidth = 10;
   cellHeight = 8;
   /** The exact zoom: cells are rounded, and small steps would be lost. */
-  #wanted = 10;
+  #preferredWidth = 10;
   /** Upper left corner of the chart. */
   x = 0;
   y = 0;
@@ -47,7 +47,7 @@ export class Viewport {
    */
   zoom(factor, px, py, grid) {
     const smallest = Math.min(this.#fittedWidth(grid), LARGEST);
-    const width = Math.min(MAX_ENLARGED, Math.max(smallest, this.#wanted * factor));
+    const width = Math.min(MAX_ENLARGED, Math.max(smallest, this.#preferredWidth * factor));
     if (width <= smallest * 1.001) {
       this.fit(grid);
       return;
@@ -117,7 +117,7 @@ export class Viewport {
 
   /** Cells of whole device pixels, where that matters. @param {number} width */
   #size(width) {
-    this.#wanted = width;
+    this.#preferredWidth = width;
     const crisp = width * this.dpr > 5;
     this.cellWidth = crisp ? Math.floor(width * this.dpr) / this.dpr : Math.max(width, 0.5);
     const height = this.cellWidth * this.aspect;

@@ -4,6 +4,9 @@
  * @import {Direction} from "../types.js"
  */
 
+/** @type {readonly Direction[]} */
+export const DIRECTIONS = ["course", "wale"];
+
 /** What runs there. @type {Record<Direction, string>} */
 export const LINES = { course: "rows", wale: "columns" };
 

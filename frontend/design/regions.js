@@ -48,6 +48,13 @@ export class Region {
     return new Region(this.id, this, cells);
   }
 
+  /** Indices of its stitches. @returns {number[]} */
+  get stitches() {
+    const stitches = [];
+    for (let i = 0; i < this.cells.length; i++) if (this.cells[i]) stitches.push(i);
+    return stitches;
+  }
+
   get count() {
     let count = 0;
     for (const cell of this.cells) count += cell;

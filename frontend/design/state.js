@@ -58,12 +58,16 @@ export class ChartState {
     return this.repeats.find((repeat) => repeat.id === id) ?? null;
   }
 
+  /** Lines of x and ., the top row first; null if every stitch is there. */
+  get outlineText() {
+    return this.shaped ? outlineText(this.outline, this.grid.columns) : null;
+  }
+
   /** @returns {Content} */
   get content() {
-    const { columns } = this.grid;
     return {
       chart: this.grid.text,
-      outline: this.shaped ? outlineText(this.outline, columns) : null,
+      outline: this.outlineText,
       regions: this.regions.map((region) => this.#item(region)),
       repeats: this.repeats.map((repeat) => repeat.written()),
       shelf: [...this.shelf],

@@ -17,36 +17,46 @@ const SHELF = "knitcore.shelf";
 const SETTINGS = "knitcore.settings";
 const HISTORY_LIMIT = 1_000_000;
 
-/** @returns {Design | null} */
-export function loadDesign() {
+/**
+ * What is read of an entry; where there is none, it is damaged, or storage is closed to us, something else.
+ *
+ * @template T
+ * @param {string} key
+ * @param {(text: string | null) => T} read
+ * @param {T} fallback
+ */
+function stored(key, read, fallback) {
   try {
-    const design = JSON.parse(localStorage.getItem(DESIGN) ?? "null");
-    const content = design && typeof design.id === "string" ? salvageContent(design) : null;
-    return content && { ...design, ...content };
+    return read(localStorage.getItem(key));
   } catch {
-    return null; // nothing stored, or storage is not accessible
+    return fallback;
   }
 }
 
-/** @returns {History} */
-export function loadHistory() {
+/** Put entries into storage, which a private window may refuse. @param {...[key: string, text: string]} entries @returns {boolean} whether they are kept */
+function put(...entries) {
   try {
-    return History.parse(localStorage.getItem(HISTORY));
-  } catch {
-    return new History();
-  }
-}
-
-/** @param {Design} design @param {History} history @returns {boolean} whether it is kept */
-export function saveDesign(design, history) {
-  try {
-    localStorage.setItem(DESIGN, JSON.stringify(design));
-    localStorage.setItem(HISTORY, history.serialised(HISTORY_LIMIT));
+    for (const [key, text] of entries) localStorage.setItem(key, text);
     return true;
   } catch {
     return false;
   }
 }
+
+/** @param {string | null} text @returns {Design | null} */
+function readDesign(text) {
+  const design = JSON.parse(text ?? "null");
+  const content = design && typeof design.id === "string" ? salvageContent(design) : null;
+  return content && { ...design, ...content };
+}
+
+export const loadDesign = () => stored(DESIGN, readDesign, null);
+
+export const loadHistory = () => stored(HISTORY, History.parse, new History());
+
+/** @param {Design} design @param {History} history @returns {boolean} whether it is kept */
+export const saveDesign = (design, history) =>
+  put([DESIGN, JSON.stringify(design)], [HISTORY, history.serialised(HISTORY_LIMIT)]);
 
 /** Forget the design, its history and the own patterns: somebody else may use this browser next. */
 export function forgetDesign() {
@@ -54,40 +64,18 @@ export function forgetDesign() {
 }
 
 /** @template {object} T @param {T} defaults @returns {T} */
-export function loadSettings(defaults) {
-  try {
-    return { ...defaults, ...JSON.parse(localStorage.getItem(SETTINGS) ?? "{}") };
-  } catch {
-    return defaults;
-  }
-}
+export const loadSettings = (defaults) =>
+  stored(SETTINGS, (text) => ({ ...defaults, ...JSON.parse(text ?? "{}") }), defaults);
 
-/** @param {object} settings changes to keep */
-export function saveSettings(settings) {
-  try {
-    localStorage.setItem(SETTINGS, JSON.stringify({ ...loadSettings({}), ...settings }));
-  } catch {
-    // A private window may refuse; the settings then last as long as the page.
-  }
-}
+/** Those that cannot be kept last as long as the page. @param {object} settings changes to keep */
+export const saveSettings = (settings) => put([SETTINGS, JSON.stringify({ ...loadSettings({}), ...settings })]);
 
-/** @returns {ShelfItem[]} the user's own patterns, from all designs */
-export function loadShelf() {
-  try {
-    return readContent({ chart: "K", shelf: JSON.parse(localStorage.getItem(SHELF) ?? "[]") }).shelf;
-  } catch {
-    return []; // nothing stored, or damaged: designs have their own patterns
-  }
-}
+/** @returns {ShelfItem[]} the user's own patterns, from all designs; each design has its own, too */
+export const loadShelf = () =>
+  stored(SHELF, (text) => readContent({ chart: "K", shelf: JSON.parse(text ?? "[]") }).shelf, []);
 
 /** @param {readonly ShelfItem[]} shelf */
-export function saveShelf(shelf) {
-  try {
-    localStorage.setItem(SHELF, JSON.stringify(shelf));
-  } catch {
-    // A private window may refuse; the design keeps its patterns all the same.
-  }
-}
+export const saveShelf = (shelf) => put([SHELF, JSON.stringify(shelf)]);
 
 /** A random UUID, also where the page is not served over a secure origin. */
 export function newIdentifier() {

@@ -27,6 +27,9 @@ export function h(tag, properties = {}, ...children) {
   return element;
 }
 
+/** A quiet paragraph. @param {...Child} content */
+export const remark = (...content) => h("p", { class: "muted" }, ...content);
+
 /**
  * An element of a drawing.
  *
@@ -40,6 +43,22 @@ export function svg(tag, attributes, ...children) {
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
   element.append(...children);
   return element;
+}
+
+/**
+ * A drawing, and what adds an element to it.
+ *
+ * @param {Record<string, string | number>} attributes
+ */
+export function drawing(attributes) {
+  const plot = svg("svg", attributes);
+  /** @type {typeof svg} */
+  const add = (...mark) => {
+    const element = svg(...mark);
+    plot.append(element);
+    return element;
+  };
+  return { plot, add };
 }
 
 /** @param {Child} child @returns {child is Node | string | number} */

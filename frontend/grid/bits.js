@@ -4,15 +4,18 @@
  * @import {Box} from "./grid.js"
  */
 
+/** @param {Uint8Array} bytes */
+export function base64(bytes) {
+  let text = "";
+  for (let k = 0; k < bytes.length; k += 4096) text += String.fromCharCode(...bytes.subarray(k, k + 4096));
+  return btoa(text);
+}
+
 /** A bitmap as base64, eight stitches a byte. @param {Uint8Array} bitmap */
 export function pack(bitmap) {
   const bytes = new Uint8Array(Math.ceil(bitmap.length / 8));
   for (let i = 0; i < bitmap.length; i++) if (bitmap[i]) bytes[i >> 3] |= 1 << (i & 7);
-  let text = "";
-  for (let k = 0; k < bytes.length; k += 4096) {
-    text += String.fromCharCode(...bytes.subarray(k, k + 4096));
-  }
-  return btoa(text);
+  return base64(bytes);
 }
 
 /** @param {string} text of {@link pack} @param {number} length */

@@ -52,10 +52,7 @@ export function stretchdrawer(host, studio, stretcher) {
       "aria-label": "Unit of the pull",
       onchange: () => (amount.value = DEFAULTS[/** @type {Unit} */ (unit.value)]),
     },
-    [
-      ["%", "%"],
-      ["N", "N"],
-    ],
+    { "%": "%", N: "N" },
   );
   const start = () => {
     const pull = Number(amount.value);
@@ -103,7 +100,7 @@ export function stretchdrawer(host, studio, stretcher) {
     () => void import("../services/exporter.js").then(({ exportStretch }) => exportStretch(studio)),
     { id: "stretch-save" },
   );
-  const note = h("div", { class: "stretch-note", role: "status", id: "stretch-note" });
+  const note = h("div", { class: "stretch-note gap-6 small muted", role: "status", id: "stretch-note" });
 
   const play = h("button", {
     class: "button icon-only",
@@ -196,7 +193,7 @@ export function stretchdrawer(host, studio, stretcher) {
     slider.disabled = play.disabled = save.disabled = !current;
     if (value) slider.max = String(value.strain.length - 1);
     showStep();
-    note.className = problem ? "stretch-note error" : "stretch-note";
+    note.className = `stretch-note gap-6 small muted ${problem ? "error" : ""}`;
     note.replaceChildren();
     if (problem) {
       note.append(icon("warning"), refused(problem, pullBy));
@@ -238,21 +235,21 @@ function locking(test) {
 
 /** How the ends are held, what is computed and shown; the usual choice is made. @param {Studio} studio */
 function stretchOptions(studio) {
-  const clamps = selectField({ class: "select", id: "stretch-clamps" }, [
-    ["clamped", "gripped"],
-    ["sliding", "free to slide sideways"],
-  ]);
-  const model = selectField({ class: "select", id: "stretch-model" }, [
-    ["full", "with lock-up"],
-    ["published", "as published, without lock-up"],
-  ]);
-  const shear = numberField({
-    id: "stretch-shear",
-    min: "0.0001",
-    max: "10",
-    step: "0.001",
-    placeholder: "assumed",
-  });
+  const clamps = selectField(
+    { class: "select shrinks-x", id: "stretch-clamps" },
+    {
+      clamped: "gripped",
+      sliding: "free to slide sideways",
+    },
+  );
+  const model = selectField(
+    { class: "select shrinks-x", id: "stretch-model" },
+    {
+      full: "with lock-up",
+      published: "as published, without lock-up",
+    },
+  );
+  const shear = numberField({ id: "stretch-shear", min: "0.0001", max: "10", step: "0.001", placeholder: "assumed" });
   const curling = h("input", {
     type: "checkbox",
     id: "stretch-curling",
@@ -261,7 +258,7 @@ function stretchOptions(studio) {
   studio.seeing.curling.watch((on) => (curling.checked = on));
   /** @param {string} text @param {HTMLElement} field */
   const row = (text, field, unit = "") =>
-    h("label", {}, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
+    h("label", { class: "stack gap-8" }, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
   const panel = h(
     "div",
     { class: "stretch-options raised rounded shadowed", id: "stretch-options", popover: "auto" },
@@ -271,7 +268,7 @@ function stretchOptions(studio) {
     row("Free edges curl in 3D", curling),
     h(
       "p",
-      { class: "muted" },
+      { class: "muted small" },
       "Stretch tests hardly determine the shear modulus. Left empty, that of the law is used.",
     ),
   );

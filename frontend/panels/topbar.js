@@ -9,17 +9,19 @@
 import { action, shown } from "../actions/registry.js";
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
-import { iconButton } from "../widgets/buttons.js";
+import { actionButton, iconButton } from "../widgets/buttons.js";
+import { isComplete } from "../state/studio.js";
 import { saveState } from "./savestate.js";
 import { menu } from "../widgets/menu.js";
 
 /** @param {HTMLElement} host @param {Studio} studio @param {ActionContext} context */
 export function topbar(host, studio, context) {
   const name = h("input", {
-    class: "design-name",
+    class: "design-name rounded",
     type: "text",
     value: studio.name.value,
     maxLength: 80,
+    size: 18,
     spellcheck: false,
     "aria-label": "Name of the design",
     onchange: () => {
@@ -35,19 +37,11 @@ export function topbar(host, studio, context) {
 
   /** @param {string} id @param {string} [text] */
   const button = (id, text) => {
-    const { label, icon: picture, keys, perform, enabled } = action(id);
-    const element = h(
-      "button",
-      {
-        class: text ? "button quiet" : "button quiet icon-only",
-        id: `action-${id}`,
-        title: keys[0] ? `${label} (${shown(keys[0])})` : label,
-        "aria-label": text ?? label,
-        onclick: () => perform(context),
-      },
-      picture && icon(picture),
-      text && h("span", { class: "label" }, text),
-    );
+    const described = action(id);
+    const { label, enabled } = described;
+    const look = text ? "button quiet" : "button quiet icon-only";
+    const words = text && h("span", { class: "label" }, text);
+    const element = actionButton(described, context, look, { "aria-label": text ?? label }, words);
     if (enabled) {
       const update = () => (element.disabled = !enabled(studio));
       studio.document.onSettle(update);
@@ -77,14 +71,14 @@ export function topbar(host, studio, context) {
     designsMenu(context),
     name,
     saveState(context),
-    h("div", { class: "group" }, button("undo"), button("redo")),
+    h("div", { class: "group flex gap-2" }, button("undo"), button("redo")),
     size,
     h("div", { class: "spacer" }),
     materialMenu(studio, context),
     button("import", "Import"),
     button("share", "Share"),
     exportMenu(studio, context),
-    h("div", { class: "group" }, button("theme"), button("help")),
+    h("div", { class: "group flex gap-2" }, button("theme"), button("help")),
     accountButton(studio, context),
   );
 }
@@ -149,14 +143,13 @@ function materialMenu(studio, context) {
   });
   const show = () => {
     const all = studio.materials.value;
-    const chosen = all.find(({ id }) => id === studio.materialId.value);
-    label.textContent = chosen?.name ?? studio.materialId.value;
+    label.textContent = studio.yarn?.name ?? studio.materialId.value;
     setItems([
       ...all.map((material) => ({
         id: `material-${material.id}`,
         content: materialItem(material),
         checked: material.id === studio.materialId.value,
-        disabled: Object.keys(material.fabrics).length < 4,
+        disabled: !isComplete(material),
         perform: () => (studio.materialId.value = material.id),
       })),
       null,
@@ -171,7 +164,6 @@ function materialMenu(studio, context) {
 /** @param {MaterialSummary} material */
 function materialItem({ name, description, fabrics }) {
   const gauge = fabrics.stockinette;
-  const complete = Object.keys(fabrics).length === 4;
   const stitches =
     gauge?.stitch_course_mm && gauge.stitch_wale_mm
       ? `${(100 / gauge.stitch_course_mm).toFixed(0)} sts × ${(100 / gauge.stitch_wale_mm).toFixed(0)} rows per 10 cm`
@@ -183,7 +175,7 @@ function materialItem({ name, description, fabrics }) {
     h(
       "span",
       { class: "muted figures" },
-      complete
+      isComplete({ fabrics })
         ? [description, stitches].filter(Boolean).join(" · ")
         : "Not all four fabrics were measured: cannot be mixed in a chart",
     ),

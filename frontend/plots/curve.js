@@ -35,16 +35,14 @@ export function curvePlot(host, studio) {
   const draw = async () => {
     try {
       if (!plotly) {
-        host.classList.add("loading");
+        host.dataset.words = "Loading the plot …";
         plotly = await loadPlotly();
       }
     } catch {
-      host.dataset.problem = "The plot could not be loaded. It is tried again with the next stretch.";
+      host.dataset.words = "The plot could not be loaded. It is tried again with the next stretch.";
       return;
-    } finally {
-      host.classList.remove("loading");
     }
-    delete host.dataset.problem;
+    delete host.dataset.words;
     if (host.hidden || !host.clientWidth) return;
     ({ clientWidth: width, clientHeight: height } = host);
     await drawPlot(host, traces(studio, answer?.curve ?? null), stressStrainLayout(width, height));

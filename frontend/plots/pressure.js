@@ -5,7 +5,7 @@
  * @import {LimbPlaceResult} from "../types.js"
  */
 
-import { svg } from "../elements/dom.js";
+import { drawing } from "../elements/dom.js";
 
 const WIDTH = 320;
 const HEIGHT = 132;
@@ -13,18 +13,12 @@ const PAD = { left: 40, right: 8, top: 8, bottom: 34 };
 
 /** @param {LimbPlaceResult[]} places along the limb */
 export function pressurePlot(places) {
-  const plot = svg("svg", {
+  const { plot, add } = drawing({
     viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
     class: "pressure-plot full-width",
     role: "img",
     "aria-label": "Pressure along the limb, mmHg, with its 90 % interval",
   });
-  /** @type {typeof svg} */
-  const add = (...mark) => {
-    const element = svg(...mark);
-    plot.append(element);
-    return element;
-  };
   const first = places[0].at_mm;
   const long = Math.max(places[places.length - 1].at_mm - first, 1e-9);
   const most = rounded(Math.max(1, ...places.map(({ mmhg_with_spread: ends }) => ends?.[1] ?? 0)));

@@ -7,22 +7,18 @@
 
 import { figure } from "../core/format.js";
 import { paced } from "../core/paced.js";
-import { svg } from "../elements/dom.js";
+import { logAxis } from "./axis.js";
+import { drawing, svg } from "../elements/dom.js";
 import { FABRICS } from "../grid/segments.js";
 
 const PAD = { left: 50, right: 10, top: 8, bottom: 40 };
+/** @type {import("./axis.js").AxisOptions} */
+const AXIS = { steps: [1, 3], room: [0.12, 0.12] };
 
 /** @param {HTMLElement} host @param {Studio} studio @returns {() => void} draws anew */
 export function rigidityPlot(host, studio) {
-  const plot = svg("svg", { role: "img" });
+  const { plot, add } = drawing({ role: "img" });
   host.append(plot);
-
-  /** @type {typeof svg} */
-  const add = (...mark) => {
-    const element = svg(...mark);
-    plot.append(element);
-    return element;
-  };
 
   const draw = () => {
     const { clientWidth: width, clientHeight: height } = host;
@@ -39,15 +35,17 @@ export function rigidityPlot(host, studio) {
     const own = value && { x: value.modulus_course_n_per_mm, y: value.modulus_wale_n_per_mm };
     const all = own ? [...points, own] : points;
     if (!all.length) return;
-    const x = axis(
+    const x = logAxis(
       all.map((p) => p.x),
       PAD.left,
       width - PAD.right,
+      AXIS,
     );
-    const y = axis(
+    const y = logAxis(
       all.map((p) => p.y),
       height - PAD.bottom,
       PAD.top,
+      AXIS,
     );
 
     for (const tick of x.ticks) {
@@ -70,10 +68,13 @@ export function rigidityPlot(host, studio) {
     );
     for (const point of points) {
       const chosen = point.id === studio.materialId.value;
-      const look = `fabric-dot ${point.fabric}${chosen ? " chosen" : ""}`;
       const tip = `${point.name}, ${point.fabric}: ${figure(point.x)} and ${figure(point.y)} N/mm`;
       const place = { cx: x.at(point.x), cy: y.at(point.y), r: chosen ? 6 : 3.2 };
-      add("circle", { ...place, class: look }, svg("title", {}, tip));
+      add(
+        "circle",
+        { ...place, fill: `var(--${point.fabric})`, class: chosen ? "fabric-dot chosen" : "fabric-dot" },
+        svg("title", {}, tip),
+      );
     }
     if (own && value) {
       const intervals = [value.modulus_course_interval_n_per_mm, value.modulus_wale_interval_n_per_mm];
@@ -116,27 +117,4 @@ export function rigidityPlot(host, studio) {
   studio.material.listen(soon);
   new ResizeObserver(soon).observe(host);
   return soon;
-}
-
-/**
- * Logarithmic axis with room at both ends.
- *
- * @param {number[]} values positive
- * @param {number} from pixel of the low end
- * @param {number} to
- */
-function axis(values, from, to) {
-  const low = Math.log10(Math.min(...values)) - 0.12;
-  const high = Math.log10(Math.max(...values)) + 0.12;
-  const ticks = [];
-  for (let power = Math.floor(low); power <= high; power++) {
-    for (const step of [1, 3]) {
-      const tick = Number((step * 10 ** power).toPrecision(2));
-      if (Math.log10(tick) >= low && Math.log10(tick) <= high) ticks.push(tick);
-    }
-  }
-  /** @param {number} value */
-  const at = (value) => from + ((Math.log10(value) - low) / (high - low)) * (to - from);
-  const crowded = ticks.length * 38 > Math.abs(to - from);
-  return { at, ticks: crowded ? ticks.filter((t) => Number.isInteger(Math.round(Math.log10(t) * 1e6) / 1e6)) : ticks };
 }

@@ -11,7 +11,6 @@ import { api } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "./latest.js";
 import { figure, percent } from "../core/format.js";
-import { outlineText } from "../design/snapshot.js";
 import { REST } from "../state/studio.js";
 
 const DELAY_MS = 25;
@@ -89,7 +88,11 @@ async function* pulled(studio, signal) {
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* hung(studio, signal) {
   const { rows, columns } = studio.document.grid;
-  const request = { ...studio.request, outline: outlineOf(studio), linear_density_g_per_m: studio.weight.value };
+  const request = {
+    ...studio.request,
+    outline: studio.document.outlineText,
+    linear_density_g_per_m: studio.weight.value,
+  };
   for (const time_limit_s of PATIENCE_S) {
     const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.run(
       "hang",
@@ -104,7 +107,7 @@ async function* hung(studio, signal) {
 
 /** @param {Studio} studio @param {AbortSignal} signal @param {import("../types.js").CurlRequest["pull"]} pull */
 async function* curled(studio, signal, pull) {
-  const request = { ...studio.request, outline: outlineOf(studio), pull };
+  const request = { ...studio.request, outline: studio.document.outlineText, pull };
   /** The first shape begins at the old one; the last one depends on the chart only. */
   let after = studio.seeing.posed.value?.id ?? null;
   for (const time_limit_s of PATIENCE_S) {
@@ -137,11 +140,6 @@ function pressed(places, where) {
 /** The hand that the chart is a glove for, in the material of the design. @param {Studio} studio */
 function gloveOf(studio) {
   const glove = studio.seeing.glove.value;
-  if (!glove || outlineOf(studio) !== glove.outline) return null;
+  if (!glove || studio.document.outlineText !== glove.outline) return null;
   return { ...glove.request, material: studio.materialId.value };
-}
-
-/** The outline of the chart, null if it is a rectangle. @param {Studio} studio */
-function outlineOf({ document: { shaped, outline, grid } }) {
-  return shaped ? outlineText(outline, grid.columns) : null;
 }

@@ -11,7 +11,6 @@
 import { ApiError, api, isAbort } from "../api.js";
 import { OVERLAYS } from "../state/overlays.js";
 import { Signal } from "../core/signal.js";
-import { outlineText } from "../design/snapshot.js";
 import { runJob } from "./jobs.js";
 
 const STEPS = 20;
@@ -74,8 +73,7 @@ export class Stretcher {
     const controller = new AbortController();
     this.#running = controller;
     this.progress.value = null;
-    const { document: chart } = studio;
-    const outline = chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null;
+    const outline = studio.document.outlineText;
     const gauge = studio.gauges.of(studio.request);
     const request = { ...studio.request, gauge, outline, direction, ...pull, steps: STEPS, ...options };
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };

@@ -2,16 +2,21 @@
  * Yarns of one's own: kept at the service from a file, or made of what was measured.
  *
  * @import {Studio} from "../state/studio.js"
- * @import {EstimateResult, Fabric, FabricDocument, FitResult, MaterialDocument, MaterialSummary, YarnDocument} from "../types.js"
+ * @import {EstimateRequest, EstimateResult, Fabric, FabricDocument, FitResult, MaterialDocument, MaterialSummary, YarnDocument} from "../types.js"
  *
  * @typedef {{stitches: number, rows: number}} Gauge per 10 cm
  * @typedef {Gauge & {course: File, wale: File}} Tests of a fabric: pulled along rows and columns
  */
 
 import { api, call } from "../api.js";
+import { base64 } from "../grid/bits.js";
+import { isComplete } from "../state/studio.js";
 
 /** Longest side of a photo of yarn as it is sent; a hand's length of yarn is still some pixels wide. */
 const PHOTO_SIDE_PX = 2400;
+
+/** Names of the constants of a law in a fit. */
+const CONSTANT = /^(stiffness|alpha|beta|shear_modulus|kappa)_/;
 
 export const OWN = "own:";
 
@@ -38,7 +43,7 @@ export const yarns = {
 export async function adopt(studio, document) {
   const added = await yarns.add(document);
   await refresh(studio);
-  const complete = Object.keys(added.fabrics).length === 4;
+  const complete = isComplete(added);
   if (complete) studio.materialId.value = added.id;
   studio.tell(
     complete
@@ -64,10 +69,7 @@ export async function fitRequest({ course, wale }) {
 
 /** @param {File} file */
 async function uploaded(file) {
-  const bytes = new Uint8Array(await file.arrayBuffer());
-  let text = "";
-  for (let i = 0; i < bytes.length; i += 0x8000) text += String.fromCharCode(...bytes.subarray(i, i + 0x8000));
-  return { name: file.name, content: btoa(text) };
+  return { name: file.name, content: base64(new Uint8Array(await file.arrayBuffer())) };
 }
 
 /**
@@ -118,7 +120,7 @@ export function estimated(yarn, loopMm) {
     loop_length_mm: loop_length_mm ?? loopMm,
   }));
   const body = { bending_modulus_n_mm2: yarn.yarn?.bending_modulus_n_mm2, loop_length_mm: loopMm, swatches };
-  return call("/estimate", { method: "POST", body });
+  return api.run("estimate", /** @type {EstimateRequest} */ (body));
 }
 
 /**
@@ -197,12 +199,7 @@ const fabricOf = ({ tests, fit }) => ({
   law: lawOf(fit),
   ...sizes(tests),
   law_source: `fitted to ${tests.course.name} and ${tests.wale.name}, ${fit.rms_n_per_mm.toFixed(4)} N/mm rms`,
-  standard_deviation: {
-    modulus_course: fit.standard_errors.modulus_course_n_per_mm,
-    modulus_wale: fit.standard_errors.modulus_wale_n_per_mm,
-    poisson_yx: fit.standard_errors.poisson_yx,
-    poisson_xy: fit.standard_errors.poisson_xy,
-  },
+  standard_deviation: withoutUnits(Object.entries(fit.standard_errors)),
   measured: fit.curves,
 });
 
@@ -218,20 +215,9 @@ function identifierOf(name) {
   return plain || "yarn";
 }
 
-/** Constants of a law, without the units in their names. @param {FitResult} fit */
-function lawOf(fit) {
-  const names = /** @type {const} */ ([
-    "stiffness_xxxx_n_per_mm",
-    "stiffness_yyyy_n_per_mm",
-    "stiffness_xxyy_n_per_mm",
-    "stiffness_yyxx_n_per_mm",
-    "alpha_xx",
-    "alpha_yy",
-    "beta_xx_n_per_mm",
-    "beta_yy_n_per_mm",
-    "shear_modulus_n_per_mm",
-    "kappa_xx",
-    "kappa_yy",
-  ]);
-  return Object.fromEntries(names.map((name) => [name.replace("_n_per_mm", ""), fit[name]]));
-}
+/** A fit's constants, without the units in their names. @param {FitResult} fit */
+const lawOf = (fit) => withoutUnits(Object.entries(fit).filter(([name]) => CONSTANT.test(name)));
+
+/** @param {[string, unknown][]} numbers by their names in answers of the service */
+const withoutUnits = (numbers) =>
+  Object.fromEntries(numbers.map(([name, value]) => [name.replace("_n_per_mm", ""), value]));

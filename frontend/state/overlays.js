@@ -27,11 +27,23 @@
  */
 
 import { along } from "../core/directions.js";
-import { QUARTERS } from "../grid/segments.js";
+import { FABRICS, QUARTERS } from "../grid/segments.js";
 import { batlow, part, vik } from "./colormaps.js";
 import { pixel } from "./palette.js";
 
 const always = () => true;
+
+/** @param {[string, string][]} items label and colour @returns {SwatchLegend} */
+const swatches = (...items) => ({ kind: "swatches", items: items.map(([label, colour]) => ({ label, colour })) });
+
+/**
+ * @param {ColourMap} map
+ * @param {readonly number[]} ends its lowest and highest value
+ * @param {string} unit
+ * @param {string} label
+ * @returns {ScaleLegend}
+ */
+const scale = (map, [low, high], unit, label, log = false) => ({ kind: "scale", map, low, high, unit, label, log });
 
 /** A purl is drawn a little darker where the colour itself does not carry a number. */
 const PURL_SHADE = 0.8;
@@ -52,7 +64,7 @@ const stitches = {
   view: "fabric",
   available: always,
   colouring: (_, { knit, purl }) => byKind((_code, _quarter, p) => pixel(p ? purl : knit)),
-  legend: () => ({ kind: "swatches", items: [] }), // the key above the chart shows it
+  legend: () => swatches(), // the key above the chart shows it
 };
 
 /** @type {Overlay} */
@@ -65,20 +77,16 @@ const fabrics = {
   available: always,
   colouring: (_, palette) =>
     byKind((code, quarter, p) => pixel(palette.fabrics[QUARTERS[code][quarter]], p ? PURL_SHADE : 1)),
-  legend: (_, palette) => ({
-    kind: "swatches",
-    items: [
-      { label: "stockinette", colour: css(palette.fabrics[0]) },
-      { label: "garter", colour: css(palette.fabrics[1]) },
-      { label: "rib", colour: css(palette.fabrics[2]) },
-      { label: "seed", colour: css(palette.fabrics[3]) },
-      {
-        label: "mixed (in 3D)",
-        colour: `linear-gradient(90deg, ${css(palette.fabrics[0])}, ${css(palette.fabrics[2])})`,
-      },
+  legend: (_, palette) => {
+    const colours = palette.fabrics.map(css);
+    const mixed = `linear-gradient(90deg, ${colours[0]}, ${colours[2]})`;
+    const fabrics = FABRICS.map((label, i) => ({ label, colour: colours[i] }));
+    const others = [
+      { label: "mixed (in 3D)", colour: mixed },
       { label: "purl", colour: "transparent", dot: true },
-    ],
-  }),
+    ];
+    return { kind: "swatches", items: [...fabrics, ...others] };
+  },
 };
 
 /** @type {Overlay} */
@@ -90,13 +98,7 @@ const segments = {
   view: "fabric",
   available: always,
   colouring: stitches.colouring,
-  legend: (_, { even, odd }) => ({
-    kind: "swatches",
-    items: [
-      { label: "even (K–K, P–P)", colour: even },
-      { label: "odd (K–P)", colour: odd },
-    ],
-  }),
+  legend: (_, { even, odd }) => swatches(["even (K–K, P–P)", even], ["odd (K–P)", odd]),
 };
 
 /** @param {Direction} direction @param {string} label @returns {Overlay} */
@@ -104,7 +106,7 @@ function modulus(direction, label) {
   /** @param {StitchKind} kind */
   const value = (kind) => kind[`modulus_${direction}_n_per_mm`];
   /** @param {Studio} studio */
-  const scale = (studio) => logScale(studio.kinds().map(value));
+  const logarithms = (studio) => logScale(studio.kinds().map(value));
   return {
     id: `modulus-${direction}`,
     label,
@@ -113,13 +115,13 @@ function modulus(direction, label) {
     view: direction,
     available: (studio) => studio.kinds().length === 16,
     colouring: (studio) => {
-      const { at } = scale(studio);
+      const { at } = logarithms(studio);
       const pixels = studio.kinds().map((kind) => pixel(batlow.at(at(value(kind)))));
       return byKind((code) => pixels[code]);
     },
     legend: (studio) => {
-      const { low, high } = scale(studio);
-      return { kind: "scale", map: batlow, low, high, unit: "N/mm", log: true, label };
+      const { low, high } = logarithms(studio);
+      return scale(batlow, [low, high], "N/mm", label, true);
     },
   };
 }
@@ -140,15 +142,7 @@ const anisotropy = {
   },
   legend: (studio) => {
     const most = Math.exp(Math.max(...studio.kinds().map((kind) => Math.abs(ratio(kind)))));
-    return {
-      kind: "scale",
-      map: vik,
-      low: 1 / most,
-      high: most,
-      unit: "",
-      log: true,
-      label: "Modulus along rows over columns",
-    };
+    return scale(vik, [1 / most, most], "", "Modulus along rows over columns", true);
   },
 };
 
@@ -175,15 +169,8 @@ const strain = {
     const most = studio.largestStrain() || 1;
     /** @param {number} value */
     const place = (value) => 0.5 + (0.5 * value) / most;
-    return {
-      kind: "scale",
-      map: part(vik, place(low), place(high)),
-      low: 100 * low,
-      high: 100 * high,
-      unit: "%",
-      log: false,
-      label: `Stretch ${along(studio.stretchDirection())}`,
-    };
+    const map = part(vik, place(low), place(high));
+    return scale(map, [100 * low, 100 * high], "%", `Stretch ${along(studio.stretchDirection())}`);
   },
 };
 
@@ -199,15 +186,7 @@ const utilisation = {
     const values = studio.field("utilisation") ?? [];
     return { each: (i) => pixel(batlow.at(values[i])) };
   },
-  legend: () => ({
-    kind: "scale",
-    map: batlow,
-    low: 0,
-    high: 100,
-    unit: "%",
-    log: false,
-    label: "Stretch used before lock-up",
-  }),
+  legend: () => scale(batlow, [0, 100], "%", "Stretch used before lock-up"),
 };
 
 /** @type {Overlay[]} */

@@ -69,7 +69,7 @@ export class Seeing {
     /** The glove that was planned last: designs with its outline are worn on its hand. */
     this.glove = new Signal(settings.glove);
     /** The stitch that was clicked in the 3D view last. */
-    this.found = new Signal(/** @type {Cell | null} */ (null));
+    this.clickedStitch = new Signal(/** @type {Cell | null} */ (null));
     this.yarnColours.listen((yarnColours) => saveSettings({ yarnColours }));
     this.groups.listen((groups) => saveSettings({ groups }));
     this.glove.listen((glove) => saveSettings({ glove }));

@@ -33,6 +33,9 @@ const SETTINGS = { overlay: "fabrics", rectangles: false, tool: "pencil", size: 
 /** Girths of a limb that a tube of the chart sits on firmly, over its size at rest. */
 const SNUG = [1.12, 1.25];
 
+/** @param {Pick<MaterialSummary, "fabrics">} yarn */
+export const isComplete = ({ fabrics }) => Object.keys(fabrics).length === 4;
+
 /** Number of the step before the first: the cloth lies between its clamps, not pulled yet. */
 export const REST = -1;
 
@@ -164,6 +167,16 @@ export class Studio {
       { at_mm: 0, girth_mm: Math.round(SNUG[0] * around) },
       { at_mm: Math.max(1, Math.round(long)), girth_mm: Math.round(SNUG[1] * around) },
     ];
+  }
+
+  /** The yarns whose four fabrics were all measured or estimated: they can be mixed in a chart. */
+  get completeYarns() {
+    return this.materials.value.filter(isComplete);
+  }
+
+  /** What is known of the design's yarn; nothing until it is loaded. */
+  get yarn() {
+    return this.materials.value.find(({ id }) => id === this.materialId.value);
   }
 
   /** The 16 kinds of stitch in the chosen material; none until it is loaded. @returns {StitchKind[]} */

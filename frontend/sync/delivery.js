@@ -2,7 +2,7 @@
  * Delivers what was changed here to the service. It knows nothing of the page, so that every way in
  * which a delivery can go is tested without one.
  *
- * @import {DesignDocument} from "../types.js"
+ * @import {DesignDocument, Painted, Strokes} from "../types.js"
  *
  * @typedef {object} Parcel a design with changes that the service has not acknowledged
  * @property {string} id this browser's name for the design; makes a first delivery happen once
@@ -20,7 +20,7 @@
  * @property {(document: DesignDocument, key: string) => Promise<Kept>} create
  * @property {(id: string) => Promise<Kept>} read
  * @property {(id: string, document: DesignDocument, revision: number) => Promise<Kept>} replace
- * @property {(id: string, strokes: object) => Promise<{revision: number}>} paint
+ * @property {(id: string, strokes: Strokes) => Promise<Pick<Painted, "revision">>} paint
  * @property {(id: string) => Promise<Kept>} recover
  *
  * @typedef {{kind: "kept", parcel: Parcel} | {kind: "merged", parcel: Parcel} |

@@ -1,23 +1,9 @@
 /**
  * The designs that the service keeps.
  *
- * @import {DesignDocument} from "../types.js"
+ * @import {DesignDocument, DesignPage, NewShare, Painted, SharedDesign, ShareMode, Shares, Strokes, Version,
+ *   Versions, VersionSummary} from "../types.js"
  * @import {Kept} from "./delivery.js"
- *
- * @typedef {object} Summary
- * @property {string} id
- * @property {string} name
- * @property {string} material
- * @property {number} rows
- * @property {number} columns
- * @property {number} revision
- * @property {string} changed_at
- * @property {string | null} deleted_at
- *
- * @typedef {{number: number, name: string, automatic: boolean, revision: number, created_at: string}} Version
- * @typedef {"read" | "copy"} ShareMode
- * @typedef {{id: string, mode: ShareMode, created_at: string}} Share
- * @typedef {{mode: ShareMode, document: DesignDocument, revision: number}} Shared
  */
 
 import { call } from "../api.js";
@@ -32,7 +18,7 @@ const KEEPALIVE_BYTES = 50_000;
 export const designs = {
   /**
    * @param {{cursor?: string | null, deleted?: boolean}} [options]
-   * @returns {Promise<{designs: Summary[], next_cursor: string | null}>}
+   * @returns {Promise<DesignPage>}
    */
   list: ({ cursor, deleted = false } = {}) =>
     call(`/designs?limit=60&deleted=${deleted}${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ""}`),
@@ -53,7 +39,7 @@ export const designs = {
   /** @type {(id: string, document: DesignDocument, revision: number) => Promise<Kept>} */
   replace: (id, document, revision) => call(at(id), { method: "PUT", body: document, headers: made(revision) }),
 
-  /** @type {(id: string, strokes: object) => Promise<{revision: number}>} */
+  /** @type {(id: string, strokes: Strokes) => Promise<Painted>} */
   paint: (id, strokes) =>
     call(at(id, "/strokes"), {
       method: "POST",
@@ -73,29 +59,29 @@ export const designs = {
   /** @type {(id: string) => Promise<Kept>} */
   recover: (id) => call(at(id, "/recover"), { method: "POST" }),
 
-  /** @type {(id: string) => Promise<{versions: Version[]}>} */
+  /** @type {(id: string) => Promise<Versions>} */
   versions: (id) => call(at(id, "/versions")),
 
-  /** @type {(id: string, number: number) => Promise<Version & {document: DesignDocument}>} */
+  /** @type {(id: string, number: number) => Promise<Version>} */
   version: (id, number) => call(at(id, `/versions/${number}`)),
 
-  /** @type {(id: string, name: string) => Promise<Version>} */
+  /** @type {(id: string, name: string) => Promise<VersionSummary>} */
   keepVersion: (id, name) => call(at(id, "/versions"), { method: "POST", body: { name } }),
 
   /** @type {(id: string, number: number, revision: number) => Promise<Kept>} */
   restore: (id, number, revision) =>
     call(at(id, `/versions/${number}/restore`), { method: "POST", headers: made(revision) }),
 
-  /** @type {(id: string) => Promise<{shares: Share[]}>} */
+  /** @type {(id: string) => Promise<Shares>} */
   shares: (id) => call(at(id, "/shares")),
 
-  /** @type {(id: string, mode: ShareMode) => Promise<Share & {token: string}>} */
+  /** @type {(id: string, mode: ShareMode) => Promise<NewShare>} */
   share: (id, mode) => call(at(id, "/shares"), { method: "POST", body: { mode } }),
 
   /** @type {(id: string, share: string) => Promise<void>} */
   unshare: (id, share) => call(at(id, `/shares/${share}`), { method: "DELETE" }),
 
-  /** @type {(token: string) => Promise<Shared>} */
+  /** @type {(token: string) => Promise<SharedDesign>} */
   shared: (token) => call(`/shared/${encodeURIComponent(token)}`),
 
   /** @type {(token: string) => Promise<Kept>} */

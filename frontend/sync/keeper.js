@@ -2,10 +2,9 @@
  * Keeps the design on show: in this browser after every step, and at the service a moment later. What
  * others change meanwhile is merged; what cannot be merged is asked.
  *
- * @import {DesignDocument, Problem} from "../types.js"
+ * @import {DesignDocument, Problem, ShareMode} from "../types.js"
  * @import {Kept, Parcel} from "./delivery.js"
  * @import {Part} from "./merge.js"
- * @import {ShareMode} from "./designs.js"
  * @import {Studio} from "../state/studio.js"
  *
  * @typedef {{theirs: Kept, parts: Part[]}} Conflict

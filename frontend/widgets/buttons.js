@@ -2,6 +2,7 @@
  * Buttons with a sign, with words or in place of them.
  *
  * @import {Action, ActionContext} from "../actions/action.js"
+ * @import {Child} from "../elements/dom.js"
  * @import {IconName} from "../elements/icons.js"
  */
 
@@ -34,22 +35,17 @@ export function textButton(sign, label, perform, more = {}) {
 }
 
 /**
- * A small button for an action, with its key.
+ * A button for an action, with its key in its title.
  *
  * @param {Action} action
  * @param {ActionContext} context
  * @param {string} look its CSS class
+ * @param {Record<string, unknown>} [more] properties
+ * @param {...Child} content beside its sign
  */
-export function actionButton({ id, label, icon: picture, keys, perform }, context, look) {
-  return h(
-    "button",
-    {
-      class: look,
-      id: `action-${id}`,
-      title: `${label} (${shown(keys[0])})`,
-      "aria-label": label,
-      onclick: () => perform(context),
-    },
-    picture && icon(picture),
-  );
+export function actionButton({ id, label, icon: picture, keys, perform }, context, look, more = {}, ...content) {
+  const title = keys[0] ? `${label} (${shown(keys[0])})` : label;
+  const onclick = () => perform(context);
+  const properties = { class: look, id: `action-${id}`, title, "aria-label": label, onclick, ...more };
+  return h("button", properties, picture && icon(picture), ...content);
 }

@@ -1,9 +1,7 @@
 /** The frame that all dialogs share: a heading, a way to close it, and a click beside it closes it, too. */
 
 import { h } from "../elements/dom.js";
-import { icon } from "../elements/icons.js";
 import { iconButton } from "./buttons.js";
-import { problemText } from "./problem.js";
 
 /** Inputs that Enter itself works on. */
 const PRESSED = ["button", "checkbox", "file", "radio"];
@@ -36,19 +34,4 @@ export function dialog(id, title, ...content) {
   });
   document.body.append(element);
   return element;
-}
-
-/**
- * What went wrong, and what to do, for the body of a dialog.
- *
- * @param {Pick<import("../types.js").Problem, "title" | "detail" | "remedy">} problem
- * @param {() => void} [again] tries once more
- */
-export function problemBox(problem, again) {
-  return h(
-    "div",
-    { class: "problem", role: "alert" },
-    icon("warning"),
-    problemText(problem, again && h("button", { class: "button", onclick: again }, "Try again")),
-  );
 }

@@ -43,7 +43,8 @@ export function docked(studio, name, title, ...content) {
     ...content,
   );
   const dock =
-    document.getElementById("dock") ?? h("aside", { id: "dock", class: "dock", "aria-label": "Parts of the chart" });
+    document.getElementById("dock") ??
+    h("aside", { id: "dock", class: "dock shrinks-y panelled", "aria-label": "Parts of the chart" });
   if (!dock.isConnected) byId("chart-host").before(dock);
   dock.append(section);
   panel.watch((open) => {

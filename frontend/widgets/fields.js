@@ -24,13 +24,49 @@ export const textLine = (label, value, changed, more) =>
     h("span", {}, label),
     h("input", {
       type: "text",
-      class: "text",
+      class: "text full-width",
       value,
       maxLength: 80,
       onchange: (/** @type {Event} */ { target }) => changed(/** @type {HTMLInputElement} */ (target).value.trim()),
       ...more,
     }),
   );
+
+/**
+ * Fields for a chart's size.
+ *
+ * @param {string} prefix of their ids
+ * @param {number} most a side
+ * @param {() => void} changed
+ */
+export function sizeFields(prefix, most, changed) {
+  /** @param {string} label @param {string} id */
+  const field = (label, id) => {
+    const input = numberField({ id: `${prefix}-${id}`, min: 1, max: most, required: true, oninput: changed });
+    return { input, row: h("label", { class: "field stack gap-4" }, h("span", {}, label), input) };
+  };
+  const columns = field("Stitches", "columns");
+  const rows = field("Rows", "rows");
+  const problem = h("p", { class: "problem-text", role: "alert" });
+  return {
+    columns: columns.input,
+    rows: rows.input,
+    problem,
+    elements: [columns.row, rows.row],
+    /** @param {{rows: number, columns: number}} size */
+    show: (size) => {
+      columns.input.value = String(size.columns);
+      rows.input.value = String(size.rows);
+    },
+    /** Null, and a problem on show, where it is no size. @returns {{rows: number, columns: number} | null} */
+    read: () => {
+      const size = { rows: rows.input.valueAsNumber, columns: columns.input.valueAsNumber };
+      const well = Object.values(size).every((n) => Number.isInteger(n) && n >= 1 && n <= most);
+      problem.textContent = well ? "" : `Use whole numbers from 1 to ${most}.`;
+      return well ? size : null;
+    },
+  };
+}
 
 /** A field for a length that can change its unit. */
 export class LengthField {
@@ -71,7 +107,7 @@ export class LengthField {
  *
  * @param {string} name
  * @param {string} label
- * @param {[string, string][]} choices value and words
+ * @param {Record<string, string>} choices values and their words
  * @param {string} chosen
  * @param {(value: string) => void} changed
  */
@@ -80,7 +116,7 @@ export function choice(name, label, choices, chosen, changed) {
     "fieldset",
     { class: "planner-choice flex wrap gap-6" },
     h("legend", { class: "visually-hidden" }, label),
-    ...choices.map(([value, words]) =>
+    ...Object.entries(choices).map(([value, words]) =>
       h(
         "label",
         { class: "planner-choice-item relative" },
@@ -102,10 +138,13 @@ export const labelled = (label, field, hint) =>
 
 /**
  * @param {Record<string, unknown>} more its properties
- * @param {Iterable<readonly [value: string, words: string]>} options
+ * @param {Record<string, string>} options values and their words
  */
 export const selectField = (more, options) =>
-  h("select", more, ...Array.from(options, ([value, words]) => h("option", { value }, words)));
+  h("select", more, ...Object.entries(options).map(([value, words]) => h("option", { value }, words)));
+
+/** Options whose values are their words. @param {readonly string[]} words */
+export const sameWords = (words) => Object.fromEntries(words.map((word) => [word, word]));
 
 /**
  * Segments side by side of which one is chosen.

@@ -9,8 +9,8 @@
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
 
-/** @param {{id: string, label: string, content: Child[], class: string}} options */
-export function menu({ id, label, content, class: style }) {
+/** @param {{id: string, label: string, content: Child[], class: string, title?: string}} options `title` names it without words */
+export function menu({ id, label, content, class: style, title }) {
   const list = h("div", {
     class: "menu raised shadowed",
     role: "menu",
@@ -46,6 +46,8 @@ export function menu({ id, label, content, class: style }) {
       "aria-haspopup": "menu",
       "aria-expanded": "false",
       popoverTargetElement: list,
+      title,
+      "aria-label": title && label,
     },
     ...content,
   );
@@ -77,5 +79,5 @@ export function menu({ id, label, content, class: style }) {
       ),
     );
   };
-  return { root, button, setItems };
+  return { root, setItems };
 }

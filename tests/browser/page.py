@@ -3,11 +3,12 @@
 import io
 import json
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import Any
 
 import numpy as np
 from PIL import Image
-from playwright.sync_api import Page
+from playwright.sync_api import Download, Locator, Page, expect
 
 
 def kept_chart(page: Page) -> str:
@@ -103,6 +104,60 @@ def kept_design(page: Page) -> dict[str, Any]:
     design = json.loads(page.evaluate("localStorage['knitcore.design']"))
     assert isinstance(design, dict)
     return design
+
+
+def sent_view(page: Page, words: str = "") -> AbstractContextManager[Any]:
+    """Wait, at the end of a block, for the answer to a view that has these words."""
+    return page.expect_response(
+        lambda r: (
+            "/api/v1/views/" in r.url
+            and r.request.method == "PUT"
+            and words in (r.request.post_data or "")
+        )
+    )
+
+
+def stretched(page: Page, percent: str | None = None) -> Locator:
+    """Pull the chart, by default as far as the field says; the slider, once it can be moved."""
+    if percent is not None:
+        page.fill("#stretch-amount", percent)
+    page.click("#stretch-run")
+    slider = page.locator("#stretch-slider")
+    expect(slider).to_be_enabled()
+    return slider
+
+
+def keep_version(page: Page, name: str) -> None:
+    """Keep the design as a version, and leave its list open."""
+    page.focus("#chart")
+    page.keyboard.press("Control+s")
+    page.fill("#version-name", name)
+    page.click("#version-keep")
+    expect(page.locator("#versions-list")).to_contain_text(name)
+
+
+def exported(page: Page, kind: str) -> Download:
+    """The file that the page's export panel makes."""
+    page.keyboard.press("Control+E")
+    page.locator(f"input[name=export-kind][value={kind}]").check()
+    with page.expect_download() as caught:
+        page.locator("#export-make").click()
+    return caught.value
+
+
+def complaints(page: Page) -> list[str]:
+    """List what the console and the service complain of from now on."""
+    heard: list[str] = []
+    page.on("console", lambda m: heard.append(m.text) if m.type not in ("log", "info") else None)
+    page.on("pageerror", lambda error: heard.append(error.message))
+    page.on("response", lambda r: heard.append(f"{r.status} {r.url}") if r.status >= 400 else None)
+    return heard
+
+
+def cut_off(page: Page) -> None:
+    """Let nothing reach the service."""
+    for path in ("**/api/**", "**/healthz"):
+        page.route(path, lambda route: route.abort())
 
 
 class Chart:

@@ -13,9 +13,13 @@ from knitcore.draw.instances import COARSE_LEVELS
 from tests.browser.conftest import CHART, COLUMNS, ROWS, TIMEOUT_MS, open_small_chart
 from tests.browser.page import (
     coloured,
+    complaints,
     drag,
+    keep_version,
     pixels,
+    sent_view,
     settle,
+    stretched,
     wait_for_change,
     wait_for_colour,
     wait_for_picture,
@@ -231,11 +235,10 @@ def test_sides_and_yarn_colours_change_the_picture(studio: Page) -> None:
         studio.click("#look-edge")
     wait_for_change(studio, CLOTH, face, 60)
     wait_for_colour(studio, CLOTH, 300)
-    with studio.expect_response(
-        lambda r: "/views/" in r.url and r.request.method == "PUT" and r.ok
-    ):
+    with sent_view(studio) as answer:
         studio.click("#fabric-colours-button")
         studio.click("#yarn-yarn")
+    assert answer.value.ok
 
 
 @pytest.mark.slow
@@ -265,11 +268,8 @@ def test_a_stretch_is_scrubbed_by_keyboard_in_chart_curve_and_3d(studio: Page) -
 @pytest.mark.slow
 def test_a_fabric_that_was_stretched_is_also_shown_as_it_lies(flat_studio: Page) -> None:
     """Its stretch is no colour of the fabric at rest."""
-    flat_studio.click("#stretch-run")
-    expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
-    with flat_studio.expect_response(
-        lambda r: "/views/" in r.url and '"curl":{' in (r.request.post_data or "")
-    ) as shown:
+    stretched(flat_studio)
+    with sent_view(flat_studio, '"curl":{') as shown:
         flat_studio.click("#fabric-lying")
     assert shown.value.ok, shown.value.text()
     expect(flat_studio.locator(".fabric-caption")).to_contain_text("As it lies, without friction")
@@ -289,17 +289,12 @@ def test_the_weight_of_the_yarn_hangs_the_fabric_and_bends_it_over_an_edge(
 
 @pytest.mark.slow
 def test_the_free_edges_of_a_stretched_fabric_curl(flat_studio: Page) -> None:
-    flat_studio.click("#stretch-run")
-    expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
+    stretched(flat_studio)
     flat_studio.click("#stretch-more")
-    with flat_studio.expect_response(
-        lambda r: "/views/" in r.url and '"curl":{' in (r.request.post_data or "")
-    ):
+    with sent_view(flat_studio, '"curl":{'):
         flat_studio.check("#stretch-curling")
     expect(flat_studio.locator(".fabric-caption")).to_contain_text("free edges curl")
-    with flat_studio.expect_request(
-        lambda r: "/views/" in r.url and '"curl":null' in (r.post_data or "")
-    ):
+    with sent_view(flat_studio, '"curl":null'):
         flat_studio.uncheck("#stretch-curling")
 
 
@@ -308,9 +303,7 @@ def test_the_chart_is_worn_on_a_limb_of_the_girths_given(flat_studio: Page) -> N
     flat_studio.click("#tab-limb")
     expect(flat_studio.locator(".limb-girths input")).to_have_count(4)
     flat_studio.get_by_label("Girth 2", exact=True).fill("70")
-    with flat_studio.expect_response(
-        lambda r: "/views/" in r.url and '"colour":"pressure"' in (r.request.post_data or "")
-    ) as shown:
+    with sent_view(flat_studio, '"colour":"pressure"') as shown:
         flat_studio.click("#limb-wear")
     assert shown.value.ok, shown.value.text()
     expect(flat_studio.locator(".fabric-caption")).to_contain_text("On the body: 0 to")
@@ -328,30 +321,18 @@ def test_a_test_can_be_cancelled(flat_studio: Page) -> None:
 
 @pytest.mark.slow
 def test_the_console_stays_clean_while_the_view_is_used(visitor: Page, service: str) -> None:
-    page, said = visitor, []
-    page.on("console", lambda m: said.append(m.text) if m.type not in ("log", "info") else None)
-    page.on("pageerror", lambda error: said.append(error.message))
-    page.on("response", lambda r: said.append(f"{r.status} {r.url}") if r.status >= 400 else None)
+    page, said = visitor, complaints(visitor)
     open_small_chart(page, service)
     _wait_for_live_cloth(page)
 
-    def shown(act: Callable[[], object], asked: str = "") -> None:
-        with page.expect_response(
-            lambda r: (
-                "/api/v1/views/" in r.url
-                and r.request.method == "PUT"
-                and asked in (r.request.post_data or "")
-            )
-        ):
+    def shown(act: Callable[[], object], words: str = "") -> None:
+        with sent_view(page, words):
             act()
 
     shown(lambda: drag(page, 90, 40))
     for side in ("back", "edge", "angle", "face"):
         shown(partial(page.click, f"#look-{side}"))
-    page.click("#stretch-run")
-    slider = page.locator("#stretch-slider")
-    expect(slider).to_be_enabled()
-    slider.focus()
+    stretched(page).focus()
     # What the stretch sent may still be on its way: it is no answer to either.
     shown(lambda: page.keyboard.press("Home"), '"stretch":null')
     shown(lambda: page.keyboard.press("End"), '"stretch":{')
@@ -359,11 +340,7 @@ def test_the_console_stays_clean_while_the_view_is_used(visitor: Page, service: 
     for pose in ("lying", "worn", "flat"):
         shown(partial(page.click, f"#fabric-{pose}"))
     shown(lambda: page.click("#action-theme"))
-    page.focus("#chart")
-    page.keyboard.press("Control+s")
-    page.fill("#version-name", "Clean")
-    page.click("#version-keep")
-    expect(page.locator("#versions-list .row")).to_have_count(1)
+    keep_version(page, "Clean")
     page.keyboard.press("Escape")
     page.wait_for_timeout(1_000)  # what is drawn late is complained of late
     assert not said, "\n".join(text[-160:] for text in said)
@@ -399,9 +376,7 @@ def test_two_designs_never_show_each_other(browser: Browser, service: str) -> No
 @pytest.mark.slow
 def test_a_lost_view_is_restored_automatically(studio: Page) -> None:
     _wait_for_live_cloth(studio)
-    with studio.expect_response(
-        lambda r: r.url.endswith("views/" + _design(studio)) and r.request.method == "PUT" and r.ok
-    ):
+    with sent_view(studio):
         studio.context.set_offline(True)
         expect(studio.locator("#offline")).to_be_visible()
         studio.context.set_offline(False)
@@ -429,9 +404,7 @@ def test_a_page_is_saved_that_needs_no_service(studio: Page, tmp_path: Path) -> 
     assert "<html" in text
     assert service_address(studio) not in text
     given = studio.context.new_page()
-    said: list[str] = []
-    given.on("console", lambda m: said.append(m.text) if m.type not in ("log", "info") else None)
-    given.on("pageerror", lambda error: said.append(str(error)))
+    said = complaints(given)
     given.goto(file.as_uri())
     wait_for_colour(given, "body", YARN)
     stays = [coloured(pixels(given, "body")) for _ in range(6)]

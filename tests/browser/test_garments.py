@@ -8,7 +8,7 @@ from playwright.sync_api import Page, expect
 from knitcore.formats.designs.design_file import design_from_mapping
 from knitcore.formats.read.chart_files import read_piece
 from tests.browser.axe import violations
-from tests.browser.page import kept_design
+from tests.browser.page import exported, kept_design
 
 
 def _plan(page: Page, template: str) -> None:
@@ -35,21 +35,11 @@ def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: 
     expect(page.locator("#planner-make")).to_be_enabled()
     page.locator("#planner-make").click()
     expect(page.locator("#planner-dialog")).not_to_be_visible()
-    page.keyboard.press("Control+E")
-    page.locator("input[name=export-kind][value=written]").check()
-    with page.expect_download() as caught:
-        page.locator("#export-make").click()
-    caught.value.save_as(tmp_path / "glove.txt")
+    exported(page, "written").save_as(tmp_path / "glove.txt")
     piece = read_piece(tmp_path / "glove.txt")
     assert {yarn.name for yarn in piece.yarns} == {"blue", "orange", "green", "purple"}
-    kept = design_from_mapping(
-        {"format": "knitcore-design", "version": 2}
-        | {
-            k: v
-            for k, v in kept_design(page).items()
-            if k in ("name", "chart", "outline", "regions")
-        }
-    )
+    written = {field: kept_design(page)[field] for field in ("name", "chart", "outline", "regions")}
+    kept = design_from_mapping({"format": "knitcore-design", "version": 2} | written)
     assert kept.to_piece() == piece
     assert {region.name for region in kept.regions} >= {"thumb", "thumb gusset", "fingers"}
 
@@ -72,22 +62,16 @@ def test_a_brace_for_a_pressure_shows_its_pressure(flat_studio: Page) -> None:
 
 def test_knitout_is_checked_before_it_is_given(flat_studio: Page) -> None:
     page = flat_studio
-    page.keyboard.press("Control+E")
-    page.locator("input[name=export-kind][value=knitout]").check()
-    with page.expect_download() as caught:
-        page.locator("#export-make").click()
-    assert caught.value.suggested_filename.endswith(".k")
+    assert exported(page, "knitout").suggested_filename.endswith(".k")
     expect(page.locator("#export-outcome")).to_contain_text("Knitted on a virtual V-bed machine")
 
 
 def test_a_pattern_has_a_picture_where_nothing_is_drawn_in_3d(flat_studio: Page) -> None:
     page = flat_studio
-    page.keyboard.press("Control+E")
-    page.locator("input[name=export-kind][value=pattern-svg]").check()
-    with page.expect_request("**/api/v1/export") as asked, page.expect_download() as caught:
-        page.locator("#export-make").click()
-    assert asked.value.post_data_json["photo"]
-    assert "data:image/png" in caught.value.path().read_text(encoding="utf-8")
+    with page.expect_request("**/api/v1/export") as request:
+        pattern = exported(page, "pattern-svg")
+    assert request.value.post_data_json["photo"]
+    assert "data:image/png" in pattern.path().read_text(encoding="utf-8")
 
 
 def test_written_rows_are_opened_as_a_design(flat_studio: Page, tmp_path: Path) -> None:
@@ -114,7 +98,10 @@ def test_formats_of_extensions_are_offered(flat_studio: Page) -> None:
     page = flat_studio
     house = {"name": "house", "package": "knit-house 1.0", "problem": None}
     card = house | {"group": "knitcore.exporters", "offers": ["punchcard"]}
-    page.route("**/api/v1/extensions", lambda route: route.fulfill(json={"extensions": [card]}))
+    page.route(
+        "**/api/v1/extensions",
+        lambda route: route.fulfill(json={"extensions": [card], "largest_exports": {}}),
+    )
     page.keyboard.press("Control+E")
     expect(page.get_by_role("group", name="From extensions")).to_contain_text("knit-house 1.0")
     page.get_by_label("punchcard").check()

@@ -12,7 +12,9 @@ from tests.browser.page import (
     kept_chart,
     number,
     pixels,
+    sent_view,
     settle,
+    stretched,
     wait_for_change,
     wait_for_colour,
 )
@@ -74,10 +76,7 @@ def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
     drag(studio, 90, 40)
     wait_for_colour(studio, "#fabric", 1_500)
     studio.click("#stretch-course")
-    studio.fill("#stretch-amount", "20")
-    studio.click("#stretch-run")
-    slider = studio.locator("#stretch-slider")
-    expect(slider).to_be_enabled()
+    slider = stretched(studio, "20")
     expect(studio.locator("#stretch-figures")).to_contain_text("20 %")
     expect(studio.locator("#overlay-strain")).to_have_attribute("aria-checked", "true")
     expect(studio.locator("#plot-curve .main-svg").first).to_be_visible()
@@ -86,7 +85,7 @@ def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
     settle(studio)
     chart, curve = pixels(studio, "#chart"), pixels(studio, "#plot-curve")
     figures = studio.locator("#stretch-figures").inner_text()
-    with studio.expect_response(lambda r: "/api/v1/views/" in r.url) as answer:
+    with sent_view(studio) as answer:
         slider.focus()
         for _ in range(12):
             studio.keyboard.press("ArrowLeft")
@@ -102,10 +101,7 @@ def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
 @pytest.mark.slow
 def test_a_change_marks_the_stretch_as_old_until_it_is_pulled_again(flat_studio: Page) -> None:
     flat_studio.select_option("#stretch-unit", "N")
-    flat_studio.fill("#stretch-amount", "0.5")
-    flat_studio.click("#stretch-run")
-    slider = flat_studio.locator("#stretch-slider")
-    expect(slider).to_be_enabled()
+    slider = stretched(flat_studio, "0.5")
     expect(flat_studio.locator("#stretch-figures")).to_contain_text("0.5")
     expect(flat_studio.locator("#stretch-note")).to_contain_text("No stitch locks")
     flat_studio.evaluate("() => { window.fetch = () => new Promise(() => {}) }")
@@ -138,10 +134,7 @@ def test_a_stretch_close_to_the_lock_up_is_marked(flat_studio: Page) -> None:
 def test_the_slider_is_dragged_back_to_rest_and_the_colours_say_so(flat_studio: Page) -> None:
     page, failures = flat_studio, []
     page.on("pageerror", lambda error: failures.append(error.message))
-    page.fill("#stretch-amount", "20")
-    page.click("#stretch-run")
-    slider = page.locator("#stretch-slider")
-    expect(slider).to_be_enabled()
+    slider = stretched(page, "20")
     page.click("#tab-curve")
     expect(page.locator("#plot-curve .main-svg").first).to_be_visible()
     page.click("#overlay-strain")
@@ -164,9 +157,7 @@ def test_the_slider_is_dragged_back_to_rest_and_the_colours_say_so(flat_studio: 
 
 @pytest.mark.slow
 def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> None:
-    flat_studio.fill("#stretch-amount", "10")
-    flat_studio.click("#stretch-run")
-    expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
+    stretched(flat_studio, "10")
     flat_studio.keyboard.press("Shift+N")
     flat_studio.click("#gallery-seed")
     expect(flat_studio.locator("#stretch-slider")).to_be_disabled()

@@ -11,6 +11,7 @@ from ...context import Context
 from ...requests.base import NoRequest, ResultModel
 from ...service import VERSION
 from ..registry import Command, Operation
+from .export import MAX_STITCHES
 
 KINDS: dict[Group, type[Offer]] = {Group.MATERIALS: Material, Group.EXPORTERS: Exporter}
 
@@ -26,9 +27,12 @@ class ExtensionResult(ResultModel):
 
 
 class Extensions(ResultModel):
-    """All extensions."""
+    """All extensions, and how much the service exports."""
 
     extensions: list[ExtensionResult]
+    largest_exports: dict[str, int] = Field(
+        description="Stitches of the largest chart over REST, for formats that have a limit."
+    )
 
 
 def extensions(request: NoRequest, context: Context) -> Extensions:
@@ -44,7 +48,7 @@ def extensions(request: NoRequest, context: Context) -> Extensions:
             except ExtensionError as error:
                 problem = str(error)
             results.append(ExtensionResult.of(extension, offers=offers, problem=problem))
-    return Extensions(extensions=results)
+    return Extensions(extensions=results, largest_exports=MAX_STITCHES)
 
 
 def _lines(result: Extensions) -> list[str]:

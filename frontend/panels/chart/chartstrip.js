@@ -11,13 +11,8 @@ import { h } from "../../elements/dom.js";
 import { segmented, selectField } from "../../widgets/fields.js";
 import { actionButton } from "../../widgets/buttons.js";
 
-/** @type {[Look, string][]} */
-const LOOKS = [
-  ["both", "Dots"],
-  ["colours", "Colours"],
-  ["symbols", "Symbols"],
-  ["loops", "Loops"],
-];
+/** @type {Record<Look, string>} */
+const LOOKS = { both: "Dots", colours: "Colours", symbols: "Symbols", loops: "Loops" };
 
 /** @param {HTMLElement} host @param {ActionContext} context */
 export function chartstrip(host, context) {
@@ -31,7 +26,7 @@ export function chartstrip(host, context) {
     const entry = (kind, label) =>
       h(
         "span",
-        { class: "legend-item" },
+        { class: "legend-item gap-5" },
         h("span", { class: `key-cell relative ${kind} ${drawn}${look === "symbols" ? " paper" : ""}` }),
         label,
       );
@@ -84,7 +79,7 @@ export function chartstrip(host, context) {
         [true, "Round"],
       ]),
       look,
-      h("div", { class: "group" }, small("zoom-out"), small("zoom-in"), small("fit")),
+      h("div", { class: "group flex gap-2" }, small("zoom-out"), small("zoom-in"), small("fit")),
     ),
   );
 }

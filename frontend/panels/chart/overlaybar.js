@@ -30,7 +30,7 @@ export function overlaybar(host, studio, view) {
     h(
       "button",
       {
-        class: "chip",
+        class: "chip gap-6 small nowrap",
         role: "radio",
         id: `overlay-${overlay.id}`,
         title: overlay.hint,
@@ -43,7 +43,7 @@ export function overlaybar(host, studio, view) {
   const rectangles = h(
     "button",
     {
-      class: "chip",
+      class: "chip gap-6 small nowrap",
       id: "overlay-rectangles",
       title: "Extensibility rectangles: as wide and as high as a stitch stretches along rows and columns (E)",
       onclick: () => (studio.rectangles.value = !studio.rectangles.value),
@@ -54,7 +54,7 @@ export function overlaybar(host, studio, view) {
   const { crosses: crossing } = studio.seeing;
   const crosses = h(
     "button",
-    { class: "chip", id: "overlay-crosses", onclick: () => (crossing.value = !crossing.value) },
+    { class: "chip gap-6 small nowrap", id: "overlay-crosses", onclick: () => (crossing.value = !crossing.value) },
     "+ Strain",
   );
   crossing.watch((on) => crosses.setAttribute("aria-pressed", String(on)));
@@ -102,14 +102,14 @@ export function overlaybar(host, studio, view) {
         : content.items.map(({ label, colour, dot }) => {
             const key = h("span", { class: dot ? "key dot" : "key" });
             key.style.background = colour;
-            return h("span", { class: "legend-item" }, key, label);
+            return h("span", { class: "legend-item gap-5" }, key, label);
           })),
     );
     if (studio.rectangles.value) {
       legend.append(
         h(
           "label",
-          { class: "legend-item" },
+          { class: "legend-item gap-5" },
           h("span", { class: "chip-rectangle" }),
           h("span", { class: "wide", title: "Sides grow as the square root of the extensibility" }, "extensibility of"),
           grouping,

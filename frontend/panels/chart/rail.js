@@ -6,7 +6,7 @@
  */
 
 import { SIZES } from "../../actions/look.js";
-import { action, shown } from "../../actions/registry.js";
+import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { TOOLS } from "../../tools/registry.js";
@@ -20,7 +20,7 @@ export function rail(host, studio, context) {
     h(
       "button",
       {
-        class: "tool",
+        class: "tool relative rounded",
         id: `tool-${tool.id}`,
         title: `${tool.label} (${tool.key})\n${tool.hint}`,
         "aria-label": tool.label,
@@ -35,7 +35,7 @@ export function rail(host, studio, context) {
   );
 
   const size = h("button", {
-    class: "tool size",
+    class: "tool size relative rounded gap-2 small",
     id: "brush-size",
     onclick: () => {
       studio.size.value = SIZES[(SIZES.indexOf(studio.size.value) + 1) % SIZES.length];
@@ -51,7 +51,7 @@ export function rail(host, studio, context) {
   studio.tool.watch(({ sized }) => (size.disabled = !sized));
 
   /** @param {string} id */
-  const small = (id) => actionButton(action(id), context, "tool");
+  const small = (id) => actionButton(action(id), context, "tool relative rounded");
   const symmetry = small("symmetry");
   studio.symmetry.watch((value) => {
     symmetry.setAttribute("aria-pressed", String(value !== "none"));
@@ -63,19 +63,9 @@ export function rail(host, studio, context) {
     );
   });
 
-  /** @param {"regions" | "repeats"} name @param {string} label */
-  const panel = (name, label) => {
-    const button = h(
-      "button",
-      {
-        class: "tool",
-        id: `open-${name}`,
-        title: `${label} (${shown(action(name).keys[0])})`,
-        "aria-label": label,
-        onclick: () => action(name).perform(context),
-      },
-      icon(name === "regions" ? "regions" : "link"),
-    );
+  /** @param {"regions" | "repeats"} name @param {"regions" | "link"} sign */
+  const panel = (name, sign) => {
+    const button = actionButton(action(name), context, "tool relative rounded", { id: `open-${name}` }, icon(sign));
     studio.editing.panel.watch((open) => button.setAttribute("aria-pressed", String(open === name)));
     return button;
   };
@@ -86,8 +76,8 @@ export function rail(host, studio, context) {
     size,
     symmetry,
     h("hr"),
-    panel("regions", "Regions"),
-    panel("repeats", "Linked repeats"),
+    panel("regions", "regions"),
+    panel("repeats", "link"),
     small("open-atlas"),
   );
 }

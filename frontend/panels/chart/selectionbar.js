@@ -4,10 +4,10 @@
  * @import {ActionContext} from "../../actions/action.js"
  */
 
-import { action, shown } from "../../actions/registry.js";
+import { action } from "../../actions/registry.js";
 import { selectedCells } from "../../design/selection.js";
 import { h } from "../../elements/dom.js";
-import { icon } from "../../elements/icons.js";
+import { actionButton } from "../../widgets/buttons.js";
 
 const GROUPS = [
   ["copy", "cut", "paste", "clear"],
@@ -25,19 +25,8 @@ export function selectionbar(host, context) {
   const { studio } = context;
   /** @param {string} id @param {string} [text] */
   const button = (id, text) => {
-    const { label, icon: picture, keys, perform } = action(id);
-    return h(
-      "button",
-      {
-        class: text ? "bar-button named bare inline small gap-4" : "bar-button bare inline small gap-4",
-        id: `selection-${id}`,
-        title: keys[0] ? `${label} (${shown(keys[0])})` : label,
-        "aria-label": label,
-        onclick: () => perform(context),
-      },
-      picture && icon(picture),
-      text && h("span", {}, text),
-    );
+    const look = `bar-button bare inline small gap-4 ${text ? "named" : ""}`;
+    return actionButton(action(id), context, look, { id: `selection-${id}` }, text && h("span", {}, text));
   };
   const count = h("span", { class: "bar-count figures" });
   const bar = h(

@@ -11,16 +11,17 @@
 
 import { ApiError } from "../../api.js";
 import { difference, interpolated } from "../../core/difference.js";
-import { LINES, along } from "../../core/directions.js";
+import { DIRECTIONS, LINES, along } from "../../core/directions.js";
 import { figure, range } from "../../core/format.js";
 import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { drawPair } from "../../plots/pair.js";
-import { dialog, problemBox } from "../../widgets/dialog.js";
+import { dialog } from "../../widgets/dialog.js";
 import { segmented } from "../../widgets/fields.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { sizeAtRest } from "../../services/scope.js";
 import { NOW, answers, choices, piece } from "./pieces.js";
+import { problemBox } from "../../widgets/problem.js";
 
 /** The sides, and the colours that their curves and rectangles have. */
 const SIDES = /** @type {const} */ ([
@@ -37,11 +38,11 @@ const LOAD_N_PER_MM = 0.1;
 export function create(studio, { keeper }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const table = h("table", { class: "numbers compare-numbers full-width", id: "compare-numbers" });
-  const plot = h("div", { class: "plot", id: "compare-plot" });
+  const plot = h("div", { class: "plot relative shrinks-x shrinks-y clipped", id: "compare-plot" });
   const rectangles = h("div", { class: "compare-rectangles stack" });
   /** @type {Direction} */
   let direction = "course";
-  const directions = /** @type {Direction[]} */ (["course", "wale"]).map(
+  const directions = DIRECTIONS.map(
     (way) => /** @type {const} */ ([way, `Pulled ${along(way)}`, { id: `compare-${way}` }]),
   );
   const ways = segmented("Direction of the curves", directions, direction, (way) => {
@@ -50,13 +51,13 @@ export function create(studio, { keeper }) {
   });
   const sides = SIDES.map(({ id, letter }) => {
     const which = h("select", {
-      class: "select",
+      class: "select grows shrinks-x full-width",
       id: `compare-${id}`,
       "aria-label": `Piece ${letter}`,
       onchange: () => ((side.yarnId = ""), load()),
     });
     const yarn = h("select", {
-      class: "select",
+      class: "select grows shrinks-x full-width",
       id: `compare-${id}-yarn`,
       "aria-label": `Yarn of piece ${letter}`,
       onchange: () => ((side.yarnId = yarn.value), load()),
@@ -66,7 +67,7 @@ export function create(studio, { keeper }) {
       yarn,
       yarnId: "", // chosen instead of the piece's own
       picture: h("div", { class: "compare-picture centred rounded sunken" }),
-      size: h("p", { class: "muted figures" }),
+      size: h("p", { class: "muted figures small" }),
     };
     return side;
   });
@@ -79,7 +80,7 @@ export function create(studio, { keeper }) {
       ...sides.map(({ which, yarn, picture, size }, k) =>
         h(
           "section",
-          { "aria-label": `Piece ${SIDES[k].letter}` },
+          { class: "stack gap-6 shrinks-x", "aria-label": `Piece ${SIDES[k].letter}` },
           h("div", { class: "line gap-8" }, badge(k), which),
           yarn,
           picture,
@@ -211,52 +212,44 @@ function offer(select, all) {
 
 /** @param {HTMLSelectElement} select @param {Studio} studio @param {string} chosen */
 function yarns(select, studio, chosen) {
-  const complete = studio.materials.value.filter(({ fabrics }) => Object.keys(fabrics).length === 4);
-  select.replaceChildren(...complete.map(({ id, name }) => h("option", { value: id }, name)));
+  select.replaceChildren(...studio.completeYarns.map(({ id, name }) => h("option", { value: id }, name)));
   select.value = chosen;
 }
 
+/**
+ * The numbers that are compared: what they are, their unit, and their values with the intervals.
+ *
+ * @param {Answers} answers
+ * @returns {[label: string, unit: string, answer: Answer][]}
+ */
+const numbersOf = ({ predicted, curves }) =>
+  DIRECTIONS.flatMap((way) => {
+    const { strain, strain_interval, stress_n_per_mm } = curves[way];
+    const at = (/** @type {number[]} */ strains) =>
+      100 * (interpolated(stress_n_per_mm, strains, LOAD_N_PER_MM) ?? NaN);
+    const poisson = way === "course" ? "poisson_yx" : "poisson_xy";
+    const lines = LINES[way];
+    const modulus = predicted[`modulus_${way}_n_per_mm`];
+    const stretches = strain_interval.map(at);
+    return [
+      [`Modulus, ${lines}`, "N/mm", { value: modulus, interval: predicted[`modulus_${way}_interval_n_per_mm`] }],
+      [
+        `Stretch at ${LOAD_N_PER_MM} N/mm, ${lines}`,
+        "%",
+        { value: at(strain), interval: [stretches[0], stretches[1]] },
+      ],
+      [
+        way === "course" ? "Width of a stitch" : "Height of a stitch",
+        "mm",
+        { value: predicted[`relaxed_${way}_mm`], interval: predicted[`relaxed_${way}_interval_mm`] },
+      ],
+      [`Poisson ratio, ${lines}`, "", { value: predicted[poisson], interval: predicted[`${poisson}_interval`] }],
+    ];
+  });
+
 /** @param {HTMLTableElement} table @param {Answers[]} pair */
 function fill(table, pair) {
-  /** @type {{label: string, unit: string, of: (answers: Answers) => Answer}[]} */
-  const rows = [];
-  for (const way of /** @type {Direction[]} */ (["course", "wale"])) {
-    rows.push(
-      {
-        label: `Modulus, ${LINES[way]}`,
-        unit: "N/mm",
-        of: ({ predicted }) => ({
-          value: predicted[`modulus_${way}_n_per_mm`],
-          interval: predicted[`modulus_${way}_interval_n_per_mm`],
-        }),
-      },
-      {
-        label: `Stretch at ${LOAD_N_PER_MM} N/mm, ${LINES[way]}`,
-        unit: "%",
-        of: ({ curves: { [way]: curve } }) => {
-          const at = (/** @type {number[]} */ strain) =>
-            100 * (interpolated(curve.stress_n_per_mm, strain, LOAD_N_PER_MM) ?? NaN);
-          return { value: at(curve.strain), interval: [at(curve.strain_interval[0]), at(curve.strain_interval[1])] };
-        },
-      },
-      {
-        label: way === "course" ? "Width of a stitch" : "Height of a stitch",
-        unit: "mm",
-        of: ({ predicted }) => ({
-          value: predicted[`relaxed_${way}_mm`],
-          interval: predicted[`relaxed_${way}_interval_mm`],
-        }),
-      },
-      {
-        label: `Poisson ratio, ${LINES[way]}`,
-        unit: "",
-        of: ({ predicted }) =>
-          way === "course"
-            ? { value: predicted.poisson_yx, interval: predicted.poisson_yx_interval }
-            : { value: predicted.poisson_xy, interval: predicted.poisson_xy_interval },
-      },
-    );
-  }
+  const [ours, theirs] = pair.map(numbersOf);
   table.replaceChildren(
     h(
       "thead",
@@ -272,8 +265,8 @@ function fill(table, pair) {
     h(
       "tbody",
       {},
-      ...rows.map(({ label, unit, of }) => {
-        const both = pair.map(of);
+      ...ours.map(([label, unit, answer], row) => {
+        const both = [answer, theirs[row][2]];
         const { text, clear, meet } = difference(both[0], both[1]);
         return h(
           "tr",
@@ -316,7 +309,7 @@ function drawRectangles(host, pair) {
     ),
     h(
       "p",
-      { class: "muted" },
+      { class: "muted small" },
       "Extensibility rectangles: as wide and as high as the cloth stretches along rows and columns (sides grow as its square root).",
     ),
   );

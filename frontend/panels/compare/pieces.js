@@ -16,7 +16,6 @@ import { api } from "../../api.js";
 import { ago } from "../../core/ago.js";
 import { ChartDocument } from "../../design/document.js";
 import { Grid } from "../../grid/grid.js";
-import { outlineText } from "../../design/snapshot.js";
 import { designs } from "../../sync/designs.js";
 import { scopeIn } from "../../services/scope.js";
 
@@ -62,13 +61,13 @@ export async function piece(studio, keeper, value) {
   const [kind, id = ""] = value.split(" ");
   if (kind === NOW || kind === "region") {
     const scope = scopeIn(studio.document, kind === NOW ? null : id);
-    const { outline, shaped, grid } = studio.document;
+    const { outlineText, grid } = studio.document;
     const whole = kind === NOW;
     return {
       scope,
       material: studio.materialId.value,
       chart: whole ? grid.text : scope.counted.grid.text,
-      outline: whole && shaped ? outlineText(outline, grid.columns) : null,
+      outline: whole ? outlineText : null,
     };
   }
   if (kind === "version") return opened((await designs.version(keeper.remoteId ?? "", Number(id))).document);

@@ -8,7 +8,7 @@
 import { h } from "../../elements/dom.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
-import { attempt } from "../../widgets/attempt.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper }) {

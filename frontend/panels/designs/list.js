@@ -2,7 +2,7 @@
  * All designs that the service keeps: open, rename, duplicate, delete, and bring back.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Summary} from "../../sync/designs.js"
+ * @import {DesignSummary} from "../../types.js"
  * @import {Studio} from "../../state/studio.js"
  */
 
@@ -13,8 +13,8 @@ import { iconButton, textButton } from "../../widgets/buttons.js";
 import { segmented } from "../../widgets/fields.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
-import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, context) {
@@ -23,10 +23,10 @@ export function create(studio, context) {
   /** @type {string | null} */ let cursor = null;
 
   const status = h("div", { class: "dialog-status", role: "status" });
-  const list = h("ul", { class: "cards", id: "designs-list" });
+  const list = h("ul", { class: "cards stack", id: "designs-list" });
   const search = h("input", {
     type: "search",
-    class: "text-field",
+    class: "text-field grows shrinks-x rounded",
     id: "designs-search",
     placeholder: "Find by name",
     "aria-label": "Find a design by its name",
@@ -50,7 +50,7 @@ export function create(studio, context) {
     "My designs",
     h(
       "div",
-      { class: "dialog-tools" },
+      { class: "dialog-tools wrap gap-10" },
       search,
       tabs.element,
       h("span", { class: "spacer" }),
@@ -115,7 +115,7 @@ export function create(studio, context) {
     list.append(h("li", { class: "empty" }, h("strong", {}, text[0]), h("p", { class: "muted" }, text[1])));
   };
 
-  /** @param {Summary} design */
+  /** @param {DesignSummary} design */
   const card = (design) => {
     const name = h("span", { class: "card-name ellipsis", title: design.name }, design.name);
     const here = design.id === keeper.remoteId;
@@ -166,10 +166,10 @@ export function create(studio, context) {
     return item;
   };
 
-  /** @param {Summary} design @param {HTMLElement} name */
+  /** @param {DesignSummary} design @param {HTMLElement} name */
   const rename = (design, name) => {
     const field = h("input", {
-      class: "text-field card-rename",
+      class: "text-field card-rename grows shrinks-x rounded",
       value: design.name,
       maxLength: 80,
       "aria-label": "New name",
@@ -201,13 +201,13 @@ export function create(studio, context) {
     field.select();
   };
 
-  /** @param {Summary} design */
+  /** @param {DesignSummary} design */
   const duplicate = async (design) => {
     if (design.id === keeper.remoteId) await keeper.flush();
     if (await attempt(status, () => designs.duplicate(design.id))) await reload();
   };
 
-  /** @param {Summary} design @param {HTMLElement} item */
+  /** @param {DesignSummary} design @param {HTMLElement} item */
   const remove = async (design, item) => {
     if ((await attempt(status, () => designs.remove(design.id).then(() => true))) === null) return;
     const next = /** @type {HTMLElement | null} */ (item.nextElementSibling ?? item.previousElementSibling);
@@ -224,7 +224,7 @@ export function create(studio, context) {
     /** @type {HTMLElement | null | undefined} */ (next?.querySelector("button"))?.focus();
   };
 
-  /** @param {Summary} design @param {HTMLElement | null} item */
+  /** @param {DesignSummary} design @param {HTMLElement | null} item */
   const recover = async (design, item) => {
     if (!(await attempt(status, () => designs.recover(design.id)))) return;
     item?.remove();

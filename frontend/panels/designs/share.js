@@ -2,7 +2,7 @@
  * Links to the design for others: to look at it, or to copy it.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Share, ShareMode} from "../../sync/designs.js"
+ * @import {Share, ShareMode} from "../../types.js"
  * @import {Studio} from "../../state/studio.js"
  */
 
@@ -11,10 +11,11 @@ import { icon } from "../../elements/icons.js";
 import { linkTo } from "../../sync/address.js";
 import { designs } from "../../sync/designs.js";
 import { dialog } from "../../widgets/dialog.js";
+import { listRow } from "../../widgets/listrow.js";
 import { keptName } from "./kept.js";
-import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
 import { textButton } from "../../widgets/buttons.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @type {Record<ShareMode, [string, string]>} */
 const MODES = {
@@ -28,7 +29,7 @@ export function create(_studio, { keeper }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ul", { class: "rows-list", id: "share-list" });
   const link = h("input", {
-    class: "text-field",
+    class: "text-field grows shrinks-x rounded",
     id: "share-link",
     readOnly: true,
     "aria-label": "The link",
@@ -47,7 +48,7 @@ export function create(_studio, { keeper }) {
   const result = h(
     "div",
     { class: "stack gap-6", hidden: true },
-    h("div", { class: "dialog-tools" }, link, copy),
+    h("div", { class: "dialog-tools wrap gap-10" }, link, copy),
     copied,
   );
 
@@ -57,7 +58,7 @@ export function create(_studio, { keeper }) {
     .../** @type {ShareMode[]} */ (["read", "copy"]).map((which) =>
       h(
         "label",
-        { class: "choice flex gap-10" },
+        { class: "choice flex gap-10 rounded" },
         h("input", {
           type: "radio",
           name: "share-mode",
@@ -103,16 +104,10 @@ export function create(_studio, { keeper }) {
   };
   /** @param {Share} share */
   const row = (share) =>
-    h(
-      "li",
-      { class: "row" },
+    listRow(
       icon("share"),
-      h(
-        "span",
-        { class: "row-text" },
-        h("span", {}, MODES[share.mode][0]),
-        h("span", { class: "muted" }, `made ${ago(share.created_at)}`),
-      ),
+      MODES[share.mode][0],
+      `made ${ago(share.created_at)}`,
       textButton(null, "Take back", async () => {
         const id = keeper.remoteId;
         if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();

@@ -2,26 +2,27 @@
  * States of the design that were kept under a name: keep another one, look at them, go back.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Version} from "../../sync/designs.js"
+ * @import {VersionSummary} from "../../types.js"
  * @import {Studio} from "../../state/studio.js"
  */
 
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { designs } from "../../sync/designs.js";
 import { textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
+import { listRow } from "../../widgets/listrow.js";
 import { keptName } from "./kept.js";
-import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper, open }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ol", { class: "rows-list", id: "versions-list" });
   const name = h("input", {
-    class: "text-field",
+    class: "text-field grows shrinks-x rounded",
     id: "version-name",
     type: "text",
     maxLength: 80,
@@ -31,7 +32,7 @@ export function create(studio, { keeper, open }) {
   const form = h(
     "form",
     {
-      class: "dialog-tools",
+      class: "dialog-tools wrap gap-10",
       onsubmit: async (/** @type {SubmitEvent} */ event) => {
         event.preventDefault();
         const id = await remote();
@@ -49,9 +50,7 @@ export function create(studio, { keeper, open }) {
   const element = dialog(
     "versions-dialog",
     "Versions",
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "Every stroke is saved automatically. A version is a state that you can come back to; restoring one also saves the present state.",
     ),
     form,
@@ -69,7 +68,7 @@ export function create(studio, { keeper, open }) {
     if (!versions.length) list.append(h("li", { class: "empty" }, h("strong", {}, "No versions yet.")));
   };
 
-  /** @param {Version} version */
+  /** @param {VersionSummary} version */
   const row = (version) => {
     const picture = h("span", { class: "row-picture centred sunken" });
     const id = keeper.remoteId ?? "";
@@ -77,16 +76,10 @@ export function create(studio, { keeper, open }) {
       ({ document }) => picture.replaceChildren(thumbnail(document, { side: 44 })),
       () => {}, // the name is enough
     );
-    return h(
-      "li",
-      { class: "row" },
+    return listRow(
       picture,
-      h(
-        "span",
-        { class: "row-text" },
-        h("span", { class: "ellipsis" }, version.name),
-        h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept automatically" : ""}`),
-      ),
+      version.name,
+      `${ago(version.created_at)}${version.automatic ? " · kept automatically" : ""}`,
       textButton(
         "compare",
         "Compare",

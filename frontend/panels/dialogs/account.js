@@ -10,9 +10,11 @@ import { api } from "../../api.js";
 import { ago } from "../../core/ago.js";
 import { h } from "../../elements/dom.js";
 import { nameOf } from "../../services/account.js";
-import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
+import { listRow } from "../../widgets/listrow.js";
 import { textButton } from "../../widgets/buttons.js";
+import { table, tableRow } from "../../widgets/table.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {number} n */
 const count = (n) => n.toLocaleString("en");
@@ -48,12 +50,7 @@ export function create(_studio, { keeper }) {
     h("h3", {}, "Browsers that are signed in"),
     list,
     h("h3", {}, "What you use"),
-    h(
-      "table",
-      { class: "figures use full-width" },
-      h("thead", {}, h("tr", {}, ...["", "used", "of"].map((text) => h("th", { scope: "col" }, text)))),
-      used,
-    ),
+    table({ class: "figures use full-width" }, ["", "used", "of"], used),
     h(
       "div",
       { class: "dialog-buttons" },
@@ -76,28 +73,17 @@ export function create(_studio, { keeper }) {
     list.replaceChildren(...signedIn.sessions.map(row));
     used.replaceChildren(
       ...LIMITS.filter(([name]) => name in signedIn.use).map(([name, text, written]) =>
-        h(
-          "tr",
-          {},
-          h("th", { scope: "row" }, text),
-          h("td", {}, written(signedIn.use[name].used)),
-          h("td", {}, written(signedIn.use[name].most)),
-        ),
+        tableRow(text, written(signedIn.use[name].used), written(signedIn.use[name].most)),
       ),
     );
   };
 
   /** @param {SessionSummary} session */
   const row = ({ id, created_at, is_this }) =>
-    h(
-      "li",
-      { class: "row" },
-      h(
-        "span",
-        { class: "row-text" },
-        h("span", {}, is_this ? "This browser" : "Another browser"),
-        h("span", { class: "muted" }, `signed in ${ago(created_at)}`),
-      ),
+    listRow(
+      null,
+      is_this ? "This browser" : "Another browser",
+      `signed in ${ago(created_at)}`,
       !is_this &&
         textButton(
           null,

@@ -2,7 +2,7 @@
 
 import { ACTIONS, shown } from "../../actions/registry.js";
 import { api } from "../../api.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { TOOLS } from "../../tools/registry.js";
 import { dialog } from "../../widgets/dialog.js";
 
@@ -13,9 +13,7 @@ export function create() {
   const element = dialog(
     "help-dialog",
     "Keys and tools",
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "Paint stitches in the chart; its colours show what each will do, and the panel at the right what the whole cloth will do. The right mouse button paints the opposite stitch. The wheel zooms, Space and drag moves. With the chart focused, arrow keys move and Enter paints.",
     ),
     h(
@@ -30,7 +28,7 @@ export function create() {
             "dl",
             { class: "keys stack" },
             ...ACTIONS.filter((action) => action.group === group).flatMap((action) => [
-              h("dt", {}, ...action.keys.slice(0, 2).map((key) => h("kbd", {}, shown(key)))),
+              h("dt", { class: "flex wrap gap-4" }, ...action.keys.slice(0, 2).map((key) => h("kbd", {}, shown(key)))),
               h(
                 "dd",
                 {},

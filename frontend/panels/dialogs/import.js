@@ -5,11 +5,11 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { importFile, importText } from "./importer.js";
-import { problemText } from "../../widgets/problem.js";
 import { dialog } from "../../widgets/dialog.js";
+import { problemText } from "../../widgets/problem.js";
 
 /** @param {Studio} _ @param {ActionContext} context */
 export function create(_, context) {
@@ -39,9 +39,7 @@ export function create(_, context) {
   const element = dialog(
     "import-dialog",
     "Import a chart",
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "Lines of K and P (or | and •), the top row first, as seen from the face; or written rows, KnitSpeak or knitout. A text, a picture or a project file can also be dropped anywhere on the page.",
     ),
     text,

@@ -6,11 +6,10 @@
  * @import {Problem} from "../../types.js"
  */
 
-import { paste } from "../../actions/selection.js";
-import { ApiError, api } from "../../api.js";
+import { action } from "../../actions/registry.js";
+import { ApiError, api, refusal } from "../../api.js";
 import { DesignError, readDesign } from "../../design/design.js";
 import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
-import { refusal } from "../../services/refusal.js";
 
 const MAX_FILE_BYTES = 12_000_000;
 
@@ -131,7 +130,7 @@ export function listenToImports(context, isTyping) {
     const own = clip && (!navigator.clipboard || text === clip.part.text || (!text.trim() && !picture));
     if (!own && !picture && !text.trim()) return;
     event.preventDefault();
-    if (own) paste.perform(context);
+    if (own) action("paste").perform(context);
     else if (picture) void report(importFile(context, picture));
     else void report(importText(context, text));
   });

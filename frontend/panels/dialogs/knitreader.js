@@ -3,10 +3,11 @@
  * and yarns, and they are opened as a design of their own.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {DesignDocument, Problem} from "../../types.js"
+ * @import {Problem} from "../../types.js"
  */
 
-import { ApiError, call } from "../../api.js";
+import { ApiError, api } from "../../api.js";
+import { base64 } from "../../grid/bits.js";
 import { readDesign } from "../../design/design.js";
 
 const WRITTEN = /^\s*(cast on|rows?|rounds?|rnds?)\s+\d/i;
@@ -29,12 +30,10 @@ export const isKnitting = (name, text) => /\.(k|ks|knitout)$/i.test(name) || isK
  * @returns {Promise<Problem | null>}
  */
 export async function importKnitting({ studio, keeper }, name, text) {
-  const bytes = new TextEncoder().encode(text);
-  const content = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  const content = base64(new TextEncoder().encode(text));
   const suffixed = isKnitout(text) && !/\.(k|knitout)$/i.test(name) ? `${name}.k` : name;
   try {
-    /** @type {Pick<DesignDocument, "chart" | "outline" | "regions"> & {rows: number, columns: number, notes?: string[]}} */
-    const imported = await call("/import", { method: "POST", body: { file: { name: suffixed, content } } });
+    const imported = await api.run("import", { file: { name: suffixed, content } });
     const design = readDesign({
       format: "knitcore-design",
       version: 2,
@@ -48,7 +47,7 @@ export async function importKnitting({ studio, keeper }, name, text) {
     studio.tell(
       [
         `Opened ${imported.columns} stitches × ${imported.rows} rows from ${name}.`,
-        ...(imported.notes ?? []),
+        ...imported.notes,
         "The design before it is still among your designs.",
       ].join(" "),
     );

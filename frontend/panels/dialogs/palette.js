@@ -76,14 +76,12 @@ function entries(context) {
       words: "pattern",
       perform: () => (studio.ink.value = ink),
     })),
-    ...studio.materials.value
-      .filter(({ fabrics }) => Object.keys(fabrics).length === 4)
-      .map(({ id, name }) => ({
-        label: `Yarn: ${name}`,
-        words: "material",
-        icon: /** @type {IconName} */ ("yarn"),
-        perform: () => (studio.materialId.value = id),
-      })),
+    ...studio.completeYarns.map(({ id, name }) => ({
+      label: `Yarn: ${name}`,
+      words: "material",
+      icon: /** @type {IconName} */ ("yarn"),
+      perform: () => (studio.materialId.value = id),
+    })),
   ];
 }
 

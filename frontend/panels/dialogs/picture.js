@@ -11,9 +11,9 @@ import { plainDesign } from "../../design/design.js";
 import { MAX_SIDE } from "../../grid/grid.js";
 import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../grid/picture.js";
 import { h } from "../../elements/dom.js";
-import { refusal } from "../../services/refusal.js";
+import { refusal } from "../../api.js";
 import { dialog } from "../../widgets/dialog.js";
-import { numberField } from "../../widgets/fields.js";
+import { sizeFields } from "../../widgets/fields.js";
 import { textButton } from "../../widgets/buttons.js";
 
 /** Larger pictures are made smaller before they are looked at. */
@@ -66,13 +66,8 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
       ? { columns: bitmap.width, rows: bitmap.height }
       : { columns: guess, rows: Math.min(MAX_SIDE, Math.max(1, Math.round((guess * height) / width / stitch))) });
 
-  /** @param {string} label @param {string} id @param {number} value */
-  const count = (label, id, value) => {
-    const input = numberField({ id, min: 1, max: MAX_SIDE, value, oninput: () => show() });
-    return { input, row: h("label", { class: "field stack gap-4" }, h("span", {}, label), input) };
-  };
-  const columns = count("Stitches", "picture-columns", cells.columns);
-  const rows = count("Rows", "picture-rows", cells.rows);
+  const size = sizeFields("picture", MAX_SIDE, () => show());
+  size.show(cells);
   const threshold = h("input", {
     type: "range",
     class: "slider grows",
@@ -86,7 +81,6 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
   const inverted = h("input", { type: "checkbox", id: "picture-inverted", onchange: () => show() });
   const preview = h("canvas", { class: "picture-preview", id: "picture-preview", role: "img" });
   const source = h("canvas", { class: "picture-preview", role: "img", "aria-label": `The picture ${name}` });
-  const problem = h("p", { class: "problem-text", role: "alert" });
   /** @param {(grid: Grid) => string} use says where the old chart is */
   const take = (use) => {
     const grid = read();
@@ -116,35 +110,23 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
     { id: "picture-replace" },
   );
 
-  /** @param {string} id @param {string} label @param {{columns: number, rows: number}} size */
-  const size = (id, label, size) =>
-    h(
-      "button",
-      {
-        class: "button",
-        id,
-        onclick: () => {
-          columns.input.value = String(size.columns);
-          rows.input.value = String(size.rows);
-          show();
-        },
-      },
+  /** @param {string} id @param {string} label @param {{columns: number, rows: number}} cells */
+  const sizeButton = (id, label, cells) =>
+    textButton(
+      null,
       label,
+      () => {
+        size.show(cells);
+        show();
+      },
+      { id },
     );
 
   const read = () => {
-    const [across, up] = [columns.input.valueAsNumber, rows.input.valueAsNumber];
-    const well = [across, up].every((n) => Number.isInteger(n) && n >= 1 && n <= MAX_SIDE);
-    problem.textContent = well ? "" : `Use whole numbers from 1 to ${MAX_SIDE}.`;
-    apply.disabled = replace.disabled = !well;
-    return well
-      ? stitchesOf(values, width, height, {
-          columns: across,
-          rows: up,
-          threshold: threshold.valueAsNumber,
-          inverted: inverted.checked,
-        })
-      : null;
+    const cells = size.read();
+    apply.disabled = replace.disabled = !cells;
+    const tones = { threshold: threshold.valueAsNumber, inverted: inverted.checked };
+    return cells && stitchesOf(values, width, height, { ...cells, ...tones });
   };
   const show = () => {
     const grid = read();
@@ -183,23 +165,22 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
         "figure",
         {},
         source,
-        h("figcaption", { class: "muted ellipsis" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`),
+        h("figcaption", { class: "muted ellipsis small" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`),
       ),
-      h("figure", {}, preview, h("figcaption", { class: "muted" }, "The chart, as seen from the face")),
+      h("figure", {}, preview, h("figcaption", { class: "muted small" }, "The chart, as seen from the face")),
     ),
     h(
       "div",
       { class: "fields" },
-      columns.row,
-      rows.row,
+      ...size.elements,
       h(
         "div",
         { class: "picture-sizes flex wrap gap-8" },
-        each && size("picture-each", "A pixel a stitch", { columns: bitmap.width, rows: bitmap.height }),
-        detected && size("picture-found", `Grid found: ${detected.columns} × ${detected.rows}`, detected),
+        each && sizeButton("picture-each", "A pixel a stitch", { columns: bitmap.width, rows: bitmap.height }),
+        detected && sizeButton("picture-found", `Grid found: ${detected.columns} × ${detected.rows}`, detected),
       ),
     ),
-    problem,
+    size.problem,
     h(
       "div",
       { class: "picture-tone line wrap gap-12" },
@@ -223,7 +204,7 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
     context.drawImage(bitmap, 0, 0, wide, high);
   });
   show();
-  columns.input.focus();
+  size.columns.focus();
 }
 
 /**

@@ -6,9 +6,9 @@
 
 import { Grid, MAX_SIDE } from "../../grid/grid.js";
 import { resized } from "../../design/reshape.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { dialog } from "../../widgets/dialog.js";
-import { numberField } from "../../widgets/fields.js";
+import { sizeFields } from "../../widgets/fields.js";
 import { textButton } from "../../widgets/buttons.js";
 
 const UP = /** @type {const} */ ([
@@ -25,20 +25,7 @@ const ACROSS = /** @type {const} */ ([
 /** @param {Studio} studio */
 export function create(studio) {
   const { document } = studio;
-  /** @param {string} label @param {string} id */
-  const field = (label, id) => {
-    const input = numberField({
-      id,
-      min: "1",
-      max: String(MAX_SIDE),
-      required: true,
-      oninput: () => advise(),
-    });
-    return { input, row: h("label", { class: "field stack gap-4" }, h("span", {}, label), input) };
-  };
-  const columns = field("Stitches", "new-columns");
-  const rows = field("Rows", "new-rows");
-  const problem = h("p", { class: "problem-text", role: "alert" });
+  const size = sizeFields("new", MAX_SIDE, () => advise());
   const advice = h("div", { class: "resize-advice line wrap spread gap-8" });
   const anchors = UP.flatMap(([up, vertical]) =>
     ACROSS.map(([across, horizontal]) => {
@@ -55,39 +42,32 @@ export function create(studio) {
     }),
   );
 
-  const validSize = () => {
-    const size = [rows.input, columns.input].map(({ valueAsNumber }) => valueAsNumber);
-    const well = size.every((n) => Number.isInteger(n) && n >= 1 && n <= MAX_SIDE);
-    problem.textContent = well ? "" : `Use whole numbers from 1 to ${MAX_SIDE}.`;
-    return well ? size : null;
-  };
   /** @param {(rows: number, columns: number) => void} make */
   const apply = (make) => {
-    const size = validSize();
-    if (!size) return;
-    make(size[0], size[1]);
+    const chosen = size.read();
+    if (!chosen) return;
+    make(chosen.rows, chosen.columns);
     element.close();
   };
   /** Repeats that span the chart stay whole only at some sizes: offer the nearest. */
   const advise = () => {
-    const size = validSize();
+    const chosen = size.read();
     const { grid, repeats } = document;
     const spanning = repeats.filter(({ placements }) =>
       placements.some((place) => place.columns === grid.columns || place.rows === grid.rows),
     );
     advice.replaceChildren(
       ...spanning.flatMap((repeat) => {
-        if (!size) return [];
+        if (!chosen) return [];
         const wide = repeat.placements.some((place) => place.columns === grid.columns);
         const high = repeat.placements.some((place) => place.rows === grid.rows);
-        const fits = repeat.snapped(size[0], size[1]);
-        const next = { rows: high ? fits.rows : size[0], columns: wide ? fits.columns : size[1] };
-        if (next.rows === size[0] && next.columns === size[1]) return [];
+        const fits = repeat.snapped(chosen.rows, chosen.columns);
+        const next = { rows: high ? fits.rows : chosen.rows, columns: wide ? fits.columns : chosen.columns };
+        if (next.rows === chosen.rows && next.columns === chosen.columns) return [];
         return [
           h("p", { class: "muted" }, `${repeat.name} is a ${repeat.rule}.`),
           textButton(null, `Keep it whole: ${next.columns} × ${next.rows}`, () => {
-            columns.input.value = String(next.columns);
-            rows.input.value = String(next.rows);
+            size.show(next);
             advise();
           }),
         ];
@@ -108,7 +88,7 @@ export function create(studio) {
       h("legend", {}, "The chart stays at"),
       h("div", { class: "anchor-grid stack" }, ...anchors),
     ),
-    h("p", { class: "muted" }, "Regions, outline and linked repeats move along. All three can be undone."),
+    remark("Regions, outline and linked repeats move along. All three can be undone."),
     h(
       "button",
       { class: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) },
@@ -124,8 +104,8 @@ export function create(studio) {
   const element = dialog(
     "resize-dialog",
     "Size of the chart",
-    h("div", { class: "resize-fields flex wrap" }, h("div", { class: "fields" }, columns.row, rows.row), anchoring),
-    problem,
+    h("div", { class: "resize-fields flex wrap" }, h("div", { class: "fields" }, ...size.elements), anchoring),
+    size.problem,
     advice,
     note,
     h(
@@ -149,11 +129,10 @@ export function create(studio) {
     const { grid, regions, repeats, shaped } = document;
     const empty = !grid.purl.some(Boolean) && !regions.length && !repeats.length && !shaped;
     for (const part of forContent) part.hidden = empty;
-    columns.input.value = String(document.grid.columns);
-    rows.input.value = String(document.grid.rows);
+    size.show(grid);
     if (!anchors.some(({ checked }) => checked)) anchors[6].checked = true; // bottom left
     advise();
     element.showModal();
-    columns.input.select();
+    size.columns.select();
   };
 }

@@ -8,7 +8,7 @@
  */
 
 import { FABRICS } from "../../grid/segments.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import {
   adopt,
   bendingRequest,
@@ -19,10 +19,11 @@ import {
   withGauges,
   yarnOf,
 } from "../../services/yarns.js";
-import { attempt } from "../../widgets/attempt.js";
 import { textButton } from "../../widgets/buttons.js";
 import { labelled, numberField } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
+import { table, tableRow } from "../../widgets/table.js";
+import { attempt } from "../../widgets/problem.js";
 
 const ESTIMATED = "estimated from the library's yarns";
 const TABLES = ".csv,.xlsx,.xls";
@@ -41,7 +42,7 @@ export function yarnMaker(studio, made) {
   /** @param {string} title @param {string} detail */
   const say = (title, detail) => run.say({ title, detail, remedy: null });
 
-  const name = h("input", { type: "text", class: "text-field", id: "yarn-name", maxLength: 80 });
+  const name = h("input", { class: "text-field grows shrinks-x rounded", id: "yarn-name", maxLength: 80 });
   const bending = figure("yarn-bending", { min: ".01", max: "10000" });
   const loop = figure("yarn-loop", { min: "1", max: "200" });
   const stiffness = figure("yarn-stiffness", { min: ".0001", max: "100000" });
@@ -183,9 +184,7 @@ export function yarnMaker(studio, made) {
       "details",
       { id: "yarn-bend" },
       h("summary", {}, "Measure the bending modulus on photos"),
-      h(
-        "p",
-        { class: "muted" },
+      remark(
         "Let a known length hang over the edge of a table, 10 to 25 cm, before a plain background. Photograph it level from the side, crop the photo at the edge, and take five.",
       ),
       h(
@@ -214,32 +213,15 @@ export function yarnMaker(studio, made) {
       squeezed,
     ),
     h("h4", {}, "2. The fabrics"),
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "Stitches and rows per 10 cm of a swatch at rest; and, for one fabric or more, two stretch tests (CSV, XLSX or HDF5), pulled along its rows and along its columns. A fabric without tests is estimated from the bending modulus, the yarn in a stitch and the fabrics that have them.",
     ),
     h(
       "div",
       { class: "yarn-fabrics" },
-      h(
-        "table",
+      table(
         { class: "yarn-table small full-width" },
-        h(
-          "thead",
-          {},
-          h(
-            "tr",
-            {},
-            ...[
-              "Fabric",
-              "Stitches per 10 cm",
-              "Rows per 10 cm",
-              "Pulled along the rows",
-              "Pulled along the columns",
-            ].map((text) => h("th", { scope: "col" }, text)),
-          ),
-        ),
+        ["Fabric", "Stitches per 10 cm", "Rows per 10 cm", "Pulled along the rows", "Pulled along the columns"],
         h("tbody", {}, ...rows.map((row) => row.element)),
       ),
     ),
@@ -310,12 +292,7 @@ function fabricRow(fabric) {
     rows.value = record ? perTenCm(record.stitch_wale_mm) : "";
     known.textContent = record ? ` ${record.origin === "estimated" ? "estimated" : "tested"}` : "";
   };
-  const element = h(
-    "tr",
-    {},
-    h("th", { scope: "row" }, fabric, known),
-    ...[stitches, rows, course, wale].map((field) => h("td", {}, field)),
-  );
+  const element = tableRow(h("span", {}, fabric, known), stitches, rows, course, wale);
   return { fabric, gauge, tests, incomplete, show, element };
 }
 

@@ -5,13 +5,14 @@
  * @import {MaterialSummary} from "../../types.js"
  */
 
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { download } from "../../services/exporter.js";
 import { OWN, adopt, evidenceOf, isYarnFile, refresh, yarns } from "../../services/yarns.js";
-import { attempt } from "../../widgets/attempt.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
-import { dialog, problemBox } from "../../widgets/dialog.js";
+import { dialog } from "../../widgets/dialog.js";
+import { listRow } from "../../widgets/listrow.js";
 import { yarnMaker } from "./yarnmaker.js";
+import { attempt, problemBox } from "../../widgets/problem.js";
 
 /** @param {Studio} studio */
 export function create(studio) {
@@ -36,16 +37,14 @@ export function create(studio) {
   const element = dialog(
     "yarns-dialog",
     "Own yarns",
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "They are offered to everybody who uses this service, and are part of its backups. Only the person who added a yarn can change or remove it.",
     ),
     status,
     list,
     h(
       "div",
-      { class: "dialog-tools" },
+      { class: "dialog-tools wrap gap-10" },
       h("label", { class: "button", for: "yarn-file" }, "Add a yarn file …"),
       file,
       textButton("plus", "Make a yarn …", () => maker.open(null), { id: "yarn-new" }),
@@ -62,19 +61,10 @@ export function create(studio) {
   };
   /** @param {MaterialSummary} yarn */
   const item = ({ id, name: label, description, fabrics, added_by_you: mine }) =>
-    h(
-      "li",
-      { class: "row" },
-      h(
-        "span",
-        { class: "row-text" },
-        h("span", { class: "ellipsis" }, label),
-        h(
-          "span",
-          { class: "muted" },
-          [description, `${Object.keys(fabrics).length} of 4 fabrics`].filter(Boolean).join(" · "),
-        ),
-      ),
+    listRow(
+      null,
+      label,
+      [description, `${Object.keys(fabrics).length} of 4 fabrics`].filter(Boolean).join(" · "),
       evidence(id),
       mine &&
         textButton(

@@ -3,34 +3,29 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../state/studio.js"
- * @import {Extensions} from "../../types.js"
+ * @import {ExportRequest, ExportResult, Extensions} from "../../types.js"
  * @import {ExportKind, Option} from "./kinds.js"
- *
- * @typedef {{name: string, media_type: string, content: string, bytes: number, notes: string[],
- *   transfers: number | null, carriers: number | null}} ExportedFile
  */
 
-import { ApiError, call, fetched } from "../../api.js";
+import { ApiError, api, fetched } from "../../api.js";
+import { base64 } from "../../grid/bits.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { download } from "../../services/exporter.js";
 import { scopeIn } from "../../services/scope.js";
-import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
 import { viewRequest } from "../fabric/fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
 import { textButton } from "../../widgets/buttons.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** Characters of a text file that are shown. */
 const MAX_SHOWN = 6000;
 
 /** Size of the picture in a pattern; one of the view has the proportions of that. */
 const PHOTO_PX = { width: 1400, height: 800 };
-
-/** @param {ArrayBuffer} buffer */
-const toBase64 = (buffer) => btoa(Array.from(new Uint8Array(buffer), (byte) => String.fromCharCode(byte)).join(""));
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { view }) {
@@ -40,10 +35,7 @@ export function create(studio, { view }) {
   const sides = choice(
     "export-side",
     "Side of row 1",
-    [
-      ["RS", "row 1 is a right side"],
-      ["WS", "a wrong side"],
-    ],
+    { RS: "row 1 is a right side", WS: "a wrong side" },
     "RS",
     (value) => (chosen.first_side = value),
   );
@@ -52,29 +44,17 @@ export function create(studio, { view }) {
   const options = {
     worked: h(
       "div",
-      { class: "exports-options" },
-      choice(
-        "export-worked",
-        "Worked",
-        [
-          ["flat", "worked flat"],
-          ["round", "in the round"],
-        ],
-        "flat",
-        (value) => {
-          chosen.construction = value;
-          sides.hidden = value === "round";
-        },
-      ),
+      { class: "exports-options gap-12 shrinks-x" },
+      choice("export-worked", "Worked", { flat: "worked flat", round: "in the round" }, "flat", (value) => {
+        chosen.construction = value;
+        sides.hidden = value === "round";
+      }),
       sides,
     ),
     finish: choice(
       "export-finish",
       "The last row",
-      [
-        ["waste", "ends in waste yarn"],
-        ["bind-off", "is bound off"],
-      ],
+      { waste: "ends in waste yarn", "bind-off": "is bound off" },
       "waste",
       (value) => (chosen.finish = value),
     ),
@@ -82,7 +62,7 @@ export function create(studio, { view }) {
     note,
   };
   const status = h("div", { class: "dialog-status", role: "status" });
-  const outcome = h("div", { class: "exports-options", id: "export-outcome", "aria-live": "polite" });
+  const outcome = h("div", { class: "exports-options gap-12 shrinks-x", id: "export-outcome", "aria-live": "polite" });
   const make = textButton("export", "Make the file", () => void run(), { class: "button primary", id: "export-make" });
 
   /** @param {ExportKind} format */
@@ -103,7 +83,7 @@ export function create(studio, { view }) {
       checked: format === kind,
       onchange: () => choose(format),
     }),
-    note: h("span", { class: "muted" }),
+    note: h("span", { class: "muted small" }),
   });
   const entries = KINDS.map(entry);
   /** @param {ReturnType<typeof entry>[]} some */
@@ -112,11 +92,11 @@ export function create(studio, { view }) {
       h(
         "fieldset",
         { class: "exports-kinds stack gap-2" },
-        h("legend", {}, group),
+        h("legend", { class: "muted small" }, group),
         ...some
           .filter(({ format }) => format.group === group)
           .map(({ format, input, note }) =>
-            h("label", { class: "exports-kind" }, input, h("span", {}, format.name, note)),
+            h("label", { class: "exports-kind stack gap-8" }, input, h("span", {}, format.name, note)),
           ),
       ),
     );
@@ -130,7 +110,7 @@ export function create(studio, { view }) {
       formats,
       h(
         "section",
-        { class: "exports-options", "aria-label": "Options and file" },
+        { class: "exports-options gap-12 shrinks-x", "aria-label": "Options and file" },
         ...Object.values(options),
         status,
         outcome,
@@ -139,20 +119,29 @@ export function create(studio, { view }) {
     h("div", { class: "dialog-buttons" }, make),
   );
 
-  async function addExtensions() {
-    const installed = await attempt(
-      status,
-      () => /** @type {Promise<Extensions>} */ (call("/extensions")),
-      addExtensions,
-    );
-    if (!installed) return;
-    extensionsAdded = true;
-    const added = ofExtensions(installed.extensions).map(entry);
-    for (const { format, note } of added) note.textContent = format.note;
+  /** What the service exports: formats of extensions, and how large a chart may be. @type {Extensions | null} */
+  let offered = null;
+  async function askOffered() {
+    offered = await attempt(status, api.extensions, askOffered);
+    if (!offered) return;
+    const added = ofExtensions(offered.extensions).map(entry);
     entries.push(...added);
     formats.append(...fieldsets(added));
+    showHindrances();
   }
-  let extensionsAdded = false;
+
+  function showHindrances() {
+    const { shaped, grid } = studio.document;
+    for (const { format, input, note: words } of entries) {
+      const why = hindrance(format.to, { shaped, stitches: grid.purl.length }, offered?.largest_exports ?? {});
+      input.disabled = why !== "";
+      words.textContent = why || format.note;
+    }
+    if (entries.some(({ input }) => input.checked && input.disabled)) {
+      entries[0].input.checked = true;
+      choose(entries[0].format);
+    }
+  }
 
   async function run() {
     make.disabled = true;
@@ -170,10 +159,7 @@ export function create(studio, { view }) {
       photo: isPattern(kind.to) ? await photo() : null,
     };
     const bare = isPattern(kind.to) && body.photo === null;
-    const file = await attempt(
-      status,
-      () => /** @type {Promise<ExportedFile>} */ (call("/export", { method: "POST", body })),
-    );
+    const file = await attempt(status, () => api.run("export", /** @type {ExportRequest} */ (body)));
     make.disabled = false;
     outcome.replaceChildren();
     if (file) show(bare ? { ...file, notes: [...file.notes, "without a picture: none could be made"] } : file);
@@ -191,7 +177,7 @@ export function create(studio, { view }) {
     ];
     for (const picture of ways) {
       try {
-        return toBase64(await (await picture()).arrayBuffer());
+        return base64(new Uint8Array(await (await picture()).arrayBuffer()));
       } catch (error) {
         if (!(error instanceof ApiError)) throw error;
       }
@@ -199,7 +185,7 @@ export function create(studio, { view }) {
     return null;
   }
 
-  /** @param {ExportedFile} file */
+  /** @param {ExportResult} file */
   function show(file) {
     const bytes = Uint8Array.from(atob(file.content), (c) => c.charCodeAt(0));
     // Report, pattern and chart of one design have the same ending.
@@ -218,7 +204,11 @@ export function create(studio, { view }) {
     const text =
       kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MAX_SHOWN)) : "";
     outcome.replaceChildren(
-      h("ul", { class: "planner-notes plain-list" }, ...facts.map((words) => h("li", {}, icon("check"), words))),
+      h(
+        "ul",
+        { class: "planner-notes plain-list stack gap-5 small" },
+        ...facts.map((words) => h("li", {}, icon("check"), words)),
+      ),
       text && !kind.to.endsWith("svg")
         ? h("pre", { class: "exports-text rounded sunken", tabIndex: 0, "aria-label": "The file" }, text)
         : "",
@@ -230,16 +220,7 @@ export function create(studio, { view }) {
   choose(kind);
   return () => {
     const { regions, outline } = studio.toDocument();
-    const { document: chart } = studio;
-    for (const { format, input, note: words } of entries) {
-      const why = hindrance(format.to, { shaped: chart.shaped, stitches: chart.grid.purl.length });
-      input.disabled = why !== "";
-      words.textContent = why || format.note;
-    }
-    if (entries.some(({ input }) => input.checked && input.disabled)) {
-      entries[0].input.checked = true;
-      choose(entries[0].format);
-    }
+    showHindrances();
     const yarns = new Set(regions.flatMap(({ yarn }) => yarn ?? []));
     note.textContent = [
       studio.note.value ? "The design's note goes with it." : "A note of the design would go with it.",
@@ -250,6 +231,6 @@ export function create(studio, { view }) {
       .join(" ");
     choose(kind);
     element.showModal();
-    if (!extensionsAdded) void addExtensions();
+    if (!offered) void askOffered();
   };
 }

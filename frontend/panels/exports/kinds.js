@@ -10,18 +10,16 @@
 /** Whether a picture of the cloth goes into a file. @param {string} to */
 export const isPattern = (to) => to.startsWith("pattern");
 
-/** Stitches of the largest chart that the service makes solids, or programs, of. */
-const MOST = { glb: 2500, stl: 2500, knitout: 20_000 };
-
 /**
  * Why a chart cannot become a file of a kind; "" where it can.
  *
  * @param {string} to
  * @param {{shaped: boolean, stitches: number}} chart
+ * @param {Extensions["largest_exports"]} largest stitches that a kind can have, where not any number
  */
-export function hindrance(to, { shaped, stitches }) {
+export function hindrance(to, { shaped, stitches }, largest) {
   if (shaped && ["knitspeak", "text"].includes(to)) return "holds no outline: rectangular charts only";
-  const most = MOST[/** @type {keyof typeof MOST} */ (to)] ?? Infinity;
+  const most = largest[to] ?? Infinity;
   return stitches > most ? `at most ${most.toLocaleString("en")} stitches` : "";
 }
 

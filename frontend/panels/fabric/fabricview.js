@@ -11,15 +11,14 @@ import { ApiError, api } from "../../api.js";
 import { atRest, shownOverlay } from "../../state/overlays.js";
 import { onTheme, readPalette } from "../../state/palette.js";
 import { along } from "../../core/directions.js";
-import { outlineText } from "../../design/snapshot.js";
 import { h, nextTask } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { ViewLink } from "./link.js";
 import { Still } from "./still.js";
 import { toolbar } from "./toolbar.js";
-import { problemText } from "../../widgets/problem.js";
 import { POSES, wordsOf } from "../../state/seeing.js";
 import { REST } from "../../state/studio.js";
+import { problemText } from "../../widgets/problem.js";
 
 /** Delay before the 3D view updates: without a GPU, drawing can block painting. */
 const DELAY_MS = 650;
@@ -314,7 +313,7 @@ export function viewRequest(studio, view) {
   }
   return {
     ...studio.request,
-    outline: chart.shaped ? outlineText(chart.outline, columns) : null,
+    outline: chart.outlineText,
     colour: /** @type {ViewRequest["colour"]} */ (colour),
     palette,
     regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],

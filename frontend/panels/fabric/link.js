@@ -62,7 +62,7 @@ export class ViewLink {
   async mark() {
     const { studio } = this;
     if (studio.document.painting || this.#sending || !this.#events) return;
-    const box = this.#wanted();
+    const box = this.#boxToMark();
     const key = JSON.stringify(box && [box, studio.step.value]);
     if (key === this.#marked) return;
     this.#sending = true;
@@ -74,14 +74,14 @@ export class ViewLink {
     } finally {
       this.#sending = false;
     }
-    if (JSON.stringify(this.#wanted() && [this.#wanted(), studio.step.value]) !== key) void this.mark();
+    if (JSON.stringify(this.#boxToMark() && [this.#boxToMark(), studio.step.value]) !== key) void this.mark();
   }
 
   /** @returns {Box | null} */
-  #wanted() {
+  #boxToMark() {
     const { studio, view } = this;
     const { grid } = studio.document;
-    const cell = this.hooks.slow() && studio.seeing.found.value !== view.hover.value ? null : view.hover.value;
+    const cell = this.hooks.slow() && studio.seeing.clickedStitch.value !== view.hover.value ? null : view.hover.value;
     if (cell && grid.has(...cell)) {
       const [row, column] = cell;
       return { row0: row, column0: column, row1: row + 1, column1: column + 1 };
@@ -98,7 +98,7 @@ export class ViewLink {
     if (!studio.document.grid.has(row, column)) return;
     /** @type {import("../../grid/raster.js").Cell} */
     const cell = [row, column];
-    studio.seeing.found.value = cell;
+    studio.seeing.clickedStitch.value = cell;
     this.#reveal(row, column);
     view.hover.value = cell;
   }

@@ -20,7 +20,7 @@ export class Still {
 
   root = h("img", { class: "fabric-still full-width shrinks-y", alt: "", hidden: true });
   /** What was asked for last. */
-  #asked = "";
+  #lastRequest = "";
   #busy = false;
   /** Grows with each design: a picture of the one before is not shown any more. */
   #design = 0;
@@ -28,8 +28,8 @@ export class Still {
   /** At most one is being drawn; of the requests meanwhile only the last is. @param {ViewRequest} request @param {() => void} shown */
   async draw(request, shown) {
     const requestText = JSON.stringify(request);
-    if (requestText === this.#asked) return;
-    this.#asked = requestText;
+    if (requestText === this.#lastRequest) return;
+    this.#lastRequest = requestText;
     if (this.#busy) return;
     this.#busy = true;
     const design = this.#design;
@@ -46,9 +46,9 @@ export class Still {
     } finally {
       this.#busy = false;
     }
-    if (this.#asked && (this.#asked !== requestText || design !== this.#design)) {
-      const next = JSON.parse(this.#asked);
-      this.#asked = "";
+    if (this.#lastRequest && (this.#lastRequest !== requestText || design !== this.#design)) {
+      const next = JSON.parse(this.#lastRequest);
+      this.#lastRequest = "";
       await this.draw(next, shown);
     }
   }
@@ -56,7 +56,7 @@ export class Still {
   /** The live view is there, or another design. */
   clear() {
     this.#design++;
-    this.#asked = "";
+    this.#lastRequest = "";
     this.root.hidden = true;
   }
 

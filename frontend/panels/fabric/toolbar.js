@@ -50,14 +50,13 @@ export function toolbar(studio, look, request) {
   );
   const poses = segmented("Shape", segments, pose.value, (id) => (pose.value = id));
   pose.listen(poses.show);
-  const { root, setItems, button } = menu({
+  const { root, setItems } = menu({
     id: "fabric-colours",
     label: "Colours of the yarn",
     content: [icon("yarn"), h("span", { class: "label" }, "Colours"), icon("down")],
     class: "button",
+    title: "Colours of the yarn",
   });
-  button.title = "Colours of the yarn";
-  button.ariaLabel = "Colours of the yarn";
   studio.seeing.yarnColours.watch((chosen) =>
     setItems(
       COLOURS.map(([id, content]) => ({
@@ -80,44 +79,38 @@ export function toolbar(studio, look, request) {
 
 /** @param {Studio} studio @param {import("./share.js").RequestOfView} request */
 function shareMenu(studio, request) {
-  const { root, setItems, button } = menu({
+  const { root, setItems } = menu({
     id: "fabric-share",
     label: "Save the view",
     content: [icon("camera"), h("span", { class: "label" }, "Save"), icon("down")],
     class: "button",
+    title: "A picture, page, recording or solid of this fabric",
   });
-  button.title = "A picture, page, recording or solid of this fabric";
-  button.ariaLabel = "Save the view";
-  /** @param {string} id @param {string} content @param {(files: typeof import("./share.js")) => Promise<void>} save @param {boolean} [disabled] */
-  const item = (id, content, save, disabled = false) => ({
+  const share = () => import("./share.js");
+  /** @param {string} id @param {string} content @param {number} side */
+  const picture = (id, content, side) => ({
     id: `share-${id}`,
     content,
-    disabled,
-    perform: () => void import("./share.js").then(save),
+    perform: () => void share().then(({ savePicture }) => savePicture(studio, side)),
   });
-  const show = () => {
-    const still = studio.currentStretch() === null;
+  /** @param {string} id @param {string} content @param {import("./share.js").Kind} kind @param {boolean} moving */
+  const file = (id, content, kind, moving) => ({
+    id: `share-${id}`,
+    content,
+    disabled: moving && studio.currentStretch() === null,
+    perform: () => void share().then(({ saveFile }) => saveFile(studio, request, kind, moving)),
+  });
+  const show = () =>
     setItems([
-      item("picture", "Picture (.png)", (files) => files.savePicture(studio, 1600)),
-      item("picture-large", "Large picture (.png)", (files) => files.savePicture(studio, 3200)),
+      picture("picture", "Picture (.png)", 1600),
+      picture("picture-large", "Large picture (.png)", 3200),
       null,
-      item("page", "Page to turn it in (.html)", (files) => files.saveFile(studio, request, "page", false)),
-      item(
-        "animation",
-        "Page with the stretch (.html)",
-        (files) => files.saveFile(studio, request, "page", true),
-        still,
-      ),
-      item(
-        "recording",
-        "Recording of the stretch (.viser)",
-        (files) => files.saveFile(studio, request, "recording", true),
-        still,
-      ),
+      file("page", "Page to turn it in (.html)", "page", false),
+      file("animation", "Page with the stretch (.html)", "page", true),
+      file("recording", "Recording of the stretch (.viser)", "recording", true),
       null,
-      item("solid", "Solid with colours (.glb)", (files) => files.saveFile(studio, request, "solid", false)),
+      file("solid", "Solid with colours (.glb)", "solid", false),
     ]);
-  };
   studio.stretch.watch(show);
   return root;
 }

@@ -2,7 +2,7 @@
  * What the gallery offers. Charts are made here, from the repeat of a pattern; garments come from the
  * service, which fits them to measurements.
  *
- * @import {DesignDocument} from "../../types.js"
+ * @import {GarmentRequest} from "../../types.js"
  *
  * @typedef {object} Example
  * @property {string} id
@@ -15,10 +15,9 @@
  * @property {string} name
  * @property {string} note
  * @property {string} material
- * @property {object} garment what the service is asked for
+ * @property {GarmentRequest["garment"]} garment what the service is asked for
  */
 
-import { plainDesign } from "../../design/design.js";
 import { exampleGrid } from "../../grid/example.js";
 import { Grid } from "../../grid/grid.js";
 
@@ -62,41 +61,3 @@ export const GARMENTS = [
     garment: { template: "glove" },
   },
 ];
-
-/**
- * @typedef {{name: string, chart: string, outline: string, notes: string[], warnings: string[],
- *   regions: {name: string, fill: string, colour: string, cells: string}[]}} Garment
- *
- * @param {GarmentExample} example
- * @param {Garment} garment
- * @returns {DesignDocument}
- */
-export function garmentDesign({ name, material }, { chart, outline, notes, warnings, regions }) {
-  return {
-    ...plainDesign(name, chart, material),
-    note: [...notes, ...warnings].join("\n"),
-    outline: outline.includes(".") ? outline : null,
-    regions: regions.map((region, i) => ({
-      id: `region-${i + 1}`,
-      name: region.name,
-      colour: region.colour,
-      yarn: null,
-      fill: region.fill.replaceAll("\n", "/"),
-      runs: runsOf(region.cells),
-      locked: false,
-      hidden: false,
-    })),
-  };
-}
-
-/** @param {string} cells lines of x and ., top row first @returns {[number, number, number][]} */
-function runsOf(cells) {
-  return cells
-    .split("\n")
-    .reverse()
-    .flatMap((line, row) =>
-      [...line.matchAll(/x+/g)].map(
-        ({ index, 0: run }) => /** @type {[number, number, number]} */ ([row, index, run.length]),
-      ),
-    );
-}

@@ -6,29 +6,25 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
-import { call } from "../../api.js";
+import { api } from "../../api.js";
 import { plainDesign } from "../../design/design.js";
 import { Grid } from "../../grid/grid.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
-import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
-import { EXAMPLES, GARMENTS, garmentDesign } from "./examples.js";
+import { EXAMPLES, GARMENTS } from "./examples.js";
+import { attempt } from "../../widgets/problem.js";
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper, open }) {
   const status = h("div", { class: "dialog-status", role: "status" });
-  const examples = h("ul", { class: "cards", id: "gallery-examples" });
-  const garments = h("ul", { class: "cards", id: "gallery-garments" });
+  const examples = h("ul", { class: "cards stack", id: "gallery-examples" });
+  const garments = h("ul", { class: "cards stack", id: "gallery-garments" });
   const element = dialog(
     "gallery-dialog",
     "New design",
-    h(
-      "p",
-      { class: "muted" },
-      "Begin with one of these and change it. The design on show is kept: it stays among your designs.",
-    ),
+    remark("Begin with one of these and change it. The design on show is kept: it stays among your designs."),
     status,
     h("h3", {}, "Charts"),
     examples,
@@ -82,15 +78,11 @@ export function create(studio, { keeper, open }) {
     garments.replaceChildren(...GARMENTS.map(() => h("li", { class: "card loading", "aria-hidden": "true" })));
     for (const example of GARMENTS) {
       if (fitted.has(example.id)) continue;
-      const { garment, material } = example;
-      const plan = await attempt(
-        status,
-        () =>
-          /** @type {Promise<import("./examples.js").Garment>} */ (
-            call("/garment", { method: "POST", body: { garment, material } })
-          ),
-      );
-      if (plan) fitted.set(example.id, garmentDesign(example, plan));
+      const { garment, material, name } = example;
+      const plan = await attempt(status, () => api.run("garment", { garment, material }));
+      if (!plan) continue;
+      const note = [...plan.notes, ...plan.warnings].join("\n");
+      fitted.set(example.id, { ...plan.design, name, material, note });
     }
     garments.replaceChildren(
       ...GARMENTS.flatMap(({ id, name, note }) => {

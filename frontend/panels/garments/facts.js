@@ -1,16 +1,17 @@
 /**
  * What is known of a planned garment: sizes, yarn, regions, pressure, and what to watch.
  *
- * @import {Garment} from "./planner.js"
+ * @import {GarmentResult} from "../../types.js"
  */
 
 import { figure, percent } from "../../core/format.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
+import { table, tableRow } from "../../widgets/table.js";
 
 const MAX_PLACES = 9;
 
-/** @param {Garment} garment @param {string} unit mm or in @returns {Node[]} */
+/** @param {GarmentResult} garment @param {string} unit mm or in @returns {Node[]} */
 export function facts(garment, unit) {
   const { columns, rows, stitches, yarn_m, yarn_g, gauges } = garment;
   const gauge = gauges.find(({ fabric }) => fabric === "stockinette") ?? gauges[0];
@@ -23,15 +24,13 @@ export function facts(garment, unit) {
       ` · ${stitches} stitches · ${figure(yarn_m)} m of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
     ),
     regions(garment, unit),
-    h(
-      "p",
-      { class: "muted" },
+    remark(
       "Sizes are those of each fabric by itself, from which its stitches are counted. In the piece its neighbours widen or narrow it; a pattern gives those sizes.",
     ),
     ...pressure(garment, unit),
     h(
       "ul",
-      { class: "planner-notes plain-list" },
+      { class: "planner-notes plain-list stack gap-5 small" },
       ...garment.warnings.map((words) => h("li", { class: "warned" }, icon("warning"), words)),
       ...garment.notes.map((words) => h("li", {}, icon("info"), words)),
       h("li", {}, icon("info"), `To close: ${garment.closing}.`),
@@ -42,78 +41,48 @@ export function facts(garment, unit) {
 /** @param {number} mm @param {string} unit */
 const long = (mm, unit) => (unit === "in" ? `${(mm / 25.4).toFixed(1)} in` : `${mm.toFixed(0)} mm`);
 
-/** @param {Garment} garment @param {string} unit */
+/** @param {GarmentResult} garment @param {string} unit */
 function regions({ regions: all }, unit) {
-  return h(
-    "table",
-    { class: "planner-table figures" },
-    h(
-      "thead",
-      {},
-      h(
-        "tr",
-        {},
-        ...["Region", "Stitches", "By itself, at rest", "Yarn", "Extensibility, mm/N"].map((words) =>
-          h("th", { scope: "col" }, words),
-        ),
-      ),
-    ),
+  return table(
+    { class: "planner-table figures full-width small" },
+    ["Region", "Stitches", "By itself, at rest", "Yarn", "Extensibility, mm/N"],
     h(
       "tbody",
       {},
       ...all.map((region) => {
         const swatch = h("span", { class: "planner-swatch" });
         swatch.style.background = region.colour;
-        return h(
-          "tr",
-          {},
-          h("th", { scope: "row" }, swatch, region.name),
-          h("td", {}, `${region.columns} × ${region.rows}`),
-          h("td", {}, `${long(region.width_mm, unit)} × ${long(region.height_mm, unit)}`),
-          h("td", {}, `${figure(region.yarn_m)} m${region.yarn_g === null ? "" : `, ${figure(region.yarn_g)} g`}`),
-          h(
-            "td",
-            {},
-            `${figure(region.extensibility_course_mm_per_n)} × ${figure(region.extensibility_wale_mm_per_n)}`,
-          ),
+        return tableRow(
+          h("span", {}, swatch, region.name),
+          `${region.columns} × ${region.rows}`,
+          `${long(region.width_mm, unit)} × ${long(region.height_mm, unit)}`,
+          `${figure(region.yarn_m)} m${region.yarn_g === null ? "" : `, ${figure(region.yarn_g)} g`}`,
+          `${figure(region.extensibility_course_mm_per_n)} × ${figure(region.extensibility_wale_mm_per_n)}`,
         );
       }),
     ),
   );
 }
 
-/** @param {Garment} garment @param {string} unit @returns {Node[]} */
+/** @param {GarmentResult} garment @param {string} unit @returns {Node[]} */
 function pressure({ worn }, unit) {
   if (!worn.length) return [];
   const shown = worn.slice(0, MAX_PLACES);
   const warned = [...new Set(shown.flatMap(({ warnings }) => warnings))];
   return [
-    h(
-      "table",
-      { class: "planner-table figures", id: "planner-pressure" },
-      h(
-        "thead",
-        {},
-        h(
-          "tr",
-          {},
-          ...["Where it is worn", "Garment", "Limb", "Ease", "Pressure"].map((words) =>
-            h("th", { scope: "col" }, words),
-          ),
-        ),
-      ),
+    table(
+      { class: "planner-table figures full-width small", id: "planner-pressure" },
+      ["Where it is worn", "Garment", "Limb", "Ease", "Pressure"],
       h(
         "tbody",
         {},
         ...shown.map((place) =>
-          h(
-            "tr",
-            {},
-            h("th", { scope: "row" }, `${place.part}, ${long(place.at_mm, unit)}`),
-            h("td", {}, long(place.rest_mm, unit)),
-            h("td", {}, long(place.worn_mm, unit)),
-            h("td", {}, percent(place.ease)),
-            h("td", {}, place.mmhg && place.kpa ? `${span(place.mmhg)} mmHg (${span(place.kpa)} kPa)` : "none"),
+          tableRow(
+            `${place.part}, ${long(place.at_mm, unit)}`,
+            long(place.rest_mm, unit),
+            long(place.worn_mm, unit),
+            percent(place.ease),
+            place.mmhg && place.kpa ? `${span(place.mmhg)} mmHg (${span(place.kpa)} kPa)` : "none",
           ),
         ),
       ),
@@ -127,5 +96,5 @@ function pressure({ worn }, unit) {
   ];
 }
 
-/** @param {import("./planner.js").Span} ends */
+/** @param {[low: number, high: number]} ends */
 const span = ([low, high]) => `${figure(low, 2)} – ${figure(high, 2)}`;

@@ -4,29 +4,21 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../state/studio.js"
- * @import {DesignDocument} from "../../types.js"
- *
- * @typedef {[low: number, high: number]} Span
- * @typedef {{at_mm: number, part: string, rest_mm: number, worn_mm: number, ease: number,
- *   mmhg: Span | null, kpa: Span | null, warnings: string[]}} Worn
- * @typedef {{name: string, colour: string, stitches: number, columns: number, rows: number,
- *   width_mm: number, height_mm: number, extensibility_course_mm_per_n: number,
- *   extensibility_wale_mm_per_n: number, yarn_m: number, yarn_g: number | null}} GarmentRegion
- * @typedef {{fabric: string, stitches_per_10_cm: number, rows_per_10_cm: number}} FabricGauge
- * @typedef {{name: string, rows: number, columns: number, stitches: number, closing: string,
- *   regions: GarmentRegion[], gauges: FabricGauge[], worn: Worn[], yarn_m: number,
- *   yarn_g: number | null, notes: string[], warnings: string[], design: DesignDocument}} Garment
+ * @import {DesignDocument, GarmentRequest, GarmentResult} from "../../types.js"
  */
 
-import { call } from "../../api.js";
+import { api } from "../../api.js";
+import { FABRICS } from "../../grid/segments.js";
 import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
-import { dialog, problemBox } from "../../widgets/dialog.js";
-import { LengthField, choice, labelled, numberField } from "../../widgets/fields.js";
+import { dialog } from "../../widgets/dialog.js";
+import { table, tableRow } from "../../widgets/table.js";
+import { LengthField, choice, labelled, numberField, sameWords, selectField } from "../../widgets/fields.js";
 import { drawGarment } from "./preview.js";
 import { facts } from "./facts.js";
 import { DIGITS, TEMPLATES } from "./templates.js";
+import { problemBox } from "../../widgets/problem.js";
 
 const TYPING_MS = 250;
 /** The middle of the range that the paper wanted for its glove, 20 to 30. */
@@ -40,7 +32,7 @@ export function create(studio, { keeper }) {
   let lengths = [];
   /** @type {() => Record<string, unknown>} */
   let measured = () => ({});
-  /** @type {Garment | null} */
+  /** @type {GarmentResult | null} */
   let garment = null;
   /** What was asked for the plan that is shown. @type {any} */
   let hand = null;
@@ -77,21 +69,12 @@ export function create(studio, { keeper }) {
   let byPressure = true;
   const easeRow = labelled("Ease, %", ease, "negative is tighter");
   const targetRow = labelled("Target pressure, mmHg", target);
-  const fit = choice(
-    "planner-fit",
-    "How tight",
-    [
-      ["ease", "by ease"],
-      ["pressure", "by pressure"],
-    ],
-    "pressure",
-    (value) => {
-      byPressure = value === "pressure";
-      showFit();
-      changed();
-    },
-  );
-  const yarn = h("select", { class: "text-field", id: "planner-material", onchange: changed });
+  const fit = choice("planner-fit", "How tight", { ease: "by ease", pressure: "by pressure" }, "pressure", (value) => {
+    byPressure = value === "pressure";
+    showFit();
+    changed();
+  });
+  const yarn = h("select", { class: "text-field grows shrinks-x rounded", id: "planner-material", onchange: changed });
   const tex = numberField({
     min: "1",
     step: "any",
@@ -111,27 +94,15 @@ export function create(studio, { keeper }) {
   /** @param {string} label @param {string} value */
   const count = (label, value) => numberField({ min: "1", step: "any", value, "aria-label": label, oninput: changed });
   const [stitches, rows] = [count("Stitches", "22"), count("Rows", "30")];
-  const per = h(
-    "select",
-    { class: "text-field", "aria-label": "Counted over", onchange: changed },
-    ...["10 cm", "4 in", "5 cm"].map((span) => h("option", {}, span)),
-  );
-  const of = h(
-    "select",
-    { class: "text-field", "aria-label": "Fabric of the swatch", onchange: changed },
-    ...["stockinette", "garter", "rib", "seed"].map((fabric) => h("option", {}, fabric)),
-  );
-  const gaugeRow = h(
-    "div",
-    { class: "line wrap gap-6", hidden: true },
-    stitches,
-    "sts ×",
-    rows,
-    "rows per",
-    per,
-    "of",
-    of,
-  );
+  /** @param {string} label @param {readonly string[]} options */
+  const select = (label, options) =>
+    selectField(
+      { class: "text-field grows shrinks-x rounded", "aria-label": label, onchange: changed },
+      sameWords(options),
+    );
+  const [per, of] = [select("Counted over", ["10 cm", "4 in", "5 cm"]), select("Fabric of the swatch", FABRICS)];
+  const counted = ["sts ×", rows, "rows per", per, "of", of];
+  const gaugeRow = h("div", { class: "line wrap gap-6", hidden: true }, stitches, ...counted);
 
   // --- what comes of it -------------------------------------------------------------------------
   const canvas = h("canvas", { role: "img", id: "planner-preview", "aria-label": "The garment, laid flat" });
@@ -145,7 +116,7 @@ export function create(studio, { keeper }) {
       element.close();
       const { outline } = garment.design;
       if (template.id === "glove" && outline) studio.seeing.glove.value = { request: hand, outline };
-      keeper.openNew(garment.design);
+      keeper.openNew(/** @type {DesignDocument} */ (garment.design)); // a plan has a material
       studio.tell(
         `${garment.design.name}: ${garment.columns} stitches × ${garment.rows} rows. The design before it is still among your designs.`,
       );
@@ -161,11 +132,14 @@ export function create(studio, { keeper }) {
       { class: "planner stack" },
       h(
         "form",
-        { class: "planner-form column shrinks-x", onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
+        {
+          class: "planner-form column shrinks-x gap-12",
+          onsubmit: (/** @type {Event} */ event) => event.preventDefault(),
+        },
         choice(
           "planner-template",
           "Garment",
-          TEMPLATES.map(({ id, name }) => [id, name]),
+          Object.fromEntries(TEMPLATES.map(({ id, name }) => [id, name])),
           template.id,
           (id) => {
             template = TEMPLATES.find((candidate) => candidate.id === id) ?? template;
@@ -178,20 +152,11 @@ export function create(studio, { keeper }) {
           "div",
           { class: "planner-heading line spread gap-10" },
           h("h3", {}, "Measurements"),
-          choice(
-            "planner-unit",
-            "Unit",
-            [
-              ["mm", "mm"],
-              ["in", "inches"],
-            ],
-            unit,
-            (value) => {
-              unit = value;
-              for (const field of lengths) field.show(unit);
-              if (garment) show(garment);
-            },
-          ),
+          choice("planner-unit", "Unit", { mm: "mm", in: "inches" }, unit, (value) => {
+            unit = value;
+            for (const field of lengths) field.show(unit);
+            if (garment) show(garment);
+          }),
         ),
         measures,
         h("div", { class: "planner-heading line spread gap-10" }, h("h3", {}, "Fit"), fit),
@@ -206,7 +171,7 @@ export function create(studio, { keeper }) {
       ),
       h(
         "section",
-        { class: "planner-result column shrinks-x", "aria-label": "The garment" },
+        { class: "planner-result column shrinks-x gap-12", "aria-label": "The garment" },
         h("div", { class: "planner-picture centred rounded sunken" }, canvas),
         status,
         result,
@@ -254,17 +219,10 @@ export function create(studio, { keeper }) {
       ...parts,
       ...(digits.length
         ? [
-            h(
-              "table",
-              { class: "planner-table" },
-              h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "Length"), h("th", {}, "Around"))),
-              h(
-                "tbody",
-                {},
-                ...digits.map(({ name, long, around }) =>
-                  h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, long.input), h("td", {}, around.input)),
-                ),
-              ),
+            table(
+              { class: "planner-table full-width small" },
+              ["", "Length", "Around"],
+              h("tbody", {}, ...digits.map(({ name, long, around }) => tableRow(name, long.input, around.input))),
             ),
           ]
         : []),
@@ -291,34 +249,20 @@ export function create(studio, { keeper }) {
     const add = ([at, around]) => {
       const place = { at: length("Distance along the limb", at), around: length("Circumference there", around) };
       places.push(place);
-      const row = h(
-        "tr",
-        {},
-        h("td", {}, place.at.input),
-        h("td", {}, place.around.input),
-        h(
-          "td",
-          {},
-          iconButton("close", "Remove this place", () => {
-            if (places.length <= 2) return;
-            places.splice(places.indexOf(place), 1);
-            row.remove();
-            changed();
-          }),
-        ),
-      );
+      const remove = iconButton("close", "Remove this place", () => {
+        if (places.length <= 2) return;
+        places.splice(places.indexOf(place), 1);
+        row.remove();
+        changed();
+      });
+      const row = tableRow(null, place.at.input, place.around.input, remove);
       body.append(row);
     };
     start.forEach(add);
     const element = h(
       "div",
       {},
-      h(
-        "table",
-        { class: "planner-table" },
-        h("thead", {}, h("tr", {}, h("th", {}, "Along the limb"), h("th", {}, "Around it"), h("th", {}, ""))),
-        body,
-      ),
+      table({ class: "planner-table full-width small" }, ["Along the limb", "Around it", ""], body),
       textButton(
         "plus",
         "Add a place",
@@ -335,9 +279,7 @@ export function create(studio, { keeper }) {
 
   /** @param {string} chosen */
   function showMaterials(chosen) {
-    const all = studio.materials.value
-      .filter(({ fabrics }) => Object.keys(fabrics).length === 4)
-      .map(({ id, name }) => ({ id, name }));
+    const all = studio.completeYarns.map(({ id, name }) => ({ id, name }));
     if (!all.some(({ id }) => id === "glove-wool:glove")) {
       all.push({ id: "glove-wool:glove", name: "Glove wool, stockinette on 2.0 mm needles as in the study" });
     }
@@ -361,7 +303,7 @@ export function create(studio, { keeper }) {
       intarsia: intarsia.checked,
     };
     result.classList.add("busy");
-    garment = /** @type {Garment} */ (await call("/garment", { method: "POST", body, signal }));
+    garment = await api.run("garment", /** @type {GarmentRequest} */ (body), signal);
     hand = { garment: body.garment, material: body.material, gauge: body.gauge };
     status.replaceChildren();
     show(garment);
@@ -373,7 +315,7 @@ export function create(studio, { keeper }) {
     make.disabled = garment === null;
   }
 
-  /** @param {Garment} fitted */
+  /** @param {GarmentResult} fitted */
   function show(fitted) {
     const gauge = fitted.gauges.find(({ fabric }) => fabric === "stockinette") ?? fitted.gauges[0];
     drawGarment(canvas, fitted.design, gauge.stitches_per_10_cm / gauge.rows_per_10_cm);

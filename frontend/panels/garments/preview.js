@@ -1,7 +1,7 @@
 /**
  * A garment's chart in small: its outline, its regions in their colours, purls darker.
  *
- * @import {DesignDocument} from "../../types.js"
+ * @import {DesignFile} from "../../types.js"
  */
 
 import { themedReader } from "../../state/palette.js";
@@ -11,7 +11,7 @@ const MAX_HEIGHT = 330;
 
 /**
  * @param {HTMLCanvasElement} canvas
- * @param {DesignDocument} design
+ * @param {DesignFile} design
  * @param {number} aspect height over width of a stitch
  */
 export function drawGarment(canvas, design, aspect) {

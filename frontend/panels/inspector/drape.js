@@ -11,12 +11,12 @@ import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { scopeOf } from "../../services/scope.js";
 import { labelled, numberField } from "../../widgets/fields.js";
-import { problemText } from "../../widgets/problem.js";
 import { textButton } from "../../widgets/buttons.js";
+import { problemText } from "../../widgets/problem.js";
 
 /** @typedef {{chart: string, material: string, linear_density_g_per_m: number}} Weighed */
 /**
- * @typedef {{words: string[], notes: string[], converged?: boolean, piece?: {id: string, chart: string, outline: string}}} Told
+ * @typedef {{words: string[], notes: string[], converged?: boolean, piece?: {id: string, chart: string, outline: string}}} Findings
  *   words, and what to show in 3D and whether that is at rest
  */
 
@@ -24,17 +24,17 @@ import { textButton } from "../../widgets/buttons.js";
 const BORDERS = /** @type {const} */ (["garter", "seed", "rib"]);
 
 /**
- * The simulated tests: words of the button, what it is for, and the answer in words.
+ * The simulated tests: words of the button, what it is for, and how they are computed.
  *
  * @type {{id: string, label: string, hint: string,
- *   tell: (asked: Weighed, signal: AbortSignal) => Promise<Told>}[]}
+ *   compute: (cloth: Weighed, signal: AbortSignal) => Promise<Findings>}[]}
  */
 const TESTS = [
   {
     id: "overhang",
     label: "Over an edge",
     hint: "A strip that hangs over the edge of a table: Peirce's bending length",
-    tell: async (request, signal) => {
+    compute: async (request, signal) => {
       const ways = /** @type {const} */ (["course", "wale"]);
       const overhangs = await Promise.all(
         ways.map((direction) => api.run("overhang", { ...request, direction }, signal)),
@@ -52,7 +52,7 @@ const TESTS = [
     id: "drape",
     label: "Over a disc",
     hint: "A round piece of 30 cm over a disc of 18 cm: the drape coefficient",
-    tell: async (request, signal) => {
+    compute: async (request, signal) => {
       const draped = await api.run("drape", request, signal);
       const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, converged, piece } = draped;
       const states = ends.map((end) => percent(end)).join(" to ");
@@ -71,7 +71,7 @@ const TESTS = [
     id: "border",
     label: "Border",
     hint: "How wide a border of garter, seed or rib holds it flat by its weight",
-    tell: async (request, signal) => {
+    compute: async (request, signal) => {
       const borders = await Promise.all(BORDERS.map((border) => api.run("border", { ...request, border }, signal)));
       const words = borders.map(({ sides, ends }, i) => {
         const [wide, high] = [sides, ends].map(({ width_mm: mm }) => figure(mm / 10, 2));
@@ -91,7 +91,7 @@ export function drape(host, studio) {
   weight.addEventListener("change", () => {
     if (weight.valueAsNumber > 0) studio.weight.value = weight.valueAsNumber;
   });
-  /** @param {string} label @param {NonNullable<Told["piece"]>} piece @param {boolean} converged @param {string} note */
+  /** @param {string} label @param {NonNullable<Findings["piece"]>} piece @param {boolean} converged @param {string} note */
   const show = (label, { id, chart, outline }, converged, note) => {
     const { rows, columns } = studio.document.grid;
     studio.seeing.pose.value = "tested";
@@ -107,7 +107,7 @@ export function drape(host, studio) {
     };
   };
   /** @param {(typeof TESTS)[number]} test */
-  const run = ({ label, tell }) => {
+  const run = ({ label, compute }) => {
     const { grid } = scopeOf(studio);
     const request = {
       chart: grid.text,
@@ -117,7 +117,7 @@ export function drape(host, studio) {
     answer.replaceChildren(h("span", { class: "spinner" }), `${label}: being computed`);
     latest.run(
       async (signal) => {
-        const { words, notes, converged = false, piece } = await tell(request, signal);
+        const { words, notes, converged = false, piece } = await compute(request, signal);
         if (piece) show(label, piece, converged, notes[0]);
         answer.replaceChildren(
           ...words.map((text) => h("p", { class: "figures" }, text)),

@@ -6,7 +6,7 @@
  * @import {Scope} from "../../services/scope.js"
  */
 
-import { LINES, along } from "../../core/directions.js";
+import { DIRECTIONS, LINES, along } from "../../core/directions.js";
 import { figure, percents, range } from "../../core/format.js";
 import { paced } from "../../core/paced.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
@@ -45,8 +45,8 @@ export function inspector(host, studio) {
   const problem = h("div", { class: "problem", hidden: true });
   const table = h("table", { class: "numbers full-width" });
   const shares = h("div", { class: "shares stack gap-6" });
-  const rigidity = h("div", { class: "plot", id: "plot-rigidity" });
-  const curve = h("div", { class: "plot", id: "plot-curve" });
+  const rigidity = h("div", { class: "plot relative shrinks-x shrinks-y clipped", id: "plot-rigidity" });
+  const curve = h("div", { class: "plot relative shrinks-x shrinks-y clipped", id: "plot-curve" });
   const worn = h("div", { class: "limb stack shrinks-x shrinks-y gap-10", id: "plot-limb" });
   const weighed = h("div", { class: "limb stack shrinks-x shrinks-y gap-10", id: "plot-drape" });
   const plots = { rigidity, curve, limb: worn, drape: weighed };
@@ -81,7 +81,7 @@ export function inspector(host, studio) {
     limb: tab("limb", "Limb"),
     drape: tab("drape", "Drape"),
   };
-  const ways = /** @type {Direction[]} */ (["course", "wale"]).map(
+  const ways = DIRECTIONS.map(
     (way) =>
       /** @type {const} */ ([
         way,
@@ -111,7 +111,7 @@ export function inspector(host, studio) {
       h(
         "div",
         { class: "inspector-head stack" },
-        h("div", { class: "inspector-title line gap-8" }, title, scopes),
+        h("div", { class: "inspector-title line gap-8 spread" }, title, scopes),
         source,
       ),
       problem,
@@ -166,7 +166,7 @@ export function inspector(host, studio) {
         "share-fabrics",
         FABRICS.map((fabric, i) => ({ share: mix[i], colour: `var(--${fabric})`, text: `${fabric} ${rounded[i]}` })),
       ),
-      .../** @type {Direction[]} */ (["course", "wale"]).map((direction) => {
+      ...DIRECTIONS.map((direction) => {
         const { even, odd } = segments[direction];
         const all = even + odd || 1;
         return shareBar(
@@ -223,29 +223,24 @@ export function inspector(host, studio) {
 /** @param {HTMLTableElement} table @param {PredictResult | null} value @param {Scope} scope of the numbers */
 function fill(table, value, scope) {
   const size = value && sizeAtRest(scope, value);
-  /** @param {string} id @param {number | undefined} number @param {string} [interval] */
-  const cell = (id, number, interval) =>
-    h(
+  /** @param {string} id @param {number | undefined} number @param {readonly number[] | null | undefined} ends */
+  const cell = (id, number, ends) => {
+    const interval = range(ends);
+    return h(
       "td",
       { id },
       h("span", { class: "value" }, figure(number)),
       interval && h("span", { class: "interval", title: "90 % interval" }, interval),
     );
+  };
   /** @param {string} label @param {string} unit @param {string} hint @param {HTMLElement[]} cells */
   const row = (label, unit, hint, ...cells) =>
-    h("tr", {}, h("th", { scope: "row", title: hint }, label, unit && h("span", { class: "unit" }, unit)), ...cells);
+    h("tr", {}, h("th", { scope: "row", title: hint }, label, h("span", { class: "unit" }, unit)), ...cells);
+  /** @param {Direction} direction @param {string} name */
+  const head = (direction, name) =>
+    h("th", { scope: "col", title: `Pulled ${along(direction)}` }, icon(direction), name);
   table.replaceChildren(
-    h(
-      "thead",
-      {},
-      h(
-        "tr",
-        {},
-        h("td", {}),
-        h("th", { scope: "col", title: "Pulled along the rows" }, icon("course"), "Rows"),
-        h("th", { scope: "col", title: "Pulled along the columns" }, icon("wale"), "Columns"),
-      ),
-    ),
+    h("thead", {}, h("tr", {}, h("td", {}), head("course", "Rows"), head("wale", "Columns"))),
     h(
       "tbody",
       {},
@@ -253,8 +248,8 @@ function fill(table, value, scope) {
         "Modulus",
         "N/mm",
         "Young's modulus at the beginning of a pull: force per width over stretch",
-        cell("modulus-course", value?.modulus_course_n_per_mm, range(value?.modulus_course_interval_n_per_mm)),
-        cell("modulus-wale", value?.modulus_wale_n_per_mm, range(value?.modulus_wale_interval_n_per_mm)),
+        cell("modulus-course", value?.modulus_course_n_per_mm, value?.modulus_course_interval_n_per_mm),
+        cell("modulus-wale", value?.modulus_wale_n_per_mm, value?.modulus_wale_interval_n_per_mm),
       ),
       row(
         "Extensibility",
@@ -263,27 +258,23 @@ function fill(table, value, scope) {
         cell(
           "extensibility-course",
           value?.extensibility_course_mm_per_n,
-          range(inverse(value?.modulus_course_interval_n_per_mm)),
+          inverse(value?.modulus_course_interval_n_per_mm),
         ),
-        cell(
-          "extensibility-wale",
-          value?.extensibility_wale_mm_per_n,
-          range(inverse(value?.modulus_wale_interval_n_per_mm)),
-        ),
+        cell("extensibility-wale", value?.extensibility_wale_mm_per_n, inverse(value?.modulus_wale_interval_n_per_mm)),
       ),
       row(
         "Size at rest",
         "cm",
         "Width and height of the cloth when nothing pulls at it",
-        cell("size-course", inCm(size?.course.value), range(size && cmOf(size.course.interval))),
-        cell("size-wale", inCm(size?.wale.value), range(size && cmOf(size.wale.interval))),
+        cell("size-course", inCm(size?.course.value), size && cmOf(size.course.interval)),
+        cell("size-wale", inCm(size?.wale.value), size && cmOf(size.wale.interval)),
       ),
       row(
         "Poisson",
         "ratio",
         "Contraction across when pulled along",
-        cell("poisson-yx", value?.poisson_yx, range(value?.poisson_yx_interval)),
-        cell("poisson-xy", value?.poisson_xy, range(value?.poisson_xy_interval)),
+        cell("poisson-yx", value?.poisson_yx, value?.poisson_yx_interval),
+        cell("poisson-xy", value?.poisson_xy, value?.poisson_xy_interval),
       ),
     ),
   );
@@ -317,7 +308,7 @@ function shareBar(id, parts, direction) {
     bar.append(piece);
     const key = h("span", { class: "key" });
     key.style.backgroundColor = colour;
-    return h("span", { class: "legend-item" }, key, text);
+    return h("span", { class: "legend-item gap-5" }, key, text);
   });
   const title = direction ? `Segments ${along(direction)}` : "Shares of the four fabrics, by quarters of stitches";
   return h(

@@ -9,11 +9,12 @@
 import { api } from "../../api.js";
 import { percent, range } from "../../core/format.js";
 import { Latest } from "../../services/latest.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { pressurePlot } from "../../plots/pressure.js";
 import { scopeOf } from "../../services/scope.js";
 import { iconButton } from "../../widgets/buttons.js";
-import { labelled, numberField } from "../../widgets/fields.js";
+import { table, tableRow } from "../../widgets/table.js";
+import { labelled, numberField, selectField } from "../../widgets/fields.js";
 import { problemText } from "../../widgets/problem.js";
 
 const DELAY_MS = 250;
@@ -40,22 +41,20 @@ export function limb(host, studio) {
     );
   };
   const tube = numberField({ id: "limb-tube", min: "10", max: "3000", placeholder: "chart", oninput: ask });
-  const around = h(
-    "select",
+  const around = selectField(
     {
-      class: "select",
+      class: "select shrinks-x",
       id: "limb-around",
       onchange: () => (chosen.value = { ...chosen.value, direction: /** @type {Direction} */ (around.value) }),
     },
-    h("option", { value: "course" }, "rows"),
-    h("option", { value: "wale" }, "columns"),
+    { course: "rows", wale: "columns" },
   );
   around.value = chosen.value.direction;
 
-  const table = h("tbody", {});
+  const body = h("tbody", {});
   /** Girths as they stand in the fields; those without a number, or out of order, are left out. */
   const given = () => {
-    const girths = [...table.rows].map((row) => {
+    const girths = [...body.rows].map((row) => {
       const [at, girth] = [...row.querySelectorAll("input")].map((field) => field.valueAsNumber);
       return { at_mm: at, girth_mm: girth };
     });
@@ -72,33 +71,18 @@ export function limb(host, studio) {
   const showGirths = (girths) => {
     const old = given();
     if (JSON.stringify(old) === JSON.stringify(girths)) return;
-    table.replaceChildren(...girths.map(girthRow));
+    body.replaceChildren(...girths.map(girthRow));
   };
   /** @param {GirthAt} girth @param {number} i */
   const girthRow = ({ at_mm, girth_mm }, i) => {
-    const row = h(
-      "tr",
-      {},
-      h(
-        "td",
-        {},
-        numberField({ value: at_mm, min: "0", max: "3000", "aria-label": `Place ${i + 1}`, oninput: change }),
-      ),
-      h(
-        "td",
-        {},
-        numberField({ value: girth_mm, min: "10", max: "3000", "aria-label": `Girth ${i + 1}`, oninput: change }),
-      ),
-      h(
-        "td",
-        {},
-        iconButton("close", `Leave girth ${i + 1} out`, () => {
-          if (table.rows.length < 3) return;
-          row.remove();
-          change();
-        }),
-      ),
-    );
+    const field = (/** @type {string} */ name, /** @type {number} */ value, /** @type {number} */ min) =>
+      numberField({ value, min, max: "3000", "aria-label": `${name} ${i + 1}`, oninput: change });
+    const remove = iconButton("close", `Leave girth ${i + 1} out`, () => {
+      if (body.rows.length < 3) return;
+      row.remove();
+      change();
+    });
+    const row = tableRow(null, field("Place", at_mm, 0), field("Girth", girth_mm, 10), remove);
     return row;
   };
   const add = () => {
@@ -148,19 +132,14 @@ export function limb(host, studio) {
       pressurePlot(places),
       h("p", { class: "muted figures" }, words.filter(Boolean).join(" ")),
       problem ? h("p", { class: "muted" }, problem) : "",
-      h("p", { class: "muted" }, "A mean over the limb, without friction or posture; not a medical class."),
+      remark("A mean over the limb, without friction or posture; not a medical class."),
     );
   };
   host.append(
     h(
       "div",
       { class: "limb-fields flex wrap" },
-      h(
-        "table",
-        { class: "limb-girths" },
-        h("thead", {}, h("tr", {}, h("th", {}, "At, mm"), h("th", {}, "Girth, mm"), h("th", {}))),
-        table,
-      ),
+      table({ class: "limb-girths" }, ["At, mm", "Girth, mm", ""], body),
       h(
         "div",
         { class: "limb-more flex wrap gap-6" },

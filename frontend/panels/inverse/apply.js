@@ -52,9 +52,7 @@ function placeAt(studio, row, column) {
   if (selection.value && selects(selection.value, row, column)) return chosenPlace(studio);
   const region = grid.has(row, column) ? chart.regionAt(grid.index(row, column)) : null;
   if (!region || region.hidden) return { cells: selectedCells(grid.box, grid), name: "the whole chart" };
-  const cells = [];
-  for (let i = 0; i < region.cells.length; i++) if (region.cells[i]) cells.push(i);
-  return { cells, name: region.name };
+  return { cells: region.stitches, name: region.name };
 }
 
 /**

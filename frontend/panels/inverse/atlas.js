@@ -10,7 +10,7 @@
 import { figure, percent, range } from "../../core/format.js";
 import { Ink } from "../../design/ink.js";
 import { motifGrid } from "../../grid/grid.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { pencil } from "../../tools/pencil.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { Run } from "../../widgets/jobrun.js";
@@ -74,9 +74,7 @@ export function atlasTab(studio, context) {
   const describe = () => {
     if (!chosen || !table) {
       detail.replaceChildren(
-        h(
-          "p",
-          { class: "muted" },
+        remark(
           "Every dot is a repeat. Point at one to see it, press it for its numbers, or drag it onto the chart, a region or the selection.",
         ),
         h(
@@ -90,14 +88,24 @@ export function atlasTab(studio, context) {
       return;
     }
     const { key, index: k } = chosen;
-    /** @param {string} name @param {string} value @param {string} [spread] */
-    const row = (name, value, spread = "") =>
+    /** @param {[name: string, value: string, spread?: string][]} rows */
+    const numbers = (rows) =>
       h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, name),
-        h("td", { class: "value" }, value),
-        h("td", { class: "interval muted" }, spread),
+        "table",
+        { class: "inverse-numbers small full-width" },
+        h(
+          "tbody",
+          {},
+          ...rows.map(([name, value, spread = ""]) =>
+            h(
+              "tr",
+              {},
+              h("th", { scope: "row" }, name),
+              h("td", { class: "value" }, value),
+              h("td", { class: "interval muted" }, spread),
+            ),
+          ),
+        ),
       );
     const size = table.relaxed_course_mm[k];
     const picture = repeatPicture(key, 92);
@@ -124,45 +132,30 @@ export function atlasTab(studio, context) {
           ),
         ),
       ),
-      h(
-        "table",
-        { class: "inverse-numbers small full-width" },
-        h(
-          "tbody",
-          {},
-          row(
-            "Along rows",
-            `${figure(table.modulus_course_n_per_mm[k])} N/mm`,
-            range(table.modulus_course_interval_n_per_mm.map((ends) => ends[k])),
-          ),
-          row(
-            "Along columns",
-            `${figure(table.modulus_wale_n_per_mm[k])} N/mm`,
-            range(table.modulus_wale_interval_n_per_mm.map((ends) => ends[k])),
-          ),
-          row(
-            "Stretch at 0.1 N/mm",
-            `${percent(table.stretch_course[k])} rows, ${percent(table.stretch_wale[k])} columns`,
-          ),
-        ),
-      ),
-      h(
-        "table",
-        { class: "inverse-numbers small full-width" },
-        h(
-          "tbody",
-          {},
-          row("Poisson ratios", `${figure(table.poisson_yx[k], 2)} and ${figure(table.poisson_xy[k], 2)}`),
-          row(
-            "Stitch at rest",
-            size === null ? "not certified" : `${figure(size)} × ${figure(table.relaxed_wale_mm[k])} mm`,
-          ),
-          row(
-            "To knit, a stitch",
-            `${figure(table.transfers_per_stitch[k], 2)} transfers, ${figure(table.crossings_per_stitch[k], 2)} crossings; ${curlInWords(table.curl[k])}`,
-          ),
-        ),
-      ),
+      numbers([
+        [
+          "Along rows",
+          `${figure(table.modulus_course_n_per_mm[k])} N/mm`,
+          range(table.modulus_course_interval_n_per_mm.map((ends) => ends[k])),
+        ],
+        [
+          "Along columns",
+          `${figure(table.modulus_wale_n_per_mm[k])} N/mm`,
+          range(table.modulus_wale_interval_n_per_mm.map((ends) => ends[k])),
+        ],
+        ["Stretch at 0.1 N/mm", `${percent(table.stretch_course[k])} rows, ${percent(table.stretch_wale[k])} columns`],
+      ]),
+      numbers([
+        ["Poisson ratios", `${figure(table.poisson_yx[k], 2)} and ${figure(table.poisson_xy[k], 2)}`],
+        [
+          "Stitch at rest",
+          size === null ? "not certified" : `${figure(size)} × ${figure(table.relaxed_wale_mm[k])} mm`,
+        ],
+        [
+          "To knit, a stitch",
+          `${figure(table.transfers_per_stitch[k], 2)} transfers, ${figure(table.crossings_per_stitch[k], 2)} crossings; ${curlInWords(table.curl[k])}`,
+        ],
+      ]),
     );
   };
 

@@ -6,7 +6,7 @@
  *
  * @typedef {{course: number, wale: number}} Stiffness moduli in N/mm
  * @typedef {{name: string, cells: number[], course: number | null, wale: number | null, now: Stiffness | null,
- *   wish: (() => Stiffness | null) | null, tell?: () => void}} Part
+ *   wish: (() => Stiffness | null) | null, show?: () => void}} Part
  * `wish` is what was asked for in words, until the numbers that it goes by have come
  */
 
@@ -16,7 +16,6 @@ import { Grid } from "../../grid/grid.js";
 import { largestRectangle } from "../../grid/inscribed.js";
 import { FABRICS } from "../../grid/segments.js";
 import { selectedCells } from "../../design/selection.js";
-import { outlineText } from "../../design/snapshot.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { nameOf, repeatPicture } from "./apply.js";
@@ -46,9 +45,8 @@ export function fromStiffness(studio) {
   let size = "";
 
   const sizeNow = () => `${chart.grid.rows} ${chart.grid.columns}`;
-  const outlineNow = () => (chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null);
   /** What is known of the yarn's pure fabrics. */
-  const fabricsNow = () => studio.materials.value.find(({ id }) => id === studio.materialId.value)?.fabrics ?? {};
+  const fabricsNow = () => studio.yarn?.fabrics ?? {};
   const add = (/** @type {string} */ name, /** @type {number[]} */ all) => {
     const cells = all.filter((i) => chart.outline[i]);
     if (!cells.length) return;
@@ -63,11 +61,7 @@ export function fromStiffness(studio) {
     add(selection.value ? `Part ${parts.length + 1}` : "Whole chart", cells);
   };
   const addRegions = () => {
-    for (const region of chart.regions) {
-      const cells = [];
-      for (let i = 0; i < region.cells.length; i++) if (region.cells[i]) cells.push(i);
-      if (!parts.some(({ name }) => name === region.name)) add(region.name, cells);
-    }
+    for (const { name, stitches } of chart.regions) if (!parts.some((part) => part.name === name)) add(name, stitches);
   };
 
   /** Ask what a part does now, and say so in its card. @param {Part} part */
@@ -85,7 +79,7 @@ export function fromStiffness(studio) {
       if (!(error instanceof ApiError)) throw error;
       part.now = null; // the inspector says why
     }
-    for (const each of parts) each.tell?.(); // another part may wait for these numbers
+    for (const each of parts) each.show?.(); // another part may wait for these numbers
   };
   const measureAll = async () => {
     if (parts.length && element.checkVisibility()) await Promise.all(parts.map(measure));
@@ -104,13 +98,13 @@ export function fromStiffness(studio) {
       input.oninput = () => {
         part[axis] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : null;
         part.wish = null;
-        part.tell?.();
+        part.show?.();
       };
       return input;
     });
     const now = AXES.map(({ axis }) => h("span", { class: "figures", id: `part-${at}-${axis}-now` }, "…"));
     const verdicts = AXES.map(() => h("span", { class: "muted part-verdict" }));
-    part.tell = () => {
+    part.show = () => {
       const numbers = part.wish?.();
       if (numbers) {
         for (const { axis } of AXES) part[axis] = Number(numbers[axis].toPrecision(3));
@@ -129,13 +123,13 @@ export function fromStiffness(studio) {
     const like = h(
       "select",
       {
-        class: "text part-like",
+        class: "text part-like full-width",
         id: `part-${at}-like`,
         "aria-label": `Make ${part.name} …`,
         onchange: () => {
           const chosen = like.value;
-          part.wish = chosen ? () => wantedAs(chosen) : null;
-          part.tell?.();
+          part.wish = chosen ? () => targetAs(chosen) : null;
+          part.show?.();
         },
       },
       h("option", { value: "" }, "make it …"),
@@ -146,23 +140,23 @@ export function fromStiffness(studio) {
       ...others.map(({ name }, i) => h("option", { value: `part ${i}` }, `as stretchy as ${name} now`)),
     );
     /** @param {string} chosen @returns {Stiffness | null} */
-    const wantedAs = (chosen) => {
+    const targetAs = (chosen) => {
       const { now: mine } = part;
       if (chosen in STEPS) return mine && scaled(mine, STEPS[chosen]);
       if (chosen.startsWith("part ")) return others[Number(chosen.slice(5))].now;
       const fabric = fabricsNow()[/** @type {typeof FABRICS[number]} */ (chosen)];
       return fabric ? { course: fabric.modulus_course_n_per_mm, wale: fabric.modulus_wale_n_per_mm } : null;
     };
-    part.tell();
+    part.show();
     return h(
       "li",
-      { class: "target sunken" },
+      { class: "target sunken rounded" },
       h(
         "div",
         { class: "target-line line wrap gap-6" },
         h("input", {
           type: "text",
-          class: "text part-title",
+          class: "text part-title full-width",
           value: part.name,
           maxLength: 80,
           "aria-label": "Name",
@@ -241,7 +235,7 @@ export function fromStiffness(studio) {
         rows,
         columns,
         chart: chart.grid.text,
-        outline: outlineNow(),
+        outline: chart.outlineText,
         wishes: targeted.map(({ name, cells, course, wale }) => ({
           name,
           runs: runsOf(cells, columns),
@@ -390,7 +384,7 @@ function patchList({ patches, columns }, targeted) {
       const part = partOf(patch);
       return h(
         "li",
-        { class: "candidate" },
+        { class: "candidate flex gap-12" },
         repeatPicture(patch.repeat, 60),
         h(
           "div",

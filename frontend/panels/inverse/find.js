@@ -14,7 +14,7 @@ import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js"
 import { curlInWords, paintWith, sourceInWords } from "./atlas.js";
 import { field, form, verdict } from "./form.js";
 import { Run } from "../../widgets/jobrun.js";
-import { selectField } from "../../widgets/fields.js";
+import { sameWords, selectField } from "../../widgets/fields.js";
 
 /**
  * @typedef {{id: string, label: string, short: string, unit: string, start: number, percent?: boolean,
@@ -46,6 +46,8 @@ const QUANTITIES = [
   quantity("extensibility_wale_mm_per_n", "Extensibility, columns", "ext., columns", "mm/N", 10),
 ];
 const COUNT = 12;
+/** How much a target counts. @type {Record<string, number>} */
+const WEIGHTS = { minor: 0.25, normal: 1, major: 4 };
 
 /** @param {string} label of a value, such as stretch_wale@0.1 */
 const quantityOf = (label) => QUANTITIES.find(({ id }) => id === label.split("@")[0]) ?? QUANTITIES[0];
@@ -60,24 +62,17 @@ export function findTab(studio, context) {
 
   /** @param {Quantity} first @param {number} [value] */
   const addRow = (first, value = first.start) => {
-    const select = h(
-      "select",
-      { class: "text", "aria-label": "Quantity" },
-      ...QUANTITIES.map((q) => h("option", { value: q.id, selected: q === first }, q.label)),
+    const select = selectField(
+      { class: "text full-width", "aria-label": "Quantity" },
+      Object.fromEntries(QUANTITIES.map(({ id, label }) => [id, label])),
     );
+    select.value = first.id;
     const number = field("Value", value, { step: "any", class: "number figures target-value framed rounded" });
     const unit = h("span", { class: "muted target-unit small" });
     const tolerance = field("Tolerance", 10, { min: "0.1", step: "any" });
     const toleranceUnit = h("span", { class: "muted" }, "%");
-    const weight = h(
-      "select",
-      { class: "text", "aria-label": "Weight" },
-      ...[
-        ["0.25", "minor"],
-        ["1", "normal"],
-        ["4", "major"],
-      ].map(([v, text]) => h("option", { value: v, selected: v === "1" }, text)),
-    );
+    const weight = selectField({ class: "text full-width", "aria-label": "Weight" }, sameWords(Object.keys(WEIGHTS)));
+    weight.value = "normal";
     const load = field("Load in N/mm", 0.1, { min: "0.001", max: "0.5", step: "any" });
     const rest = field("Tube at rest in mm", 180, { min: "1", step: "any" });
     const worn = field("Limb in mm", 220, { min: "1", step: "any" });
@@ -117,7 +112,7 @@ export function findTab(studio, context) {
         quantity: /** @type {TargetInput["quantity"]} */ (q.id),
         value: q.percent ? numbers[0] / 100 : numbers[0],
         tolerance: q.difference ? numbers[1] : numbers[1] / 100,
-        weight: Number(weight.value),
+        weight: WEIGHTS[weight.value],
       };
       if (q.needs === "load") target.load_n_per_mm = numbers[2];
       if (q.needs === "limb") target.limb = { rest_mm: numbers[3], worn_mm: numbers[4] };
@@ -127,7 +122,7 @@ export function findTab(studio, context) {
     readers.push(read);
     const row = h(
       "div",
-      { class: "target sunken" },
+      { class: "target sunken rounded" },
       h(
         "div",
         { class: "target-line line wrap gap-6" },
@@ -145,17 +140,8 @@ export function findTab(studio, context) {
 
   const across = h("input", { type: "checkbox", id: "find-all-yarns" });
   const large = h("input", { type: "checkbox", id: "find-large" });
-  const transfers = limit("Transfers", [
-    ["", "any"],
-    ["0", "none"],
-    ["0.25", "≤ ¼ a stitch"],
-    ["0.5", "≤ ½ a stitch"],
-  ]);
-  const curl = limit("Curl", [
-    ["", "any"],
-    ["0.15", "lies flat"],
-    ["0.5", "little"],
-  ]);
+  const transfers = limit("Transfers", { any: null, none: 0, "≤ ¼ a stitch": 0.25, "≤ ½ a stitch": 0.5 });
+  const curl = limit("Curl", { any: null, "lies flat": 0.15, little: 0.5 });
 
   const search = async () => {
     const targets = readers.map((read) => read()).filter((target) => target !== null);
@@ -167,7 +153,7 @@ export function findTab(studio, context) {
       });
       return;
     }
-    const all = studio.materials.value.filter(({ fabrics }) => Object.keys(fabrics).length === 4).map(({ id }) => id);
+    const all = studio.completeYarns.map(({ id }) => id);
     const materials = across.checked
       ? [studio.materialId.value, ...all.filter((id) => id !== studio.materialId.value)]
       : [studio.materialId.value];
@@ -175,7 +161,7 @@ export function findTab(studio, context) {
       materials,
       targets,
       repeats: large.checked ? "all" : "small",
-      limits: { transfers_per_stitch: numberOr(transfers.select.value), curl: numberOr(curl.select.value) },
+      limits: { transfers_per_stitch: transfers.most(), curl: curl.most() },
       count: COUNT,
       elsewhere: false,
     };
@@ -210,7 +196,7 @@ export function findTab(studio, context) {
     );
     return h(
       "li",
-      { class: candidate.reached ? "candidate reached" : "candidate" },
+      { class: candidate.reached ? "candidate reached flex gap-12" : "candidate flex gap-12" },
       picture,
       h(
         "div",
@@ -332,13 +318,8 @@ function valueOf(candidate, label) {
   );
 }
 
-/** @param {string} label @param {[string, string][]} options */
-function limit(label, options) {
-  const select = selectField({ class: "text" }, options);
-  return { select, label: h("label", { class: "check" }, label, select) };
-}
-
-/** @param {string} text */
-function numberOr(text) {
-  return text === "" ? null : Number(text);
+/** A choice of a limit. @param {string} label @param {Record<string, number | null>} limits by their words */
+function limit(label, limits) {
+  const select = selectField({ class: "text full-width" }, sameWords(Object.keys(limits)));
+  return { most: () => limits[select.value], label: h("label", { class: "check" }, label, select) };
 }

@@ -17,7 +17,7 @@ export function form(submit, ...content) {
 export const verdict = (good, words) =>
   h(
     "p",
-    { class: good ? "inverse-verdict good" : "inverse-verdict" },
+    { class: good ? "inverse-verdict good flex gap-8 rounded sunken" : "inverse-verdict flex gap-8 rounded sunken" },
     icon(good ? "check" : "info"),
     h("span", {}, words),
   );

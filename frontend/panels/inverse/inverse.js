@@ -73,7 +73,7 @@ function panel(studio, context) {
   const section = h(
     "section",
     {
-      class: "inverse beside",
+      class: "inverse beside stack panelled",
       id: "inverse",
       "aria-label": "Inverse design",
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
@@ -95,8 +95,7 @@ function panel(studio, context) {
   byId("inspector").parentElement?.append(section);
 
   const nameYarn = () => {
-    yarn.textContent =
-      studio.materials.value.find(({ id }) => id === studio.materialId.value)?.name ?? studio.materialId.value;
+    yarn.textContent = studio.yarn?.name ?? studio.materialId.value;
   };
   /** @type {TabName} */ let current = "atlas";
   studio.materials.watch(nameYarn);

@@ -8,7 +8,7 @@
 
 import { figure, percent } from "../../core/format.js";
 import { Grid } from "../../grid/grid.js";
-import { h, svg } from "../../elements/dom.js";
+import { drawing, h } from "../../elements/dom.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
 import { field, form, verdict } from "./form.js";
@@ -36,7 +36,7 @@ export function fromOutline(studio) {
   const band = field("Narrowest band, lines", 4, { min: "1", max: "100", step: "1" });
   let seed = 0;
 
-  const plot = svg("svg", {
+  const { plot, add } = drawing({
     viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
     class: "outline-plot full-width",
     role: "group",
@@ -57,12 +57,6 @@ export function fromOutline(studio) {
     if (k >= at.length - 1) return 1;
     const t = (share - at[k]) / (at[k + 1] - at[k]);
     return values[k] + (values[k + 1] - values[k]) * t * t * (3 - 2 * t);
-  };
-  /** @type {typeof svg} */
-  const add = (...mark) => {
-    const element = svg(...mark);
-    plot.append(element);
-    return element;
   };
   const draw = () => {
     const focused = plot.contains(document.activeElement) ? document.activeElement?.id : "";

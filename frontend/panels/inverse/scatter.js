@@ -10,8 +10,11 @@
 import { readPalette, themedReader } from "../../state/palette.js";
 import { figure } from "../../core/format.js";
 import { h } from "../../elements/dom.js";
+import { logAxis } from "../../plots/axis.js";
 
 const PAD = { left: 54, right: 14, top: 10, bottom: 40 };
+/** @type {import("../../plots/axis.js").AxisOptions} */
+const AXIS = { steps: [1, 2, 5], room: [0.08, 0.14] };
 const NEAR_PX = 16;
 /** Repeats of the four fabrics, in the order of the palette. */
 const PURE = ["K", "P/K", "KP", "PK/KP"];
@@ -35,7 +38,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
   /** @type {Point | null} */ let hovered = null;
   /** @type {number | null} */ let chosen = null;
   /** @type {{x: number, y: number} | null} */ let own = null;
-  let scales = { x: logScale([1, 10], 0, 1), y: logScale([1, 10], 0, 1) };
+  let scales = { x: logAxis([1, 10], 0, 1, AXIS), y: logAxis([1, 10], 0, 1, AXIS) };
 
   const place = () => {
     const { clientWidth: width, clientHeight: height } = canvas;
@@ -43,8 +46,8 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     const xs = table.modulus_course_n_per_mm;
     const ys = table.modulus_wale_n_per_mm;
     scales = {
-      x: logScale(own ? [...xs, own.x] : xs, PAD.left, width - PAD.right),
-      y: logScale(own ? [...ys, own.y] : ys, height - PAD.bottom, PAD.top),
+      x: logAxis(own ? [...xs, own.x] : xs, PAD.left, width - PAD.right, AXIS),
+      y: logAxis(own ? [...ys, own.y] : ys, height - PAD.bottom, PAD.top, AXIS),
     };
     points = table.repeats.map((key, index) => ({ key, index, x: scales.x.at(xs[index]), y: scales.y.at(ys[index]) }));
   };
@@ -258,21 +261,4 @@ function stroke(context, x0, y0, x1, y1) {
   context.moveTo(x0, y0);
   context.lineTo(x1, y1);
   context.stroke();
-}
-
-/** @param {number[]} values positive @param {number} from pixel of the low end @param {number} to */
-function logScale(values, from, to) {
-  const low = Math.log10(Math.min(...values)) - 0.08;
-  const high = Math.log10(Math.max(...values)) + 0.14;
-  const ticks = [];
-  for (let power = Math.floor(low); power <= high; power++) {
-    for (const step of [1, 2, 5]) {
-      const tick = Number((step * 10 ** power).toPrecision(2));
-      if (Math.log10(tick) >= low && Math.log10(tick) <= high) ticks.push(tick);
-    }
-  }
-  /** @param {number} value */
-  const at = (value) => from + ((Math.log10(value) - low) / (high - low)) * (to - from);
-  const crowded = ticks.length * 40 > Math.abs(to - from);
-  return { at, ticks: crowded ? ticks.filter((tick) => Math.abs(Math.log10(tick) % 1) < 1e-6) : ticks };
 }

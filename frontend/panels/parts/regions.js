@@ -178,7 +178,7 @@ export function create(studio, context) {
       "select",
       {
         id: `${id}-fill`,
-        class: "text",
+        class: "text full-width",
         disabled: locked,
         onchange: (/** @type {Event} */ { target }) => {
           const { value } = /** @type {HTMLSelectElement} */ (target);

@@ -12,7 +12,7 @@ import { action } from "../../actions/registry.js";
 import { boxOf, filledBox } from "../../chart/placing.js";
 import { MAX_ITEMS } from "../../design/design.js";
 import { withPlace } from "../../design/repeats.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { repeat as placeTool } from "../../tools/repeat.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
@@ -124,8 +124,8 @@ export function create(studio, context) {
           ),
           placements.length
             ? h("ul", { class: "plain-list" }, ...placements.map((place, at) => copy(repeat, place, at)))
-            : h("p", { class: "muted" }, "Not placed yet."),
-          h("p", { class: "muted" }, "Paint any copy: all follow."),
+            : remark("Not placed yet."),
+          remark("Paint any copy: all follow."),
           h(
             "div",
             { class: "part-foot flex" },

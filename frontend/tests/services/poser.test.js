@@ -21,7 +21,7 @@ function studio() {
     currentStrain: () => null,
     document: {
       grid: { rows: 1, columns: 2 },
-      shaped: false,
+      outlineText: null,
       onChange: (/** @type {() => void} */ heard) => (change = heard),
     },
     paint: () => change(),
@@ -46,33 +46,30 @@ function answering(previews) {
     Promise.resolve({ id: `shape ${calls}`, rows: 1, columns: 2, converged: calls++ >= previews, notes: [] });
 }
 
+/** What a page shows that is laid down, until so many shapes are there. @param {any} page @param {number} count */
+function laid(page, count) {
+  startPoser(page);
+  const shapes = shown(page, count);
+  page.seeing.pose.value = "lying";
+  return shapes;
+}
+
 test("a shape that is not at rest is called a preview until the one at rest has come", async () => {
   answering(1);
-  const page = studio();
-  startPoser(page);
-  const both = shown(page, 2);
-  page.seeing.pose.value = "lying";
-  const [first, last] = await both;
+  const [first, last] = await laid(studio(), 2);
   assert.match(wordsOf(first), /a preview/);
   assert.doesNotMatch(wordsOf(last), /a preview/);
 });
 
 test("a shape that never comes to rest stays a preview", async () => {
   answering(Infinity);
-  const page = studio();
-  startPoser(page);
-  const all = shown(page, 2);
-  page.seeing.pose.value = "lying";
-  for (const posed of await all) assert.match(wordsOf(posed), /a preview/);
+  for (const posed of await laid(studio(), 2)) assert.match(wordsOf(posed), /a preview/);
 });
 
 test("after a stroke the old shape is a preview at once", async () => {
   answering(0);
   const page = studio();
-  startPoser(page);
-  const first = shown(page, 1);
-  page.seeing.pose.value = "lying";
-  await first;
+  await laid(page, 1);
   page.paint();
   assert.match(wordsOf(page.seeing.posed.value), /a preview/);
   page.seeing.pose.value = "flat"; // nothing is asked for any more
@@ -88,10 +85,7 @@ test("the first shape begins at the old one, and the last one at nothing", async
     return Promise.resolve({ id, rows: 1, columns: 2, converged: time_limit_s > 1 || after, notes: [] });
   };
   const page = studio();
-  startPoser(page);
-  const two = shown(page, 2);
-  page.seeing.pose.value = "lying";
-  await two;
+  await laid(page, 2);
   const three = shown(page, 3);
   page.paint();
   const [old, first, last] = await three;

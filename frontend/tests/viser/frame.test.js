@@ -78,7 +78,7 @@ async function slowClient(renderer = "") {
     timers: [],
     resized: () => {},
     /** @type {(message: any) => void} */
-    told: () => {},
+    listener: () => {},
     /** What viser draws with. @type {any} */
     gl: null,
     frames: 0,
@@ -88,13 +88,13 @@ async function slowClient(renderer = "") {
     finished: true,
     /** Of them those that reached the canvas. */
     drawn: 0,
-    wanted: false,
+    requested: false,
     /** As viser asks for a frame. */
     invalidate() {
-      if (client.wanted) return;
-      client.wanted = true;
+      if (client.requested) return;
+      client.requested = true;
       page.requestAnimationFrame(() => {
-        client.wanted = false;
+        client.requested = false;
         client.frames++;
         gl.clear();
         client.now += FRAME_MS;
@@ -164,7 +164,7 @@ async function slowClient(renderer = "") {
     setTimeout: (act, ms = 0) => void client.timers.push([client.now + ms, act]),
     clearTimeout: () => {},
     /** @param {string} kind @param {(message: any) => void} listener */
-    addEventListener: (kind, listener) => kind === "message" && (client.told = listener),
+    addEventListener: (kind, listener) => kind === "message" && (client.listener = listener),
     /** @param {(time: number) => void} callback */
     requestAnimationFrame: (callback) => client.next.push(callback),
   });
@@ -178,8 +178,8 @@ async function slowClient(renderer = "") {
     client.frame();
     client.pass(100);
   }
-  assert.ok(client.wanted, "an idle frame did not wait");
-  return { client, page, thread, tell: (/** @type {any} */ data) => client.told({ source: page.parent, data }) };
+  assert.ok(client.requested, "an idle frame did not wait");
+  return { client, page, thread, tell: (/** @type {any} */ data) => client.listener({ source: page.parent, data }) };
 }
 
 test("a connection that is being made is not given up for another one", async () => {
@@ -307,8 +307,8 @@ test("the camera and all that is no cloth never wait", async () => {
   thread.answer("message_batch", [NEW, GONE, ...others.map((type) => ({ type }))]);
   const rest = [{ type: "SetCameraFovMessage" }, { type: "RemoveSceneNodeMessage", name: "/mark" }];
   thread.answer("message_batch", rest);
-  const want = ["BatchedMeshesMessage /fabric/2", ...others, "SetCameraFovMessage", "RemoveSceneNodeMessage /mark"];
-  assert.deepEqual(messages, want);
+  const expected = ["BatchedMeshesMessage /fabric/2", ...others, "SetCameraFovMessage", "RemoveSceneNodeMessage /mark"];
+  assert.deepEqual(messages, expected);
 });
 
 test("what is new of a shape comes at once, for one number of stitches", async () => {

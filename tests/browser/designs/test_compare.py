@@ -8,6 +8,7 @@ from playwright.sync_api import Page, Route, expect
 
 from knitcore import Fabric, material
 from tests.browser.conftest import wait_for_numbers
+from tests.browser.page import complaints, keep_version
 
 pytestmark = pytest.mark.slow
 
@@ -15,10 +16,7 @@ EXAMPLES = Path(__file__).parents[3] / "app" / "examples"
 
 
 def test_pieces_and_limbs_leave_the_console_clean(flat_studio: Page) -> None:
-    said: list[str] = []
-    flat_studio.on("console", lambda m: said.append(m.text) if m.type != "log" else None)
-    flat_studio.on("response", lambda r: said.append(r.url) if r.status >= 400 else None)
-
+    said = complaints(flat_studio)
     flat_studio.click("#tab-limb")
     expect(flat_studio.locator(".limb-pressure")).to_contain_text("mmHg")
 
@@ -53,11 +51,7 @@ def test_a_piece_has_the_yarn_of_its_design_until_another_is_chosen(flat_studio:
 
 def test_a_version_is_set_beside_the_whole_chart_as_it_is_now(flat_studio: Page) -> None:
     page = flat_studio
-    page.focus("#chart")
-    page.keyboard.press("Control+s")
-    page.fill("#version-name", "All knit")
-    page.click("#version-keep")
-    expect(page.locator("#versions-list")).to_contain_text("All knit")
+    keep_version(page, "All knit")
     page.keyboard.press("Escape")
     page.click("#ink-garter")
     page.click("#fill-all")
@@ -85,8 +79,7 @@ def test_a_version_is_set_beside_the_whole_chart_as_it_is_now(flat_studio: Page)
 
 
 def test_an_own_yarn_is_added_measured_and_changed(flat_studio: Page) -> None:
-    page, said = flat_studio, []
-    page.on("response", lambda r: said.append(r.url) if r.status >= 400 else None)
+    page, said = flat_studio, complaints(flat_studio)
     file = page.evaluate("fetch('/api/v1/materials/acrylic/document').then((a) => a.json())")
     file |= {"identifier": "aunts-wool", "name": "My aunt's wool"}
     wool = {"name": "wool.json", "mimeType": "application/json"}

@@ -9,7 +9,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.axe import THEMES, violations
 from tests.browser.conftest import CHART, flat, second_window, wait_for_numbers
-from tests.browser.page import drag, kept_chart, kept_design
+from tests.browser.page import drag, keep_version, kept_chart, kept_design
 
 SERVICE = "**/api/v1/designs**"
 AGREE = """async () => {
@@ -127,11 +127,8 @@ def test_a_deleted_design_can_be_recovered(flat_studio: Page) -> None:
 @pytest.mark.slow
 def test_a_version_is_restored_and_the_state_before_it_kept(flat_studio: Page) -> None:
     first = painted(flat_studio)
-    flat_studio.keyboard.press("Control+s")
-    flat_studio.fill("#version-name", "First stroke")
-    flat_studio.click("#version-keep")
-    rows = flat_studio.locator("#versions-list .row")
-    expect(rows).to_have_count(1)
+    keep_version(flat_studio, "First stroke")
+    expect(flat_studio.locator("#versions-list .row")).to_have_count(1)
     flat_studio.keyboard.press("Escape")
     second = painted(flat_studio, 0, 50)
     assert second != first

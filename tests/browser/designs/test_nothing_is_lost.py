@@ -3,7 +3,7 @@
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import CHART, wait_for_numbers
-from tests.browser.page import drag, kept_chart
+from tests.browser.page import cut_off, drag, kept_chart, sent_view, stretched
 
 
 def test_reload_keeps_painting_and_its_history(flat_studio: Page) -> None:
@@ -54,24 +54,19 @@ def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
 
 
 def test_the_cloth_keeps_its_caption_while_the_service_is_unreachable(flat_studio: Page) -> None:
-    flat_studio.fill("#stretch-amount", "20")
-    with flat_studio.expect_response(
-        lambda r: "/views/" in r.url and '"stretch":{' in (r.request.post_data or "")
-    ):
-        flat_studio.click("#stretch-run")
+    with sent_view(flat_studio, '"stretch":{'):
+        stretched(flat_studio, "20")
     caption = flat_studio.locator(".fabric-caption")
     expect(caption).to_contain_text("by 20 %")
     expect(flat_studio.locator(".fabric[data-sending]")).to_have_count(0)
-    for path in ("**/api/**", "**/healthz"):
-        flat_studio.route(path, lambda route: route.abort())
+    cut_off(flat_studio)
     drag(flat_studio, 60, 30)
     expect(flat_studio.locator("#offline")).to_be_visible()
     expect(caption).to_contain_text("by 20 %")
 
 
 def test_painting_continues_while_the_service_is_unreachable(flat_studio: Page) -> None:
-    for path in ("**/api/**", "**/healthz"):
-        flat_studio.route(path, lambda route: route.abort())
+    cut_off(flat_studio)
     before = flat_studio.locator("#chart").bounding_box()
     drag(flat_studio, 60, 30)
     expect(flat_studio.locator("#offline")).to_be_visible()

@@ -4,10 +4,11 @@ import { KINDS, hindrance, ofExtensions } from "../../../panels/exports/kinds.js
 
 test("what the service would refuse is not offered", () => {
   const glove = { shaped: true, stitches: 77 * 132 };
-  assert.match(hindrance("knitspeak", glove), /outline/);
-  assert.match(hindrance("glb", glove), /2,500/);
-  assert.equal(hindrance("knitout", glove), "");
-  for (const { to } of KINDS) assert.equal(hindrance(to, { shaped: false, stitches: 100 }), "");
+  const largest = { glb: 2500, knitout: 20_000 };
+  assert.match(hindrance("knitspeak", glove, largest), /outline/);
+  assert.match(hindrance("glb", glove, largest), /2,500/);
+  assert.equal(hindrance("knitout", glove, largest), "");
+  for (const { to } of KINDS) assert.equal(hindrance(to, { shaped: false, stitches: 100 }, largest), "");
 });
 
 test("formats of extensions are offered, with the package that they come from", () => {

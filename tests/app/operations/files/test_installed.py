@@ -7,7 +7,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.context import Context
-from app.operations.files.export import ExportRequest, export
+from app.operations.files.export import MAX_STITCHES, ExportRequest, export
 from knitcore.base.errors import InputError
 from knitcore.base.extensions import Group
 from tests.app.command_line import printed, run
@@ -46,7 +46,9 @@ def test_the_list_shows_what_is_wrong(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, client: TestClient
 ) -> None:
     install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.EXPORTERS: {"gone": "gone:all"}})
-    found = {e["name"]: e for e in client.get("/api/v1/extensions").json()["extensions"]}
-    assert found["knit-house"]["problem"] is None
-    assert "ModuleNotFoundError" in found["gone"]["problem"]
+    answer = client.get("/api/v1/extensions").json()
+    by_name = {extension["name"]: extension for extension in answer["extensions"]}
+    assert by_name["knit-house"]["problem"] is None
+    assert "ModuleNotFoundError" in by_name["gone"]["problem"]
+    assert answer["largest_exports"] == MAX_STITCHES
     assert "gone (bad 2.0)" in printed("extensions").stdout
