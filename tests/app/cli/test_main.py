@@ -1,7 +1,5 @@
 """The help of the command line."""
 
-import subprocess
-import sys
 from collections.abc import Iterator
 
 import click
@@ -12,6 +10,7 @@ from app.cli.commands import command_of
 from app.cli.main import SECTIONS, main
 from app.operations.registry import operations
 from tests.app.operations.test_registry import ASKING
+from tests.app.running import python
 
 NAMES_SO_FAR = frozenset(
     """
@@ -67,10 +66,7 @@ def test_the_help_loads_no_other_operation(
         "import atexit, sys; from app.cli.main import main;"
         "atexit.register(lambda: print(*sys.modules, sep='\\n')); main(sys.argv[1:])"
     )
-    shown = subprocess.run(
-        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=True
-    )
-    modules = set(shown.stdout.splitlines())
+    modules = set(python("-c", code, *words).stdout.splitlines())
     subjects = {m.removeprefix("app.operations.") for m in modules if "app.operations." in m}
     assert subjects - {"perform", "registry"} == loaded
     assert not modules & absent

@@ -4,6 +4,7 @@ import contextlib
 import gc
 import os
 import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -13,11 +14,10 @@ from fastapi.testclient import TestClient
 from app.service import memory
 from app.viewer.views import Views
 from tests.app.clients import served, state_of, watching
-from tests.app.running import wait_until
-from tests.app.threads import threads_of_no_pool
+from tests.app.rest import draw
+from tests.app.running import threads_of_no_pool, wait_until
 
 ROUNDS, VIEWS = 3, 3
-CHART = {"fabric": "rib", "columns": 6, "rows": 6}
 
 
 def _held() -> tuple[int, int]:
@@ -37,8 +37,7 @@ def _servers() -> int:
 def _look(client: TestClient) -> None:
     """Open some views, look at each, and go away."""
     for number in range(VIEWS):
-        body = {"chart": CHART, "material": "acrylic"}
-        assert client.put(f"/api/v1/views/dropped-{number}", json=body).status_code == 200
+        draw(client, f"dropped-{number}", {"fabric": "rib", "columns": 6, "rows": 6})
         with watching(client, f"/view/dropped-{number}") as socket:
             assert socket.receive_bytes()
 
@@ -63,9 +62,8 @@ def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None
 
 
 def test_a_view_prints_nothing_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
-    views = Views(most=1, idle_s=1.0)
-    views.open("a-quiet-one")
-    views.close()
+    with closing(Views(most=1, idle_s=1.0)) as views:
+        views.open("a-quiet-one")
     assert capsys.readouterr().out == ""
 
 
@@ -84,8 +82,7 @@ def test_views_make_room_for_each_other() -> None:
 
 
 def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
-    views = Views(most=4, idle_s=60)
-    try:
+    with closing(Views(most=4, idle_s=60)) as views:
         first = views.open("ada/a")
         views.watch("ada/a", +1)
         assert not first.writer.coarse
@@ -96,5 +93,3 @@ def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
         views.watch("ada/a", -1, coarse=True)
         assert not first.writer.coarse
         assert views.open("ada/c").writer.coarse  # the same browser comes back
-    finally:
-        views.close()

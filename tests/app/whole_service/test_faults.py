@@ -1,4 +1,4 @@
-"""What fails around the service: its disk, its database, its clients. Nothing is lost by it.
+"""Failures around the service: its disk, its database, its clients. Nothing is lost by it.
 
 KNITCORE_OUTAGE_S sets how long the database is away (``make test-hard``: 30 s).
 """
@@ -7,9 +7,7 @@ import contextlib
 import json
 import os
 import socket
-import sqlite3
 import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,9 +18,9 @@ import viser
 import websockets.sync.client
 
 from tests.app.clients import LONG
-from tests.app.databases import away
+from tests.app.databases import away, is_whole
 from tests.app.painter import Painter
-from tests.app.running import Service, wait_until
+from tests.app.running import Service, knitcore, wait_until
 
 pytestmark = pytest.mark.slow
 
@@ -73,9 +71,7 @@ def test_a_full_disk_refuses_clearly_and_loses_nothing(small_disk: Path, tmp_pat
         assert painter.paint(client).status_code == 200
         painter.check_over_http(client, unanswered=0)
         service.kill()
-        file = small_disk / "knitcore.sqlite3"
-        with contextlib.closing(sqlite3.connect(file)) as database:
-            assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        assert is_whole(small_disk / "knitcore.sqlite3")
 
 
 @pytest.mark.postgres
@@ -100,14 +96,7 @@ def test_a_database_outage_loses_nothing(postgres_url: str, tmp_path: Path) -> N
         assert painter.paint(client).status_code == 200
         painter.check_over_http(client, unanswered=0)
         wait_until(lambda: client.get("/readyz").status_code == 200)
-        second = subprocess.run(
-            [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
-            capture_output=True,
-            text=True,
-            timeout=150,
-            check=False,
-            env=service.environment,
-        )
+        second = knitcore("serve", "--port", "0", env=service.environment)
         assert (second.returncode, "KNITCORE_PROCESS_NAME" in second.stderr) == (2, True)
         wait_until(lambda: client.get(f"{JOBS}/{job}").json()["state"] == "done")
         assert len(client.get(f"{JOBS}/{job}/result").json()["strain"]) == SHORT["steps"]

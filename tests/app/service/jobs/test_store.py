@@ -16,7 +16,7 @@ from app.service.jobs.store import JobStore
 from app.service.problems import StoreError
 from app.service.store.database import Database
 from app.service.store.tables import jobs
-from tests.app.service.jobs.helpers import counted, ended, runner_of, task, until
+from tests.app.service.jobs.helpers import counted, ended, runner_of, status_when, task, until
 
 
 @pytest.fixture(autouse=True)
@@ -31,13 +31,8 @@ async def test_another_process_sees_the_progress_and_cancels(
     await here.resume()
     await there.resume()
     job = (await here.submit("ada", "work", task("wait"))).id
-
-    async def told() -> bool:
-        return (await there.status("ada", job)).progress == 0.25
-
-    await until(told)
+    await status_when(there, job, lambda status: status.progress == 0.25)
     assert (await there.cancel("ada", job)).state is JobState.CANCELLED
-
     await counted(here, "running", 0)
     assert (await here.status("ada", job)).state is JobState.CANCELLED
     await here.close()
@@ -101,11 +96,7 @@ async def test_a_process_is_not_declared_dead_right_after_an_outage(
     monkeypatch.setattr(runner.store, "beat", beat)
     monkeypatch.setattr(runner.store, "adopt_orphans", look_round)
     await runner.resume()
-
-    async def looked() -> bool:
-        return "look round" in calls
-
-    await until(looked)
+    await until(lambda: "look round" in calls)
     await runner.close()
     assert calls.index("look round") == 2 * runner_module.BEATS_TO_LOOK_ROUND
 
