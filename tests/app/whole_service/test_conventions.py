@@ -12,14 +12,14 @@ from knitcore.formats.designs.layout import Motif
 
 Schema = dict[str, Any]
 NAMED_ELSEWHERE = {"interval_source", "intervals"}
-"""What intervals rest on, and those of `values` by the name of the quantity."""
+"""The sources of intervals, and the intervals of `values` by the name of the quantity."""
 
 
 @pytest.fixture
 def shapes(schema: Schema) -> dict[str, Schema]:
-    found: dict[str, Schema] = schema["components"]["schemas"]
-    assert {operation.result.__name__ for operation in operations().values()} <= set(found)
-    return found
+    schemas: dict[str, Schema] = schema["components"]["schemas"]
+    assert {operation.result.__name__ for operation in operations().values()} <= set(schemas)
+    return schemas
 
 
 def _fields(shapes: dict[str, Schema]) -> Iterator[tuple[str, str, Schema, dict[str, Schema]]]:
@@ -106,13 +106,13 @@ def test_no_interval_is_written_otherwise(shapes: dict[str, Schema]) -> None:
 
 def test_charts_repeats_and_cells_are_each_written_in_one_way(shapes: dict[str, Schema]) -> None:
     """A chart is lines, a repeat has its rows between slashes; both have their top row first."""
-    told = {kind: _description(kind) for kind in (ChartLines, RepeatText, Motif, CellLines)}
+    descriptions = {kind: _description(kind) for kind in (ChartLines, RepeatText, Motif, CellLines)}
     ways = {
         "chart": ("K/P lines, the top row first",),
-        "repeat": (told[RepeatText],),
-        "fill": (told[RepeatText], "Repeat that fills it"),
-        "motif": (told[Motif],),
-        "cells": (told[CellLines],),
+        "repeat": (descriptions[RepeatText],),
+        "fill": (descriptions[RepeatText], "Repeat that fills it"),
+        "motif": (descriptions[Motif],),
+        "cells": (descriptions[CellLines],),
         "outline": ("Lines of x",),
     }
     seen = set()
@@ -136,9 +136,9 @@ def test_rows_and_columns_count_from_0_at_the_bottom_left(shapes: dict[str, Sche
 
 @pytest.mark.parametrize("written", ["KP\nPP", "KP/PP", "kp\n--"])
 def test_a_chart_is_taken_as_lines_and_with_slashes(client: TestClient, written: str) -> None:
-    asked = {"chart": "KP\nPP", "material": "acrylic"}
-    expected = client.post("/api/v1/predict", json=asked).json()
-    assert client.post("/api/v1/predict", json=asked | {"chart": written}).json() == expected
+    body = {"chart": "KP\nPP", "material": "acrylic"}
+    expected = client.post("/api/v1/predict", json=body).json()
+    assert client.post("/api/v1/predict", json=body | {"chart": written}).json() == expected
 
 
 def _description(kind: Any) -> str:

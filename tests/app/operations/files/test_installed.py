@@ -1,4 +1,4 @@
-"""What extensions add, over REST and on the command line."""
+"""Additions of extensions, over REST and on the command line."""
 
 import base64
 from pathlib import Path
@@ -46,7 +46,7 @@ def test_the_list_shows_what_is_wrong(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, client: TestClient
 ) -> None:
     install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.EXPORTERS: {"gone": "gone:all"}})
-    found = {e["name"]: e for e in client.get("/api/v1/extensions").json()["extensions"]}
-    assert found["knit-house"]["problem"] is None
-    assert "ModuleNotFoundError" in found["gone"]["problem"]
+    listed = {e["name"]: e for e in client.get("/api/v1/extensions").json()["extensions"]}
+    assert listed["knit-house"]["problem"] is None
+    assert "ModuleNotFoundError" in listed["gone"]["problem"]
     assert "gone (bad 2.0)" in printed("extensions").stdout
