@@ -2,8 +2,8 @@
 
 import json
 import logging
-import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx2 as httpx
@@ -158,23 +158,15 @@ def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
         except httpx.TransportError:
             heard.append("the stream ended")
 
-    answers: list[httpx.Response] = []
-
-    def stretch() -> None:
-        answers.append(client.post("/api/v1/stretch", json=LONG))
-
-    threads = [threading.Thread(target=run, daemon=True) for run in (listen, stretch)]
-    for thread in threads:
-        thread.start()
-    waits = "knitcore_computations_waiting 1.0"
-    wait_until(lambda: heard and waits in client.get("/metrics").text)
-    code = service.stop()
-    for thread in threads:
-        thread.join(60)
-        assert not thread.is_alive()
+    with ThreadPoolExecutor(2) as pool:
+        listening = pool.submit(listen)
+        stretching = pool.submit(client.post, "/api/v1/stretch", json=LONG)
+        waits = "knitcore_computations_waiting 1.0"
+        wait_until(lambda: heard and waits in client.get("/metrics").text)
+        assert service.stop() == 0
+        listening.result(60)
+        answer = stretching.result(60)
     client.close()
-    assert code == 0
-    (answer,) = answers
     assert (answer.status_code, answer.json()["detail"]) == (503, "The service is stopping.")
     with sqlite(tmp_path / "data" / "knitcore.sqlite3") as connection:
         assert connection.execute("SELECT state FROM jobs").fetchall() == [("waiting",)]

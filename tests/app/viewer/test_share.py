@@ -92,16 +92,13 @@ def test_a_picture_needs_an_open_view(client: TestClient) -> None:
 def test_marks_and_cameras_need_an_open_view(client: TestClient) -> None:
     design = "a-design-to-turn"
     box = {"row0": 0, "column0": 1, "row1": 2, "column1": 9}
-    for path, body in (("mark", {"box": box}), ("camera", {"side": "back"})):
-        assert client.put(f"/api/v1/views/{design}/{path}", json=body).status_code == 404
-    draw(client, design)
-    for path, body in (
-        ("mark", {"box": box}),
-        ("mark", {"box": None}),
-        ("camera", {"side": "back"}),
-        ("camera", {"side": "edge"}),
-    ):
-        assert client.put(f"/api/v1/views/{design}/{path}", json=body).status_code == 204
+    requests = [("mark", {"box": value}) for value in (box, None)]
+    requests += [("camera", {"side": side}) for side in ("back", "edge")]
+    for status in (404, 204):
+        for path, body in requests:
+            answer = client.put(f"/api/v1/views/{design}/{path}", json=body)
+            assert answer.status_code == status
+        draw(client, design)
 
 
 @pytest.mark.parametrize("chart", ["K", "KPPK\nKKPP\nPKPK"])

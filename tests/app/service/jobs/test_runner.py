@@ -2,6 +2,7 @@
 
 import gzip
 import json
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -101,17 +102,16 @@ async def test_a_user_with_too_many_waiting_jobs_is_refused_at_once(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(compute_module, "USER_LIMITS", UserLimits(jobs=1))
-    pool = Compute(processes(1), timeout_s=60)
-    runner = runner_of(database, pool)
-    first = await runner.submit("ada", "work", task("wait"))
-    await running(runner, first.id)
-    await runner.submit("ada", "work", task("wait", "second"))
-    await counted(runner, "waiting", 1)
-    with pytest.raises(OverLimitError, match="1 of 1 jobs"):
-        await runner.submit("ada", "work", task("wait", "third"))
-    assert len(runner.store.page("ada", limit=9, cursor=None).jobs) == 2
-    await runner.close()
-    pool.close()
+    with closing(Compute(processes(1), timeout_s=60)) as pool:
+        runner = runner_of(database, pool)
+        first = await runner.submit("ada", "work", task("wait"))
+        await running(runner, first.id)
+        await runner.submit("ada", "work", task("wait", "second"))
+        await counted(runner, "waiting", 1)
+        with pytest.raises(OverLimitError, match="1 of 1 jobs"):
+            await runner.submit("ada", "work", task("wait", "third"))
+        assert len(runner.store.page("ada", limit=9, cursor=None).jobs) == 2
+        await runner.close()
 
 
 async def test_jobs_are_private_and_results_are_shared_by_content(runner: JobRunner) -> None:
