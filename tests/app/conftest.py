@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from app.context import Context
 from app.service.store.database import Database
 from app.service.store.tables import metadata
 from tests.app.clients import served
@@ -30,6 +31,12 @@ def schema(client: TestClient) -> dict[str, Any]:
     """The OpenAPI schema of the service."""
     document: dict[str, Any] = client.get("/openapi.json").json()
     return document
+
+
+@pytest.fixture
+def context(tmp_path: Path) -> Context:
+    """The surroundings of an operation without a service."""
+    return Context(tmp_path)
 
 
 @pytest.fixture(scope="session")

@@ -1,16 +1,21 @@
-"""One way to write intervals, rows and repeats, in every request and answer of the service."""
+"""One way to write intervals, rows and repeats in every request and answer; and one version."""
 
+import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
+import knitcore
 from app.operations.registry import operations
 from app.requests.charts import CellLines, ChartLines, RepeatText
 from knitcore.formats.designs.layout import Motif
+from tests.app.command_line import printed
 
 Schema = dict[str, Any]
+PROJECT = Path(__file__).resolve().parents[3] / "pyproject.toml"
 NAMED_ELSEWHERE = {"interval_source", "intervals"}
 """The sources of intervals, and the intervals of `values` by the name of the quantity."""
 
@@ -143,3 +148,11 @@ def test_a_chart_is_taken_as_lines_and_with_slashes(client: TestClient, written:
 
 def _description(kind: Any) -> str:
     return str(kind.__metadata__[0].description)
+
+
+def test_library_commands_and_service_have_the_version_of_pyproject(client: TestClient) -> None:
+    version = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["version"]
+    assert knitcore.__version__ == version
+    assert printed("--version").stdout.split()[-1] == version
+    assert client.get("/api/v1/version").json() == {"version": version, "api": "v1"}
+    assert client.get("/openapi.json").json()["info"]["version"] == version

@@ -1,11 +1,13 @@
 """Failures around the service: its disk, its database, its clients. Nothing is lost by it.
 
-KNITCORE_OUTAGE_S sets how long the database is away (``make test-hard``: 30 s).
+KNITCORE_OUTAGE_S sets how long the database is away, and KNITCORE_KILLS how often the service is
+killed (``make test-hard``: 30 s and 50 times).
 """
 
 import contextlib
 import json
 import os
+import random
 import socket
 import subprocess
 import time
@@ -19,14 +21,45 @@ import websockets.sync.client
 
 from tests.app.clients import LONG
 from tests.app.databases import away, is_whole
-from tests.app.painter import Painter
+from tests.app.painter import Painter, painting, until_painted
 from tests.app.running import Service, knitcore, wait_until
 
 pytestmark = pytest.mark.slow
 
 OUTAGE_S = float(os.environ.get("KNITCORE_OUTAGE_S", "1"))
+KILLS = int(os.environ.get("KNITCORE_KILLS", "2"))
+PAINTERS = 4
 JOBS = "/api/v1/jobs"
 SHORT = LONG | {"chart": {"fabric": "garter", "columns": 20, "rows": 20}, "steps": 8}
+
+
+@pytest.mark.timeout(600 + 60 * KILLS)
+def test_no_acknowledged_edit_is_lost(tmp_path: Path) -> None:
+    service = Service(tmp_path)
+    rng = random.Random(2024)  # noqa: S311
+    client = service.start()
+    painters = [Painter.with_a_design(client, n) for n in range(PAINTERS)]
+    strokes = 0
+    try:
+        for _ in range(KILLS):
+            before = sum(p.acknowledged for p in painters)
+            with painting(service.url, painters):
+                until_painted(painters, before + PAINTERS)
+                listed = knitcore("token", "list", env=service.environment)
+                assert listed.returncode == 0  # it opens and closes the same file
+                time.sleep(rng.uniform(0.0, 0.5))
+                service.kill()
+            client.close()
+            assert is_whole(tmp_path / "data" / "knitcore.sqlite3")
+            client = service.start()
+            for painter in painters:
+                painter.check_over_http(client)
+            strokes += sum(p.acknowledged for p in painters) - before
+    finally:
+        client.close()
+        service.kill()
+    assert strokes >= PAINTERS * KILLS
+    print(f"{KILLS} kills, {strokes} strokes kept, none lost")  # noqa: T201 - for make test-hard
 
 
 @pytest.fixture
