@@ -12,6 +12,8 @@ import viser
 from fastapi.testclient import TestClient
 
 from app.service import memory
+from app.service.limits.user_limits import OverLimitError, UserLimits
+from app.viewer import views as views_module
 from app.viewer.views import Views
 from tests.app.clients import served, state_of, watching
 from tests.app.rest import draw
@@ -93,3 +95,32 @@ def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
         views.watch("ada/a", -1, coarse=True)
         assert not first.writer.coarse
         assert views.open("ada/c").writer.coarse  # the same browser comes back
+
+
+def test_one_user_does_not_take_all_views(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(views_module, "USER_LIMITS", UserLimits(views=2))
+    with closing(Views(most=3, idle_s=60)) as views:
+        for name in ("ada/a", "ada/b"):
+            views.open(name)
+            views.watch(name, +1)
+        with pytest.raises(OverLimitError, match="2 of 2"):
+            views.open("ada/c")
+        views.open("bob/a")
+        views.watch("ada/a", -1)
+        views.open("ada/c")  # the one nobody watches makes room
+        assert views.get("ada/a") is None
+        assert views.get("bob/a") is not None
+
+
+def test_large_charts_in_views_make_room_for_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(views_module, "USER_LIMITS", UserLimits(view_stitches=100))
+    with closing(Views(most=9, idle_s=60)) as views:
+        views.open("ada/a", 60)
+        views.open("bob/a", 60)
+        views.open("ada/b", 60)
+        assert views.get("ada/a") is None
+        assert views.get("bob/a") is not None
+        views.watch("ada/b", +1)
+        with pytest.raises(OverLimitError, match="60 of 100"):
+            views.open("ada/c", 60)
+        assert views.open("ada/b", 90).stitches == 90  # the same view, with a larger chart

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from app.service.designs import sharing as sharing_module
 from app.service.designs import store as store_module
 from app.service.designs.conditions import ConflictError, StaleError, UnconditionalError
 from app.service.designs.document import (
@@ -297,3 +298,45 @@ def test_outline_regions_repeats_and_shelf_are_kept_everywhere(designs: DesignSt
 def test_a_layout_must_belong_to_its_chart(designs: DesignStore) -> None:
     with pytest.raises(InputError, match="4x2 cells, the chart 2x1"):
         designs.create("ada", LAYOUT.model_copy(update={"chart": "KP"}))
+
+
+LARGE = DesignDocument(name="Cuff", material="acrylic", chart="\n".join(["KP" * 50] * 100))
+BESIDE_IT = {"outline", "regions", "repeats", "shelf"}
+SIZE = len(LARGE.chart) + len(LARGE.model_dump_json(include=BESIDE_IT))
+
+
+def test_bytes_kept_are_counted_with_versions(
+    designs: DesignStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(store_module, "USER_LIMITS", UserLimits(kept_bytes=3 * SIZE))
+    first = designs.create("ada", LARGE)
+    designs.keep_version("ada", first.id, "one")
+    assert (designs.most_versions("ada"), designs.most_versions("bob")) == (1, 0)
+    second = designs.duplicate("ada", first.id)
+    larger = LARGE.model_copy(update={"note": "n"})
+    for refused in (
+        lambda: designs.create("ada", LARGE),
+        lambda: designs.keep_version("ada", first.id, "two"),
+        lambda: designs.replace("ada", second.id, larger, "*"),
+    ):
+        with pytest.raises(OverLimitError, match="of 0 MB"):
+            refused()
+    small = LARGE.model_copy(update={"chart": "KP"})
+    assert designs.replace("ada", second.id, small, "*").columns == 2  # smaller is always taken
+    assert designs.replace("ada", second.id, larger.model_copy(update={"chart": "K"}), "*")
+    assert designs.create("bob", LARGE)
+
+
+def test_links_to_a_design_are_bounded(
+    database: Database, made: Design, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sharing_module, "USER_LIMITS", UserLimits(links=2))
+    links = Sharing(database)
+    first = links.give("ada", made.id, ShareMode.READ)
+    links.give("ada", made.id, ShareMode.COPY)
+    with pytest.raises(OverLimitError, match="2 open links"):
+        links.give("ada", made.id, ShareMode.READ)
+    assert links.most_given("ada") == 2
+    links.revoke("ada", made.id, first.id)
+    assert (links.most_given("ada"), links.most_given("bob")) == (1, 0)
+    assert links.give("ada", made.id, ShareMode.READ).token

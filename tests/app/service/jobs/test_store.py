@@ -13,6 +13,7 @@ from app.service.jobs import runner as runner_module
 from app.service.jobs import store as store_module
 from app.service.jobs.document import JobState
 from app.service.jobs.store import JobStore
+from app.service.limits.user_limits import OverLimitError, UserLimits
 from app.service.problems import StoreError
 from app.service.store.database import Database
 from app.service.store.tables import jobs
@@ -131,3 +132,23 @@ def test_the_longest_unused_results_make_room(database: Database) -> None:
     assert store.knows("k0")
     store.tidy(most_bytes=2100)
     assert [store.knows(f"k{n}") for n in range(3)] == [True, False, True]
+
+
+def test_requests_of_jobs_have_a_size_together(
+    database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = JobStore(database, "here")
+    monkeypatch.setattr(store_module, "USER_LIMITS", UserLimits(job_bytes=100))
+
+    def add(owner: str) -> str:
+        return store.add(owner, "relax", "x" * 40, "key", JobState.WAITING).id
+
+    first, second = add("ada"), add("ada")
+    with pytest.raises(OverLimitError) as refused:
+        add("ada")
+    assert refused.value.field == "job_bytes"
+    assert add("bob")
+    store.end(first, JobState.CANCELLED)
+    third = add("ada")  # in place of the one that has ended
+    assert store.kept_bytes("ada") == 80
+    assert {job.id for job in store.page("ada", limit=9, cursor=None).jobs} == {second, third}
