@@ -1,7 +1,5 @@
 """The help of the command line."""
 
-from collections.abc import Iterator
-
 import click
 import pytest
 from click.testing import CliRunner
@@ -9,6 +7,7 @@ from click.testing import CliRunner
 from app.cli.commands import command_of
 from app.cli.main import SECTIONS, main
 from app.operations.registry import operations
+from scripts.site import every_command
 from tests.app.operations.test_registry import ASKING
 from tests.app.running import python
 
@@ -22,21 +21,7 @@ NAMES_SO_FAR = frozenset(
 )
 
 
-def every_command(
-    group: click.Command = main, path: tuple[str, ...] = ()
-) -> Iterator[tuple[str, click.Command]]:
-    """All commands with the words that call them."""
-    if not isinstance(group, click.Group):
-        yield " ".join(path), group
-        return
-    context = click.Context(group)
-    for name in group.list_commands(context):
-        command = group.get_command(context, name)
-        assert command is not None
-        yield from every_command(command, (*path, name))
-
-
-EVERY = dict(every_command())
+EVERY = dict(every_command(main, click.Context(main)))
 
 
 def test_the_help_has_sections_and_every_command_is_in_one() -> None:
