@@ -37,27 +37,22 @@ SHORT = LONG | {"chart": {"fabric": "garter", "columns": 20, "rows": 20}, "steps
 def test_no_acknowledged_edit_is_lost(tmp_path: Path) -> None:
     service = Service(tmp_path)
     rng = random.Random(2024)  # noqa: S311
-    client = service.start()
-    painters = [Painter.with_a_design(client, n) for n in range(PAINTERS)]
+    with service.running() as client:
+        painters = [Painter.with_a_design(client, n) for n in range(PAINTERS)]
     strokes = 0
-    try:
-        for _ in range(KILLS):
-            before = sum(p.acknowledged for p in painters)
-            with painting(service.url, painters):
-                until_painted(painters, before + PAINTERS)
-                listed = knitcore("token", "list", env=service.environment)
-                assert listed.returncode == 0  # it opens and closes the same file
-                time.sleep(rng.uniform(0.0, 0.5))
-                service.kill()
-            client.close()
-            assert is_whole(tmp_path / "data" / "knitcore.sqlite3")
-            client = service.start()
+    for _ in range(KILLS):
+        before = sum(p.acknowledged for p in painters)
+        with service.running(), painting(service.url, painters):
+            until_painted(painters, before + PAINTERS)
+            listed = knitcore("token", "list", env=service.environment)
+            assert listed.returncode == 0  # it opens and closes the same file
+            time.sleep(rng.uniform(0.0, 0.5))
+            service.kill()
+        assert is_whole(tmp_path / "data" / "knitcore.sqlite3")
+        with service.running() as client:
             for painter in painters:
                 painter.check_over_http(client)
-            strokes += sum(p.acknowledged for p in painters) - before
-    finally:
-        client.close()
-        service.kill()
+        strokes += sum(p.acknowledged for p in painters) - before
     assert strokes >= PAINTERS * KILLS
     print(f"{KILLS} kills, {strokes} strokes kept, none lost")  # noqa: T201 - for make test-hard
 

@@ -231,21 +231,15 @@ async def test_a_result_outlives_a_database_outage(
 @pytest.mark.slow
 def test_the_real_service_killed_in_mid_job(tmp_path: Path) -> None:
     service = Service(tmp_path)
-    client = service.start()
-    try:
+    with service.running() as client:
         job = client.post(JOBS, json={"kind": "stretch", "request": LONG}).json()["id"]
         wait_until(lambda: client.get(f"{JOBS}/{job}").json()["state"] != "waiting")
-        service.kill()
-        client.close()
-        client = service.start()
+    with service.running() as client:
         assert client.get(f"{JOBS}/{job}").json()["state"] == "interrupted"
         assert client.get(f"{JOBS}/{job}/result").status_code == 409
         again = client.post(f"{JOBS}/{job}/again").json()
         assert again["state"] == "waiting"
         assert client.delete(f"{JOBS}/{again['id']}").json()["state"] == "cancelled"
-    finally:
-        client.close()
-        service.kill()
 
 
 def test_settings_reach_the_jobs(tmp_path: Path) -> None:
