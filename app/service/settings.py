@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import cached_property
 from ipaddress import ip_address
@@ -223,8 +223,9 @@ class Settings(BaseSettings):
         return self
 
 
-def _check_names(environment: Iterable[str]) -> None:
-    """Refuse a misspelt variable: without its login, a service would be open."""
+def _check_names(environment: Mapping[str, str]) -> None:
+    """Refuse a misspelt variable: without its login, a service would be open. Refuse an empty one:
+    an empty folder would be the present one."""
     known = {f"KNITCORE_{name.upper()}" for name in Settings.model_fields} | NO_SETTINGS
     for name in sorted(environment):
         if name.upper().startswith("KNITCORE_") and name.upper() not in known:
@@ -234,3 +235,5 @@ def _check_names(environment: Iterable[str]) -> None:
                 "is not a setting.",
                 f"Did you mean {near[0]}?" if near else "Leave it out; docs/serving.md has all.",
             )
+        if name.upper() in known and not environment[name].strip():
+            raise InputError(name, "is empty.", "Give it a value, or leave it out.")

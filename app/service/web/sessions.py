@@ -3,13 +3,15 @@
 import secrets
 
 from pydantic import AwareDatetime, BaseModel, Field
-from sqlalchemy import delete, insert, select
+from sqlalchemy import Connection, delete, insert, select
 
 from ..limits.user_limits import Use
 from ..store.database import Database
 from ..store.tables import now, sessions
 
 SESSION_S = 30 * 86_400
+MAX_SESSIONS = 50
+"""Sessions of one user at once."""
 
 
 class SessionSummary(BaseModel):
@@ -40,10 +42,27 @@ class Sessions:
         self._database = database
 
     def begin(self, token: str, user: str) -> str:
-        """A new session of a user, by the id of the token that opened it; returns its id."""
+        """A new session of a user, by the id of the token that opened it; returns its id.
+
+        The oldest ones beyond :data:`MAX_SESSIONS` end.
+        """
         session = secrets.token_urlsafe(18)
         values = {"id": session, "token": token, "user": user, "created_at": now()}
-        self._database.write(lambda c: c.execute(insert(sessions).values(values)))
+        latest = (
+            select(sessions.c.id)
+            .where(sessions.c.user == user)
+            .order_by(sessions.c.created_at.desc(), sessions.c.id)
+            .limit(MAX_SESSIONS)
+        )
+        others = delete(sessions).where(
+            sessions.c.user == user, sessions.c.id != session, sessions.c.id.not_in(latest)
+        )
+
+        def write(connection: Connection) -> None:
+            connection.execute(insert(sessions).values(values))
+            connection.execute(others)
+
+        self._database.write(write)
         return session
 
     def find(self, session: str) -> tuple[str, str]:

@@ -1,8 +1,10 @@
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from pydantic import ValidationError
 
+from app.cli.main import main
 from app.service.compute.cluster import ClusterWorker
 from app.service.settings import Settings
 from knitcore.base.errors import InputError
@@ -66,3 +68,11 @@ def test_a_scheduler_has_an_address() -> None:
 def test_a_folder_that_cannot_be_made_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("KNITCORE_DATA_DIR", "/proc/x")
     assert "cannot be created" in refused("serve", "--port", "0")
+
+
+@pytest.mark.parametrize("name", ["KNITCORE_DATA_DIR", "KNITCORE_TOKEN", "KNITCORE_PORT"])
+def test_an_empty_variable_is_refused(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(name, "")
+    result = CliRunner().invoke(main, ["doctor"])
+    assert result.exit_code == 1
+    assert "FAIL  settings" in result.output

@@ -82,6 +82,8 @@ def test_means_are_by_yarn() -> None:
         (lambda d, f: (d[::40], f[::40]), "readings"),
         (lambda d, f: (d, 1000 * f), "mN"),
         (lambda d, f: (-d, f), "depth"),
+        (lambda d, f: (1000 * d, f), "not in µm"),
+        (lambda d, f: (d / 1000, f), "not in µm or m"),
         (lambda d, f: (d, np.where(np.arange(len(f)) == 7, np.nan, f)), "reading 8"),
     ],
 )

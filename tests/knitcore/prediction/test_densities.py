@@ -20,6 +20,7 @@ def test_the_same_cloth_has_the_same_densities(chart: StitchChart, up: int, righ
         same = densities(other)
         assert np.allclose(same.features, found.features, atol=1e-9)
         assert np.allclose(same.straight, found.straight, atol=1e-9)
+        assert np.allclose(same.even, found.even, atol=1e-9)
 
 
 @pytest.mark.parametrize("fabric", PHASES)
@@ -43,6 +44,14 @@ def test_one_stitch_of_1024_changes_little(chart: StitchChart, row: int, column:
 def test_columns_of_a_rib_are_straight_and_rows_of_a_welt() -> None:
     assert densities(StitchChart.parse("KKPP")).straight == pytest.approx([1, 0], abs=0.01)
     assert densities(StitchChart.parse("K\nK\nP\nP")).straight == pytest.approx([0, 1], abs=0.01)
+
+
+def test_the_shorter_run_hides_behind_the_longer() -> None:
+    for longer in range(1, 6):
+        rib = densities(StitchChart.parse("K" * longer + "P"))
+        assert rib.even[0] == pytest.approx(np.log2((longer + 1) / longer), abs=0.02)
+    uneven = np.hstack([StitchChart.parse("KKPP").resized(1, 48).purl, np.zeros((1, 48), bool)])
+    assert densities(StitchChart(uneven)).even[0] > 0.9  # plain cloth beside a rib takes nothing
 
 
 @pytest.mark.parametrize("side", [4, 8, 32])

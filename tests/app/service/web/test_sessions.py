@@ -10,7 +10,7 @@ from fastapi.testclient import TestClient
 
 from app.service import main as main_module
 from app.service.web import security, tokens
-from app.service.web.sessions import Sessions
+from app.service.web.sessions import MAX_SESSIONS, Sessions
 from app.service.web.tokens import NewToken
 from tests.app.clients import LONG, bearing, drain, served, state_of, tokens_of, watching
 from tests.app.rest import draw
@@ -132,3 +132,13 @@ def test_a_revoked_token_ends_an_event_stream(lab: TestClient) -> None:
     with lab.stream("GET", "/api/v1/views/a-view/events") as stream:
         tokens_of(lab).revoke(ada.id)
         assert "retry" in "".join(stream.iter_text())  # and then it ended
+
+
+def test_the_oldest_of_too_many_sessions_end(lab: TestClient) -> None:
+    ada, bob = tokens_of(lab).create("ada"), tokens_of(lab).create("bob")
+    sessions = Sessions(state_of(lab).database)
+    other = sessions.begin(bob.id, "bob")
+    begun = [sessions.begin(ada.id, "ada") for _ in range(MAX_SESSIONS + 3)]
+    assert [session.id for session in sessions.of("ada", "")][::-1] == begun[3:]
+    assert sessions.find(begun[0]) == ("", "")
+    assert sessions.find(other) == (bob.id, "bob")
