@@ -95,8 +95,8 @@ test-hard: $(VENV)/.installed-tests ## Kill the service 50 times, send thousands
 	dpkg -s postgresql >/dev/null 2>&1 || apt-get install -y --no-install-recommends postgresql
 	$(BIN)/pytest -m postgres tests/app
 	KNITCORE_KILLS=50 KNITCORE_OUTAGE_S=30 KNITCORE_SCHEMA_EXAMPLES=60 $(BIN)/pytest -s \
-		tests/app/service/test_durability.py tests/app/service/test_faults.py \
-		tests/app/service/jobs/test_kinds.py tests/app/service/compute/test_cluster.py tests/app/service/test_documented.py
+		tests/app/whole_service/test_faults.py tests/app/whole_service/test_documented.py \
+		tests/app/service/jobs/test_kinds.py tests/app/service/compute/test_cluster.py
 
 frontend-check: types frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test

@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
-from scripts.serving import CHROMIUM, FLAGS, FORCED, serving
+from scripts.serving import CHROMIUM, FLAGS, FORCED, Service
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
@@ -282,7 +282,7 @@ def main(names: list[str]) -> None:
         for theme in THEMES:
             with (
                 tempfile.TemporaryDirectory() as folder,
-                serving(Path(folder), workers="1") as service,  # one that has no designs yet
+                Service(Path(folder), workers="1") as service,  # one that has no designs yet
             ):
                 pictures(browser, service.url, theme, names)
         browser.close()

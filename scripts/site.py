@@ -73,7 +73,7 @@ def commands_page() -> str:
 
     head = "Every command takes `--help`. Made from the command line's own parsers."
     parts = ["# Commands", "", head]
-    for words, command in _commands(main, click.Context(main, info_name="knitcore"), "knitcore"):
+    for words, command in every_command(main, click.Context(main), "knitcore"):
         parts += ["", f"## {words}", "", (command.help or "").strip(), ""]
         context = click.Context(command, info_name=words)
         parts += ["```sh", command.get_usage(context).removeprefix("Usage: "), "```", ""]
@@ -85,17 +85,18 @@ def commands_page() -> str:
     return "\n".join(parts)
 
 
-def _commands(
-    group: click.Group, context: click.Context, words: str
+def every_command(
+    group: click.Group, context: click.Context, words: str = ""
 ) -> Iterator[tuple[str, click.Command]]:
+    """All commands of a group with the words that call them."""
     import click
 
     for name in group.list_commands(context):
-        command = group.get_command(context, name)
+        command, called = group.get_command(context, name), f"{words} {name}".lstrip()
         if isinstance(command, click.Group):
-            yield from _commands(command, context, f"{words} {name}")
+            yield from every_command(command, context, called)
         elif command is not None:
-            yield f"{words} {name}", command
+            yield called, command
 
 
 def _cell(text: str) -> str:

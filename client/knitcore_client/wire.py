@@ -37,9 +37,9 @@ def sent(value: Any) -> Any:
     if isinstance(value, BaseModel):
         return value.model_dump(mode="json", exclude_unset=True)
     if isinstance(value, dict):
-        return {name: sent(one) for name, one in value.items()}
+        return {name: sent(part) for name, part in value.items()}
     if isinstance(value, list | tuple):
-        return [sent(one) for one in value]
+        return [sent(part) for part in value]
     return value
 
 

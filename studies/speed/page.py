@@ -21,7 +21,7 @@ from typing import Any
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from scripts.serving import CHROMIUM, FLAGS, FORCED, serving
+from scripts.serving import CHROMIUM, FLAGS, FORCED, Service
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNS = int(os.environ.get("RUNS", "5"))
@@ -347,7 +347,7 @@ def main() -> None:
         return
     with (
         tempfile.TemporaryDirectory() as folder,
-        serving(Path(folder), workers="2") as service,  # as `knitcore serve` on two cores
+        Service(Path(folder), workers="2") as service,  # as `knitcore serve` on two cores
         sync_playwright() as playwright,
     ):
         browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)

@@ -33,7 +33,7 @@ import viser
 import websockets
 
 from app.service.limits.user_limits import USER_LIMITS
-from scripts.serving import Served, serving
+from scripts.serving import Service
 
 USERS = int(os.environ.get("USERS", "50"))
 STROKES_PER_S = 5.0
@@ -262,7 +262,7 @@ async def painting(client: httpx.AsyncClient, pid: int, figures: Figures) -> Non
     figures.report(f"memory after {SECONDS:g} s of painting, from {warm:.0f} MB", grown, "%", 5)
 
 
-async def look(client: httpx.AsyncClient, service: Served, number: int) -> None:
+async def look(client: httpx.AsyncClient, service: Service, number: int) -> None:
     """Open all views, wait until each is drawn, go away, and wait until they are closed."""
     address = service.url.replace("http", "ws")
     chart = {"fabric": "rib", "columns": 16, "rows": 16}
@@ -287,7 +287,7 @@ async def look(client: httpx.AsyncClient, service: Served, number: int) -> None:
         await asyncio.sleep(2.0)
 
 
-async def looking(client: httpx.AsyncClient, service: Served, figures: Figures) -> None:
+async def looking(client: httpx.AsyncClient, service: Service, figures: Figures) -> None:
     for number in (-1, 0):  # modules loaded for the first views stay loaded
         await look(client, service, number)
     threads, handles = held(service.pid)
@@ -315,7 +315,7 @@ async def main() -> int:
     limits = httpx.Limits(max_connections=USERS + 10, max_keepalive_connections=USERS + 10)
     with (
         tempfile.TemporaryDirectory(prefix="knit-bench-", dir=FOLDER) as folder,
-        serving(Path(folder), workers="2", viewer_idle_s="1") as service,
+        Service(Path(folder), workers="2", viewer_idle_s="1") as service,
     ):
         async with httpx.AsyncClient(base_url=service.url, timeout=60.0, limits=limits) as client:
             await asyncio.sleep(5.0)  # workers load

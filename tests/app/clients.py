@@ -6,9 +6,12 @@ from typing import Any
 
 import viser
 from fastapi.testclient import TestClient
+from starlette.websockets import WebSocketDisconnect
 
+from app.service.limits.user_limits import ConcurrencyLimit, UserLimits
 from app.service.main import create_app
 from app.service.settings import Settings
+from app.service.store.database import Database
 from app.service.web.sessions import Tokens
 
 VIEW_PROTOCOLS = [f"viser-v{viser.__version__}"]
@@ -24,9 +27,11 @@ LONG = {
 
 
 @contextlib.contextmanager
-def served(base_url: str = "http://127.0.0.1", **settings: Any) -> Iterator[TestClient]:
+def served(
+    base_url: str = "http://127.0.0.1", database: Database | None = None, **settings: Any
+) -> Iterator[TestClient]:
     """A client of a service of its own, which has one worker unless the settings say otherwise."""
-    app = create_app(Settings(**{"workers": 1} | settings))
+    app = create_app(Settings(**{"workers": 1} | settings), database)
     with TestClient(app, base_url=base_url, raise_server_exceptions=False) as client:
         yield client
 
@@ -36,9 +41,25 @@ def state_of(client: TestClient) -> Any:
     return client.app.state  # type: ignore[attr-defined]
 
 
+@contextlib.contextmanager
+def limited(client: TestClient, **most: int) -> Iterator[ConcurrencyLimit]:
+    """While the block runs, each user of a service may hold so much at once."""
+    state = state_of(client)
+    before, state.concurrency = state.concurrency, ConcurrencyLimit(UserLimits(**most))
+    try:
+        yield state.concurrency
+    finally:
+        state.concurrency = before
+
+
 def tokens_of(client: TestClient) -> Tokens:
     """Tokens of the users of a service."""
     return Tokens(state_of(client).database)
+
+
+def login(client: TestClient, user: str) -> dict[str, str]:
+    """The header of requests of a user, with a new token."""
+    return bearing(tokens_of(client).create(user).token)
 
 
 def bearing(token: str) -> dict[str, str]:
@@ -52,7 +73,19 @@ def watching(client: TestClient, address: str, **headers: str) -> Any:
     return client.websocket_connect(url, subprotocols=VIEW_PROTOCOLS, headers=headers)
 
 
-def drain(socket: Any) -> None:
-    """Receive until the service closes a websocket, which raises."""
-    while True:
-        socket.receive_bytes()
+def drain(socket: Any) -> int:
+    """Receive until the service closes a websocket; returns its code."""
+    try:
+        while True:
+            socket.receive_bytes()
+    except WebSocketDisconnect as closed:
+        return closed.code
+
+
+def closed_with(client: TestClient, address: str, **headers: str) -> int:
+    """The code with which the service closes the websocket of a view at once."""
+    try:
+        with watching(client, address, **headers) as socket:
+            return drain(socket)
+    except WebSocketDisconnect as closed:
+        return closed.code

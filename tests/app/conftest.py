@@ -1,17 +1,16 @@
 import tempfile
 from collections.abc import Iterator
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
+from app.context import Context
 from app.service.store.database import Database
-from app.service.store.schema import migrate
 from app.service.store.tables import metadata
 from tests.app.clients import served
-from tests.app.databases import postgres, postgres_programs
+from tests.app.databases import opened, postgres, postgres_programs
 
 
 @pytest.fixture(scope="session")
@@ -34,6 +33,12 @@ def schema(client: TestClient) -> dict[str, Any]:
     return document
 
 
+@pytest.fixture
+def context(tmp_path: Path) -> Context:
+    """The surroundings of an operation without a service."""
+    return Context(tmp_path)
+
+
 @pytest.fixture(scope="session")
 def postgres_url() -> Iterator[str]:
     if postgres_programs() is None:
@@ -46,15 +51,13 @@ def postgres_url() -> Iterator[str]:
 
 @pytest.fixture
 def sqlite_database(tmp_path: Path) -> Iterator[Database]:
-    with closing(Database(f"sqlite:///{tmp_path / 'knit.sqlite3'}")) as database:
-        migrate(database)
+    with opened(tmp_path) as database:
         yield database
 
 
 @pytest.fixture
 def postgres_database(postgres_url: str) -> Iterator[Database]:
-    with closing(Database(postgres_url)) as database:
-        migrate(database)
+    with opened(postgres_url) as database:
         yield database
         with database.engine.begin() as connection:
             for table in reversed(metadata.sorted_tables):

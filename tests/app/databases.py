@@ -3,9 +3,39 @@
 import contextlib
 import os
 import shutil
+import sqlite3
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+
+from app.service.store.database import Database
+from app.service.store.schema import migrate
+
+
+@contextlib.contextmanager
+def opened(place: Path | str, *, migrated: bool = True) -> Iterator[Database]:
+    """The database in a folder or at a URL, with its tables."""
+    if isinstance(place, Path):
+        place.mkdir(exist_ok=True)
+        place = f"sqlite:///{place / 'knitcore.sqlite3'}"
+    with contextlib.closing(Database(place)) as database:
+        if migrated:
+            migrate(database)
+        yield database
+
+
+@contextlib.contextmanager
+def sqlite(file: Path) -> Iterator[sqlite3.Connection]:
+    """A connection to a file past the service; what it changes is kept."""
+    with contextlib.closing(sqlite3.connect(file)) as connection, connection:
+        yield connection
+
+
+def is_whole(file: Path) -> bool:
+    """Return whether SQLite finds no damage in a file."""
+    with sqlite(file) as connection:
+        return connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
 
 PROGRAMS = sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)
 

@@ -10,10 +10,8 @@ from typing import Any
 from pydantic import BaseModel
 
 from app.context import Context
-from app.operations.perform import ViewData, perform
+from app.operations.perform import perform
 from app.operations.registry import Operation
-from app.service.compute.answers import Answers, RecentResults
-from app.service.compute.compute import Compute
 from knitcore import InputError
 
 
@@ -104,11 +102,6 @@ def work(task: Task, context: Context) -> Answer:
 WORK = Operation(work, tag="tests", summary="Work", job=True)
 
 
-def answers(compute: Compute, folder: Path) -> Answers:
-    """Where a runner of jobs asks, with nothing in its memory."""
-    return Answers(compute, RecentResults(), folder)
-
-
 def die_once(mark: str, *, cancelled: Callable[[], bool], progress: Callable[..., None]) -> int:
     """Is killed in mid-job the first time; the second time it ends."""
     progress(1, 2)
@@ -118,17 +111,7 @@ def die_once(mark: str, *, cancelled: Callable[[], bool], progress: Callable[...
     return os.getpid()
 
 
-def killed_in_the_middle(
-    kind: str,
-    run: Callable[..., Any],
-    model: type[BaseModel],
-    request: BaseModel,
-    data_dir: Path,
-    *,
-    cancelled: Callable[[], bool],
-    progress: Callable[[float, float], None],
-    before: ViewData | None = None,
-) -> Any:
+def killed_in_the_middle(kind: str, run: Any, *job: Any, progress: Any, **options: Any) -> Any:
     """Call ``perform``, but kill the process while it works on an operation of a kind.
 
     It dies when the operation first looks whether it was cancelled; one that is too short to look
@@ -137,13 +120,12 @@ def killed_in_the_middle(
     from app.service.jobs.kinds import KINDS  # takes a second, and workers import this module
 
     if run is not KINDS[kind].run:
-        return perform(
-            run, model, request, data_dir, cancelled=cancelled, progress=progress, before=before
-        )
+        return perform(run, *job, progress=progress, **options)
 
     def kill(*_: Any) -> bool:
         os.kill(os.getpid(), signal.SIGKILL)
         return False
 
+    _, request, data_dir = job
     run(request, Context(data_dir, cancelled=kill))
     return kill()

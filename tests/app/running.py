@@ -1,19 +1,22 @@
-"""The real service in a process of its own, for tests that stop or kill it."""
+"""The service and other programs in processes of their own."""
 
 import contextlib
 import os
-import signal
 import socket
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
-import httpx2 as httpx
 import uvicorn
 from fastapi import FastAPI
+
+from scripts import serving
+
+POOLS = ("asyncio_", "AnyIO worker", "service_", "drawing_", "pictures_", "QueueFeeder")
 
 
 def wait_until(true: Callable[[], object], patience_s: float = 150.0) -> None:
@@ -24,80 +27,37 @@ def wait_until(true: Callable[[], object], patience_s: float = 150.0) -> None:
         time.sleep(0.02)
 
 
-class Service:
-    """``knitcore serve`` on a free port with its data in ``folder``."""
+class Service(serving.Service):
+    """The service with one worker, unless the settings say otherwise."""
 
     def __init__(self, folder: Path, **settings: str) -> None:
-        self.folder = folder
-        self.environment = os.environ | {
-            "KNITCORE_DATA_DIR": str(folder / "data"),
-            "KNITCORE_WORKERS": "1",
-            **{f"KNITCORE_{name.upper()}": value for name, value in settings.items()},
-        }
-        self.log = folder / "log"
-        self.url = ""
-        self._process: subprocess.Popen[str] | None = None
+        super().__init__(folder, **{"workers": "1"} | settings)
 
-    def start(self) -> httpx.Client:
-        """Start it and wait until it answers; returns a client of it."""
-        with self.log.open("a") as log:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
-                stdout=subprocess.PIPE,
-                stderr=log,
-                text=True,
-                env=self.environment,
-            )
-        assert self._process.stdout is not None
-        line = self._process.stdout.readline()
-        assert "http://" in line, self.log.read_text()
-        self.url = line.split()[3].rstrip("/")
-        client = httpx.Client(base_url=self.url, timeout=60.0)
 
-        def answers() -> bool:
-            with contextlib.suppress(httpx.TransportError):
-                return client.get("/healthz").is_success
-            return False
+def python(
+    *arguments: str | Path, check: bool = True, env: Mapping[str, str] | None = None, **options: Any
+) -> subprocess.CompletedProcess[str]:
+    """A program of Python that has ended, with variables added to the environment."""
+    return subprocess.run(
+        [sys.executable, *arguments], check=check, env=os.environ | (env or {}), timeout=300,
+        capture_output=True, text=True, **options,
+    )  # fmt: skip
 
-        wait_until(answers)
-        return client
 
-    @contextlib.contextmanager
-    def running(self) -> Iterator[httpx.Client]:
-        """A client of it; it is killed at the end."""
-        client = self.start()
-        try:
-            yield client
-        finally:
-            client.close()
-            self.kill()
+def knitcore(
+    *arguments: str | Path, env: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """A command in a process of its own, however it ended."""
+    return python("-m", "app.cli.main", *arguments, check=False, env=env)
 
-    @property
-    def pid(self) -> int:
-        assert self._process is not None
-        return self._process.pid
 
-    def kill(self) -> None:
-        """Kill the service, as a power failure would."""
-        self._end(signal.SIGKILL)
-
-    def stop(self) -> int:
-        """Ask it to stop; returns its exit code."""
-        return self._end(signal.SIGTERM)
-
-    def _end(self, how: signal.Signals) -> int:
-        process, self._process = self._process, None
-        if process is None:
-            return 0
-        process.send_signal(how)
-        code = process.wait(120)
-        assert process.stdout is not None
-        process.stdout.close()
-        return code
+def threads_of_no_pool() -> list[str]:
+    """Names of the threads of this process; pools grow, and on a busy machine more."""
+    return [t.name for t in threading.enumerate() if not t.name.startswith(POOLS)]
 
 
 @contextlib.contextmanager
-def serving(app: FastAPI) -> Iterator[str]:
+def on_a_server(app: FastAPI) -> Iterator[str]:
     """An application on a real server in a thread; yields its address."""
     server = uvicorn.Server(uvicorn.Config(app, port=0, log_config=None, lifespan="on"))
     with socket.socket() as listener:

@@ -2,30 +2,16 @@
 
 import json
 import os
-import re
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
+from scripts.serving import CHROMIUM, FLAGS, FORCED, Service
+
 ROOT = Path(__file__).resolve().parents[2]
-CHROMIUM = Path("/usr/bin/chromium")
-FLAGS = [
-    "--no-sandbox",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--disable-gpu-compositing",  # the imitated GPU is slow: for WebGL only
-    "--disable-gpu-rasterization",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-dev-shm-usage",
-]
 TIMEOUT_MS = 120_000
 """Generous: a busy machine computes slowly, and without a GPU draws the 3D view slowly."""
 
@@ -49,24 +35,11 @@ def bundle() -> None:
 
 
 @pytest.fixture(scope="session")
-def service(bundle: None) -> Iterator[str]:
-    """Address of a running service."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
-        stdout=subprocess.PIPE,
-        text=True,
-        env=os.environ | {"PYTHONUNBUFFERED": "1"},
-        cwd=ROOT,
-    )
-    assert process.stdout is not None
-    with process.stdout:
-        address = None
-        while address is None and (line := process.stdout.readline()):
-            address = re.search(r"http://\S+?:\d+/", line)
-        assert address, "the service printed no address"
-        yield address.group(0)
-        process.terminate()
-        process.wait(timeout=60)
+def service(bundle: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Address of a running service, with the data folder of the tests."""
+    data = os.environ["KNITCORE_DATA_DIR"]
+    with Service(tmp_path_factory.mktemp("service"), data_dir=data) as service:
+        yield f"{service.url}/"
 
 
 @pytest.fixture(scope="session")
@@ -75,7 +48,7 @@ def browser() -> Iterator[Browser]:
     if not CHROMIUM.exists():
         pytest.skip("needs Debian's chromium (apt-get install --no-install-recommends chromium)")
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        chromium = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*FLAGS, FORCED])
         yield chromium
         chromium.close()
 

@@ -2,9 +2,7 @@
 
 import asyncio
 import re
-import subprocess
-import sys
-from collections.abc import AsyncIterator, Coroutine, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -18,7 +16,7 @@ from knitcore_client.models import JobStatus
 
 from app.operations.registry import operations
 from app.service.main import create_app
-from tests.app.running import Service
+from tests.app.running import Service, python
 
 FOLDER = Path(knitcore_client.__file__).parent
 TOKEN = "a-token-of-this-test"
@@ -32,10 +30,8 @@ def awaited(script: Coroutine[Any, Any, None]) -> None:
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    found = Service(tmp_path_factory.mktemp("client"), token=TOKEN)
-    found.start().close()
-    yield found
-    found.kill()
+    with Service(tmp_path_factory.mktemp("client"), token=TOKEN) as service:
+        yield service
 
 
 @pytest.fixture(scope="module")
@@ -48,12 +44,12 @@ def test_a_design_from_a_script(knit: Client) -> None:
     made = knit.create("Cuff", "acrylic", "KPKP\nKPKP")
     painted = knit.paint(made.id, 2, 4, [{"row": 0, "column": 0, "stitches": "PP"}])
     assert painted.revision == 2
-    found = knit.design(made.id)
-    assert found.document.chart == "KPKP\nPPKP"
-    wide = found.document.model_copy(update={"name": "Wide"})
-    assert knit.save(made.id, wide, found.revision).name == "Wide"
+    saved = knit.design(made.id)
+    assert saved.document.chart == "KPKP\nPPKP"
+    wide = saved.document.model_copy(update={"name": "Wide"})
+    assert knit.save(made.id, wide, saved.revision).name == "Wide"
     with pytest.raises(ProblemError, match="changed in the meantime") as refused:
-        knit.save(made.id, wide, found.revision)
+        knit.save(made.id, wide, saved.revision)
     assert refused.value.problem.type == "/problems/stale"
     assert made.id in [d.id for d in knit.designs()]
     kept = knit.keep(made.id, "first")
@@ -103,18 +99,27 @@ def test_a_view_from_a_script(knit: Client) -> None:
     assert knit.recording(**view)  # type: ignore[arg-type]
 
 
-def test_clicks_come_as_stitches() -> None:
-    events = 'event: stitch\ndata: {"row": 1, "column": 2}\n\n: still there\n\n'
+@pytest.mark.parametrize(
+    ("method", "events", "expected"),
+    [
+        (
+            Client.clicks,
+            'event: stitch\ndata: {"row": 1, "column": 2}\n\n: still there\n\n',
+            [{"row": 1, "column": 2}],
+        ),
+        (
+            Client.watch,
+            "event: others\ndata: 1\n\n: still there\n\nevent: changed\ndata: 3\n\n",
+            [("others", 1), ("changed", 3)],
+        ),
+    ],
+)
+def test_events_come_as_stitches_or_as_kinds_and_numbers(
+    method: Callable[[Client, str], Iterator[Any]], events: str, expected: list[Any]
+) -> None:
     answers = httpx.MockTransport(lambda _: httpx.Response(200, text=events))
     with Client("http://knit.example", transport=answers) as client:
-        assert list(client.clicks("a-view")) == [{"row": 1, "column": 2}]
-
-
-def test_what_happens_to_a_design_comes_as_kinds_and_numbers() -> None:
-    events = "event: others\ndata: 1\n\n: still there\n\nevent: changed\ndata: 3\n\n"
-    answers = httpx.MockTransport(lambda _: httpx.Response(200, text=events))
-    with Client("http://knit.example", transport=answers) as client:
-        assert list(client.watch("a-design")) == [("others", 1), ("changed", 3)]
+        assert list(method(client, "a-design")) == expected
 
 
 def test_sessions_from_a_script(knit: Client) -> None:
@@ -143,18 +148,14 @@ def test_every_address_of_the_service_has_its_method() -> None:
 
 
 def test_a_job_from_a_script(knit: Client) -> None:
-    job = knit.submit(
-        "stretch", chart="KP\nPK", material="acrylic", direction="wale", strain=0.1, steps=2
-    )
+    pull: Any = {"chart": "KP", "material": "acrylic", "direction": "wale", "strain": 0.1}
+    job = knit.submit("stretch", **pull, steps=2)
     states = [status.state for status in knit.follow(job.id)]
     assert states[-1] == "done"
-    found = knit.result(job.id)
-    assert found.kind == "stretch"
-    assert len(found.strain) == 2
-    again = knit.run(
-        "stretch", chart="KP\nPK", material="acrylic", direction="wale", strain=0.1, steps=2
-    )
-    assert again == found
+    result = knit.result(job.id)
+    assert result.kind == "stretch"
+    assert len(result.strain) == 2
+    assert knit.run("stretch", **pull, steps=2) == result
     assert knit.cancel(job.id).state == "done"
     with pytest.raises(ProblemError, match="no job"):
         list(knit.follow("no-such-job"))
@@ -164,16 +165,15 @@ def test_the_same_awaited(service: Service) -> None:
     async def script() -> None:
         async with AsyncClient(service.url, token=TOKEN) as knit:
             both = await asyncio.gather(
-                knit.predict(chart="KP", material="acrylic"),
-                knit.predict(chart="KKPP", material="acrylic"),
+                *(knit.predict(chart=chart, material="acrylic") for chart in ("KP", "KKPP"))
             )
-            assert [one.columns for one in both] == [2, 4]
+            assert [answer.columns for answer in both] == [2, 4]
             made = await knit.create("Awaited", "acrylic", "K")
             assert made.id in [design.id async for design in knit.designs()]
-            found = await knit.run(
+            curve = await knit.run(
                 "curve", chart="KP", material="acrylic", direction="wale", stress_n_per_mm=[0.1]
             )
-            assert len(found.strain) == 1
+            assert len(curve.strain) == 1
             with pytest.raises(ProblemError, match="no design"):
                 await knit.design("no-such-design")
             shown = await knit.show("awaited", chart="KP", material="acrylic")
@@ -213,11 +213,8 @@ def test_a_job_given_up_is_cancelled() -> None:
 
 def test_it_needs_neither_numpy_nor_the_service() -> None:
     script = "import sys, knitcore_client; print(*sys.modules)"
-    path = {"PYTHONPATH": str(FOLDER.parent)}
-    told = subprocess.run(
-        [sys.executable, "-c", script], env=path, capture_output=True, text=True, check=True
-    )
-    loaded = {name.partition(".")[0] for name in told.stdout.split()}
+    imported = python("-c", script, env={"PYTHONPATH": str(FOLDER.parent)}).stdout.split()
+    loaded = {name.partition(".")[0] for name in imported}
     assert "knitcore_client" in loaded
     assert not loaded & {"numpy", "scipy", "fastapi", "starlette", "app", "knitcore"}
 
@@ -225,15 +222,15 @@ def test_it_needs_neither_numpy_nor_the_service() -> None:
 class Unsteady(httpx.HTTPTransport):
     """A network that loses the first answer, and a service that is busy the second time."""
 
-    asked = 0
+    requests = 0
 
     def handle_request(self, request: httpx.Request) -> httpx.Response:
-        self.asked += 1
+        self.requests += 1
         answer = super().handle_request(request)
-        if self.asked == 1:
+        if self.requests == 1:
             answer.read()
             raise httpx.ReadError("the answer was lost")
-        if self.asked == 2:
+        if self.requests == 2:
             answer.read()
             return httpx.Response(429, headers={"Retry-After": "0"})
         return answer
@@ -243,5 +240,5 @@ def test_a_repeated_request_takes_effect_once(service: Service, knit: Client) ->
     unsteady = Unsteady()
     with Client(service.url, token=TOKEN, transport=unsteady) as client:
         made = client.create("Once", "acrylic", "K")
-    assert unsteady.asked == 3
+    assert unsteady.requests == 3
     assert [d.id for d in knit.designs() if d.name == "Once"] == [made.id]

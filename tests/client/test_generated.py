@@ -63,12 +63,12 @@ def test_a_python_client(schema: Path) -> None:
     generate = ["openapi-python-client", "generate", "--path", schema, "--meta", "none"]
     options = ["--config", folder / "config.json", "--output-path", folder / "generated"]
     tool = [PROGRAMS / "uv", "tool", "run", "--from", PYTHON_GENERATOR]
-    told = run(*tool, *generate, *options, cwd=folder)
-    assert "WARNING" not in told
-    assert "ERROR" not in told
+    printed = run(*tool, *generate, *options, cwd=folder)
+    assert "WARNING" not in printed
+    assert "ERROR" not in printed
     using = [PROGRAMS / "uv", "run", "--no-project", "--with", "attrs", "--with", "httpx"]
-    told = run(*using, "--with", "python-dateutil", "python", "-c", IMPORTS, cwd=folder)
-    assert "acrylic" in told
+    printed = run(*using, "--with", "python-dateutil", "python", "-c", IMPORTS, cwd=folder)
+    assert "acrylic" in printed
 
 
 def test_a_typescript_client(schema: Path) -> None:

@@ -13,22 +13,22 @@ from scripts.from_store import FILES, StoredTask, bend, follow
 def test_a_stored_repeat_is_bent_as_stored(text):
     """Without its mirrors KKKKP goes to a shape that only a finer grid holds."""
     stored = stored_stitch(StitchChart.parse(text), "cotton")
-    found = bend(StoredTask.of(stored))
+    computed = bend(StoredTask.of(stored))
     expected = document_of(stored.bending)
-    assert found.keys() == expected.keys()
+    assert computed.keys() == expected.keys()
     for state in ("mirrored", "unmirrored")[: 1 if text == "K" else 2]:
-        assert found[state]["minimum"] is expected[state]["minimum"]
+        assert computed[state]["minimum"] is expected[state]["minimum"]
         for way in ("course", "wale"):
-            assert found[state][way] == pytest.approx(expected[state][way], rel=1e-3, abs=1e-6)
+            assert computed[state][way] == pytest.approx(expected[state][way], rel=1e-3, abs=1e-6)
 
 
 @pytest.mark.parametrize(("text", "minimum"), [("K", True), ("P/K", False)])
 def test_a_stored_repeat_is_followed_as_stored(text, minimum):
     stored = stored_stitch(StitchChart.parse(text), "cotton")
-    found = follow(StoredTask.of(stored))
-    assert found["minimum"] is minimum
+    computed = follow(StoredTask.of(stored))
+    assert computed["minimum"] is minimum
     assert stored.unmirrored.minimum is minimum
-    assert found["energy_n_mm"] == pytest.approx(stored.unmirrored.energy_n_mm, rel=1e-4)
+    assert computed["energy_n_mm"] == pytest.approx(stored.unmirrored.energy_n_mm, rel=1e-4)
 
 
 def test_finished_repeats_are_not_followed_again(tmp_path):

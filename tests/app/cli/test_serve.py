@@ -9,12 +9,13 @@ import subprocess
 import sys
 import textwrap
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx2
 import pytest
 
-from tests.app.running import wait_until
+from tests.app.running import knitcore, python, wait_until
 
 
 def test_it_starts_on_a_free_port_and_stops_on_request() -> None:
@@ -53,14 +54,7 @@ def test_killed_it_leaves_no_worker_behind() -> None:
         "print(asyncio.run(pool.run(never, jobs.process_id)), flush=True)\n"
         "os.kill(os.getpid(), 9)\n"
     )
-    result = subprocess.run(
-        [sys.executable, "-c", f"if __name__ == '__main__':\n{textwrap.indent(code, '    ')}"],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    worker = Path(f"/proc/{int(result.stdout)}")
+    worker = Path(f"/proc/{int(python('-c', _as_main(code), check=False).stdout)}")
     wait_until(lambda: not worker.exists())
 
 
@@ -71,23 +65,20 @@ def test_killed_while_modules_are_loaded_it_leaves_no_process_behind() -> None:
         "from app.service.compute.processes import processes\n"
         "processes(1); forkserver.ensure_running(); os.kill(os.getpid(), 9)\n"
     )
-    process = subprocess.Popen(
-        [sys.executable, "-c", f"if __name__ == '__main__':\n{textwrap.indent(code, '    ')}"],
-        start_new_session=True,
-    )
+    process = subprocess.Popen([sys.executable, "-c", _as_main(code)], start_new_session=True)
     assert process.wait(60) == -signal.SIGKILL
-    wait_until(lambda: not _in_session(process.pid))
+    wait_until(lambda: process.pid not in _sessions())
 
 
-def _in_session(leader: int) -> list[str]:
-    """Processes of a session."""
-    found = []
+def _as_main(code: str) -> str:
+    return f"if __name__ == '__main__':\n{textwrap.indent(code, '    ')}"
+
+
+def _sessions() -> Iterator[int]:
+    """The leaders of the sessions of all processes."""
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(FileNotFoundError, ProcessLookupError):
-            text = stat.read_text()
-            if int(text.rpartition(")")[2].split()[3]) == leader:
-                found.append(text)
-    return found
+            yield int(stat.read_text().rpartition(")")[2].split()[3])
 
 
 def test_a_port_in_use_is_reported() -> None:
@@ -95,14 +86,7 @@ def test_a_port_in_use_is_reported() -> None:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = str(taken.getsockname()[1])
-        result = subprocess.run(
-            [sys.executable, "-m", "app.cli.main", "serve", "--port", port],
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-        )
+        result = knitcore("serve", "--port", port)
     assert result.returncode == 2, result.stderr
-    assert "cannot be used" in result.stderr
-    assert "open that address in a browser" in result.stderr
-    assert "--port 0" in result.stderr
+    for words in ("cannot be used", "open that address in a browser", "--port 0"):
+        assert words in result.stderr

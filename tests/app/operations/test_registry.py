@@ -1,15 +1,15 @@
-"""What is made of operations: routes, commands, the page's types; and what they are read from."""
+"""Routes, commands and types of the page that are made of operations, and their sources."""
 
 import math
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import click
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 from pydantic import Field, ValidationError
 
 from app.cli.commands import command_of
@@ -42,6 +42,9 @@ def test_every_operation_has_a_route_or_is_a_job(schema: dict[str, Any]) -> None
         assert made["description"]
 
 
+Lines = Callable[[Any], list[str]]
+
+
 class Asked(RequestModel):
     """A request with a field of every sort."""
 
@@ -58,9 +61,9 @@ class Asked(RequestModel):
 
 
 class Told(ResultModel):
-    """What was asked."""
+    """The request, and the content of its file."""
 
-    asked: str
+    request: str
     content: str = ""
 
 
@@ -70,15 +73,11 @@ def tell(request: Asked, context: Context) -> Told:
     if request.file is not None:
         with stored([request.file]) as (path,):
             content = path.read_text()
-    return Told(asked=request.model_dump_json(exclude={"file"}), content=content)
+    return Told(request=request.model_dump_json(exclude={"file"}), content=content)
 
 
-ASKING = Operation(
-    tell,
-    tag="tests",
-    summary="Ask",
-    command=Command(lambda r: [r.asked], names={"parts": "--part"}),
-)
+COMMAND = Command(lambda r: [r.request], names={"parts": "--part"})
+ASKING = Operation(tell, tag="tests", summary="Ask", command=COMMAND)
 
 
 def ask(*arguments: str) -> Asked:
@@ -86,6 +85,12 @@ def ask(*arguments: str) -> Asked:
     if result.exception:
         raise result.exception
     return Asked.model_validate_json(result.output)
+
+
+def done(run: Callable[[Any, Context], Any], lines: Lines, *options: str) -> Result:
+    """Carry out the command of a function for a rib."""
+    operation = Operation(run, tag="tests", summary="Do", command=Command(lines))
+    return CliRunner().invoke(command_of(operation, "do"), ["rib", *options])
 
 
 GARTER = ("garter", "--size", "4x2", "--material", "acrylic", "--direction", "wale")
@@ -105,8 +110,8 @@ def test_options_are_the_fields_of_the_request(tmp_path: Path) -> None:
     )  # fmt: skip
     assert full.gauge == GaugeInput(stitches_per_10_cm=20, rows_per_10_cm=30)
     assert (full.parts, full.steps, full.check, full.brief) == ([1.0, 2.0], 5, False, True)
-    told = CliRunner().invoke(command_of(ASKING, "ask"), [*GARTER, "--file", str(file), "--json"])
-    assert '"content":"hello"' in told.output
+    shown = CliRunner().invoke(command_of(ASKING, "ask"), [*GARTER, "--file", str(file), "--json"])
+    assert '"content":"hello"' in shown.output
 
 
 @pytest.mark.parametrize(
@@ -125,8 +130,8 @@ def test_a_refused_option_is_named(more: list[str], says: str) -> None:
 def test_a_file_brings_chart_and_outline(tmp_path: Path) -> None:
     file = tmp_path / "c.txt"
     file.write_text("KP\nPK")
-    asked = ask(str(file), "--material", "acrylic", "--direction", "wale")
-    assert (asked.chart, asked.outline) == ("KP\nPK", None)
+    request = ask(str(file), "--material", "acrylic", "--direction", "wale")
+    assert (request.chart, request.outline) == ("KP\nPK", None)
 
 
 class Repeat(RequestModel):
@@ -137,15 +142,11 @@ class Repeat(RequestModel):
 
 def repeat(request: Repeat, context: Context) -> Told:
     assert context.local
-    return Told(asked=str(request.chart))
+    return Told(request=str(request.chart))
 
 
 def test_a_repeat_needs_no_size() -> None:
-    operation = Operation(
-        repeat, tag="tests", summary="Repeat", command=Command(lambda r: [r.asked])
-    )
-    told = CliRunner().invoke(command_of(operation, "repeat"), ["rib"])
-    assert told.output == "KP\n"
+    assert done(repeat, lambda r: [r.request]).output == "KP\n"
 
 
 class Remarked(ResultModel):
@@ -160,15 +161,13 @@ def remark(request: Repeat, context: Context) -> Remarked:
 
 
 def test_remarks_do_not_mix_with_the_result() -> None:
-    operation = Operation(remark, tag="tests", summary="Remark", command=Command(lambda _: ["4"]))
-    told = CliRunner().invoke(command_of(operation, "remark"), ["rib"])
-    assert (told.stdout, told.stderr) == ("4\n", "note: one\nwarning: two\n")
-    told = CliRunner().invoke(command_of(operation, "remark"), ["rib", "--json"])
-    assert told.stderr == ""
+    shown = done(remark, lambda _: ["4"])
+    assert (shown.stdout, shown.stderr) == ("4\n", "note: one\nwarning: two\n")
+    assert done(remark, lambda _: ["4"], "--json").stderr == ""
 
 
 @pytest.mark.parametrize(
-    ("source", "told"),
+    ("source", "shown"),
     [
         ("Ten swatches.", "90 % intervals rest on\n  Ten swatches.\n"),
         (
@@ -178,12 +177,11 @@ def test_remarks_do_not_mix_with_the_result() -> None:
         ("No intervals: nothing is known.", "No intervals: nothing is known.\n"),
     ],
 )
-def test_a_result_says_what_its_intervals_rest_on(source: str, told: str) -> None:
+def test_a_result_says_what_its_intervals_rest_on(source: str, shown: str) -> None:
     def known(_: Repeat, __: Context) -> IntervalResult:
         return IntervalResult(interval_source=source)
 
-    operation = Operation(known, tag="tests", summary="Known", command=Command(lambda _: []))
-    assert CliRunner().invoke(command_of(operation, "known"), ["rib"]).stderr == told
+    assert done(known, lambda _: []).stderr == shown
 
 
 @pytest.mark.parametrize("name", [name for name, of in operations().items() if of.example])
@@ -198,7 +196,7 @@ def test_no_part_of_a_request_may_be_infinite(name: str) -> None:
 
 
 def _leaves(value: Any) -> Iterator[tuple[Any, Any]]:
-    """What holds each part without parts of its own, and its name or number there."""
+    """Holders of the parts that have no parts of their own, and the name or number there."""
     inside = list(value.items() if isinstance(value, dict) else enumerate(value))
     for key, part in inside:
         if isinstance(part, dict | list):
@@ -214,7 +212,7 @@ def test_an_operation_is_described_by_its_function() -> None:
 
 
 class Found:
-    """What a library function returned."""
+    """The result of a library function."""
 
     modulus_course_n_per_mm = 0.5
     interval = Interval(1.0, 2.0)
@@ -258,9 +256,9 @@ def test_a_request_passes_its_fields_to_the_library() -> None:
     ) -> tuple[str, float, float, int, float]:
         return chart, strain, shear_modulus, steps, mesh
 
-    asked = Pull(strain=0.2, shear_modulus_n_per_mm=0.03)
-    assert asked.pass_to(pull, "KP") == ("KP", 0.2, 0.03, 3, 1.0)
-    assert asked.pass_to(pull, "KP", 0.4, mesh=2.0, steps=5) == ("KP", 0.4, 0.03, 5, 2.0)
+    request = Pull(strain=0.2, shear_modulus_n_per_mm=0.03)
+    assert request.pass_to(pull, "KP") == ("KP", 0.2, 0.03, 3, 1.0)
+    assert request.pass_to(pull, "KP", 0.4, mesh=2.0, steps=5) == ("KP", 0.4, 0.03, 5, 2.0)
 
 
 YARN_ALONE = {"characterise", "material", "relax", "rs", "sweep", "tube", "whole"}
@@ -270,9 +268,9 @@ YARN_ALONE = {"characterise", "material", "relax", "rs", "sweep", "tube", "whole
 @pytest.mark.parametrize("name", operations())
 def test_published_laws_can_be_chosen_wherever_laws_are_used(name: str) -> None:
     operation = operations()[name]
-    asked = operation.request.model_fields
-    assert name in YARN_ALONE or not {"material", "materials"} & set(asked) or "laws" in asked
-    if "laws" in asked and operation.command is not None:
+    fields = operation.request.model_fields
+    assert name in YARN_ALONE or not {"material", "materials"} & set(fields) or "laws" in fields
+    if "laws" in fields and operation.command is not None:
         options = {option for made in command_of(operation, name).params for option in made.opts}
         assert "--laws" in options
 

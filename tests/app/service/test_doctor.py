@@ -5,8 +5,6 @@ import json
 import os
 import shutil
 import sqlite3
-import subprocess
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -27,36 +25,29 @@ from app.service.store.schema import migrate, revision
 from app.service.web import observing
 from knitcore.base.errors import InputError
 from tests.app.clients import served, state_of
+from tests.app.clusters import scheduler
+from tests.app.databases import opened, sqlite
 
 
 def _database(folder: Path) -> Path:
     """A database of some pages, as a service leaves it."""
     file = folder / "knitcore.sqlite3"
-    database = Database(f"sqlite:///{file}")
-    migrate(database)
-    with database.reserved("main"):
+    with opened(folder) as database, database.reserved("main"):
         pass
-    database.close()
-    with sqlite3.connect(file) as connection:
+    with sqlite(file) as connection:
         connection.execute("PRAGMA journal_mode=DELETE")
         connection.executemany(
             "INSERT INTO designs (id, owner, name, material, chart, rows, columns, revision,"
             " created_at, changed_at) VALUES (?, 'local', 'a', 'acrylic', ?, 1, 1, 1, 0, 0)",
             [(f"design-{n}", "K" * 3_000) for n in range(60)],
         )
-    connection.close()
     return file
 
 
 def _damage(file: Path) -> None:
-    content = bytearray(file.read_bytes())
+    content = file.read_bytes()
     middle = len(content) // 2
-    content[middle : middle + 60_000] = b"\xa5" * 60_000
-    file.write_bytes(content)
-
-
-def _lose(file: Path) -> None:
-    file.unlink()
+    file.write_bytes(content[:middle] + b"\xa5" * 60_000 + content[middle + 60_000 :])
 
 
 def _open_to_all(file: Path) -> None:
@@ -64,15 +55,19 @@ def _open_to_all(file: Path) -> None:
     file.parent.chmod(0o755)
 
 
-def _make_newer(file: Path) -> None:
-    with sqlite3.connect(file) as connection:
-        connection.execute("UPDATE alembic_version SET version_num='9999'")
-    connection.close()
+def _executing(statement: str) -> Callable[[Path], None]:
+    """A spoiler that executes SQL."""
+
+    def spoil(file: Path) -> None:
+        with sqlite(file) as connection:
+            connection.execute(statement)
+
+    return spoil
 
 
-def _told(folder: Path, **environment: str) -> tuple[int, dict[str, dict[str, str]]]:
-    given = {"KNITCORE_DATA_DIR": str(folder)} | environment
-    result = CliRunner().invoke(main, ["doctor", "--json"], env=given)
+def _told(folder: Path) -> tuple[int, dict[str, dict[str, str]]]:
+    """Exit code of the doctor, and the checks that fail."""
+    result = _doctor(folder, "--json")
     checks = json.loads(result.stdout)["checks"]
     assert all(set(check) == {"name", "ok", "problem", "remedy", "note"} for check in checks)
     return result.exit_code, {check["name"]: check for check in checks if not check["ok"]}
@@ -83,18 +78,12 @@ def test_a_sound_set_up_passes(tmp_path: Path) -> None:
     assert not (tmp_path / "new").exists()
     _database(tmp_path)
     assert _told(tmp_path) == (0, {})
-    text = CliRunner().invoke(main, ["doctor"], env={"KNITCORE_DATA_DIR": str(tmp_path)})
-    assert "ok    database" in text.output
+    assert "ok    database" in _doctor(tmp_path).output
 
 
-def _empty(file: Path) -> None:
-    file.write_bytes(b"")
-
-
-def _drop_a_table(file: Path) -> None:
-    with sqlite3.connect(file) as connection:
-        connection.execute("DROP TABLE sessions")
-    connection.close()
+def _doctor(folder: Path, *options: str) -> Result:
+    environment = {"KNITCORE_DATA_DIR": str(folder)}
+    return CliRunner().invoke(main, ["doctor", *options], env=environment)
 
 
 @dataclass(frozen=True)
@@ -135,11 +124,15 @@ BROKEN = {
         "data folder", "cannot be written", {"KNITCORE_DATA_DIR": "/dev/null/nowhere"}
     ),
     "a damaged database": Broken("database", "damaged", spoil=_damage),
-    "a lost database": Broken("database", "is gone", spoil=_lose),
-    "an emptied database": Broken("database", "is empty", spoil=_empty),
-    "a database without a table": Broken("database", "lacks sessions", spoil=_drop_a_table),
+    "a lost database": Broken("database", "is gone", spoil=Path.unlink),
+    "an emptied database": Broken("database", "is empty", spoil=lambda file: os.truncate(file, 0)),
+    "a database without a table": Broken(
+        "database", "lacks sessions", spoil=_executing("DROP TABLE sessions")
+    ),
     "a newer database": Broken(
-        "database", "9999, which this program does not know", spoil=_make_newer
+        "database",
+        "9999, which this program does not know",
+        spoil=_executing("UPDATE alembic_version SET version_num='9999'"),
     ),
     "files open to all": Broken(
         "file modes", "other users", spoil=_open_to_all, starts=True, ready=True
@@ -156,17 +149,17 @@ def broken(
     request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Broken:
     """Each of them, in the environment."""
-    found = BROKEN[request.param]
+    set_up = BROKEN[request.param]
     file = _database(tmp_path)
-    if found.spoil is not None:
-        found.spoil(file)
-    for name in found.limits:
+    if set_up.spoil is not None:
+        set_up.spoil(file)
+    for name in set_up.limits:
         monkeypatch.setattr(doctor, name, 1 << 62)
     monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=1 << 40))
     monkeypatch.setattr(cluster_module, "CONNECT_S", 0.2)
-    for name, value in ({"KNITCORE_DATA_DIR": str(tmp_path)} | dict(found.environment)).items():
+    for name, value in ({"KNITCORE_DATA_DIR": str(tmp_path)} | dict(set_up.environment)).items():
         monkeypatch.setenv(name, value)
-    return found
+    return set_up
 
 
 def _serve(monkeypatch: pytest.MonkeyPatch) -> Result:
@@ -200,7 +193,7 @@ def test_doctor_start_and_readiness_say_the_same_in_one_line(
         (line,) = started.stderr.strip().splitlines()
         assert line.startswith("Error: ")
         assert problem.removesuffix(".") in line
-        if broken.spoil is _lose:  # nothing is put in its place
+        if broken.spoil is Path.unlink:  # nothing is put in its place
             assert not (tmp_path / "knitcore.sqlite3").exists()
         return
     with served() as client:
@@ -209,48 +202,43 @@ def test_doctor_start_and_readiness_say_the_same_in_one_line(
     if broken.ready:
         assert (answer.status_code, answer.json()["checks"][broken.check]) == (200, False)
     else:
-        told = answer.json()
-        assert (answer.status_code, told["title"]) == (503, "Not ready")
-        assert (told["detail"], told["remedy"]) == (problem, remedy)
+        shown = answer.json()
+        assert (answer.status_code, shown["title"]) == (503, "Not ready")
+        assert (shown["detail"], shown["remedy"]) == (problem, remedy)
 
 
 def test_a_second_service_on_the_same_data_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    file = _database(tmp_path)
-    database = Database(f"sqlite:///{file}")
-    with database.reserved("main", "http://127.0.0.1:8737/"):
-        monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
-        done = _serve(monkeypatch)
-        assert done.exit_code == 2
-        assert "another service (process" in done.stderr
-        assert "Open http://127.0.0.1:8737/ in a browser" in done.stderr
-        assert "KNITCORE_DATA_DIR" in done.stderr
-        with pytest.raises(InputError, match="another service"), database.reserved("other"):
+    with opened(tmp_path) as database:
+        with database.reserved("main", "http://127.0.0.1:8737/"):
+            monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
+            done = _serve(monkeypatch)
+            assert done.exit_code == 2
+            assert "another service (process" in done.stderr
+            assert "Open http://127.0.0.1:8737/ in a browser" in done.stderr
+            assert "KNITCORE_DATA_DIR" in done.stderr
+            with pytest.raises(InputError, match="another service"), database.reserved("other"):
+                pass
+        with database.reserved("main"):  # free again
             pass
-    with database.reserved("main"):  # free again
-        pass
-    database.close()
 
 
 def test_doctor_names_the_service_that_runs(tmp_path: Path) -> None:
-    database = Database(f"sqlite:///{_database(tmp_path)}")
-    environment = {"KNITCORE_DATA_DIR": str(tmp_path)}
-    with database.reserved("main", "http://127.0.0.1:8737/"):
-        told = CliRunner().invoke(main, ["doctor"], env=environment)
-        named = f"Process {os.getpid()} runs on it, at http://127.0.0.1:8737/."
-        assert (told.exit_code, named in told.output) == (0, True)
-    assert "runs on it" not in CliRunner().invoke(main, ["doctor"], env=environment).output
-    database.close()
+    with opened(tmp_path) as database:
+        with database.reserved("main", "http://127.0.0.1:8737/"):
+            result = _doctor(tmp_path)
+            named = f"Process {os.getpid()} runs on it, at http://127.0.0.1:8737/."
+            assert (result.exit_code, named in result.output) == (0, True)
+        assert "runs on it" not in _doctor(tmp_path).output
 
 
 @pytest.mark.postgres
-def test_two_services_of_one_name_are_refused_on_postgresql(postgres_url: str) -> None:
-    database = Database(postgres_url)
+def test_two_services_of_one_name_are_refused_on_postgresql(postgres_database: Database) -> None:
+    reserved = postgres_database.reserved
     second = pytest.raises(InputError, match="KNITCORE_PROCESS_NAME")
-    with database.reserved("main"), database.reserved("other"), second, database.reserved("main"):
+    with reserved("main"), reserved("other"), second, reserved("main"):
         pass
-    database.close()
 
 
 def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
@@ -274,26 +262,22 @@ def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
 
 def test_a_copy_is_kept_before_a_migration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With a next migration, which only this test has."""
-    file = tmp_path / "knitcore.sqlite3"
-    database = Database(f"sqlite:///{file}")
-    migrate(database)
-    before = revision(database)
-    migrations = shutil.copytree(schema.MIGRATIONS, tmp_path / "migrations")
-    (migrations / "versions" / "next.py").write_text(
-        f"revision, down_revision = 'next', {before!r}\n\ndef upgrade():\n    pass\n"
-    )
-    monkeypatch.setattr(schema, "MIGRATIONS", migrations)
-    file.with_name(f"{file.name}.before-next.partial").touch()  # an attempt that failed
-    migrate(database)
-    assert revision(database) == "next"
-    database.close()
+    with opened(tmp_path) as database:
+        before = revision(database)
+        migrations = shutil.copytree(schema.MIGRATIONS, tmp_path / "migrations")
+        (migrations / "versions" / "next.py").write_text(
+            f"revision, down_revision = 'next', {before!r}\n\ndef upgrade():\n    pass\n"
+        )
+        monkeypatch.setattr(schema, "MIGRATIONS", migrations)
+        (tmp_path / "knitcore.sqlite3.before-next.partial").touch()  # an attempt that failed
+        migrate(database)
+        assert revision(database) == "next"
     (copy,) = tmp_path.glob("*.before-*")
     assert copy.name.endswith(".before-next")
     assert copy.stat().st_mode & 0o077 == 0
-    old = Database(f"sqlite:///{copy}")
-    assert revision(old) == before
-    old.check_pages()
-    old.close()
+    with opened(f"sqlite:///{copy}", migrated=False) as old:
+        assert revision(old) == before
+        old.check_pages()
 
 
 def test_a_cluster_without_workers_is_reported(
@@ -301,15 +285,7 @@ def test_a_cluster_without_workers_is_reported(
 ) -> None:
     monkeypatch.setattr(cluster_module, "WORKERS_S", 0.2)
     monkeypatch.setattr(cluster_module, "CONNECT_S", 60.0)
-    file = tmp_path / "scheduler.json"
-    words = ["scheduler", "--host=127.0.0.1", "--port=0", "--no-dashboard"]
-    words += ["--dashboard-address=127.0.0.1:0", f"--scheduler-file={file}"]
-    with (tmp_path / "log").open("w") as log:
-        scheduler = subprocess.Popen([sys.executable, "-m", "dask", *words], stderr=log)
-    try:
-        while not file.exists() or not file.read_text():
-            assert scheduler.poll() is None, (tmp_path / "log").read_text()
-        address = json.loads(file.read_text())["address"]
+    with scheduler(tmp_path) as address:
         cluster = Cluster(address)
         with pytest.raises(ClusterError, match="accepts computations"):
             cluster.begin("a-job", print)
@@ -323,6 +299,3 @@ def test_a_cluster_without_workers_is_reported(
             refused = client.post("/api/v1/relax", json=wish)
             assert refused.status_code == 503
             assert "accepts computations" in refused.json()["detail"]
-    finally:
-        scheduler.terminate()
-        scheduler.wait(60)

@@ -1,4 +1,4 @@
-"""What browsers send into views, and what they might."""
+"""Messages that browsers send into views, and those that they might."""
 
 import io
 import tracemalloc
@@ -10,7 +10,6 @@ import pytest
 import zstandard
 from fastapi.testclient import TestClient
 from PIL import Image
-from starlette.websockets import WebSocketDisconnect
 
 from app.viewer.incoming import (
     MAX_BYTES,
@@ -21,6 +20,7 @@ from app.viewer.incoming import (
     passed_on,
 )
 from tests.app.clients import drain, state_of, watching
+from tests.app.rest import draw
 from tests.app.running import wait_until
 
 CAMERA = {
@@ -118,8 +118,7 @@ def test_a_picture_of_another_size_is_refused_by_its_header(content: bytes) -> N
 
 
 def _shown(client: TestClient, design: str) -> Any:
-    body = {"chart": "KP\nPK", "material": "cotton"}
-    assert client.put(f"/api/v1/views/{design}", json=body).status_code == 200
+    draw(client, design)
     return watching(client, f"/view/{design}")
 
 
@@ -157,9 +156,7 @@ def test_a_picture_is_requested_from_a_browser(
 def test_a_browser_that_floods_a_view_is_disconnected(client: TestClient) -> None:
     with _shown(client, "a-loud-view") as socket:
         socket.send_bytes(b"\0" * (MAX_BYTES + 1))
-        with pytest.raises(WebSocketDisconnect) as closed:
-            drain(socket)
-    assert closed.value.code == 1008
+        assert drain(socket) == 1008
     with _shown(client, "a-loud-view") as socket:
         socket.send_text("no message at all")
         assert socket.receive_bytes()  # others are not disturbed

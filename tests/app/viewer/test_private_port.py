@@ -2,11 +2,11 @@
 
 import asyncio
 import threading
-import urllib.error
-import urllib.request
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 
+import httpx2 as httpx
 import pytest
 import viser
 from websockets.exceptions import InvalidStatus
@@ -42,23 +42,16 @@ def test_who_falls_asleep_just_after_another_thread_set_the_event_is_woken() -> 
 
 
 def test_views_have_such_a_queue() -> None:
-    server = private_server()
-    try:
-        queue = server._websock_server.get_message_buffer()
+    with closing(Views(most=1, idle_s=60)) as views:
+        queue = views.open("a-design").server._websock_server.get_message_buffer()
         assert isinstance(queue.message_event, NewsEvent)
-    finally:
-        server.stop()
 
 
 def test_the_raw_port_of_a_view_is_closed_to_others() -> None:
-    """As another page or user of this machine would try it."""
-    views = Views(most=1, idle_s=60)
-    port = views.open("a-design").port
-    try:
-        with pytest.raises(urllib.error.HTTPError) as refused:
-            urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=60)
-        assert refused.value.code == 403
-        refused.value.close()
+    """Try it as another page or user of this machine would."""
+    with closing(Views(most=1, idle_s=60)) as views:
+        port = views.open("a-design").port
+        assert httpx.get(f"http://127.0.0.1:{port}/", timeout=60).status_code == 403
         subprotocols = [Subprotocol(f"viser-v{viser.__version__}")]
         opened = partial(
             connect, f"ws://127.0.0.1:{port}", subprotocols=subprotocols, open_timeout=60
@@ -69,8 +62,6 @@ def test_the_raw_port_of_a_view_is_closed_to_others() -> None:
             assert denied.value.response.status_code == 403
         with opened(additional_headers=RELAY_HEADERS) as socket:
             assert socket.recv(timeout=60)
-    finally:
-        views.close()
 
 
 def test_no_view_is_opened_if_the_port_cannot_be_closed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,39 +1,35 @@
-"""What browsers are sent of a cloth that changes, and close-ups that stay where they are."""
+"""Messages to browsers about a cloth that changes, and close-ups that stay where they are."""
 
 import contextlib
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from app.context import Context
-from app.drawing.design_view import ViewRequest, build_scene
 from app.viewer import scene as scene_module
 from app.viewer.camera import CameraSide
 from app.viewer.cloth import FINEST, UNITS_PER_MM, ShownStitches
 from app.viewer.views import View, new_view
-
-SMALL = {"chart": "KPKP\nPKPK\nKPKP", "material": "acrylic"}
+from tests.app.drawing.test_design_view import SMALL, scene_of
 
 
 @pytest.fixture
 def view(monkeypatch: pytest.MonkeyPatch) -> Iterator[View]:
     """A view at which somebody looks."""
-    found = new_view()
+    view = new_view()
     camera = SimpleNamespace(position=np.zeros(3))
     client = SimpleNamespace(camera=camera, atomic=contextlib.nullcontext)
-    monkeypatch.setattr(found.server, "get_clients", lambda: {0: client})
-    yield found
-    found.stop()
+    monkeypatch.setattr(view.server, "get_clients", lambda: {0: client})
+    yield view
+    view.stop()
 
 
 def _show(view: View, request: dict[str, str]) -> None:
-    view.show(build_scene(ViewRequest.model_validate(request), None, Context(Path())).drawing())
+    view.show(scene_of(request).drawing())
 
 
 def _nodes(view: View) -> dict[str, int]:
@@ -89,7 +85,7 @@ def test_tubes_are_scaled_at_once_and_drawn_anew_once_they_keep_still(
         return flattened
 
     monkeypatch.setattr(ShownStitches, "lay", note)
-    scene = build_scene(ViewRequest.model_validate(SMALL), None, Context(Path()))
+    scene = scene_of(SMALL)
     view.show(scene.drawing())
     before = _nodes(view)
     places = replace(scene.placement, sizes_mm=1.03 * scene.placement.sizes_mm)
@@ -127,7 +123,7 @@ def test_without_a_gpu_less_of_a_large_chart_is_yarn(
     view: View, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(scene_module, "COARSE_WINDOW", 6)
-    scene = build_scene(ViewRequest.model_validate(SMALL), None, Context(Path()))
+    scene = scene_of(SMALL)
     for picture, stitches in ((None, 12), (scene.colours, 6)):
         view.writer.coarse = True
         view.show(replace(scene.drawing(), picture=picture))

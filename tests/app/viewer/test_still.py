@@ -2,20 +2,19 @@
 
 import dataclasses
 import io
-from pathlib import Path
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from PIL import Image
 
-from app.context import Context
 from app.drawing.colours import FABRIC_COLOURS, rgb
 from app.drawing.computed import PosedView
-from app.drawing.design_view import ViewRequest, build_scene
+from app.drawing.fabric import Drawing
 from app.viewer.still import still_png
 from knitcore.chart.fabric import Fabric
 from knitcore.draw.body import Body
+from tests.app.drawing.test_design_view import scene_of
 
 ASKED = {"chart": "\n".join(["KKKK"] * 4), "material": "acrylic", "colour": "fabric"}
 
@@ -25,21 +24,35 @@ def picture(content: bytes) -> np.ndarray:
 
 
 def still(width: int, height: int, **changed: object) -> np.ndarray:
-    request = ViewRequest.model_validate(ASKED | changed)
-    return picture(still_png(build_scene(request, None, Context(Path())).drawing(), width, height))
+    return picture(still_png(scene_of(ASKED | changed).drawing(), width, height))
+
+
+def opaque(drawn: np.ndarray) -> np.ndarray:
+    return drawn[..., 3] > 128
+
+
+def cloth(height_mm: float) -> np.ndarray:
+    """The corners of 4 x 4 stitches of 3 mm, all at one height."""
+    corners = np.full((5, 5, 3), height_mm, np.float32)
+    corners[..., 1], corners[..., 0] = 3.0 * np.mgrid[:5, :5]
+    return corners
+
+
+def posed(view: PosedView) -> Drawing:
+    return scene_of(ASKED | {"curl": {"id": "posed"}}, view).drawing()
 
 
 def test_the_fabric_lies_in_the_middle_in_its_colour() -> None:
     drawn = still(120, 90)
     assert drawn.shape == (90, 120, 4)
-    shown = drawn[..., 3] > 128
+    shown = opaque(drawn)
     columns, rows = np.flatnonzero(shown.any(axis=0)), np.flatnonzero(shown.any(axis=1))
     assert columns.mean() == pytest.approx(60, abs=2)
     assert 0.6 * 90 < np.ptp(rows) < 90
     assert not shown[0].any()
     colour = drawn[shown][:, :3].mean(axis=0)
-    wanted = np.array(rgb(FABRIC_COLOURS[Fabric.STOCKINETTE]))
-    assert np.corrcoef(colour, wanted)[0, 1] > 0.99
+    expected = np.array(rgb(FABRIC_COLOURS[Fabric.STOCKINETTE]))
+    assert np.corrcoef(colour, expected)[0, 1] > 0.99
 
 
 def test_face_and_back_of_a_loop_differ() -> None:
@@ -49,55 +62,43 @@ def test_face_and_back_of_a_loop_differ() -> None:
 
 
 def test_where_there_is_no_stitch_nothing_is_drawn() -> None:
-    part = still(120, 90, outline="\n".join(["xx.."] * 4))[..., 3] > 128
-    right = np.flatnonzero(part.any(axis=0)).max()
-    whole = np.flatnonzero((still(120, 90)[..., 3] > 128).any(axis=0)).max()
-    assert right < whole - 20
+    part, whole = (
+        np.flatnonzero(opaque(still(120, 90, outline=outline)).any(axis=0)).max()
+        for outline in ("\n".join(["xx.."] * 4), None)
+    )
+    assert part < whole - 20
 
 
 def test_a_shape_that_leaves_the_picture_is_cut_at_its_edges() -> None:
-    corners = np.full(
-        (5, 5, 3), 12.0, np.float32
-    )  # nearer to the eye, in the frame of the flat one
-    corners[..., 1], corners[..., 0] = np.mgrid[:5, :5] * 3.0
-    request = ViewRequest.model_validate(ASKED | {"curl": {"id": "bowl"}})
-    near = build_scene(request, PosedView(corners), Context(Path())).drawing()
-    flat = build_scene(ViewRequest.model_validate(ASKED), None, Context(Path()))
-    drawing = dataclasses.replace(near, ground=flat.ground)
-    shown = picture(still_png(drawing, 120, 90))[..., 3] > 128
+    near = posed(PosedView(cloth(12.0)))  # nearer to the eye, in the frame of the flat one
+    drawing = dataclasses.replace(near, ground=scene_of(ASKED).ground)
+    shown = opaque(picture(still_png(drawing, 120, 90)))
     assert shown[0].any()
     assert shown[-1].any()
 
 
 def on_a_ball(over_mm: float) -> np.ndarray:
     """A picture of flat cloth, 4 x 4 stitches, and a ring around its middle: over or under it."""
-    corners = np.zeros((5, 5, 3), np.float32)
-    corners[..., 1], corners[..., 0] = 3.0 * np.mgrid[:5, :5]
     turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
     circle = np.stack([np.sin(turn), np.zeros(24), np.cos(turn)], axis=-1)
     rings = np.stack([6.0 + 2.0 * circle, 6.0 + 2.0 * circle])
     rings[:, :, 1] = [[2.0], [10.0]]
     rings[..., 2] += over_mm - 6.0
-    request = ViewRequest.model_validate(ASKED | {"curl": {"id": "ball"}})
-    scene = build_scene(request, PosedView(corners, Body.around(rings)), Context(Path()))
-    return picture(still_png(scene.drawing(), 120, 90))
+    return picture(still_png(posed(PosedView(cloth(0.0), Body.around(rings))), 120, 90))
 
 
 def test_what_the_cloth_rests_on_hides_it_or_is_hidden() -> None:
     above, below = on_a_ball(6.0), on_a_ball(-6.0)
     # skin is reddish, the yarn blue
-    seen = [((at[..., 3] > 128) & (at[..., 0] > at[..., 2])).sum() for at in (above, below)]
+    seen = [(opaque(at) & (at[..., 0] > at[..., 2])).sum() for at in (above, below)]
     assert seen[0] > 2 * seen[1] > 0  # between the loops it is seen from above, too
 
 
 def test_what_it_rests_on_is_framed_whole() -> None:
     """A table that reaches far beyond the cloth, on one side, and towards the eye."""
-    corners = np.zeros((5, 5, 3), np.float32)
-    corners[..., 1], corners[..., 0] = 3.0 * np.mgrid[:5, :5]
     table = Body.slab(np.array([(-60.0, -40.0), (0.0, -40.0), (0.0, 40.0), (-60.0, 40.0)]), 10.0)
-    request = ViewRequest.model_validate(ASKED | {"curl": {"id": "table"}})
-    scene = build_scene(request, PosedView(corners, table).upright(), Context(Path()))
-    shown = picture(still_png(scene.drawing(), 120, 90))[..., 3] > 128
+    drawing = posed(PosedView(cloth(0.0), table).upright())
+    shown = opaque(picture(still_png(drawing, 120, 90)))
     columns, rows = np.flatnonzero(shown.any(axis=0)), np.flatnonzero(shown.any(axis=1))
     assert 0 < columns[0] < columns[-1] < 119
     assert 0 < rows[0] < rows[-1] < 89
@@ -107,7 +108,7 @@ def test_what_it_rests_on_is_framed_whole() -> None:
 
 def test_large_pictures_are_larger_not_other_ones() -> None:
     small, large = still(80, 60), still(160, 120)
-    shares = [(each[..., 3] > 128).mean() for each in (small, large)]
+    shares = [opaque(drawn).mean() for drawn in (small, large)]
     assert shares[0] == pytest.approx(shares[1], abs=0.03)
 
 

@@ -4,6 +4,7 @@ import contextlib
 import gc
 import os
 import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -11,13 +12,14 @@ import viser
 from fastapi.testclient import TestClient
 
 from app.service import memory
+from app.service.limits.user_limits import OverLimitError, UserLimits
+from app.viewer import views as views_module
 from app.viewer.views import Views
 from tests.app.clients import served, state_of, watching
-from tests.app.running import wait_until
-from tests.app.threads import threads_of_no_pool
+from tests.app.rest import draw
+from tests.app.running import threads_of_no_pool, wait_until
 
 ROUNDS, VIEWS = 3, 3
-CHART = {"fabric": "rib", "columns": 6, "rows": 6}
 
 
 def _held() -> tuple[int, int]:
@@ -37,8 +39,7 @@ def _servers() -> int:
 def _look(client: TestClient) -> None:
     """Open some views, look at each, and go away."""
     for number in range(VIEWS):
-        body = {"chart": CHART, "material": "acrylic"}
-        assert client.put(f"/api/v1/views/dropped-{number}", json=body).status_code == 200
+        draw(client, f"dropped-{number}", {"fabric": "rib", "columns": 6, "rows": 6})
         with watching(client, f"/view/dropped-{number}") as socket:
             assert socket.receive_bytes()
 
@@ -63,9 +64,8 @@ def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None
 
 
 def test_a_view_prints_nothing_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
-    views = Views(most=1, idle_s=1.0)
-    views.open("a-quiet-one")
-    views.close()
+    with closing(Views(most=1, idle_s=1.0)) as views:
+        views.open("a-quiet-one")
     assert capsys.readouterr().out == ""
 
 
@@ -84,8 +84,7 @@ def test_views_make_room_for_each_other() -> None:
 
 
 def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
-    views = Views(most=4, idle_s=60)
-    try:
+    with closing(Views(most=4, idle_s=60)) as views:
         first = views.open("ada/a")
         views.watch("ada/a", +1)
         assert not first.writer.coarse
@@ -96,5 +95,32 @@ def test_a_view_is_as_coarse_as_its_browsers_need() -> None:
         views.watch("ada/a", -1, coarse=True)
         assert not first.writer.coarse
         assert views.open("ada/c").writer.coarse  # the same browser comes back
-    finally:
-        views.close()
+
+
+def test_one_user_does_not_take_all_views(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(views_module, "USER_LIMITS", UserLimits(views=2))
+    with closing(Views(most=3, idle_s=60)) as views:
+        for name in ("ada/a", "ada/b"):
+            views.open(name)
+            views.watch(name, +1)
+        with pytest.raises(OverLimitError, match="2 of 2"):
+            views.open("ada/c")
+        views.open("bob/a")
+        views.watch("ada/a", -1)
+        views.open("ada/c")  # the one nobody watches makes room
+        assert views.get("ada/a") is None
+        assert views.get("bob/a") is not None
+
+
+def test_large_charts_in_views_make_room_for_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(views_module, "USER_LIMITS", UserLimits(view_stitches=100))
+    with closing(Views(most=9, idle_s=60)) as views:
+        views.open("ada/a", 60)
+        views.open("bob/a", 60)
+        views.open("ada/b", 60)
+        assert views.get("ada/a") is None
+        assert views.get("bob/a") is not None
+        views.watch("ada/b", +1)
+        with pytest.raises(OverLimitError, match="60 of 100"):
+            views.open("ada/c", 60)
+        assert views.open("ada/b", 90).stitches == 90  # the same view, with a larger chart

@@ -17,17 +17,3 @@ def test_patterns_are_repeats_without_a_smaller_one(client: TestClient) -> None:
     for pattern in shelf:
         chart = StitchChart.parse(pattern["repeat"])
         assert chart.repeat() == chart
-
-
-def test_malformed_json_is_reported_as_such(client: TestClient) -> None:
-    response = client.post(
-        "/api/v1/charts/parse", content=b'{"text": ', headers={"content-type": "application/json"}
-    )
-    assert response.status_code == 422
-    assert "not valid JSON" in response.json()["detail"]
-
-
-def test_a_missing_page_is_a_problem(client: TestClient) -> None:
-    response = client.get("/api/v1/nothing")
-    assert response.status_code == 404
-    assert response.json()["type"] == "/problems/http"

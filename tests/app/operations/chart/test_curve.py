@@ -14,20 +14,20 @@ from tests.app.command_line import refused, run
 
 def test_a_pure_fabric_has_its_law(client: TestClient) -> None:
     arguments = ["garter", "--size", "6x6", "--material", "acrylic", "--direction", "wale"]
-    told = run("curve", *arguments, "--points", "4")
+    shown = run("curve", *arguments, "--points", "4")
     law = material("acrylic").law(Fabric.GARTER)
-    expected = [strain_at_stress(law, Direction.WALE, s) for s in told["stress_n_per_mm"]]
-    assert told["strain"] == pytest.approx(expected)
-    assert told["provenance"] == "measured"
-    lows, highs = told["strain_interval"]
+    expected = [strain_at_stress(law, Direction.WALE, s) for s in shown["stress_n_per_mm"]]
+    assert shown["strain"] == pytest.approx(expected)
+    assert shown["provenance"] == "measured"
+    lows, highs = shown["strain_interval"]
     assert lows[0] == highs[0] == 0
-    assert len(told["stress_interval_n_per_mm"]) == 2
-    for low, strain, high in zip(lows[1:], told["strain"][1:], highs[1:], strict=True):
+    assert len(shown["stress_interval_n_per_mm"]) == 2
+    for low, strain, high in zip(lows[1:], shown["strain"][1:], highs[1:], strict=True):
         assert low < strain < high
     # cloth that narrows locks a little later than cloth held at its width
     assert highs[-1] < 1.05 * law.lock_up_strain(Direction.WALE)
     body = {"chart": "K\nP", "material": "acrylic", "direction": "wale"}
-    body["stress_n_per_mm"] = told["stress_n_per_mm"]
+    body["stress_n_per_mm"] = shown["stress_n_per_mm"]
     assert client.post("/api/v1/curve", json=body).json()["strain"] == pytest.approx(expected)
 
 
@@ -52,11 +52,11 @@ def test_a_wide_rib_is_learned_and_ones_own_gauge_counts(
 def test_the_prediction_takes_the_gauge_too(client: TestClient) -> None:
     gauge = {"stitches_per_10_cm": 70, "rows_per_10_cm": 35}
     body = {"chart": "KKPP", "material": "acrylic", "gauge": gauge}
-    told = client.post("/api/v1/predict", json=body).json()
-    assert told["relaxed_course_mm"] == pytest.approx(100 / 70)
-    assert told["relaxed_source"] == "gauge"
-    low, high = told["modulus_course_interval_n_per_mm"]
-    assert low < told["modulus_course_n_per_mm"] < high
+    shown = client.post("/api/v1/predict", json=body).json()
+    assert shown["relaxed_course_mm"] == pytest.approx(100 / 70)
+    assert shown["relaxed_source"] == "gauge"
+    low, high = shown["modulus_course_interval_n_per_mm"]
+    assert low < shown["modulus_course_n_per_mm"] < high
     problem = client.post("/api/v1/predict", json=body | {"gauge": {"rows_per_10_cm": 3}}).json()
     assert problem["field"] == "gauge.stitches_per_10_cm"
 

@@ -12,11 +12,10 @@ from app.context import Context
 from app.drawing.design_view import ViewRequest, build_scene
 from app.drawing.fabric import solid_glb
 from app.operations.cloth.curl import CurlRequest, curl
-from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import DesignFile, write_design
 from tests.app.command_line import printed, run
-from tests.app.rest import post
+from tests.app.rest import post, solid
 
 STRIP = {"fabric": "stockinette", "columns": 12, "rows": 3}
 FIELDS = {
@@ -44,7 +43,7 @@ def test_a_first_shape_begins_at_an_old_one(client: TestClient) -> None:
         assert not answer["converged"]
         return float(answer["depth_mm"])
 
-    rest = client.post("/api/v1/curl", json={"chart": STRIP, "material": "acrylic"}).json()
+    rest = post(client, "curl", {"chart": STRIP, "material": "acrylic"})
     changed = "KKKKKKKKKKKK\nKKKKKPKKKKKK\nKKKKKKKKKKKK"
     after = {"after": rest["id"]}
     assert depth_mm(chart=changed, **after) == pytest.approx(rest["depth_mm"], rel=0.1)
@@ -55,63 +54,50 @@ def test_a_first_shape_begins_at_an_old_one(client: TestClient) -> None:
 
 def test_a_shaped_piece_over_rest_and_as_a_solid(client: TestClient) -> None:
     outline = "..xxxx..\n.xxxxxx.\nxxxxxxxx"
-    body = {
-        "chart": {"fabric": "garter", "columns": 8, "rows": 3},
-        "material": "acrylic",
-        "outline": outline,
-        "corners": True,
-    }
-    told = client.post("/api/v1/curl", json=body).json()
-    assert told["converged"]
-    assert told["curl_course_mm"] is None
-    assert [at is None for at in told["corners_mm"][3]] == [True] * 2 + [False] * 5 + [True] * 2
-    view = {name: body[name] for name in ("chart", "material", "outline")}
-    solid = client.post("/api/v1/views/solid", json=view | {"curl": {"id": told["id"]}})
-    assert solid.status_code == 200, solid.text
+    chart = {"fabric": "garter", "columns": 8, "rows": 3}
+    body = {"chart": chart, "material": "acrylic", "outline": outline}
+    curled = post(client, "curl", body | {"corners": True})
+    assert curled["converged"]
+    assert curled["curl_course_mm"] is None
+    assert [at is None for at in curled["corners_mm"][3]] == [True] * 2 + [False] * 5 + [True] * 2
+    assert solid(client, body | {"curl": {"id": curled["id"]}}).extents.all()
 
 
 def test_a_piece_with_a_hole_over_rest_as_a_solid_and_hanging(client: TestClient) -> None:
     outline = "\n".join(["xxxxxxxx", *["xx....xx"] * 4, "xxxxxxxx"])
-    body = {
-        "chart": {"fabric": "seed", "columns": 8, "rows": 6},
-        "material": "acrylic",
-        "outline": outline,
-    }
-    told = client.post("/api/v1/curl", json=body | {"corners": True}).json()
-    assert told["converged"]
-    missing = [[at is None for at in line] for line in told["corners_mm"]]
+    chart = {"fabric": "seed", "columns": 8, "rows": 6}
+    body = {"chart": chart, "material": "acrylic", "outline": outline}
+    curled = post(client, "curl", body | {"corners": True})
+    assert curled["converged"]
+    missing = [[at is None for at in line] for line in curled["corners_mm"]]
     assert np.argwhere(missing).tolist() == [[y, x] for y in (2, 3, 4) for x in (3, 4, 5)]
-    solid = client.post("/api/v1/views/solid", json=body | {"curl": {"id": told["id"]}})
-    assert solid.status_code == 200, solid.text
-    mesh = trimesh.load_mesh(io.BytesIO(solid.content), file_type="glb")
+    mesh = solid(client, body | {"curl": {"id": curled["id"]}})
     width, height = 1000.0 * mesh.extents[:2]
-    assert width == pytest.approx(told["width_mm"], rel=0.1)
+    assert width == pytest.approx(curled["width_mm"], rel=0.1)
     near = np.abs(1000.0 * (mesh.vertices - mesh.bounds.mean(axis=0))[:, :2])
     assert not (near < (0.1 * width, 0.1 * height)).all(axis=1).any()
-    hung = client.post("/api/v1/hang", json=body | {"linear_density_g_per_m": 0.5}).json()
-    assert hung["converged"]
+    assert post(client, "hang", body | {"linear_density_g_per_m": 0.5})["converged"]
 
 
 def test_a_shaped_design_and_clamps_at_the_command_line(tmp_path: Path) -> None:
-    design = tmp_path / "shaped.json"
+    design, out = tmp_path / "shaped.json", tmp_path / "shaped.glb"
     knits, outline = "\n".join(["KKKKKK"] * 4), "..xx..\nxxxxxx\nxx..xx\nxxxxxx"
     shaped = DesignFile(name="Shaped", material="acrylic", chart=knits, outline=outline)
     design.write_text(write_design(shaped))
-    out = tmp_path / "shaped.glb"
-    told = run("curl", design, "--material", "acrylic", "--strain", "0.1", "--out", out)
-    assert told["curl_wale_mm"] is None
-    assert "between clamps" in told["notes"][0]
+    curled = run("curl", design, "--material", "acrylic", "--strain", "0.1", "--out", out)
+    assert curled["curl_wale_mm"] is None
+    assert "between clamps" in curled["notes"][0]
     assert out.stat().st_size > 1000
 
 
 @pytest.mark.parametrize("kind", [".npz", ".glb"])
 def test_curl_writes_the_shape(tmp_path: Path, kind: str) -> None:
     out = tmp_path / f"shape{kind}"
-    told = run("curl", "stockinette", "--size", "12x3", "--material", "acrylic", "--out", out)
-    size = [told["width_mm"], told["height_mm"], told["depth_mm"]]
+    curled = run("curl", "stockinette", "--size", "12x3", "--material", "acrylic", "--out", out)
+    size = [curled["width_mm"], curled["height_mm"], curled["depth_mm"]]
     if kind == ".npz":
-        with np.load(out) as found:
-            assert np.ptp(found["corners_mm"], axis=(0, 1)) == pytest.approx(size)
+        with np.load(out) as arrays:
+            assert np.ptp(arrays["corners_mm"], axis=(0, 1)) == pytest.approx(size)
     else:  # in metres, and the yarn has a thickness
         mesh = trimesh.load_mesh(out)
         assert np.all(1000.0 * mesh.extents > np.array(size) - 1e-3)
@@ -124,25 +110,12 @@ def test_curl_prints_words() -> None:
     assert "Without friction" in result.stderr
 
 
-def test_a_view_shows_the_shape(tmp_path: Path) -> None:
-    context = Context(tmp_path)
+def test_a_view_shows_the_shape(context: Context) -> None:
     request = CurlRequest(chart=StitchChart.parse("K").tile(3, 12).text, material="acrylic")
-    found = curl(request, context)
-    asked = {"chart": request.chart, "material": "acrylic", "curl": {"id": found.result.id}}
-    scene = build_scene(ViewRequest.model_validate(asked), found.view, context)
+    curled = curl(request, context)
+    body = {"chart": request.chart, "material": "acrylic", "curl": {"id": curled.result.id}}
+    scene = build_scene(ViewRequest.model_validate(body), curled.view, context)
     assert scene.placement.heights_mm is not None
     assert np.ptp(scene.placement.heights_mm) > 2.0
     mesh = trimesh.load_mesh(io.BytesIO(solid_glb(scene)), file_type="glb")
     assert 1000.0 * mesh.extents[2] > np.ptp(scene.placement.heights_mm)
-
-
-@pytest.mark.parametrize(
-    ("more", "field"), [({}, "curl.id"), ({"stretch": {"id": "x", "step": 0}}, "curl")]
-)
-def test_a_view_refuses_a_shape_that_it_cannot_show(
-    tmp_path: Path, more: dict[str, object], field: str
-) -> None:
-    asked = {"chart": "KK", "material": "acrylic", "curl": {"id": "gone"}} | more
-    with pytest.raises(InputError) as told:
-        build_scene(ViewRequest.model_validate(asked), None, Context(tmp_path))
-    assert told.value.field == field

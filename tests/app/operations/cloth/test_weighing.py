@@ -24,22 +24,30 @@ PIECE = {"fabric": "garter", "columns": 5, "rows": 6}
 def test_simulated_tests_over_rest(
     client: TestClient, address: str, body: dict[str, Any], lines: tuple[int, int]
 ) -> None:
-    told = post(client, f"{address}", {**body, "corners": True})
-    assert told["converged"]
-    assert np.array([[at is None for at in line] for line in told["corners_mm"]]).shape == lines
+    result = post(client, address, {**body, "corners": True})
+    assert result["converged"]
+    assert np.array([[at is None for at in line] for line in result["corners_mm"]]).shape == lines
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "words", "note"),
     [
-        (["hang", "garter", "--size", "5x6"], "lengthening"),
-        (["overhang", "seed", "--direction", "wale"], "bending length"),
-        (["drape", "garter", "--across", "10"], "drape coefficient"),
+        (["hang", "garter", "--size", "5x6"], "lengthening", ""),
+        (["overhang", "seed", "--direction", "wale"], "bending length", ""),
+        (["overhang", "stockinette"], "bending length", "curls"),
+        (["drape", "garter", "--across", "10"], "drape coefficient", ""),
+        pytest.param(
+            ["border", "stockinette", "--border", "rib"],
+            "top and bottom",
+            "Knitters make borders",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
-def test_simulated_tests_as_commands(arguments: list[str], words: str) -> None:
+def test_simulated_tests_as_commands(arguments: list[str], words: str, note: str) -> None:
     result = printed(*arguments, "--material", "acrylic", "--linear-density-g-per-m", "0.5")
     assert words in result.stdout
+    assert note in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -48,25 +56,11 @@ def test_simulated_tests_as_commands(arguments: list[str], words: str) -> None:
 def test_the_piece_of_a_test_is_shown_in_3d(
     client: TestClient, address: str, more: dict[str, Any]
 ) -> None:
-    told = client.post(f"/api/v1/{address}", json={"chart": "K/P", **more, **YARN}).json()
-    piece = told["piece"]
+    piece = post(client, address, {"chart": "K/P", **more, **YARN})["piece"]
     view = {"curl": {"id": piece.pop("id")}, "material": "acrylic", **piece}
     assert client.post("/api/v1/views/still", json=view).status_code == 200
-
-
-def test_fabric_that_curls_is_said_to() -> None:
-    yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
-    assert "curls" in printed("overhang", "stockinette", *yarn).stderr
 
 
 def test_border_over_rest(client: TestClient) -> None:
     body = {"chart": "K/P", "border": "seed", **YARN}
     assert post(client, "border", body)["sides"]["stitches"] == 0
-
-
-@pytest.mark.slow
-def test_border_as_a_command() -> None:
-    yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
-    result = printed("border", "stockinette", "--border", "rib", *yarn)
-    assert "top and bottom" in result.stdout
-    assert "Knitters make borders" in result.stderr

@@ -7,7 +7,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.context import Context
-from app.operations.design import find as find_module
+from app.operations.design.find import FindRequest, find
 from app.service.results.atlases import repeats_of
 from knitcore.base.errors import InputError
 from knitcore.formats.read.stitch_maps import read_wanted_moduli
@@ -18,84 +18,57 @@ WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.135, "tolerance": 0.05
 
 
 @pytest.fixture(scope="module")
-def atlas(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, list[object]]]:
-    """The small atlas of acrylic from the command line: its file and what was printed."""
+def atlas(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of the small atlas of acrylic, from the command line; beside it what was printed."""
     file = tmp_path_factory.mktemp("atlas") / "acrylic.npz"
-    return file, printed_atlas(file)
-
-
-def printed_atlas(file: Path) -> dict[str, list[object]]:
     options = "--material", "acrylic", "--repeats", "small", "-o", file, "--json"
-    made: dict[str, list[object]] = json.loads(printed("atlas", *options).stdout)
-    return made
+    file.with_suffix(".json").write_text(printed("atlas", *options).stdout)
+    return file
 
 
-def test_rest_and_command_line_find_the_same(
-    client: TestClient, atlas: tuple[Path, dict[str, list[object]]]
-) -> None:
-    asked = post(client, "find", {"materials": ["acrylic"], "targets": [WISH], "count": 3})
-    assert asked["reached"]
-    assert asked["candidates"][0]["repeat"] in ("K/P", "P/K")
-    assert asked["searched"] == len(repeats_of("small"))
-
+def test_rest_and_command_line_find_the_same(client: TestClient, atlas: Path) -> None:
+    answer = post(client, "find", {"materials": ["acrylic"], "targets": [WISH], "count": 3})
+    assert answer["reached"]
+    assert answer["candidates"][0]["repeat"] in ("K/P", "P/K")
+    assert answer["searched"] == len(repeats_of("small"))
     target = "course=0.135~5%*1"
-    assert run("find", "--atlas", atlas[0], "--target", target, "--count=3") == asked
+    assert run("find", "--atlas", atlas, "--target", target, "--count=3") == answer
 
-    columns = client.post("/api/v1/atlas", json={"material": "acrylic"}).json()
-    assert columns == atlas[1]
-    assert len(atlas[1]["repeats"]) == len(repeats_of("small"))
+
+def test_rest_and_command_line_print_the_same_atlas(client: TestClient, atlas: Path) -> None:
+    columns = post(client, "atlas", {"material": "acrylic"})
+    assert columns == json.loads(atlas.with_suffix(".json").read_text())
+    assert len(columns["repeats"]) == len(repeats_of("small"))
 
 
 @pytest.mark.slow
 def test_other_yarns_are_offered_where_the_wanted_one_reaches_nothing(client: TestClient) -> None:
     """No acrylic is so stiff; the answer names the nearest and looks elsewhere."""
-    wish = WISH | {"value": 0.6, "tolerance": 0.2}
-    asked = client.post("/api/v1/find", json={"materials": ["acrylic"], "targets": [wish]}).json()
-    assert not asked["reached"]
-    assert {c["material"] for c in asked["elsewhere"]}.isdisjoint({"acrylic"})
-    alone = {"materials": ["acrylic"], "targets": [wish], "elsewhere": False}
-    assert client.post("/api/v1/find", json=alone).json()["elsewhere"] == []
+    body = {"materials": ["acrylic"], "targets": [WISH | {"value": 0.6, "tolerance": 0.2}]}
+    answer = post(client, "find", body)
+    assert not answer["reached"]
+    assert {c["material"] for c in answer["elsewhere"]}.isdisjoint({"acrylic"})
+    assert post(client, "find", body | {"elsewhere": False})["elsewhere"] == []
 
 
 def test_stretch_pressure_and_limits_over_rest_and_on_the_command_line(
-    client: TestClient, atlas: tuple[Path, dict[str, list[object]]]
+    client: TestClient, atlas: Path
 ) -> None:
+    limb = {"rest_mm": 180, "worn_mm": 240}
     targets = [
         {"quantity": "stretch_wale", "value": 0.4, "load_n_per_mm": 0.05, "tolerance": 0.2},
-        {
-            "quantity": "pressure_course_mmhg",
-            "value": 20,
-            "limb": {"rest_mm": 180, "worn_mm": 240},
-            "weight": 2,
-        },
+        {"quantity": "pressure_course_mmhg", "value": 20, "limb": limb, "weight": 2},
         {"quantity": "poisson_xy", "value": 0.3, "tolerance": 0.2},
     ]
-    request = {
-        "materials": ["acrylic"],
-        "targets": targets,
-        "limits": {"transfers_per_stitch": 0.5, "curl": 0.4},
-        "count": 4,
-        "elsewhere": False,
-    }
-    found = post(client, "find", request)
-    assert set(found["candidates"][0]["values"]) == {
-        "stretch_wale@0.05",
-        "pressure_course_mmhg@180/240",
-        "poisson_xy",
-    }
-    assert all(c["transfers_per_stitch"] <= 0.5 for c in found["candidates"])
-    told = run(
-        "find",
-        f"--atlas={atlas[0]}",
-        "--target=stretch_wale@0.05=0.4~20%",
-        "--target=pressure_course@180/240=20*2",
-        "--target=poisson_xy=0.3~0.2",
-        "--most-transfers=0.5",
-        "--most-curl=0.4",
-        "--count=4",
-        "--json",
-    )
-    assert told == found
+    limits = {"transfers_per_stitch": 0.5, "curl": 0.4}
+    request = {"materials": ["acrylic"], "targets": targets, "limits": limits, "count": 4}
+    answer = post(client, "find", request | {"elsewhere": False})
+    names = {"stretch_wale@0.05", "pressure_course_mmhg@180/240", "poisson_xy"}
+    assert set(answer["candidates"][0]["values"]) == names
+    assert all(c["transfers_per_stitch"] <= 0.5 for c in answer["candidates"])
+    written = "stretch_wale@0.05=0.4~20%", "pressure_course@180/240=20*2", "poisson_xy=0.3~0.2"
+    options = f"--atlas={atlas}", "--most-transfers=0.5", "--most-curl=0.4", "--count=4"
+    assert run("find", *options, *(f"--target={target}" for target in written)) == answer
 
 
 def test_targets_for_parts_fill_them_and_contradictions_are_refused(client: TestClient) -> None:
@@ -125,29 +98,29 @@ def test_targets_for_parts_fill_them_and_contradictions_are_refused(client: Test
 
 
 def test_an_outline_over_rest_and_on_the_command_line(
-    client: TestClient, atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path
+    client: TestClient, atlas: Path, tmp_path: Path
 ) -> None:
     width = [None, 0.97, 0.95, 0.94, 0.94, 0.95, 0.97, None]
     request = {"material": "acrylic", "strain": 0.3, "width": width, "across": 8}
-    asked = post(client, "shape", request | {"smallest_band": 2})
-    assert asked["largest"] < 0.05
+    answer = post(client, "shape", request | {"smallest_band": 2})
+    assert answer["largest"] < 0.05
     profile, design = tmp_path / "p.csv", tmp_path / "d.json"
     profile.write_text("width\n" + "\n".join("" if w is None else str(w) for w in width) + "\n")
     shape = ["shape", str(profile), "--material=acrylic", "--across=8", "--strain=0.3"]
-    assert run(*shape, "--smallest-band=2", f"--atlas={atlas[0]}", f"-o{design}") == asked
-    assert json.loads(design.read_text())["chart"] == asked["chart"]
+    assert run(*shape, "--smallest-band=2", f"--atlas={atlas}", f"-o{design}") == answer
+    assert json.loads(design.read_text())["chart"] == answer["chart"]
     profile.write_text("height\n1\n")
     refused(*shape)
 
 
 def test_the_values_of_a_chart_give_the_chart_back(
-    client: TestClient, atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path
+    client: TestClient, atlas: Path, tmp_path: Path
 ) -> None:
     """Exported values filled again: the same moduli over REST and on the command line."""
     chart, values, design = (tmp_path / name for name in ("c.txt", "v.csv", "d.json"))
     chart.write_text("\n".join(["KPKPKPKPKPKP"] * 6 + ["KKKKKKKKKKKK"] * 6))
     printed("export", chart, "--to", "csv", "-o", values)
-    fill = ["fill", str(values), "--material=acrylic", f"--atlas={atlas[0]}", f"-o{design}"]
+    fill = ["fill", str(values), "--material=acrylic", f"--atlas={atlas}", f"-o{design}"]
     result = run(*fill)
     assert result["off_share"] == 0
     assert (result["rows"], result["columns"]) == (12, 12)
@@ -175,23 +148,16 @@ def test_the_values_of_a_chart_give_the_chart_back(
         ("row,column,modulus_wale_n_per_mm\n1,1,\n", "there is no target"),
     ],
 )
-def test_unreadable_maps_are_refused(
-    atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path, text: str, says: str
-) -> None:
+def test_unreadable_maps_are_refused(atlas: Path, tmp_path: Path, text: str, says: str) -> None:
     file = tmp_path / "v.csv"
     file.write_text(text)
-    assert says in refused("fill", file, "--material=acrylic", f"--atlas={atlas[0]}")
+    assert says in refused("fill", file, "--material=acrylic", f"--atlas={atlas}")
 
 
 def test_a_wrong_material_is_refused_before_any_atlas_is_computed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def never(*_: object) -> None:
-        raise AssertionError("an atlas was computed")
-
-    monkeypatch.setattr(Context, "atlas", never)
-    request = find_module.FindRequest.model_validate(
-        {"materials": ["acrylic", "nope"], "targets": [WISH]}
-    )
+    monkeypatch.setattr(Context, "atlas", lambda *_: pytest.fail("an atlas was computed"))
+    request = FindRequest.model_validate({"materials": ["acrylic", "nope"], "targets": [WISH]})
     with pytest.raises(InputError, match="nope"):
-        find_module.find(request, Context(Path("/nonexistent")))
+        find(request, Context(Path("/nonexistent")))

@@ -1,4 +1,4 @@
-"""What extensions add, over REST and on the command line."""
+"""Additions of extensions, over REST and on the command line."""
 
 import base64
 from pathlib import Path
@@ -47,8 +47,8 @@ def test_the_list_shows_what_is_wrong(
 ) -> None:
     install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.EXPORTERS: {"gone": "gone:all"}})
     answer = client.get("/api/v1/extensions").json()
-    by_name = {extension["name"]: extension for extension in answer["extensions"]}
-    assert by_name["knit-house"]["problem"] is None
-    assert "ModuleNotFoundError" in by_name["gone"]["problem"]
+    listed = {extension["name"]: extension for extension in answer["extensions"]}
+    assert listed["knit-house"]["problem"] is None
+    assert "ModuleNotFoundError" in listed["gone"]["problem"]
     assert answer["largest_exports"] == MAX_STITCHES
     assert "gone (bad 2.0)" in printed("extensions").stdout

@@ -22,19 +22,12 @@ REQUESTS = (
 def test_rest_and_command_line_agree(
     client: TestClient, garment: dict[str, object], tmp_path: Path
 ) -> None:
-    asked = post(client, "garment", {"garment": garment, "material": "glove-wool"})
+    planned = post(client, "garment", {"garment": garment, "material": "glove-wool"})
     out = tmp_path / "garment.json"
     settings = [f"--set={k}={json.dumps(v)}" for k, v in garment.items() if k != "template"]
-    told = run(
-        "garment",
-        str(garment["template"]),
-        "--material=glove-wool",
-        *settings,
-        f"-o{out}",
-        "--json",
-    )
-    assert told == asked
-    assert read_design(out).to_piece().shaped.stitches == asked["stitches"]
+    words = str(garment["template"]), "--material=glove-wool", *settings, f"-o{out}"
+    assert run("garment", *words) == planned
+    assert read_design(out).to_piece().shaped.stitches == planned["stitches"]
 
 
 def test_a_garment_is_kept_as_a_design(client: TestClient) -> None:
@@ -45,11 +38,9 @@ def test_a_garment_is_kept_as_a_design(client: TestClient) -> None:
     document = kept.json()["document"]
     assert document["regions"] == planned["design"]["regions"]
     assert document["outline"] == planned["outline"]
-    facts = {r["name"]: r for r in planned["regions"]}
-    assert facts["wrist support"]["yarn_m"] == pytest.approx(
-        facts["wrist support"]["stitches"] * 11.7 / 1000,
-        rel=0.01,  # table 6: mm a stitch
-    )
+    wrist = next(r for r in planned["regions"] if r["name"] == "wrist support")
+    mm_a_stitch = 11.7  # table 6
+    assert wrist["yarn_m"] == pytest.approx(wrist["stitches"] * mm_a_stitch / 1000, rel=0.01)
 
 
 def test_gauge_yarn_and_pressure_of_ones_own(client: TestClient) -> None:
@@ -82,19 +73,16 @@ def test_an_outline_is_drawn_and_never_dropped(tmp_path: Path) -> None:
 def test_sizes_and_yarn_have_intervals_and_a_swatch_narrows_those_of_sizes(
     client: TestClient,
 ) -> None:
-    asked = {
-        "garment": {"template": "wrist-brace", "wrist_mm": 165.0, "length_mm": 80.0},
-        "material": "acrylic",
-    }
-    swatch = {"stitches": 30, "rows": 40, "per": "10 cm"}
+    brace = {"template": "wrist-brace", "wrist_mm": 165.0, "length_mm": 80.0}
     widths = []
-    for body in (asked, asked | {"gauge": swatch}):
-        found = client.post("/api/v1/garment", json=body).json()
-        low, high = found["yarn_interval_m"]
-        assert low < found["yarn_m"] < high
-        plain = next(r for r in found["regions"] if "P" not in r["fill"])
+    for gauge in (None, {"stitches": 30, "rows": 40, "per": "10 cm"}):
+        body = {"garment": brace, "material": "acrylic", "gauge": gauge}
+        planned = post(client, "garment", body)
+        low, high = planned["yarn_interval_m"]
+        assert low < planned["yarn_m"] < high
+        plain = next(r for r in planned["regions"] if "P" not in r["fill"])
         low, high = plain["width_interval_mm"]
         assert low < plain["width_mm"] < high
         widths.append(high / low)
-        assert "gauge" in found["interval_source"]
+        assert "gauge" in planned["interval_source"]
     assert widths[1] < widths[0]

@@ -1,14 +1,12 @@
 """A tube along a limb, over REST."""
 
-import io
 from pathlib import Path
 
 import numpy as np
-import trimesh
 from fastapi.testclient import TestClient
 
 from tests.app.command_line import printed
-from tests.app.rest import post
+from tests.app.rest import post, solid
 
 CONE = [
     {"at_mm": 0, "girth_mm": 140, "rest_mm": 150},
@@ -17,10 +15,10 @@ CONE = [
 
 
 def test_limb_over_rest(client: TestClient) -> None:
-    told = post(client, "limb", {"chart": "KP", "material": "acrylic", "girths": CONE})
-    assert told["tightest_mm"] == 200.0
-    assert 0.0 < told["loose_mm"] < 200.0
-    first, last = told["places"][0], told["places"][-1]
+    sleeve = post(client, "limb", {"chart": "KP", "material": "acrylic", "girths": CONE})
+    assert sleeve["tightest_mm"] == 200.0
+    assert 0.0 < sleeve["loose_mm"] < 200.0
+    first, last = sleeve["places"][0], sleeve["places"][-1]
     assert first["mmhg"] is None
     assert last["mmhg_with_spread"][0] <= last["mmhg"][0] < last["mmhg"][1]
 
@@ -33,26 +31,18 @@ TUBE = {
 
 
 def test_the_answer_says_where_the_pressure_of_a_hem_steps(client: TestClient) -> None:
-    plain = client.post("/api/v1/limb", json=TUBE).json()
-    hemmed = TUBE | {"chart": "\n".join(["K" * 20] * 12 + ["KP" * 10] * 12)}
-    told = client.post("/api/v1/limb", json=hemmed).json()
-    assert not any("hem" in note for note in plain["notes"])
-    assert any("at a hem" in note for note in told["notes"])
+    hem = {"chart": "\n".join(["K" * 20] * 12 + ["KP" * 10] * 12)}
+    plain, hemmed = (post(client, "limb", TUBE | more)["notes"] for more in ({}, hem))
+    assert not any("hem" in note for note in plain)
+    assert any("at a hem" in note for note in hemmed)
 
 
 def test_a_whole_chart_is_worn_and_shown(client: TestClient) -> None:
-    told = client.post("/api/v1/limb", json=TUBE).json()
-    assert len(told["places"]) == 6
-    assert told["length_mm"] < told["relaxed_length_mm"]
-    view = {
-        "chart": TUBE["chart"],
-        "material": "acrylic",
-        "curl": {"id": told["id"]},
-        "colour": "pressure",
-    }
-    answer = client.post("/api/v1/views/solid", json=view)
-    assert answer.status_code == 200, answer.text
-    worn = trimesh.load_mesh(io.BytesIO(answer.content), file_type="glb")
+    sleeve = post(client, "limb", TUBE)
+    assert len(sleeve["places"]) == 6
+    assert sleeve["length_mm"] < sleeve["relaxed_length_mm"]
+    view = {"chart": TUBE["chart"], "material": "acrylic", "curl": {"id": sleeve["id"]}}
+    worn = solid(client, view | {"colour": "pressure"})
     around = 1000 * worn.extents[[0, 2]]
     assert (around > 165 / np.pi).all()
     colours = {tuple(colour) for colour in worn.visual.vertex_colors}

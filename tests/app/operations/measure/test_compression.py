@@ -13,18 +13,18 @@ from tests.knitcore.measure.test_compression import WORKBOOK, squeeze, write
 def test_compression_from_csv(client: TestClient, tmp_path: Path) -> None:
     made = squeeze(1e-3, 2.5)
     path = write(tmp_path / "mine-1.csv", made.depth_mm, made.force_n)
-    told = run("measure", "compression", path, "--diameter-mm", "2.0")
-    assert told["k_n_per_mm3"] == pytest.approx(1e-3, rel=0.05)
-    assert told["p"] == pytest.approx(2.5, rel=0.05)
+    result = run("measure", "compression", path, "--diameter-mm", "2.0")
+    assert result["k_n_per_mm3"] == pytest.approx(1e-3, rel=0.05)
+    assert result["p"] == pytest.approx(2.5, rel=0.05)
     body = {"file": upload(path), "diameter_mm": 2.0}
-    assert client.post("/api/v1/measure/compression", json=body).json() == told
+    assert client.post("/api/v1/measure/compression", json=body).json() == result
     assert "steel" in refused("measure", "compression", path, "--yarn", "steel")
 
 
 def test_a_workbook_of_two_yarns_on_the_command_line() -> None:
-    told = run("measure", "compression", WORKBOOK)
-    assert told["k_n_per_mm3"] is None  # two yarns have no common mean
-    assert "ask for one yarn" in told["notes"][0]  # type: ignore[index]
-    assert set(told["mean"]) == {"soft", "firm"}  # type: ignore[call-overload]
+    result = run("measure", "compression", WORKBOOK)
+    assert result["k_n_per_mm3"] is None  # two yarns have no common mean
+    assert "ask for one yarn" in result["notes"][0]
+    assert set(result["mean"]) == {"soft", "firm"}
     soft = run("measure", "compression", WORKBOOK, "--yarn", "soft")
     assert soft["k_n_per_mm3"] == pytest.approx(1e-3, rel=0.03)

@@ -10,7 +10,7 @@ from fastapi.testclient import TestClient
 from knitcore.chart.fabric import Direction
 from knitcore.formats.read.law_files import load_law
 from tests.app.command_line import refused, run
-from tests.app.rest import refusal, upload
+from tests.app.rest import post, refusal, upload
 from tests.knitcore.measure.synthetic import LAW, write_csv, write_h5
 
 CONSTANTS = {
@@ -25,23 +25,22 @@ def tests(tmp_path: Path) -> list[Path]:
 
 
 def test_fit_gives_eight_constants_with_errors(client: TestClient, tests: list[Path]) -> None:
-    told = run("fit", *tests, "--reduction", "published")
-    assert set(told) >= CONSTANTS | {"poisson_yx", "poisson_xy", "rms_n_per_mm"}
-    assert set(told["standard_errors"]) >= CONSTANTS  # type: ignore[call-overload]
-    assert told["stiffness_xxxx_n_per_mm"] == pytest.approx(LAW.stiffness_xxxx, rel=0.1)
+    fitted = run("fit", *tests, "--reduction", "published")
+    assert set(fitted) >= CONSTANTS | {"poisson_yx", "poisson_xy", "rms_n_per_mm"}
+    assert set(fitted["standard_errors"]) >= CONSTANTS
+    assert fitted["stiffness_xxxx_n_per_mm"] == pytest.approx(LAW.stiffness_xxxx, rel=0.1)
     body = {"test_course": upload(tests[0]), "test_wale": upload(tests[1])}
-    asked = client.post("/api/v1/fit", json=body | {"reduction": "published"})
-    assert asked.json() == told
+    assert post(client, "fit", body | {"reduction": "published"}) == fitted
 
 
 def test_fit_writes_a_law_and_residuals(tmp_path: Path, tests: list[Path]) -> None:
     law, residuals = tmp_path / "law.json", tmp_path / "residuals.csv"
-    told = run("fit", *tests, "--out", law, "--residuals", residuals)
-    assert load_law(law).law.alpha_xx == told["alpha_xx"]
+    fitted = run("fit", *tests, "--out", law, "--residuals", residuals)
+    assert load_law(law).law.alpha_xx == fitted["alpha_xx"]
     assert residuals.read_text().startswith("direction,strain_along,strain_across")
     # what --json prints is a law file too
     printed = tmp_path / "printed.json"
-    printed.write_text(json.dumps(told))
+    printed.write_text(json.dumps(fitted))
     assert load_law(printed).law == load_law(law).law
     worn = ("--direction", "wale", "--rest-mm", "100", "--worn-mm", "120")
     pressures = [run("pressure", "--law", file, *worn) for file in (law, printed)]
@@ -58,8 +57,7 @@ def test_fit_reads_the_authors_layout(tmp_path: Path) -> None:
 
 def test_residuals_over_rest_are_bounded(client: TestClient, tests: list[Path]) -> None:
     body = {"test_course": upload(tests[0]), "test_wale": upload(tests[1]), "residuals": True}
-    told = client.post("/api/v1/fit", json=body).json()
-    points = told["residuals"]["course"]
+    points = post(client, "fit", body)["residuals"]["course"]
     assert 100 < len(points["strain_along"]) <= 2000
     assert len(points["fitted_n_per_mm"]) == len(points["strain_along"])
 

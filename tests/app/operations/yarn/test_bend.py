@@ -15,6 +15,10 @@ from tests.app.command_line import run
 from tests.app.rest import post
 
 
+def bent_in(material: str, chart: str, **more: float | None) -> BendResult:
+    return bend(BendRequest(chart=chart, material=material, **more), Context(Path()))
+
+
 def test_bend_says_what_the_edges_do(client: TestClient) -> None:
     bent = post(client, "bend", {"chart": "K", "material": "acrylic"})
     assert bent["moment_course_n"] < 0.0 < bent["moment_wale_n"]
@@ -24,33 +28,36 @@ def test_bend_says_what_the_edges_do(client: TestClient) -> None:
 
 
 def test_the_bending_length_needs_the_weight_of_the_yarn() -> None:
-    request = BendRequest(chart="K", material="acrylic", linear_density_g_per_m=0.3)
-    bent = bend(request, Context(Path()))
+    bent = bent_in("acrylic", "K", linear_density_g_per_m=0.3)
     assert bent.bending_length_course_mm == pytest.approx(18.0, rel=0.02)
 
 
-def test_bend_says_why_twist_is_left_out() -> None:
-    bent = bend(BendRequest(chart="K\nP\nP\nK", material="acrylic"), Context(Path()))
-    assert not bent.stable
-    assert bent.twist_n_mm is None
-    assert any("not quite a minimum" in note for note in bent.notes)
+@pytest.mark.parametrize(
+    ("material", "chart", "stable", "says"),
+    [
+        ("acrylic", "K\nP\nP\nK", False, "not quite a minimum"),
+        ("cotton", "P\nK", False, "treat it as a range"),
+        ("acrylic", "P\nK", True, "along a diagonal"),
+    ],
+)
+def test_a_note_says_how_far_a_stiffness_is_known(
+    material: str, chart: str, stable: bool, says: str
+) -> None:
+    bent = bent_in(material, chart)
+    assert bent.stable is stable
+    assert any(says in note for note in bent.notes)
 
 
-def test_states_that_differ_much_are_noted() -> None:
-    bent = bend(BendRequest(chart="P\nK", material="cotton"), Context(Path()))
-    assert not bent.stable
-    assert any("treat it as a range" in note for note in bent.notes)
+def test_twist_is_left_out_where_the_mirrored_state_is_no_minimum() -> None:
+    assert bent_in("acrylic", "K\nP\nP\nK").twist_n_mm is None
 
 
 def test_packaged_repeats_are_bent_from_the_store(monkeypatch: pytest.MonkeyPatch) -> None:
-    def bent(loop_length_mm: float | None = None) -> BendResult:
-        request = BendRequest(chart="PPK", material="acrylic", loop_length_mm=loop_length_mm)
-        return bend(request, Context(Path()))
-
-    near = bent(1.0001 * yarn_for(material("acrylic"), StitchChart.parse("PPK")).loop_length_mm)
+    length_mm = yarn_for(material("acrylic"), StitchChart.parse("PPK")).loop_length_mm
+    near = bent_in("acrylic", "PPK", loop_length_mm=1.0001 * length_mm)
     assert "stored" not in near.provenance
     monkeypatch.setattr("app.operations.yarn.bend.relax", None)
-    stored = bent()
+    stored = bent_in("acrylic", "PPK")
     assert "stored" in stored.provenance
     assert stored.curl_course == near.curl_course == "front"
     assert stored.bending_course_n_mm == pytest.approx(near.bending_course_n_mm, rel=0.01)
@@ -61,13 +68,7 @@ def test_packaged_repeats_are_bent_from_the_store(monkeypatch: pytest.MonkeyPatc
 
 def test_a_repeat_that_folds_by_itself_is_refused() -> None:
     with pytest.raises(ConvergenceError, match="folds spontaneously"):
-        bend(BendRequest(chart="KP\nKK", material="acrylic"), Context(Path()))
-
-
-def test_a_fold_along_a_diagonal_is_noted() -> None:
-    bent = bend(BendRequest(chart="P\nK", material="acrylic"), Context(Path()))
-    assert bent.stable
-    assert any("along a diagonal" in note for note in bent.notes)
+        bent_in("acrylic", "KP\nKK")
 
 
 def test_bend_on_the_command_line() -> None:

@@ -2,10 +2,8 @@
 
 import csv
 import json
-import os
 import signal
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +14,7 @@ from app.context import Context
 from app.operations.yarn.characterise import CharacteriseRequest, characterise
 from knitcore.base.errors import CancelledError
 from tests.app.command_line import printed, run
+from tests.app.running import python
 from tests.knitcore.base.test_batch import cluster  # noqa: F401 - a fixture
 
 YARN = [
@@ -29,11 +28,11 @@ def characterised(*arguments: str) -> Any:
 
 
 def test_two_yarns_become_a_table_curves_and_materials(tmp_path: Path) -> None:
-    told = characterised(
+    yarns = characterised(
         "cotton", *YARN, "--fabrics", "stockinette", "--loop-lengths", "12,12.5", "--workers", "1",
         "--out", str(tmp_path),
     )  # fmt: skip
-    assert [yarn["identifier"] for yarn in told] == ["cotton-yarn-level", "mine"]
+    assert [yarn["identifier"] for yarn in yarns] == ["cotton-yarn-level", "mine"]
     with (tmp_path / "table.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [(row["yarn"], row["setting"]) for row in rows] == [
@@ -77,12 +76,8 @@ def test_a_killed_batch_resumes(tmp_path: Path) -> None:
         "characterise", "cotton", "--fabrics", "stockinette,garter", "--tensions", "1,1.04",
         "--workers", "1", "--out", str(tmp_path),
     ]  # fmt: skip
-    killed = subprocess.run(
-        [sys.executable, "-c", KILLED, *arguments],
-        capture_output=True,
-        check=False,
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[4])},
-    )
+    here = {"PYTHONPATH": str(Path(__file__).parents[4])}
+    killed = python("-c", KILLED, *arguments, check=False, env=here)
     assert killed.returncode == -signal.SIGKILL, killed.stderr
     finished = tmp_path / "finished"
     before = {file: file.stat().st_mtime_ns for file in finished.glob("*.json")}
@@ -100,9 +95,9 @@ def test_a_cluster_of_two_processes_gives_the_same(
     tmp_path: Path,
 ) -> None:
     address, _ = cluster
-    asked = ("cotton", "--fabrics", "stockinette", "--tensions", "1,1.05")
-    there = characterised(*asked, "--scheduler", address, "--out", str(tmp_path / "there"))
-    here = characterised(*asked, "--workers", "1", "--out", str(tmp_path / "here"))
+    words = ("cotton", "--fabrics", "stockinette", "--tensions", "1,1.05")
+    there = characterised(*words, "--scheduler", address, "--out", str(tmp_path / "there"))
+    here = characterised(*words, "--workers", "1", "--out", str(tmp_path / "here"))
     assert there == here
 
 
@@ -111,7 +106,7 @@ def test_the_operation_reports_progress_and_stops(tmp_path: Path) -> None:
         {"material": "cotton", "fabrics": ["stockinette"], "tensions": [1.0]}
     )
     seen: list[tuple[float, float]] = []
-    context = Context(tmp_path, progress=lambda *told: seen.append(told))
+    context = Context(tmp_path, progress=lambda *share: seen.append(share))
     result = characterise(request, context)
     assert seen == [(0, 1), (1, 1)]
     assert result.material is not None

@@ -9,7 +9,7 @@ from fastapi.testclient import TestClient
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import load_material_file, material
 from tests.app.command_line import run
-from tests.app.rest import upload
+from tests.app.rest import post, upload
 from tests.knitcore.measure.synthetic import write_csv
 
 
@@ -17,28 +17,17 @@ def test_an_estimate_from_one_swatch(client: TestClient) -> None:
     record = material("cotton").record(Fabric.STOCKINETTE)
     lengths = {f: material("cotton").record(f).loop_length_mm for f in Fabric}
     options = [f"--loop-length-mm={f}={length}" for f, length in lengths.items()]
-    told = run(
+    made = run(
         "estimate", "--bending-modulus-n-mm2", "0.0708", *options,
         "--swatch", "stockinette=cotton", "--swatch-setting", "a", "--product-setting", "a",
     )  # fmt: skip
-    body = {
-        "bending_modulus_n_mm2": 0.0708,
-        "loop_length_mm": lengths,
-        "swatches": [
-            {
-                "fabric": "stockinette",
-                "law": asdict(record.law),
-                "loop_length_mm": record.loop_length_mm,
-                "setting": "a",
-            }
-        ],
-        "product_setting": "a",
-    }
-    asked = client.post("/api/v1/estimate", json=body).json()
-    assert asked == told
-    assert next(iter(asked["fabrics"]["rib"])) == "strain_at_0_1_n_per_mm"
-    assert asked["left_out"]["modulus_rms_factor"] == pytest.approx(1.52, abs=0.01)
-    assert asked["warnings"] == []
+    swatch = {"fabric": "stockinette", "law": asdict(record.law), "setting": "a"}
+    swatch["loop_length_mm"] = record.loop_length_mm
+    body = {"bending_modulus_n_mm2": 0.0708, "loop_length_mm": lengths, "product_setting": "a"}
+    assert post(client, "estimate", body | {"swatches": [swatch]}) == made
+    assert next(iter(made["fabrics"]["rib"])) == "strain_at_0_1_n_per_mm"
+    assert made["left_out"]["modulus_rms_factor"] == pytest.approx(1.52, abs=0.01)
+    assert made["warnings"] == []
 
 
 @pytest.mark.slow
@@ -57,22 +46,20 @@ def test_measured_curves_go_from_the_tests_into_the_material(
     assert curve.pulls == 4
     assert not saved.record(Fabric.RIB).measured
     uploads = {f"test_{d}": upload(f) for d, f in zip(Direction, files, strict=True)}
-    asked = client.post("/api/v1/fit", json=uploads).json()
-    assert asked["curves"] == fitted["curves"]
+    assert post(client, "fit", uploads)["curves"] == fitted["curves"]
     assert client.get("/api/v1/materials/acrylic").json()["measured"] == {}
 
 
 def test_an_estimate_becomes_a_material(tmp_path: Path) -> None:
     out = tmp_path / "mine.json"
-    told = run("estimate", "--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "9", "--out", out)
+    made = run("estimate", "--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "9", "--out", out)
     saved = load_material_file(out)
     assert saved.is_complete
-    fabrics = told["fabrics"]
-    assert isinstance(fabrics, dict)
-    assert saved.law(Fabric.SEED).alpha_xx == pytest.approx(fabrics["seed"]["law"]["alpha_xx"])
+    seed = made["fabrics"]["seed"]
+    assert saved.law(Fabric.SEED).alpha_xx == pytest.approx(seed["law"]["alpha_xx"])
     predicted = run("predict", "seed", "--size", "8x8", "--material", out)
-    modulus = fabrics["seed"]["modulus_n_per_mm"]["course"]
-    interval = fabrics["seed"]["modulus_interval_n_per_mm"]["course"]
+    modulus, interval = (
+        seed[name]["course"] for name in ("modulus_n_per_mm", "modulus_interval_n_per_mm")
+    )
     assert predicted["modulus_course_n_per_mm"] == pytest.approx(modulus, rel=1e-3)
-    low, high = predicted["modulus_course_interval_n_per_mm"]  # type: ignore[misc]
-    assert (low, high) == pytest.approx(tuple(interval), rel=0.02)
+    assert predicted["modulus_course_interval_n_per_mm"] == pytest.approx(interval, rel=0.02)

@@ -8,8 +8,8 @@ from tests.app.rest import post
 
 
 def test_a_loop_over_rest(client: TestClient) -> None:
-    asked = {"chart": "K", "material": "acrylic", "points": 4, "cycles": 1, "rest_sizes": False}
-    loop = post(client, "hysteresis", asked)
+    body = {"chart": "K", "material": "acrylic", "points": 4, "cycles": 1, "rest_sizes": False}
+    loop = post(client, "hysteresis", body)
     there, back = loop["legs"]
     assert (there["loading"], back["loading"]) == (True, False)
     assert 0.05 < loop["lost_share"] < 0.5
@@ -21,8 +21,8 @@ def test_a_loop_over_rest(client: TestClient) -> None:
 
 
 def test_a_given_coefficient_has_no_interval(client: TestClient) -> None:
-    asked = {"chart": "K", "material": "acrylic", "points": 2, "cycles": 1, "rest_sizes": False}
-    loop = client.post("/api/v1/hysteresis", json={**asked, "friction": 0.2}).json()
+    body = {"chart": "K", "material": "acrylic", "points": 2, "cycles": 1, "rest_sizes": False}
+    loop = client.post("/api/v1/hysteresis", json={**body, "friction": 0.2}).json()
     assert loop["friction"] == 0.2
     assert loop["lost_share_interval"] is None
 

@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
@@ -12,7 +11,7 @@ from knitcore import StitchChart, relax
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.solve.splines import RelaxedRepeat, size_intervals
 from tests.app.command_line import printed, refused, run
-from tests.app.rest import refusal
+from tests.app.rest import post
 
 FIELDS = {
     "cell_course_mm", "cell_wale_mm", "energy_n_mm", "bending_share", "contact_share",
@@ -21,42 +20,41 @@ FIELDS = {
 
 
 def test_relax_on_the_command_line_and_over_rest_agree(client: TestClient) -> None:
-    told = run("relax", "stockinette", "--size", "4x4", "--material", "cotton")
-    assert set(told) >= FIELDS
-    assert told["converged"]
-    assert told["energy_n_mm"] == pytest.approx(0.387, rel=5e-3)
+    shape = run("relax", "stockinette", "--size", "4x4", "--material", "cotton")
+    assert set(shape) >= FIELDS
+    assert shape["converged"]
+    assert shape["energy_n_mm"] == pytest.approx(0.387, rel=5e-3)
     chart = {"fabric": "stockinette", "columns": 4, "rows": 4}
-    body = {"chart": chart, "material": "cotton", "centre_lines": True}
-    answer = client.post("/api/v1/relax", json=body).json()
-    assert answer["cell_course_mm"] == pytest.approx(told["cell_course_mm"])
+    answer = post(client, "relax", {"chart": chart, "material": "cotton", "centre_lines": True})
+    assert answer["cell_course_mm"] == pytest.approx(shape["cell_course_mm"])
     assert len(answer["centre_lines_mm"]) == 1
 
 
 def test_a_shape_that_only_its_mirrors_hold_says_so() -> None:
-    asked = "relax", "garter", "--size", "2x2", "--material", "cotton"
-    garter = run(*asked, "--branch", "mirrored")
+    words = "relax", "garter", "--size", "2x2", "--material", "cotton"
+    garter = run(*words, "--branch", "mirrored")
     assert garter["minimum"] is False
     assert garter["mirrored"] is None
     assert garter["unmirrored"]["energy_n_mm"] < 0.995 * garter["energy_n_mm"]
     assert any("only among mirrored ones" in note for note in garter["notes"])
-    lowest = run(*asked)
+    lowest = run(*words)
     assert (lowest["branch"], lowest["minimum"]) == ("free", True)
     assert lowest["energy_n_mm"] == pytest.approx(garter["unmirrored"]["energy_n_mm"])
     assert lowest["mirrored"]["energy_n_mm"] == pytest.approx(garter["energy_n_mm"])
     low, high = (
-        math.log(told["cell_wale_interval_mm"][1] / told["cell_wale_mm"])
-        for told in (garter, lowest)
+        math.log(shape["cell_wale_interval_mm"][1] / shape["cell_wale_mm"])
+        for shape in (garter, lowest)
     )
     assert high > 1.5 * low  # such shapes are farther from cloth
 
 
 def test_a_shape_that_needs_no_mirrors_says_so() -> None:
-    asked = "relax", "stockinette", "--size", "2x2", "--material", "acrylic"
-    for told in (run(*asked), run(*asked, "--branch", "mirrored")):
-        assert told["branch"] == "mirrored"
-        assert told["minimum"]
-        assert told["mirrored"] is told["unmirrored"] is None
-    assert run(*asked, "--cell-course-mm", "3")["minimum"] is None
+    words = "relax", "stockinette", "--size", "2x2", "--material", "acrylic"
+    for shape in (run(*words), run(*words, "--branch", "mirrored")):
+        assert shape["branch"] == "mirrored"
+        assert shape["minimum"]
+        assert shape["mirrored"] is shape["unmirrored"] is None
+    assert run(*words, "--cell-course-mm", "3")["minimum"] is None
 
 
 def test_intervals_cover_other_minima_that_are_as_low() -> None:
@@ -71,39 +69,31 @@ def test_intervals_cover_other_minima_that_are_as_low() -> None:
 
 
 def test_relax_in_the_published_branch() -> None:
-    told = run(
-        "relax", "stockinette", "--size", "2x2", "--material", "cotton", "--branch", "published"
-    )
-    assert told["branch"] == "published"
-    assert told["energy_n_mm"] == pytest.approx(0.401, rel=0.03)
+    shape = run("relax", "stockinette", "--material", "cotton", "--branch", "published")
+    assert shape["branch"] == "published"
+    assert shape["energy_n_mm"] == pytest.approx(0.401, rel=0.03)
 
 
 def test_a_loop_that_is_too_short_is_refused_with_a_bound() -> None:
-    arguments = ["relax", "rib", "--size", "2x2", "--material", "acrylic"]
-    result = refused(*arguments, "--loop-length-mm", "5")
-    assert "too short" in result
-    assert "at least" in result
+    words = refused("relax", "rib", "--material", "acrylic", "--loop-length-mm", "5")
+    assert "too short" in words
+    assert "at least" in words
 
 
 def test_loop_lengths_give_the_same_on_the_command_line_and_over_rest(client: TestClient) -> None:
-    told = run(
+    shape = run(
         "relax", "stockinette", "--size", "1x2", "--material", "cotton",
         "--loop-lengths-mm", "14.5/15.5",
     )  # fmt: skip
-    assert told["repeat_rows"] == 2
-    assert told["yarn_length_mm"] == pytest.approx(15.0, abs=0.01)
-    assert told["force_course_n"] == pytest.approx(0.0, abs=1e-5)
-    body = {
-        "chart": {"fabric": "stockinette", "columns": 1, "rows": 2},
-        "material": "cotton",
-        "loop_lengths_mm": [[14.5], [15.5]],
-    }
-    assert client.post("/api/v1/relax", json=body).json()["energy_n_mm"] == told["energy_n_mm"]
-    wide = client.post(
-        "/api/v1/relax", json={"chart": "K", "material": "cotton", "cell_course_mm": 3.5}
-    )
-    assert wide.json()["cell_course_mm"] == pytest.approx(3.5)
-    assert wide.json()["force_course_n"] > 0.0
+    assert shape["repeat_rows"] == 2
+    assert shape["yarn_length_mm"] == pytest.approx(15.0, abs=0.01)
+    assert shape["force_course_n"] == pytest.approx(0.0, abs=1e-5)
+    chart = {"fabric": "stockinette", "columns": 1, "rows": 2}
+    body = {"chart": chart, "material": "cotton", "loop_lengths_mm": [[14.5], [15.5]]}
+    assert post(client, "relax", body)["energy_n_mm"] == shape["energy_n_mm"]
+    wide = post(client, "relax", {"chart": "K", "material": "cotton", "cell_course_mm": 3.5})
+    assert wide["cell_course_mm"] == pytest.approx(3.5)
+    assert wide["force_course_n"] > 0.0
 
 
 def test_the_gauge_of_a_relaxation_makes_predictions_of_a_simulated_material_more_certain(
@@ -112,34 +102,30 @@ def test_the_gauge_of_a_relaxation_makes_predictions_of_a_simulated_material_mor
     """The prediction names the repeat; measured materials and held shapes have no such gauge."""
     repeat = "KKP\nPKP\nKPK\nPPK"
     body = {"chart": f"{repeat}\n{repeat}", "material": "acrylic:simulation"}
-    learned = client.post("/api/v1/predict", json=body).json()
-    asked = {"chart": learned["worth_relaxing"], "material": body["material"]}
-    assert asked["chart"] == repeat
-    gauge = client.post("/api/v1/relax", json=asked).json()["gauge"]
-    known = client.post("/api/v1/predict", json=body | {"gauge": gauge}).json()
+    learned = post(client, "predict", body)
+    assert learned["worth_relaxing"] == repeat
+    single = body | {"chart": repeat}
+    gauge = post(client, "relax", single)["gauge"]
+    known = post(client, "predict", body | {"gauge": gauge})
     assert known["relaxed_source"] == gauge["known_by"] == "relaxation"
     assert known["relaxed_course_mm"] == pytest.approx(100 / gauge["stitches_per_10_cm"])
     assert known["worth_relaxing"] is None
-    widths = [
-        high / low
-        for low, high in (a["modulus_course_interval_n_per_mm"] for a in (learned, known))
-    ]
+    ends = (answer["modulus_course_interval_n_per_mm"] for answer in (learned, known))
+    widths = [high / low for low, high in ends]
     assert widths[1] < widths[0]
     # kept results of the same yarn are found again, but the gauge is the material's
-    assert (
-        client.post("/api/v1/relax", json=asked | {"material": "acrylic"}).json()["gauge"] is None
-    )
-    for held in ({"flat": True}, {"loop_length_mm": 13.0}, {"cell_course_mm": 3.4}):
-        assert client.post("/api/v1/relax", json=asked | held).json()["gauge"] is None
+    held = {"flat": True}, {"loop_length_mm": 13.0}, {"cell_course_mm": 3.4}
+    for change in ({"material": "acrylic"}, *held):
+        assert post(client, "relax", single | change)["gauge"] is None
 
 
 def test_relax_prints_the_options_that_predict_takes(tmp_path: Path) -> None:
     chart = tmp_path / "chart.txt"
     chart.write_text("KKP\nPKP\nKPP\n")
-    asked = [str(chart), "--material", "acrylic:simulation"]
-    told = printed("relax", *asked).output
-    options = next(line for line in told.splitlines() if line.startswith("for predict")).split()[2:]
-    assert run("predict", *asked, *options)["relaxed_source"] == "relaxation"
+    words = [str(chart), "--material", "acrylic:simulation"]
+    lines = printed("relax", *words).output.splitlines()
+    options = next(line for line in lines if line.startswith("for predict")).split()[2:]
+    assert run("predict", *words, *options)["relaxed_source"] == "relaxation"
 
 
 ACRYLIC = ("--material", "acrylic")
@@ -147,19 +133,19 @@ ACRYLIC = ("--material", "acrylic")
 
 def test_a_fabric_rests_at_the_sizes_that_hysteresis_gives(client: TestClient) -> None:
     """Without a coefficient of its own the request has that of the yarn."""
-    told = run("relax", "stockinette", *ACRYLIC, "--history", "stretched-course")
-    assert set(told) >= FIELDS
-    assert (told["friction"], told["history"]) == (0.26, "stretched-course")
-    assert told["converged"]
-    assert told["force_course_n"] == pytest.approx(0.0, abs=1e-5)
-    assert told["unmirrored"] is told["gauge"] is None
-    sizes = {rest["history"]: rest["course_mm"] for rest in told["rest_sizes"]}
-    assert told["cell_course_mm"] == sizes["stretched-course"]
-    low, high = told["cell_course_interval_mm"]
-    assert low * high == pytest.approx(told["cell_course_mm"] ** 2)
+    shape = run("relax", "stockinette", *ACRYLIC, "--history", "stretched-course")
+    assert set(shape) >= FIELDS
+    assert (shape["friction"], shape["history"]) == (0.26, "stretched-course")
+    assert shape["converged"]
+    assert shape["force_course_n"] == pytest.approx(0.0, abs=1e-5)
+    assert shape["unmirrored"] is shape["gauge"] is None
+    sizes = {rest["history"]: rest["course_mm"] for rest in shape["rest_sizes"]}
+    assert shape["cell_course_mm"] == sizes["stretched-course"]
+    low, high = shape["cell_course_interval_mm"]
+    assert low * high == pytest.approx(shape["cell_course_mm"] ** 2)
     assert sizes["as-knitted"] < sizes["agitated"] < sizes["stretched-course"]
-    asked = {"chart": "K", "material": "acrylic", "points": 2, "cycles": 1, "intervals": False}
-    loop = client.post("/api/v1/hysteresis", json=asked).json()
+    body = {"chart": "K", "material": "acrylic", "points": 2, "cycles": 1, "intervals": False}
+    loop = client.post("/api/v1/hysteresis", json=body).json()
     by_loop = {rest["history"]: rest["course_mm"] for rest in loop["rest_sizes"]}
     assert by_loop == pytest.approx(sizes, rel=1e-9)
     plain = run("relax", "stockinette", *ACRYLIC)
@@ -168,30 +154,12 @@ def test_a_fabric_rests_at_the_sizes_that_hysteresis_gives(client: TestClient) -
 
 
 def test_a_coefficient_alone_means_as_knitted(client: TestClient) -> None:
-    asked = {"chart": "K", "material": "acrylic", "friction": 0.4, "centre_lines": True}
-    told = client.post("/api/v1/relax", json=asked).json()
-    assert (told["friction"], told["history"]) == (0.4, "as-knitted")
-    assert told["cell_wale_mm"] > 1.004 * told["rest_sizes"][0]["wale_mm"]
-    assert len(told["centre_lines_mm"]) == 1
-    assert "Coefficient of friction 0.4: as given." in told["notes"]
+    body = {"chart": "K", "material": "acrylic", "friction": 0.4, "centre_lines": True}
+    shape = client.post("/api/v1/relax", json=body).json()
+    assert (shape["friction"], shape["history"]) == (0.4, "as-knitted")
+    assert shape["cell_wale_mm"] > 1.004 * shape["rest_sizes"][0]["wale_mm"]
+    assert len(shape["centre_lines_mm"]) == 1
+    assert "Coefficient of friction 0.4: as given." in shape["notes"]
     output = printed("relax", "stockinette", *ACRYLIC, "--friction", "0.4").output
     (here,) = (line for line in output.splitlines() if line.endswith(", here"))
     assert here.startswith("rest, as-knitted")
-
-
-@pytest.mark.parametrize(
-    ("asked", "fields"),
-    [
-        ({"branch": "published"}, ["branch"]),
-        ({"flat": True, "cell_course_mm": 3.0}, ["flat", "cell_course_mm"]),
-        ({"loop_lengths_mm": [[11.0, 12.0]], "chart": "KP"}, ["loop_lengths_mm"]),
-        ({"chart": "KKKKKKP\nKKKKPKK\nKKPKKKK\nPKKKKKK\nKPKKKKK\nKKKPKKK"}, ["chart"]),
-        ({"friction": 3.0}, ["friction"]),
-    ],
-)
-def test_what_cannot_be_had_with_friction_is_refused(
-    client: TestClient, asked: dict[str, Any], fields: list[str]
-) -> None:
-    body = {"chart": "K", "material": "acrylic", "history": "agitated"} | asked
-    answer = refusal(client, "relax", body)
-    assert [error["field"] for error in answer["errors"]] == fields

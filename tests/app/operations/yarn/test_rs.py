@@ -7,11 +7,11 @@ from tests.app.command_line import run
 @pytest.mark.parametrize("material", ["acrylic", "cotton"])
 def test_even_values_are_the_papers(client: TestClient, material: str) -> None:
     """Tables 17 and 18 print three digits: within 0.6 %."""
-    told = run("rs", "--material", material)
-    assert told == client.get(f"/api/v1/rs/{material}").json()
+    values = run("rs", "--material", material)
+    assert values == client.get(f"/api/v1/rs/{material}").json()
     even = [
         segment
-        for fabric in told["fabrics"].values()
+        for fabric in values["fabrics"].values()
         for segment in fabric["segments"].values()
         if segment["parity"] == "even"
     ]

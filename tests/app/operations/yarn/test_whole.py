@@ -16,30 +16,30 @@ REQUEST = WholeRequest(chart="K", material="acrylic", tolerance=0.1)
 def test_a_stopped_job_goes_on_where_it_was(tmp_path: Path) -> None:
     shares: list[float] = []
 
-    def told(done: float, total: float) -> None:
+    def note(done: float, total: float) -> None:
         shares.append(done / total)
 
-    stopping = Context(tmp_path, progress=told, cancelled=lambda: max(shares, default=0.0) > 0.5)
+    stopping = Context(tmp_path, progress=note, cancelled=lambda: max(shares, default=0.0) > 0.5)
     with pytest.raises(CancelledError):
         whole(REQUEST, stopping)
     reached = len(shares)
-    found = whole(REQUEST, Context(tmp_path, progress=told))
+    relaxed = whole(REQUEST, Context(tmp_path, progress=note))
     assert min(shares[reached:], default=1.0) >= shares[reached - 1]
-    assert found.converged
-    assert re.fullmatch(r"Continued after \d rounds of an earlier run\.", found.notes[1])
+    assert relaxed.converged
+    assert re.fullmatch(r"Continued after \d rounds of an earlier run\.", relaxed.notes[1])
     assert len(whole(REQUEST, Context(tmp_path / "fresh")).notes) == 1
-    assert found.energy_n_mm == pytest.approx(0.2386, rel=5e-3)
-    assert found.rows == found.columns == 1
+    assert relaxed.energy_n_mm == pytest.approx(0.2386, rel=5e-3)
+    assert relaxed.rows == relaxed.columns == 1
 
 
 @pytest.mark.slow
 def test_a_whole_chart_on_the_command_line(tmp_path: Path) -> None:
     chart = tmp_path / "chart.txt"
     chart.write_text("KKKK\nKKPK\nKKKK\nKKKK\n")
-    told = run("whole", chart, "--material", "acrylic", "--tolerance", 0.01)
-    assert told["converged"]
-    assert told["cell_course_interval_mm"][0] < told["cell_course_mm"]
-    assert "Newton's method brought the chart to a minimum" in told["notes"][0]
-    assert told["rounds"] >= 2
-    assert abs(told["energy_change"]) <= 0.01
-    assert told["size_change"] <= 0.1
+    shown = run("whole", chart, "--material", "acrylic", "--tolerance", 0.01)
+    assert shown["converged"]
+    assert shown["cell_course_interval_mm"][0] < shown["cell_course_mm"]
+    assert "Newton's method brought the chart to a minimum" in shown["notes"][0]
+    assert shown["rounds"] >= 2
+    assert abs(shown["energy_change"]) <= 0.01
+    assert shown["size_change"] <= 0.1

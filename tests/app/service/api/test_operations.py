@@ -1,4 +1,4 @@
-"""What is quick for a small chart is work for a limited process with a large one."""
+"""A request that is quick for a small chart is work for a limited process with a large one."""
 
 from typing import Any
 
@@ -9,6 +9,7 @@ from app.operations.chart.predict import PredictRequest
 from app.requests.charts import size_of
 from app.service.api.operations import MAX_LIGHT
 from tests.app.clients import state_of
+from tests.app.rest import draw, post, solid
 
 SMALL = {"fabric": "garter", "columns": 10, "rows": MAX_LIGHT // 10 - 10}
 LARGE = {"fabric": "garter", "columns": 101, "rows": MAX_LIGHT // 100}
@@ -19,9 +20,8 @@ TEXT = "\n".join(["KP" * 60] * 90)
 def test_a_large_chart_is_predicted_in_a_worker(
     client: TestClient, computed: list[Any], chart: Any, count: int
 ) -> None:
-    answer = client.post("/api/v1/predict", json={"chart": chart, "material": "acrylic"})
-    assert answer.status_code == 200
-    assert answer.json()["modulus_course_n_per_mm"] > 0
+    answer = post(client, "predict", {"chart": chart, "material": "acrylic"})
+    assert answer["modulus_course_n_per_mm"] > 0
     assert len(computed) == count
 
 
@@ -30,8 +30,7 @@ def test_a_large_chart_is_laid_in_a_worker(
     client: TestClient, computed: list[Any], columns: int, count: int
 ) -> None:
     chart = {"fabric": "garter", "columns": columns, "rows": 200}
-    answer = client.put("/api/v1/views/large-or-not", json={"chart": chart, "material": "acrylic"})
-    assert answer.json()["stitches"] == 40_000
+    assert draw(client, "large-or-not", chart)["stitches"] == 40_000
     assert len(computed) == count
     view = state_of(client).views.get("local/large-or-not")
     assert view.writer.drawing.ground.shape == (200, columns)
@@ -40,8 +39,7 @@ def test_a_large_chart_is_laid_in_a_worker(
 def test_what_is_given_away_of_a_view_is_made_in_a_worker(
     client: TestClient, computed: list[Any]
 ) -> None:
-    body = {"chart": "KP", "material": "acrylic"}
-    assert client.post("/api/v1/views/solid", json=body).status_code == 200
+    solid(client, {"chart": "KP", "material": "acrylic"})
     assert len(computed) == 1
 
 

@@ -2,22 +2,21 @@ import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
-import numpy as np
 import pytest
 import zstandard
 from fastapi.testclient import TestClient
 
-from app.drawing.colours import diverging, fabric_mix, sequential
 from app.service.api import views as views_api
 from app.service.limits.user_limits import USER_LIMITS
 from tests.app.clients import state_of, watching
-from tests.app.operations.cloth.test_stretch import ASKED, GARTER
+from tests.app.operations.cloth.test_stretch import GARTER, pulled
+from tests.app.rest import draw
 
 DESIGN = "a-design-of-mine"
 
 
 def _messages(client: TestClient, design: str, enough: bytes) -> bytes:
-    """What a browser gets when it opens the view, until ``enough`` is among it."""
+    """All that a browser gets when it opens the view, until ``enough`` is among it."""
     seen = b""
     with watching(client, f"/view/{design}") as socket:
         while enough not in seen:
@@ -28,9 +27,7 @@ def _messages(client: TestClient, design: str, enough: bytes) -> bytes:
 
 
 def test_a_design_is_drawn_and_reaches_the_browser(client: TestClient) -> None:
-    body = {"chart": GARTER, "material": "acrylic", "colour": "course", "rectangles": True}
-    answer = client.put(f"/api/v1/views/{DESIGN}", json=body)
-    shown = answer.json()
+    shown = draw(client, DESIGN, GARTER, colour="course", rectangles=True)
     assert shown.pop("url").startswith(f"/view/{DESIGN}/#")
     assert shown == {
         "stitches": 54,
@@ -46,44 +43,37 @@ def test_a_design_is_drawn_and_reaches_the_browser(client: TestClient) -> None:
 def test_two_designs_are_two_scenes(client: TestClient) -> None:
     for design, columns in (("first-design", 3), ("second-design", 5)):
         chart = {"fabric": "rib", "columns": columns, "rows": 2}
-        body = {"chart": chart, "material": "cotton"}
-        assert client.put(f"/api/v1/views/{design}", json=body).json()["stitches"] == 2 * columns
+        assert draw(client, design, chart)["stitches"] == 2 * columns
     views = state_of(client).views
     assert views.open("local/first-design").port != views.open("local/second-design").port
 
 
 def test_the_same_design_twice_is_one_scene(client: TestClient) -> None:
-    body = {"chart": "KP\nPK", "material": "cotton", "colour": "wale"}
-    assert client.put("/api/v1/views/shared-design", json=body).status_code == 200
+    draw(client, "shared-design", "KP\nPK", colour="wale")
     first, second = (_messages(client, "shared-design", b"batched_colors") for _ in range(2))
     assert b"/fabric/1" in first
     assert b"/fabric/1" in second
 
 
 def test_a_closed_view_is_drawn_again_by_the_next_request(client: TestClient) -> None:
-    body = {"chart": "KP\nPK", "material": "cotton"}
-    client.put("/api/v1/views/design-that-slept", json=body)
-    state_of(client).views.close()
-    assert client.put("/api/v1/views/design-that-slept", json=body).json()["stitches"] == 4
-    assert b"/fabric/" in _messages(client, "design-that-slept", b"/fabric/")
+    for _ in range(2):
+        assert draw(client, "design-that-slept", "KP\nPK")["stitches"] == 4
+        assert b"/fabric/" in _messages(client, "design-that-slept", b"/fabric/")
+        state_of(client).views.close()
 
 
 def test_a_stretched_state_can_be_shown(client: TestClient) -> None:
-    run = client.post("/api/v1/stretch", json=ASKED).json()
-    body = {
-        "chart": GARTER,
-        "material": "acrylic",
-        "colour": "strain",
-        "stretch": {"id": run["id"], "step": 3},
-    }
-    assert client.put(f"/api/v1/views/{DESIGN}", json=body).status_code == 200
-    for stretch, field in (
-        ({"id": run["id"], "step": 9}, "stretch.step"),
-        ({"id": "gone", "step": 0}, "stretch.id"),
+    test = pulled(client)["id"]
+    body = {"chart": GARTER, "material": "acrylic", "colour": "strain"}
+    for identifier, step, field in (
+        (test, 3, None),
+        (test, 9, "stretch.step"),
+        ("gone", 0, "stretch.id"),
     ):
-        problem = client.put(f"/api/v1/views/{DESIGN}", json=body | {"stretch": stretch}).json()
-        assert problem["field"] == field
-        assert problem["remedy"]
+        stretch = {"stretch": {"id": identifier, "step": step}}
+        answer = client.put(f"/api/v1/views/{DESIGN}", json=body | stretch)
+        assert (answer.status_code, answer.json().get("field")) == (422 if field else 200, field)
+        assert field is None or answer.json()["remedy"]
 
 
 def test_the_view_page_comes_from_here(client: TestClient) -> None:
@@ -95,33 +85,22 @@ def test_the_view_page_comes_from_here(client: TestClient) -> None:
 
 
 def test_a_browser_says_that_it_has_no_gpu(client: TestClient) -> None:
-    client.put("/api/v1/views/a-coarse-view", json={"chart": GARTER, "material": "acrylic"})
+    draw(client, "a-coarse-view")
     view = state_of(client).views.get("local/a-coarse-view")
     for query, coarse in (("", False), ("?coarse=1", True)):
         with watching(client, f"/view/a-coarse-view{query}"):
             assert view.writer.coarse is coarse
 
 
-def test_colours_follow_their_maps() -> None:
-    low, high = sequential([1.0, 100.0], 1.0, 100.0)
-    middle = sequential([10.0], 1.0, 100.0, log=True)[0]
-    assert low.tolist() == [0x01, 0x19, 0x59]
-    assert high.tolist() == [0xFA, 0xCC, 0xFA]
-    np.testing.assert_array_equal(middle, sequential([50.5], 1.0, 100.0)[0])
-    assert diverging([0.0], 1.0)[0].tolist() == [0xEC, 0xE5, 0xE0]
-    assert fabric_mix(np.eye(4))[0].tolist() == [0x3F, 0x74, 0xB5]
-
-
 @pytest.mark.parametrize("colour", ["fabric", "course", "wale", "anisotropy"])
 def test_every_colour_field_works(client: TestClient, colour: str) -> None:
-    body = {"chart": "KKP\nPPK", "material": "glove-wool", "colour": colour}
-    assert client.put(f"/api/v1/views/{DESIGN}", json=body).status_code == 200
+    assert draw(client, DESIGN, "KKP\nPPK", "glove-wool", colour=colour)["stitches"] == 6
 
 
 def test_pictures_that_no_browser_sends_do_not_delay_others(
     client: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    client.put("/api/v1/views/hidden-tab", json={"chart": "KP", "material": "cotton"})
+    draw(client, "hidden-tab")
     waiting, over = threading.Semaphore(0), threading.Event()
 
     def never(*_: object) -> bytes:

@@ -2,16 +2,11 @@
 
 import asyncio
 import gzip
-import json
 import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
-import yaml
 
 from app.context import Context
 from app.operations.chart.curve import CurveRequest, CurveResult, curve
@@ -23,29 +18,10 @@ from app.service.jobs.document import JobState
 from app.service.store.database import Database
 from knitcore.chart.fabric import Direction
 from tests.app import jobs
+from tests.app.clusters import SERVICES, dask, scheduler
 from tests.app.jobs import never
-from tests.app.running import wait_until
 from tests.app.service.compute.contract import WorkerContract
 from tests.app.service.jobs.helpers import ended, runner_of
-
-ROOT = Path(__file__).resolve().parents[4]
-COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "compose.yaml").read_text())
-
-
-def _dask(name: str, folder: Path, *options: str, **changed: str) -> subprocess.Popen[bytes]:
-    """What the compose file runs, with some of its words changed and options added."""
-    service = COMPOSE["services"][name]
-    program, *words = service["command"]
-    assert program == "dask"
-    command = [changed.get(word, word) for word in words]
-    with (folder / f"{name}.log").open("w") as log:
-        return subprocess.Popen(
-            [sys.executable, "-m", "dask", *command, *options],
-            env=os.environ | service["environment"] | {"PYTHONPATH": str(ROOT)},
-            stdout=log,
-            stderr=log,
-        )
-
 
 pytestmark = pytest.mark.slow  # a cluster takes seconds to start
 
@@ -53,19 +29,11 @@ pytestmark = pytest.mark.slow  # a cluster takes seconds to start
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     folder = tmp_path_factory.mktemp("dask")
-    file = folder / "scheduler.json"
-    running = [
-        _dask("scheduler", folder, "--host=127.0.0.1", "--port=0", f"--scheduler-file={file}")
-    ]
-    wait_until(lambda: file.exists() and file.read_text())
-    found: str = json.loads(file.read_text())["address"]
-    (scratch,) = COMPOSE["services"]["worker"]["tmpfs"]
-    changed = {"tcp://scheduler:8786": found, scratch: str(folder)}
-    running.append(_dask("worker", folder, **changed))
-    yield found
-    for process in reversed(running):
-        process.terminate()
-        process.wait(60)
+    (scratch,) = SERVICES["worker"]["tmpfs"]
+    with scheduler(folder) as address:
+        changed = {"tcp://scheduler:8786": address, scratch: str(folder)}
+        with dask("worker", folder, **changed):
+            yield address
 
 
 @pytest.fixture(scope="module")

@@ -122,8 +122,7 @@ async def test_workers_run_at_low_priority(idle: bool) -> None:
 class _Nobody:
     """A place that takes jobs and never begins."""
 
-    share = None
-    cpu_s = None
+    share = cpu_s = None
 
     async def submit(self, job: object) -> asyncio.Future[int]:
         self.future: asyncio.Future[int] = asyncio.get_running_loop().create_future()
@@ -132,11 +131,7 @@ class _Nobody:
     def cancel(self) -> None:
         self.future.cancel()
 
-    def replace(self) -> None:
-        self.future.cancel()
-
-    def close(self) -> None:
-        pass
+    replace = cancel
 
 
 async def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -36,8 +36,8 @@ def test_the_map_holds_every_stitch_whose_kind_changed(
         expected[run.row, run.column : run.column + len(purls)] = purls
     np.testing.assert_array_equal(after.purl, expected)
 
-    told = kinds_around(after.text, after.rows, after.columns, runs)
+    area = kinds_around(after.text, after.rows, after.columns, runs)
     codes = surroundings(chart).copy()
-    box = np.array([[int(digit, 16) for digit in line] for line in told.kinds])
-    codes[told.row : told.row + box.shape[0], told.column : told.column + box.shape[1]] = box
+    box = np.array([[int(digit, 16) for digit in line] for line in area.kinds])
+    codes[area.row : area.row + box.shape[0], area.column : area.column + box.shape[1]] = box
     np.testing.assert_array_equal(codes, surroundings(after))

@@ -1,7 +1,5 @@
 import asyncio
 
-from fastapi.testclient import TestClient
-
 from app.service.designs.document import DesignDocument, DesignPatch, Run, Strokes
 from app.service.designs.store import DesignStore
 from app.service.designs.watching import Watched
@@ -32,20 +30,16 @@ async def test_those_who_follow_a_design_hear_of_each_other_and_of_its_changes(
     second, leaves = follow("ada")
     stranger, strays = follow("bob")
     assert await stranger.get() == "event: others\ndata: 0\n\n"
-    for one in (first, second):
-        assert await one.get() == "event: others\ndata: 1\n\n"
+    for follower in (first, second):
+        assert await follower.get() == "event: others\ndata: 1\n\n"
     await asyncio.to_thread(store.patch, "ada", design, DesignPatch(name="Hem"), '"1"')
     runs = [Run(row=0, column=0, stitches="P")]
     await store.paint("ada", design, Strokes(rows=2, columns=4, runs=runs))
     for revision in ("2", "3"):
-        for one in (first, second):
-            assert await one.get() == "event: changed\ndata: " + revision + "\n\n"
+        for follower in (first, second):
+            assert await follower.get() == f"event: changed\ndata: {revision}\n\n"
     leaves.cancel()
     assert await first.get() == "event: others\ndata: 0\n\n"
     assert stranger.empty()
     for task in (reads, strays):
         task.cancel()
-
-
-def test_only_designs_of_ones_own_can_be_followed(client: TestClient) -> None:
-    assert client.get("/api/v1/designs/not-a-design/events").status_code == 404

@@ -1,15 +1,16 @@
 """Runners of jobs in tests, and ways to wait for their jobs."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from pathlib import Path
 
+from app.service.compute.answers import Answers, RecentResults
 from app.service.compute.compute import Compute
 from app.service.jobs.document import JobState, JobStatus
 from app.service.jobs.runner import JobRunner
 from app.service.jobs.store import JobStore
 from app.service.store.database import Database
-from tests.app.jobs import Task, answers
+from tests.app.jobs import Task
 
 PATIENCE_S = 150.0
 """For a worker that starts, or answers, on a machine that is busy."""
@@ -24,7 +25,8 @@ def runner_of(
     folder: Path | None = None,
 ) -> JobRunner:
     """A runner of the jobs of a process."""
-    return JobRunner(JobStore(database, name), answers(compute, folder or Path()), timeout_s)
+    answers = Answers(compute, RecentResults(), folder or Path())
+    return JobRunner(JobStore(database, name), answers, timeout_s)
 
 
 def task(what: str, mark: Path | str = "/nonexistent") -> str:
@@ -32,36 +34,33 @@ def task(what: str, mark: Path | str = "/nonexistent") -> str:
     return Task(what=what, mark=str(mark)).model_dump_json()
 
 
-async def until(true: Callable[[], Awaitable[bool]]) -> None:
+async def until(true: Callable[[], object]) -> None:
     """Wait until something is true."""
     async with asyncio.timeout(PATIENCE_S):
-        while not await true():
+        while not true():
             await asyncio.sleep(0.02)
 
 
-async def ended(runner: JobRunner, job: str, owner: str = "ada") -> JobStatus:
+async def status_when(
+    runner: JobRunner, job: str, true: Callable[[JobStatus], bool], owner: str = "ada"
+) -> JobStatus:
+    """Wait until something is true of the state of a job, and return the state."""
+    async with asyncio.timeout(PATIENCE_S):
+        while not true(status := await runner.status(owner, job)):
+            await asyncio.sleep(0.02)
+    return status
+
+
+async def ended(runner: JobRunner, job: str) -> JobStatus:
     """The state of a job once it has ended."""
-
-    async def is_final() -> bool:
-        return (await runner.status(owner, job)).state.is_final
-
-    await until(is_final)
-    return await runner.status(owner, job)
+    return await status_when(runner, job, lambda status: status.state.is_final)
 
 
 async def running(runner: JobRunner, job: str) -> None:
     """Wait until a job runs."""
-
-    async def is_running() -> bool:
-        return (await runner.status("ada", job)).state is JobState.RUNNING
-
-    await until(is_running)
+    await status_when(runner, job, lambda status: status.state is JobState.RUNNING)
 
 
 async def counted(runner: JobRunner, state: str, count: int) -> None:
     """Wait until so many jobs wait, or run."""
-
-    async def is_reached() -> bool:
-        return runner.counts()[state] == count
-
-    await until(is_reached)
+    await until(lambda: runner.counts()[state] == count)

@@ -26,16 +26,14 @@ SMALLER: dict[str, dict[str, Any]] = {
     "biaxial": {"mesh_mm": 50, "steps": 1},
     "trellis": {"mesh_mm": 50, "steps": 1},
 }
-"""What their examples are given besides, so that there is less to compute."""
+"""Changes of their examples, so that there is less to compute."""
 
 
-@pytest.fixture(scope="module")
-def requests() -> dict[str, dict[str, Any]]:
-    """The examples, by kind."""
-    return {
-        kind: {**(operation.example or {}), **SMALLER.get(kind, {})}
-        for kind, operation in KINDS.items()
-    }
+def request_of(kind: str) -> str:
+    """The example of a kind."""
+    operation = KINDS[kind]
+    example = {**(operation.example or {}), **SMALLER.get(kind, {})}
+    return operation.request.model_validate(example).model_dump_json()
 
 
 @pytest.fixture
@@ -53,18 +51,12 @@ def test_every_kind_has_an_example() -> None:
     [kind if kind == "bend" else pytest.param(kind, marks=pytest.mark.slow) for kind in KINDS],
 )
 async def test_a_killed_worker_loses_only_its_own_job(
-    runner: JobRunner,
-    requests: dict[str, dict[str, Any]],
-    kind: str,
-    monkeypatch: pytest.MonkeyPatch,
+    runner: JobRunner, kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    described = KINDS[kind]
-    request = described.request.model_validate(requests[kind]).model_dump_json()
-
     with monkeypatch.context() as patch:
         patch.setattr(answers_module, "perform", partial(killed_in_the_middle, kind))
-        job = await runner.submit("ada", kind, request)
-        other = await runner.submit("ada", "curve", _curve(requests))
+        job = await runner.submit("ada", kind, request_of(kind))
+        other = await runner.submit("ada", "curve", request_of("curve"))
         failed = await ended(runner, job.id)
     assert failed.state is JobState.FAILED
     assert failed.problem is not None
@@ -77,8 +69,4 @@ async def test_a_killed_worker_loses_only_its_own_job(
         assert (await ended(runner, again.id)).state is JobState.DONE
         answer = await asyncio.to_thread(runner.store.result, "ada", again.id)
         assert answer is not None
-        described.result.model_validate_json(gzip.decompress(answer))
-
-
-def _curve(requests: dict[str, dict[str, Any]]) -> str:
-    return KINDS["curve"].request.model_validate(requests["curve"]).model_dump_json()
+        KINDS[kind].result.model_validate_json(gzip.decompress(answer))

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from app.service.compute.processes import processes
 from app.service.jobs import runner as runner_module
 from app.service.jobs.document import JobState
 from app.service.jobs.kinds import job_key
+from app.service.jobs.runner import JobRunner
 from app.service.jobs.store import JobStore
 from app.service.limits.user_limits import OverLimitError, UserLimits
 from app.service.problems import NotFoundError, StoreError
@@ -22,7 +24,7 @@ from knitcore.base.extensions import Group
 from knitcore.yarn.library import fingerprint
 from tests.app.clients import LONG, served, state_of
 from tests.app.running import Service, wait_until
-from tests.app.service.jobs.helpers import counted, ended, runner_of, running, task, until
+from tests.app.service.jobs.helpers import counted, ended, runner_of, running, status_when, task
 from tests.extension_package import install
 
 JOBS = "/api/v1/jobs"
@@ -35,15 +37,25 @@ def database(sqlite_database: Database) -> Database:
     return sqlite_database
 
 
+@pytest.fixture
+def runner(database: Database, compute: Compute) -> JobRunner:
+    return runner_of(database, compute)
+
+
+def followed(client: TestClient, address: str) -> Any:
+    """The last state of a job that its events tell."""
+    with client.stream("GET", f"{address}/events") as stream:
+        assert stream.headers["content-type"].startswith("text/event-stream")
+        *_, last = (line for line in stream.iter_lines() if line.startswith("data: "))
+    return json.loads(last.removeprefix("data: "))
+
+
 def test_a_stretch_test_in_the_background(client: TestClient) -> None:
     made = client.post(JOBS, json={"kind": "stretch", "request": STRETCH})
     assert made.status_code == 202
     address = made.headers["location"]
-    with client.stream("GET", f"{address}/events") as stream:
-        assert stream.headers["content-type"].startswith("text/event-stream")
-        events = [json.loads(e[6:]) for e in stream.iter_lines() if e.startswith("data: ")]
-    assert events[-1]["state"] == "done"
-    assert events[-1]["progress"] == 1
+    last = followed(client, address)
+    assert (last["state"], last["progress"]) == ("done", 1)
     result = client.get(f"{address}/result").json()
     direct = client.post("/api/v1/stretch", json=STRETCH).json()
     assert result == direct
@@ -60,19 +72,16 @@ def test_a_stretch_test_in_the_background(client: TestClient) -> None:
     state_of(client).recent.drop(result["id"])  # as after a restart
     assert client.put("/api/v1/views/of-a-job-1", json=view).status_code == 422
     third = client.post(f"{address}/again").headers["location"]
-    with client.stream("GET", f"{third}/events") as stream:
-        assert any('"done"' in line for line in stream.iter_lines())
+    assert followed(client, third)["state"] == "done"
     assert client.put("/api/v1/views/of-a-job-1", json=view).status_code == 200
 
 
 def test_a_job_that_cannot_work_says_why(client: TestClient) -> None:
     body = {"kind": "stretch", "request": STRETCH | {"material": "steel"}}
     address = client.post(JOBS, json=body).headers["location"]
-    with client.stream("GET", f"{address}/events") as stream:
-        for _ in stream.iter_lines():
-            pass
-    told = client.get(address).json()
-    assert (told["state"], told["problem"]["field"]) == ("failed", "material")
+    last = followed(client, address)
+    assert (last["state"], last["problem"]["field"]) == ("failed", "material")
+    assert client.get(address).json() == last
     assert client.get(f"{address}/result").status_code == 409
     assert client.get(f"{JOBS}/no-such-job").json()["field"] == "job"
     assert client.post(JOBS, json={"kind": "dance", "request": {}}).status_code == 422
@@ -93,23 +102,19 @@ async def test_a_user_with_too_many_waiting_jobs_is_refused_at_once(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(compute_module, "USER_LIMITS", UserLimits(jobs=1))
-    pool = Compute(processes(1), timeout_s=60)
-    runner = runner_of(database, pool)
-    first = await runner.submit("ada", "work", task("wait"))
-    await running(runner, first.id)
-    await runner.submit("ada", "work", task("wait", "second"))
-    await counted(runner, "waiting", 1)
-    with pytest.raises(OverLimitError, match="1 of 1 jobs"):
-        await runner.submit("ada", "work", task("wait", "third"))
-    assert len(runner.store.page("ada", limit=9, cursor=None).jobs) == 2
-    await runner.close()
-    pool.close()
+    with closing(Compute(processes(1), timeout_s=60)) as pool:
+        runner = runner_of(database, pool)
+        first = await runner.submit("ada", "work", task("wait"))
+        await running(runner, first.id)
+        await runner.submit("ada", "work", task("wait", "second"))
+        await counted(runner, "waiting", 1)
+        with pytest.raises(OverLimitError, match="1 of 1 jobs"):
+            await runner.submit("ada", "work", task("wait", "third"))
+        assert len(runner.store.page("ada", limit=9, cursor=None).jobs) == 2
+        await runner.close()
 
 
-async def test_jobs_are_private_and_results_are_shared_by_content(
-    database: Database, compute: Compute
-) -> None:
-    runner = runner_of(database, compute)
+async def test_jobs_are_private_and_results_are_shared_by_content(runner: JobRunner) -> None:
     first = await runner.submit("ada", "work", task("answer"))
     assert (await ended(runner, first.id)).state is JobState.DONE
     with pytest.raises(NotFoundError):
@@ -124,9 +129,8 @@ async def test_jobs_are_private_and_results_are_shared_by_content(
 
 
 async def test_a_result_of_other_code_is_computed_again(
-    database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
+    runner: JobRunner, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    runner = runner_of(database, compute)
     first = await runner.submit("ada", "work", task("answer"))
     assert (await ended(runner, first.id)).state is JobState.DONE
     monkeypatch.setattr(fingerprint, "code_version", lambda *_: "the next one")
@@ -143,15 +147,9 @@ def test_a_result_of_other_yarns_is_computed_again(
     assert job_key("work", "{}") != before
 
 
-async def test_progress_and_cancel(database: Database, compute: Compute) -> None:
-    runner = runner_of(database, compute)
+async def test_progress_and_cancel(runner: JobRunner) -> None:
     job = (await runner.submit("ada", "work", task("wait"))).id
-    await running(runner, job)
-
-    async def is_told() -> bool:
-        return (await runner.status("ada", job)).progress == 0.25
-
-    await until(is_told)
+    await status_when(runner, job, lambda status: status.progress == 0.25)
     assert (await runner.cancel("ada", job)).state is JobState.CANCELLED
     await counted(runner, "running", 0)
     status = await runner.status("ada", job)
@@ -165,10 +163,9 @@ async def test_progress_and_cancel(database: Database, compute: Compute) -> None
     [("die", "busy", "died"), ("fail", "internal", "unexpected error"), ("wait", "busy", "0.3 s")],
 )
 async def test_an_unexpected_error_fails_only_its_own_job(
-    database: Database, compute: Compute, what: str, type_: str, says: str
+    database: Database, compute: Compute, runner: JobRunner, what: str, type_: str, says: str
 ) -> None:
     hasty = runner_of(database, compute, timeout_s=0.3 if what == "wait" else 60.0)
-    runner = runner_of(database, compute)
     bad = await hasty.submit("ada", "work", task(what))
     good = await runner.submit("ada", "work", task("answer", what))
     failed = await ended(hasty, bad.id)
@@ -180,10 +177,9 @@ async def test_an_unexpected_error_fails_only_its_own_job(
 
 
 async def test_waiting_jobs_continue_and_running_ones_are_interrupted(
-    database: Database, compute: Compute
+    database: Database, runner: JobRunner
 ) -> None:
     """A service that was killed: its successor finds the rows as they were."""
-
     store = JobStore(database, "main")
     ran = store.add("ada", "work", task("wait"), "k1", JobState.WAITING)
     waited = store.add("ada", "work", task("answer"), "k2", JobState.WAITING)
@@ -191,7 +187,6 @@ async def test_waiting_jobs_continue_and_running_ones_are_interrupted(
     theirs = others.add("ada", "work", task("wait"), "k1", JobState.WAITING)
     assert store.begin(ran.id)
     assert others.begin(theirs.id)
-    runner = runner_of(database, compute)
     await runner.resume()
     interrupted = await runner.status("ada", ran.id)
     assert interrupted.state is JobState.INTERRUPTED
@@ -202,11 +197,9 @@ async def test_waiting_jobs_continue_and_running_ones_are_interrupted(
 
 
 async def test_a_service_that_stops_puts_its_jobs_back_in_line(
-    database: Database, compute: Compute, tmp_path: Path
+    database: Database, compute: Compute, runner: JobRunner, tmp_path: Path
 ) -> None:
     mark = tmp_path / "mark"
-
-    runner = runner_of(database, compute)
     job = (await runner.submit("ada", "work", task("wait", mark))).id
     await running(runner, job)
     await runner.close()
@@ -218,11 +211,9 @@ async def test_a_service_that_stops_puts_its_jobs_back_in_line(
 
 
 async def test_a_result_outlives_a_database_outage(
-    database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
+    runner: JobRunner, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(runner_module, "STORE_RETRY_S", (0.01, 0.01, 0.01))
-
-    runner = runner_of(database, compute)
     real, failures = runner.store.finish, []
 
     def away(*args: Any) -> bool:
@@ -240,22 +231,15 @@ async def test_a_result_outlives_a_database_outage(
 @pytest.mark.slow
 def test_the_real_service_killed_in_mid_job(tmp_path: Path) -> None:
     service = Service(tmp_path)
-    client = service.start()
-    try:
+    with service.running() as client:
         job = client.post(JOBS, json={"kind": "stretch", "request": LONG}).json()["id"]
         wait_until(lambda: client.get(f"{JOBS}/{job}").json()["state"] != "waiting")
-        service.kill()
-        client.close()
-        client = service.start()
-        told = client.get(f"{JOBS}/{job}").json()
-        assert told["state"] == "interrupted"
+    with service.running() as client:
+        assert client.get(f"{JOBS}/{job}").json()["state"] == "interrupted"
         assert client.get(f"{JOBS}/{job}/result").status_code == 409
         again = client.post(f"{JOBS}/{job}/again").json()
         assert again["state"] == "waiting"
         assert client.delete(f"{JOBS}/{again['id']}").json()["state"] == "cancelled"
-    finally:
-        client.close()
-        service.kill()
 
 
 def test_settings_reach_the_jobs(tmp_path: Path) -> None:

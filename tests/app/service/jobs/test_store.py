@@ -13,10 +13,11 @@ from app.service.jobs import runner as runner_module
 from app.service.jobs import store as store_module
 from app.service.jobs.document import JobState
 from app.service.jobs.store import JobStore
+from app.service.limits.user_limits import OverLimitError, UserLimits
 from app.service.problems import StoreError
 from app.service.store.database import Database
 from app.service.store.tables import jobs
-from tests.app.service.jobs.helpers import counted, ended, runner_of, task, until
+from tests.app.service.jobs.helpers import counted, ended, runner_of, status_when, task, until
 
 
 @pytest.fixture(autouse=True)
@@ -31,13 +32,8 @@ async def test_another_process_sees_the_progress_and_cancels(
     await here.resume()
     await there.resume()
     job = (await here.submit("ada", "work", task("wait"))).id
-
-    async def told() -> bool:
-        return (await there.status("ada", job)).progress == 0.25
-
-    await until(told)
+    await status_when(there, job, lambda status: status.progress == 0.25)
     assert (await there.cancel("ada", job)).state is JobState.CANCELLED
-
     await counted(here, "running", 0)
     assert (await here.status("ada", job)).state is JobState.CANCELLED
     await here.close()
@@ -101,11 +97,7 @@ async def test_a_process_is_not_declared_dead_right_after_an_outage(
     monkeypatch.setattr(runner.store, "beat", beat)
     monkeypatch.setattr(runner.store, "adopt_orphans", look_round)
     await runner.resume()
-
-    async def looked() -> bool:
-        return "look round" in calls
-
-    await until(looked)
+    await until(lambda: "look round" in calls)
     await runner.close()
     assert calls.index("look round") == 2 * runner_module.BEATS_TO_LOOK_ROUND
 
@@ -140,3 +132,23 @@ def test_the_longest_unused_results_make_room(database: Database) -> None:
     assert store.knows("k0")
     store.tidy(most_bytes=2100)
     assert [store.knows(f"k{n}") for n in range(3)] == [True, False, True]
+
+
+def test_requests_of_jobs_have_a_size_together(
+    database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = JobStore(database, "here")
+    monkeypatch.setattr(store_module, "USER_LIMITS", UserLimits(job_bytes=100))
+
+    def add(owner: str) -> str:
+        return store.add(owner, "relax", "x" * 40, "key", JobState.WAITING).id
+
+    first, second = add("ada"), add("ada")
+    with pytest.raises(OverLimitError) as refused:
+        add("ada")
+    assert refused.value.field == "job_bytes"
+    assert add("bob")
+    store.end(first, JobState.CANCELLED)
+    third = add("ada")  # in place of the one that has ended
+    assert store.kept_bytes("ada") == 80
+    assert {job.id for job in store.page("ada", limit=9, cursor=None).jobs} == {second, third}

@@ -11,10 +11,9 @@ from app.service.limits.user_limits import OverLimitError
 from app.service.problems import UnavailableError
 
 
-def _queue(places: int = 1, background: int = 1) -> FairQueue[int]:
-    return FairQueue(
-        list(range(places)), most_background=background, most_waiting=100, most_waiting_each=100
-    )
+def _queue(places: int = 1, background: int = 1, **most: int) -> FairQueue[int]:
+    limits = {"most_waiting": 100, "most_waiting_each": 100} | most
+    return FairQueue(list(range(places)), most_background=background, **limits)
 
 
 async def _order(queue: FairQueue[int], line: list[tuple[str, bool]]) -> list[str]:
@@ -77,7 +76,7 @@ async def test_leaving_the_queue_does_not_delay_others() -> None:
 
 
 async def test_the_queue_is_bounded() -> None:
-    queue: FairQueue[int] = FairQueue([0], most_background=1, most_waiting=1, most_waiting_each=1)
+    queue = _queue(most_waiting=1, most_waiting_each=1)
     for background in (False, True):
         queue.enter("ada", background=background)
     queue.enter("ada", background=False)
@@ -89,7 +88,7 @@ async def test_the_queue_is_bounded() -> None:
 
 
 async def test_one_user_cannot_fill_the_queue() -> None:
-    queue = FairQueue([0], most_background=1, most_waiting=3, most_waiting_each=100)
+    queue = _queue(most_waiting=3)
     for _ in range(4):  # one has the place, three wait
         queue.enter("ada", background=False)
     with pytest.raises(UnavailableError):
@@ -100,9 +99,7 @@ async def test_one_user_cannot_fill_the_queue() -> None:
 
 
 async def test_a_user_holds_only_so_many_places() -> None:
-    queue = FairQueue(
-        [0, 1, 2], most_background=2, most_waiting=9, most_waiting_each=9, most_each=2
-    )
+    queue = _queue(places=3, background=2, most_each=2)
     ada = [queue.enter("ada", background=False) for _ in range(3)]
     assert [ticket.place.done() for ticket in ada] == [True, True, False]
     bob = queue.enter("bob", background=True)

@@ -1,24 +1,15 @@
-"""What one user may hold and keep."""
+"""Limits of what one user may hold and keep."""
 
 import asyncio
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
-from starlette.websockets import WebSocketDisconnect
 
 from app.service.compute.compute import Compute
-from app.service.designs import sharing as sharing_module
-from app.service.designs import store as store_module
-from app.service.designs.document import DesignDocument, ShareMode
-from app.service.designs.sharing import Sharing
-from app.service.designs.store import DesignStore
 from app.service.identity import LOCAL_USER
-from app.service.jobs import store as job_store_module
-from app.service.jobs.document import JobState
-from app.service.jobs.store import JobStore
 from app.service.limits.user_limits import (
     USER_LIMITS,
     ConcurrencyLimit,
@@ -28,14 +19,9 @@ from app.service.limits.user_limits import (
     RateLimit,
     UserLimits,
 )
-from app.service.store.database import Database
-from app.viewer import views as views_module
-from app.viewer.views import Views
-from tests.app.clients import bearing, served, state_of, tokens_of, watching
+from tests.app.clients import closed_with, limited, login, served, state_of, watching
 from tests.app.jobs import never
-
-RIB = DesignDocument(name="Cuff", material="acrylic", chart="\n".join(["KP" * 50] * 100))
-SIZE = 100 * 101 - 1 + len(RIB.model_dump_json(include={"outline", "regions", "repeats", "shelf"}))
+from tests.app.rest import draw
 
 
 def test_what_users_hold_is_counted_and_released() -> None:
@@ -93,144 +79,31 @@ def test_computations_of_a_user_share_the_memory_of_the_machine(tmp_path: Path) 
         assert queue.most_each == max(1, most)
 
 
-def test_a_user_has_so_many_connections(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_user_has_so_many_connections(tmp_path: Path) -> None:
     with served(require_login=True, data_dir=tmp_path) as client:
-        state = state_of(client)
-        state.concurrency = ConcurrencyLimit(UserLimits(connections=2, streams=2))
-        headers = bearing(tokens_of(client).create("ada").token)
-        client.put(
-            "/api/v1/views/a-view", json={"chart": "K", "material": "cotton"}, headers=headers
-        )
-        told = client.get("/api/v1/session", headers=headers).json()["use"]
-        assert set(told) == {limit.name for limit in fields(UserLimits)}
+        client.headers.update(login(client, "ada"))
+        draw(client, "a-view", "K")
+        use = client.get("/api/v1/session").json()["use"]
+        assert set(use) == {limit.name for limit in fields(UserLimits)}
         for name in ("connections", "views", "view_stitches"):
-            assert told[name] == {"used": 1, "most": getattr(USER_LIMITS, name)}
-        with (
-            state.concurrency.hold("connections", "ada"),
-            state.concurrency.hold("connections", "ada"),
-        ):
-            refused = client.get("/api/v1/session", headers=headers)
-            assert (refused.status_code, refused.json()["field"]) == (429, "connections")
-            assert "2 of 2" in refused.json()["detail"]
-            other = bearing(tokens_of(client).create("bob").token)
-            assert client.get("/api/v1/session", headers=other).status_code == 200
-        assert state.concurrency.held("connections", "ada") == 0
+            assert use[name] == {"used": 1, "most": getattr(USER_LIMITS, name)}
+        with limited(client, connections=2, streams=2) as limit:
+            with limit.hold("connections", "ada"), limit.hold("connections", "ada"):
+                refused = client.get("/api/v1/session")
+                assert (refused.status_code, refused.json()["field"]) == (429, "connections")
+                assert "2 of 2" in refused.json()["detail"]
+                other = login(client, "bob")
+                assert client.get("/api/v1/session", headers=other).status_code == 200
+            assert limit.held("connections", "ada") == 0
 
 
-def test_requests_of_jobs_have_a_size_together(
-    database: Database, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    store = JobStore(database, "here")
-    monkeypatch.setattr(job_store_module, "USER_LIMITS", UserLimits(job_bytes=100))
-
-    def add(owner: str) -> str:
-        return store.add(owner, "relax", "x" * 40, "key", JobState.WAITING).id
-
-    first, second = add("ada"), add("ada")
-    with pytest.raises(OverLimitError) as refused:
-        add("ada")
-    assert refused.value.field == "job_bytes"
-    assert add("bob")
-    store.end(first, JobState.CANCELLED)
-    third = add("ada")  # in place of the one that has ended
-    assert store.kept_bytes("ada") == 80
-    assert {job.id for job in store.page("ada", limit=9, cursor=None).jobs} == {second, third}
-
-
-def test_bytes_kept_are_counted_with_versions(
-    database: Database, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    store = DesignStore(database)
-    monkeypatch.setattr(store_module, "USER_LIMITS", UserLimits(kept_bytes=3 * SIZE))
-    first = store.create("ada", RIB)
-    store.keep_version("ada", first.id, "one")
-    assert (store.most_versions("ada"), store.most_versions("bob")) == (1, 0)
-    second = store.duplicate("ada", first.id)
-    larger = RIB.model_copy(update={"note": "n"})
-    for refused in (
-        lambda: store.create("ada", RIB),
-        lambda: store.keep_version("ada", first.id, "two"),
-        lambda: store.replace("ada", second.id, larger, "*"),
-    ):
-        with pytest.raises(OverLimitError, match="of 0 MB"):
-            refused()
-    small = RIB.model_copy(update={"chart": "KP"})
-    assert store.replace("ada", second.id, small, "*").columns == 2  # smaller is always taken
-    assert store.replace("ada", second.id, larger.model_copy(update={"chart": "K"}), "*")
-    assert store.create("bob", RIB)
-
-
-def test_links_to_a_design_are_bounded(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sharing_module, "USER_LIMITS", UserLimits(links=2))
-    design = DesignStore(database).create("ada", RIB).id
-    links = Sharing(database)
-    first = links.give("ada", design, ShareMode.READ)
-    links.give("ada", design, ShareMode.COPY)
-    with pytest.raises(OverLimitError, match="2 open links"):
-        links.give("ada", design, ShareMode.READ)
-    assert links.most_given("ada") == 2
-    links.revoke("ada", design, first.id)
-    assert (links.most_given("ada"), links.most_given("bob")) == (1, 0)
-    assert links.give("ada", design, ShareMode.READ).token
-
-
-def test_one_user_does_not_take_all_views(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(views_module, "USER_LIMITS", UserLimits(views=2))
-    views = Views(most=3, idle_s=60)
-    try:
-        for name in ("ada/a", "ada/b"):
-            views.open(name)
-            views.watch(name, +1)
-        with pytest.raises(OverLimitError, match="2 of 2"):
-            views.open("ada/c")
-        views.open("bob/a")
-        views.watch("ada/a", -1)
-        views.open("ada/c")  # the one nobody watches makes room
-        assert views.get("ada/a") is None
-        assert views.get("bob/a") is not None
-    finally:
-        views.close()
-
-
-def test_large_charts_in_views_make_room_for_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(views_module, "USER_LIMITS", UserLimits(view_stitches=100))
-    views = Views(most=9, idle_s=60)
-    try:
-        views.open("ada/a", 60)
-        views.open("bob/a", 60)
-        views.open("ada/b", 60)
-        assert views.get("ada/a") is None
-        assert views.get("bob/a") is not None
-        views.watch("ada/b", +1)
-        with pytest.raises(OverLimitError, match="60 of 100"):
-            views.open("ada/c", 60)
-        assert views.open("ada/b", 90).stitches == 90  # the same view, with a larger chart
-    finally:
-        views.close()
-
-
-@pytest.fixture
-def narrow(client: TestClient) -> Iterator[TestClient]:
-    state = state_of(client)
-    before, uses = (
-        state.concurrency,
-        ConcurrencyLimit(UserLimits(watchers=1, streams=0, pictures=0)),
-    )
-    state.concurrency = uses
-    body = {"chart": "KP", "material": "cotton"}
-    assert client.put("/api/v1/views/a-view", json=body).status_code == 200
-    yield client
-    state.concurrency = before
-    assert not any(uses.held(what, "local") for what in ("watchers", "streams", "pictures"))
-
-
-def test_streams_pictures_and_watchers_are_bounded(narrow: TestClient, tmp_path: Path) -> None:
-    for path in ("events", "picture"):
-        answer = narrow.get(f"/api/v1/views/a-view/{path}")
-        assert (answer.status_code, answer.json()["type"]) == (429, "/problems/too-many")
-        assert answer.json()["remedy"]
-
-    with watching(narrow, "/view/a-view"):
-        with pytest.raises(WebSocketDisconnect) as refused, watching(narrow, "/view/a-view"):
-            pass
-        assert refused.value.code == 1013
+def test_streams_pictures_and_watchers_are_bounded(client: TestClient) -> None:
+    draw(client, "a-view")
+    with limited(client, watchers=1, streams=0, pictures=0) as limit:
+        for path in ("events", "picture"):
+            answer = client.get(f"/api/v1/views/a-view/{path}")
+            assert (answer.status_code, answer.json()["type"]) == (429, "/problems/too-many")
+            assert answer.json()["remedy"]
+        with watching(client, "/view/a-view"):
+            assert closed_with(client, "/view/a-view") == 1013
+        assert not any(limit.held(what, LOCAL_USER) for what in ("watchers", "streams", "pictures"))

@@ -19,7 +19,7 @@ def context(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Context:
 
 
 def forget(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As in a new process."""
+    """Begin as in a new process."""
     monkeypatch.setattr(atlases, "built_here", dict)
 
 

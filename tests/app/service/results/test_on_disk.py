@@ -1,34 +1,31 @@
 """Results of the yarn level kept by their inputs."""
 
-import json
 import logging
 import os
+from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from pydantic import BaseModel
 
-from app.cli.main import main
 from app.service.results.on_disk import KeptResults
 from knitcore.yarn.library import fingerprint
+from tests.app.command_line import run
 
 
 class Answer(BaseModel):
     value: float
 
 
-class Counting:
-    def __init__(self) -> None:
-        self.calls = 0
-
-    def __call__(self) -> Answer:
-        self.calls += 1
-        return Answer(value=self.calls)
+def counting() -> Callable[[], Answer]:
+    """A computation that answers with the number of its calls."""
+    calls = count(1)
+    return lambda: Answer(value=next(calls))
 
 
 def test_the_same_inputs_are_computed_once(tmp_path: Path) -> None:
-    kept, make = KeptResults(tmp_path / "new"), Counting()
+    kept, make = KeptResults(tmp_path / "new"), counting()
     assert kept.get_or_make(Answer, {"a": 1}, make) == (Answer(value=1), False)
     assert kept.get_or_make(Answer, {"a": 1}, make) == (Answer(value=1), True)
     assert kept.get_or_make(Answer, {"a": 2}, make) == (Answer(value=2), False)
@@ -39,7 +36,7 @@ def test_the_same_inputs_are_computed_once(tmp_path: Path) -> None:
 def test_a_result_of_other_code_is_computed_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    kept, make = KeptResults(tmp_path), Counting()
+    kept, make = KeptResults(tmp_path), counting()
     kept.get_or_make(Answer, {"a": 1}, make)
     monkeypatch.setattr(fingerprint, "code_version", lambda *modules: str(__name__ in modules))
     assert kept.get_or_make(Answer, {"a": 1}, make) == (Answer(value=2), False)
@@ -49,7 +46,7 @@ def test_a_result_of_other_code_is_computed_again(
 def test_a_damaged_result_is_logged_and_computed_again(
     tmp_path: Path, damage: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
-    kept, make = KeptResults(tmp_path), Counting()
+    kept, make = KeptResults(tmp_path), counting()
     kept.get_or_make(Answer, {}, make)
     (file,) = tmp_path.iterdir()
     file.write_bytes(damage)
@@ -61,7 +58,7 @@ def test_a_damaged_result_is_logged_and_computed_again(
 
 def test_the_longest_unused_result_makes_room(tmp_path: Path) -> None:
     size = len(Answer(value=1.0).model_dump_json())
-    kept, make = KeptResults(tmp_path, max_bytes=2 * size), Counting()
+    kept, make = KeptResults(tmp_path, max_bytes=2 * size), counting()
     for name in ("first", "second"):
         kept.get_or_make(Answer, {"name": name}, make)
     for file in tmp_path.iterdir():  # clocks of file systems are coarse
@@ -80,7 +77,7 @@ def test_a_read_only_folder_loses_no_result(
     file.touch()
     kept = KeptResults(file / "folder")
     with caplog.at_level(logging.WARNING, logger="knitcore.kept"):
-        assert kept.get_or_make(Answer, {}, Counting()) == (Answer(value=1), False)
+        assert kept.get_or_make(Answer, {}, counting()) == (Answer(value=1), False)
     assert "cannot be kept" in caplog.text
 
 
@@ -96,16 +93,8 @@ def test_commands_remember_and_forget_on_request(
     arguments: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
-
-    def run(*more: str) -> dict[str, object]:
-        result = CliRunner().invoke(main, [*arguments, *more, "--json"])
-        assert result.exit_code == 0, result.stderr
-        told: dict[str, object] = json.loads(result.stdout)
-        return told
-
-    first, second, third = run(), run(), run("--fresh")
+    first, second, third = (run(*arguments, *more) for more in ((), (), ("--fresh",)))
     assert (first.pop("known"), second.pop("known"), third.pop("known")) == (False, True, False)
     assert first == second
-    other = run("--loop-length-mm", "12.5")
-    assert not other["known"]
+    assert not run(*arguments, "--loop-length-mm", "12.5")["known"]
     assert len(list((tmp_path / "yarn-level").iterdir())) == 2

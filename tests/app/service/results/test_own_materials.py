@@ -6,10 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from app.service.results.own_materials import (
     added_by,
     keep_material,
@@ -20,6 +18,8 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import MeasuredCurve, material, save_material_file
 from knitcore.materials.material_document import MaterialDocument
 from tests.app.clients import served
+from tests.app.command_line import printed
+from tests.app.rest import post, refusal
 
 CURVE = MeasuredCurve((0.0, 0.2, 0.4), (0.0, 0.01, 0.03), pulls=4)
 CHART = {"fabric": "garter", "columns": 6, "rows": 6}
@@ -71,15 +71,13 @@ def test_an_own_material_is_listed_first_with_its_measured_curve(own: TestClient
 
 def test_charts_are_predicted_stretched_and_kept_with_it(own: TestClient) -> None:
     mine = identifier(own)
-    answers = [
-        own.post("/api/v1/predict", json={"chart": CHART, "material": name}).json()
+    moduli = [
+        post(own, "predict", {"chart": CHART, "material": name})["modulus_wale_n_per_mm"]
         for name in (mine, "acrylic")
     ]
-    assert answers[0]["modulus_wale_n_per_mm"] == pytest.approx(answers[1]["modulus_wale_n_per_mm"])
+    assert moduli[0] == pytest.approx(moduli[1])
     pull = {"chart": CHART, "material": mine, "direction": "wale", "strain": 0.3, "steps": 2}
-    stretched = own.post("/api/v1/stretch", json=pull)
-    assert stretched.status_code == 200, stretched.text
-    assert stretched.json()["converged"]
+    assert post(own, "stretch", pull)["converged"]
     design = {"name": "Cuff", "material": mine, "chart": "KP\nKP"}
     kept = own.post("/api/v1/designs", json=design)
     assert kept.status_code == 201, kept.text
@@ -93,13 +91,11 @@ def test_a_changed_file_is_another_material(folder: Path, own: TestClient) -> No
     save_mine(folder, stiffer=2.0)
     new = identifier(own)
     assert new != old
-    refused = own.post("/api/v1/predict", json={"chart": CHART, "material": old})
-    assert refused.status_code == 422
-    assert "changed" in refused.json()["detail"]
-    assert refused.json()["remedy"] == "Choose it again."
+    problem = refusal(own, "predict", {"chart": CHART, "material": old})
+    assert "changed" in problem["detail"]
+    assert problem["remedy"] == "Choose it again."
     (folder / "mine.yaml").unlink()
-    gone = own.post("/api/v1/predict", json={"chart": CHART, "material": new})
-    assert "gone" in gone.json()["detail"]
+    assert "gone" in refusal(own, "predict", {"chart": CHART, "material": new})["detail"]
 
 
 def test_a_file_without_a_material_is_skipped_and_logged(
@@ -115,11 +111,9 @@ def test_a_file_without_a_material_is_skipped_and_logged(
 
 def test_the_command_line_lists_it(folder: Path) -> None:
     save_mine(folder)
-    told = CliRunner().invoke(main, ["materials"])
-    assert told.output.startswith("own:mine.")
-    named = CliRunner().invoke(main, ["materials", told.output.split()[0]])
-    assert named.exit_code == 0, named.output
-    assert named.output.startswith("Mine")
+    listed = printed("materials").output
+    assert listed.startswith("own:mine.")
+    assert printed("materials", listed.split()[0]).output.startswith("Mine")
 
 
 def test_a_material_is_added_used_given_back_and_removed(own: TestClient) -> None:
@@ -130,15 +124,16 @@ def test_a_material_is_added_used_given_back_and_removed(own: TestClient) -> Non
     name = added.json()["id"]
     assert name.startswith("own:aunts-wool.")
     offered = own.get("/api/v1/materials").json()["materials"]
-    assert [one["id"] for one in offered if one["added_by_you"]] == [name]
-    asked = {"chart": "KP", "material": name}
-    given = {"chart": "KP", "material": "acrylic"}
-    mine, library = (own.post("/api/v1/predict", json=body).json() for body in (asked, given))
-    assert mine["modulus_course_n_per_mm"] == pytest.approx(library["modulus_course_n_per_mm"])
+    assert [yarn["id"] for yarn in offered if yarn["added_by_you"]] == [name]
+    mine, library = (
+        post(own, "predict", {"chart": "KP", "material": yarn})["modulus_course_n_per_mm"]
+        for yarn in (name, "acrylic")
+    )
+    assert mine == pytest.approx(library)
     assert own.get(f"/api/v1/materials/{name}/document").json() == file
     assert own.delete(f"/api/v1/materials/{name}").status_code == 204
     assert own.delete(f"/api/v1/materials/{name}").status_code == 404
-    assert own.post("/api/v1/predict", json=asked).status_code == 422
+    refusal(own, "predict", {"chart": "KP", "material": name})
 
 
 def test_a_replaced_material_answers_those_who_compute_with_it(own: TestClient) -> None:
@@ -152,7 +147,7 @@ def test_a_replaced_material_answers_those_who_compute_with_it(own: TestClient) 
         return own.post("/api/v1/predict", json={"chart": "KP", "material": name}).status_code
 
     assert [predicted(name) for name in names] == [422, 200, 200]
-    offered = {one["id"] for one in own.get("/api/v1/materials").json()["materials"]}
+    offered = {yarn["id"] for yarn in own.get("/api/v1/materials").json()["materials"]}
     assert offered.isdisjoint(names[:2])
     own.delete(f"/api/v1/materials/{names[2]}")
     assert [predicted(name) for name in names] == [422, 422, 422]

@@ -1,8 +1,10 @@
 """Durable writes, shared commits, and what happens when the database fails."""
 
 import asyncio
+import contextlib
 import hashlib
 import threading
+from collections.abc import AsyncIterator, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -19,13 +21,13 @@ from app.service.store.database import Database
 from app.service.store.schema import migrate, revision
 from app.service.store.tables import metadata
 from knitcore.base.errors import InputError
+from tests.app.databases import opened
 
 
 @pytest.fixture
-def database(tmp_path: Path) -> Any:
-    database = Database(f"sqlite:///{tmp_path / 'knit.sqlite3'}")
-    yield database
-    database.close()
+def database(tmp_path: Path) -> Iterator[Database]:
+    with opened(tmp_path, migrated=False) as database:
+        yield database
 
 
 def _insert(value: int) -> Any:
@@ -42,9 +44,10 @@ def _values(database: Database) -> list[int]:
 
 
 def test_the_migrations_make_the_tables(database: Database) -> None:
+    """The first migration has the number of the schema that programs wrote before it."""
     migrate(database)
     migrate(database)
-    assert revision(database) is not None
+    assert revision(database) == "0008"
     with database.read() as connection:
         assert compare_metadata(MigrationContext.configure(connection), metadata) == []
 
@@ -67,12 +70,6 @@ def test_a_database_from_before_the_first_release_is_left_alone(database: Databa
     assert revision(database) == "0005"
 
 
-def test_a_database_of_the_present_schema_opens(database: Database) -> None:
-    """The first migration has the number of the schema that programs wrote before it."""
-    migrate(database)
-    assert revision(database) == "0008"
-
-
 def test_commits_are_flushed_to_disk(database: Database) -> None:
     with database.read() as connection:
         assert connection.exec_driver_sql("PRAGMA journal_mode").scalar() == "wal"
@@ -80,23 +77,30 @@ def test_commits_are_flushed_to_disk(database: Database) -> None:
         assert connection.exec_driver_sql("PRAGMA foreign_keys").scalar() == 1
 
 
+@contextlib.asynccontextmanager
+async def _inserting(database: Database, value: int) -> AsyncIterator[None]:
+    """A change is being made while the block runs."""
+    begun, go_on = threading.Event(), threading.Event()
+
+    def change(connection: Connection) -> None:
+        begun.set()
+        go_on.wait(60)
+        _insert(value)(connection)
+
+    opening = asyncio.create_task(database.written(change))
+    assert await asyncio.to_thread(begun.wait, 60)
+    yield
+    go_on.set()
+    await opening
+
+
 async def test_waiting_changes_share_a_commit_and_fail_alone(database: Database) -> None:
     _table(database)
     commits: list[int] = []
     event.listen(database.engine, "commit", lambda _: commits.append(1))
-    begun, go_on = threading.Event(), threading.Event()
-
-    def first(connection: Connection) -> None:
-        begun.set()
-        go_on.wait(60)
-        _insert(0)(connection)
-
-    opening = asyncio.create_task(database.written(first))
-    assert await asyncio.to_thread(begun.wait, 60)
-    rest = [asyncio.create_task(database.written(_insert(n % 10))) for n in range(1, 15)]
-    await asyncio.sleep(0)  # all of them have handed their change in
-    go_on.set()
-    await opening
+    async with _inserting(database, 0):
+        rest = [asyncio.create_task(database.written(_insert(n % 10))) for n in range(1, 15)]
+        await asyncio.sleep(0)  # all of them have handed their change in
     outcomes = await asyncio.gather(*rest, return_exceptions=True)
     refused = [isinstance(outcome, IntegrityError) for outcome in outcomes]
     assert refused == [False] * 9 + [True] * 5  # 10 to 14 repeat 0 to 4
@@ -106,19 +110,9 @@ async def test_waiting_changes_share_a_commit_and_fail_alone(database: Database)
 
 async def test_a_change_whose_caller_has_gone_is_not_made(database: Database) -> None:
     _table(database)
-    begun, go_on = threading.Event(), threading.Event()
-
-    def first(connection: Connection) -> None:
-        begun.set()
-        go_on.wait(60)
-        _insert(1)(connection)
-
-    opening = asyncio.create_task(database.written(first))
-    assert await asyncio.to_thread(begun.wait, 60)
-    with pytest.raises(TimeoutError):
-        await asyncio.wait_for(database.written(_insert(2)), 0.05)
-    go_on.set()
-    await opening
+    async with _inserting(database, 1):
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(database.written(_insert(2)), 0.05)
     await database.written(_insert(3))
     assert _values(database) == [1, 3]
 
@@ -148,21 +142,16 @@ def test_a_full_disk_refuses_only_what_does_not_fit(database: Database) -> None:
 
 
 def test_reasons_reveal_no_addresses() -> None:
-    database = Database("postgresql+psycopg://somebody:secret@127.0.0.1:9/none")
-    with pytest.raises(StoreError) as told:
-        database.write(lambda c: c.execute(text("SELECT 1")))
-    assert "secret" not in str(told.value)
-    assert "127.0.0.1" not in str(told.value)
-    database.close()
+    url = "postgresql+psycopg://somebody:secret@127.0.0.1:9/none"
+    with opened(url, migrated=False) as lost, pytest.raises(StoreError) as refused:
+        lost.write(lambda c: c.execute(text("SELECT 1")))
+    assert "secret" not in str(refused.value)
+    assert "127.0.0.1" not in str(refused.value)
 
 
 def test_pending_changes_are_written_before_closing(tmp_path: Path) -> None:
-    url = f"sqlite:///{tmp_path / 'again.sqlite3'}"
-    database = Database(url)
-    _table(database)
-    with ThreadPoolExecutor(8) as threads:
+    with opened(tmp_path, migrated=False) as database, ThreadPoolExecutor(8) as threads:
+        _table(database)
         list(threads.map(lambda n: database.write(_insert(n)), range(32)))
-    database.close()
-    again = Database(url)
-    assert _values(again) == list(range(32))
-    again.close()
+    with opened(tmp_path, migrated=False) as again:
+        assert _values(again) == list(range(32))

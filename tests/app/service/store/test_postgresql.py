@@ -1,11 +1,11 @@
 """The name of a process on PostgreSQL: watched, taken again, and respected if it is lost."""
 
 import asyncio
+from collections.abc import Iterator
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 
 import pytest
-from fastapi.testclient import TestClient
 from sqlalchemy import text
 from sqlalchemy.exc import DBAPIError
 
@@ -14,14 +14,13 @@ from app.service.compute.processes import processes
 from app.service.jobs import runner as runner_module
 from app.service.jobs.document import JobState
 from app.service.jobs.kinds import KINDS
-from app.service.main import create_app
 from app.service.problems import DispossessedError, StoreError
-from app.service.settings import Settings
 from app.service.store import postgresql
 from app.service.store.database import Database, holder
 from app.service.store.postgresql import NameLock, PostgresqlServer
 from knitcore.base.errors import InputError
-from tests.app.databases import away, control
+from tests.app.clients import served
+from tests.app.databases import away, control, opened
 from tests.app.jobs import WORK
 from tests.app.running import wait_until
 from tests.app.service.jobs.helpers import counted, runner_of, running, task
@@ -34,8 +33,17 @@ def database(postgres_database: Database) -> Database:
     return postgres_database
 
 
-def _restart(url: str) -> None:
-    control(url, "-m", "fast", "restart")
+@pytest.fixture
+def second(postgres_url: str) -> Iterator[Database]:
+    """The same database, as another process opens it."""
+    with opened(postgres_url, migrated=False) as database:
+        yield database
+
+
+@pytest.fixture
+def unwatched(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody looks whether a name is still taken, except for the test."""
+    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
 
 
 def _end_lock_of(database: Database) -> None:
@@ -47,15 +55,14 @@ def _end_lock_of(database: Database) -> None:
         assert connection.execute(held_by).scalar() is True
 
 
-def test_a_restart_of_the_database_frees_no_name(database: Database, postgres_url: str) -> None:
+def test_a_restart_of_the_database_frees_no_name(
+    database: Database, second: Database, postgres_url: str
+) -> None:
+    taken = pytest.raises(InputError, match="KNITCORE_PROCESS_NAME")
     with database.reserved("main"):
-        _restart(postgres_url)
+        control(postgres_url, "-m", "fast", "restart")
         wait_until(lambda: holder(postgres_url, "main"))  # the watch takes it again
-        with (
-            closing(Database(postgres_url)) as second,
-            pytest.raises(InputError, match="KNITCORE_PROCESS_NAME"),
-            second.reserved("main"),
-        ):
+        with taken, second.reserved("main"):
             pass
         database.check()
     assert holder(postgres_url, "main") is None
@@ -71,10 +78,8 @@ def test_who_only_asks_takes_no_name(
         assert holder(postgres_url, "another") is None
 
 
-def test_readiness_takes_the_name_again(
-    database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
+@pytest.mark.usefixtures("unwatched")
+def test_readiness_takes_the_name_again(database: Database, postgres_url: str) -> None:
     with database.reserved("main"):
         with away(postgres_url), pytest.raises(StoreError):
             database.check()
@@ -83,11 +88,11 @@ def test_readiness_takes_the_name_again(
         assert holder(postgres_url, "main") is not None
 
 
+@pytest.mark.usefixtures("unwatched")
 def test_a_lost_connection_of_our_own_is_no_other_service(
-    database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
+    database: Database, postgres_url: str
 ) -> None:
     """The server may go on holding the lock for a connection that this side has lost."""
-    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
     with database.reserved("main"):
         assert isinstance(database.backend, PostgresqlServer)
         lock = database.backend.name_lock
@@ -105,32 +110,29 @@ def test_a_lost_connection_of_our_own_is_no_other_service(
             forgotten.close()
 
 
+@pytest.mark.usefixtures("unwatched")
 def test_a_service_whose_name_was_taken_stops(
-    database: Database, postgres_url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    database: Database, second: Database, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
     with ExitStack() as stack:
         stack.enter_context(database.reserved("main"))
-        settings = Settings(data_dir=tmp_path, workers=1)
-        app = create_app(settings, database)
-        client = stack.enter_context(TestClient(app, base_url="http://127.0.0.1"))
+        client = stack.enter_context(served(database=database, data_dir=tmp_path))
         assert client.get("/readyz").status_code == 200
         _end_lock_of(database)
-        second = stack.enter_context(closing(Database(postgres_url)))
         stack.enter_context(second.reserved("main"))
-        told = client.get("/readyz")
-        assert (told.status_code, "taken over" in told.json()["detail"]) == (503, True)
-        assert "KNITCORE_PROCESS_NAME" in told.json()["remedy"]
+        answer = client.get("/readyz")
+        assert (answer.status_code, "taken over" in answer.json()["detail"]) == (503, True)
+        assert "KNITCORE_PROCESS_NAME" in answer.json()["remedy"]
         design = {"name": "x", "material": "acrylic", "chart": "KP"}
         assert client.post("/api/v1/designs", json=design).status_code == 503
         assert client.get("/api/v1/designs").status_code == 200
         second.check()
 
 
+@pytest.mark.usefixtures("unwatched")
 def test_jobs_stop_where_the_name_was_taken(
-    database: Database, postgres_url: str, monkeypatch: pytest.MonkeyPatch
+    database: Database, second: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(postgresql, "PING_S", 3600.0)
     monkeypatch.setattr(runner_module, "BEAT_S", 0.05)
     monkeypatch.setitem(KINDS, "work", WORK)
 
@@ -152,5 +154,4 @@ def test_jobs_stop_where_the_name_was_taken(
     with ExitStack() as stack:
         compute = stack.enter_context(closing(Compute(processes(1), timeout_s=60)))
         stack.enter_context(database.reserved("main"))
-        second = stack.enter_context(closing(Database(postgres_url)))
         asyncio.run(scenario(compute))

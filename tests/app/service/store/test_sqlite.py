@@ -1,20 +1,15 @@
 """The locks and files of an SQLite database stay those of the process that has it open."""
 
 import os
-import sqlite3
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from fastapi.testclient import TestClient
 from sqlalchemy import text
 
 from app.cli.main import main
 from app.service.doctor import examine
-from app.service.main import create_app
 from app.service.problems import DispossessedError, StoreError
 from app.service.settings import Settings
 from app.service.store.backup import back_up
@@ -22,6 +17,9 @@ from app.service.store.database import Database
 from app.service.store.schema import migrate
 from app.service.store.sqlite import STOP_FIRST, Holder, SqliteFile, holder_of
 from knitcore.base.errors import InputError
+from tests.app.clients import served
+from tests.app.databases import is_whole, opened, sqlite
+from tests.app.running import python
 
 LOCK_ALONE = """
 import fcntl, sys
@@ -31,11 +29,9 @@ with open(sys.argv[1], "r+b") as file:  # the bytes that every open connection h
 
 
 def _is_locked(file: Path) -> bool:
-    """Whether another process is kept from having the file alone, as for removing its log."""
-    tried = subprocess.run(
-        [sys.executable, "-c", LOCK_ALONE, str(file)], capture_output=True, timeout=60, check=False
-    )
-    assert tried.returncode == 0 or b"BlockingIOError" in tried.stderr
+    """Return whether no other process can have the file alone, as for removing its log."""
+    tried = python("-c", LOCK_ALONE, file, check=False)
+    assert tried.returncode == 0 or "BlockingIOError" in tried.stderr
     return tried.returncode != 0
 
 
@@ -47,11 +43,8 @@ def file(tmp_path: Path) -> Path:
 @pytest.fixture
 def database(file: Path) -> Iterator[Database]:
     """A database of a service that runs in this process."""
-    database = Database(f"sqlite:///{file}")
-    migrate(database)
-    with database.reserved("main", "http://127.0.0.1:8737/"):
+    with opened(file.parent) as database, database.reserved("main", "http://127.0.0.1:8737/"):
         yield database
-    database.close()
 
 
 def _beside(file: Path, end: str) -> Path:
@@ -69,9 +62,8 @@ def test_nothing_that_a_service_does_drops_its_locks(
     settings = Settings(data_dir=tmp_path, workers=1)
 
     def another() -> None:
-        second = Database(f"sqlite:///{file}")
-        second.check()
-        second.close()
+        with opened(tmp_path, migrated=False) as second:
+            second.check()
 
     steps: dict[str, Callable[[], object]] = {
         "a read": database.check,
@@ -89,16 +81,15 @@ def test_nothing_that_a_service_does_drops_its_locks(
     for name, step in steps.items():
         step()
         assert _is_locked(file), name
-    with TestClient(create_app(settings, database), base_url="http://127.0.0.1") as client:
+    with served(database=database, data_dir=tmp_path) as client:
         assert client.get("/readyz").status_code == 200
         assert _is_locked(file)
     assert _is_locked(file), "the application closed a database that was given to it"
 
 
 def test_a_closed_database_is_locked_no_more(file: Path) -> None:
-    database = Database(f"sqlite:///{file}")
-    migrate(database)
-    database.close()
+    with opened(file.parent) as database:
+        pass
     assert not _is_locked(file)
     assert not _beside(file, "-wal").exists()
     database.close()  # again
@@ -110,9 +101,7 @@ def test_a_service_without_its_files_stops_writing(
     database: Database, file: Path, end: str, replaced: bool
 ) -> None:
     _write(database)
-    with TestClient(
-        create_app(Settings(data_dir=file.parent, workers=1), database), base_url="http://127.0.0.1"
-    ) as client:
+    with served(database=database, data_dir=file.parent) as client:
         assert client.get("/readyz").status_code == 200
         kept = _beside(file, end).rename(file.parent / "kept")
         if replaced:
@@ -131,18 +120,14 @@ def test_a_service_without_its_files_stops_writing(
 
 @pytest.mark.parametrize("end", ["-wal", "-shm"])
 def test_a_stop_saves_what_was_acknowledged_before_its_files_vanished(file: Path, end: str) -> None:
-    database = Database(f"sqlite:///{file}")
-    migrate(database)
-    with database.reserved("main"):
+    with opened(file.parent) as database, database.reserved("main"):
         _write(database)
         _beside(file, end).unlink()
         with pytest.raises(StoreError):
             _write(database, "b")
-    database.close()
-    with sqlite3.connect(file) as connection:
-        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    assert is_whole(file)
+    with sqlite(file) as connection:
         assert connection.execute("SELECT name FROM service_keys").fetchall() == [("a",)]
-    connection.close()
 
 
 def test_commands_are_refused_while_a_service_lacks_its_files(
@@ -151,15 +136,20 @@ def test_commands_are_refused_while_a_service_lacks_its_files(
     environment = {"KNITCORE_DATA_DIR": str(file.parent)}
     with database.read():
         _beside(file, "-wal").rename(file.parent / "kept")
-    for command in (["token", "list"], ["backup", str(file.parent / "b.gz")]):
-        told = CliRunner().invoke(main, command, env=environment)
-        assert told.exit_code != 0
-        assert f"process {os.getpid()}" in told.output
-        assert STOP_FIRST in told.output
-    doctor = CliRunner().invoke(main, ["doctor"], env=environment)
-    assert doctor.exit_code == 1
-    assert "FAIL  database: data_dir: knitcore.sqlite3-wal was removed" in doctor.output
-    assert f"ok    service: Process {os.getpid()} runs on it" in doctor.output
+    ours = f"process {os.getpid()}"
+    for command, code, *says in (
+        (["token", "list"], 2, ours, STOP_FIRST),
+        (["backup", str(file.parent / "b.gz")], 2, ours, STOP_FIRST),
+        (
+            ["doctor"],
+            1,
+            "FAIL  database: data_dir: knitcore.sqlite3-wal was removed",
+            f"ok    service: {ours.capitalize()} runs on it",
+        ),
+    ):
+        result = CliRunner().invoke(main, command, env=environment)
+        assert result.exit_code == code
+        assert all(words in result.output for words in says), result.output
     (file.parent / "kept").rename(_beside(file, "-wal"))
 
 

@@ -23,7 +23,7 @@ from app.service.settings import Settings
 from app.service.web import security, sessions
 from app.service.web.security import PAGE_POLICY, AccessControl
 from app.service.web.sessions import Tokens
-from tests.app.running import serving
+from tests.app.running import on_a_server
 
 CLOSE = {"type": "websocket.close", "code": 1008, "reason": "signed out"}
 
@@ -76,18 +76,18 @@ def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(module, "REMEMBERED_S", 0.01)
 
 
-Application = Callable[[Scope, Receive, Send], Awaitable[None]]
+Script = Callable[[Login, Send, Receive], Awaitable[None]]
+"""Things that an application does with a request."""
 
 
 def _sent(
-    application: Application,
-    login: Login,
+    script: Script,
     kind: str = "http",
     heard: tuple[Message, ...] = (),
-    slowly: Callable[[Message], Awaitable[None]] | None = None,
+    slowly: Callable[[Login, Message], Awaitable[None]] | None = None,
 ) -> list[Message]:
-    """What a guarded application sends to a bare server, which may take a message slowly."""
-    told: list[Message] = []
+    """Messages of a guarded application to a bare server, which may take one slowly."""
+    login, taken = Login(), list[Message]()
     waiting = list(heard)
     passes = SimpleNamespace(holder=lambda _: None)
     state = SimpleNamespace(
@@ -107,15 +107,18 @@ def _sent(
 
     async def send(message: Message) -> None:
         if slowly is not None:
-            await slowly(message)
-        told.append(_without_headers(message))
+            await slowly(login, message)
+        taken.append(_without_headers(message))
+
+    async def application(_scope: Scope, receive: Receive, send: Send) -> None:
+        await script(login, send, receive)
 
     async def scenario() -> None:
         async with asyncio.timeout(60):
             await AccessControl(application, Settings(require_login=True))(scope, receive, send)
 
     asyncio.run(scenario())
-    return told
+    return taken
 
 
 END: Message = {"type": "http.response.body", "body": b""}
@@ -133,9 +136,7 @@ END: Message = {"type": "http.response.body", "body": b""}
 def test_in_its_middle_an_answer_ends_as_far_as_it_is_whole(
     said: list[Message], ended: list[Message]
 ) -> None:
-    login = Login()
-
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
+    async def script(login: Login, send: Send, _receive: Receive) -> None:
         for message in said:
             await send(message)
         try:
@@ -143,66 +144,60 @@ def test_in_its_middle_an_answer_ends_as_far_as_it_is_whole(
         finally:
             await send(_part(b"a last word", more=False))  # which is dropped
 
-    assert _sent(application, login) == [*map(_without_headers, said), *ended]
+    assert _sent(script) == [*map(_without_headers, said), *ended]
 
 
 def test_before_its_start_the_answer_is_a_problem_and_what_fails_then_is_logged(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    login = Login()
-
-    async def application(_scope: Scope, _receive: Receive, _send: Send) -> None:
+    async def script(login: Login, _send: Send, _receive: Receive) -> None:
         try:
             await login.until_stopped()
         finally:
             raise ZeroDivisionError
 
-    head, body = _sent(application, login)
+    head, body = _sent(script)
     assert (head["status"], b"/problems/sign-in" in body["body"]) == (401, True)
     assert "ZeroDivisionError" in caplog.text
 
 
 def test_what_is_complete_is_neither_cancelled_nor_added_to() -> None:
-    login, went_on = Login(), []
+    went_on = []
 
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
+    async def script(login: Login, send: Send, _receive: Receive) -> None:
         await send(_head())
         await send(_part(b"all", more=False))
         login.has_ended = True
         await login.until_looked(2)  # the second time, the guard has seen the first answer
         went_on.append(True)
 
-    assert _sent(application, login) == [_head(), _part(b"all", more=False)]
+    assert _sent(script) == [_head(), _part(b"all", more=False)]
     assert went_on == [True]
 
 
 def test_a_message_that_the_server_takes_is_not_cut() -> None:
-    login = Login()
-
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
+    async def script(login: Login, send: Send, _receive: Receive) -> None:
         await send(_head())
         login.has_ended = True
         await send(_part(b"slow"))
         await asyncio.Event().wait()
 
-    async def slowly(message: Message) -> None:
+    async def slowly(login: Login, message: Message) -> None:
         if message.get("body") == b"slow":
             await login.until_looked()
             await asyncio.sleep(security.REMEMBERED_S)  # the guard would cancel it
 
-    assert _sent(application, login, slowly=slowly) == [_head(), _part(b"slow"), END]
+    assert _sent(script, slowly=slowly) == [_head(), _part(b"slow"), END]
 
 
 def test_a_request_outlasts_a_lost_database() -> None:
-    login = Login()
-
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
+    async def script(login: Login, send: Send, _receive: Receive) -> None:
         login.failure = StoreError("away")
         await login.until_looked()
         await send(_head())
         await send(_part(b"all", more=False))
 
-    assert _sent(application, login) == [_head(), _part(b"all", more=False)]
+    assert _sent(script) == [_head(), _part(b"all", more=False)]
 
 
 def test_a_request_that_ends_its_own_session_is_answered() -> None:
@@ -221,41 +216,31 @@ def test_a_request_that_ends_its_own_session_is_answered() -> None:
 
 @pytest.mark.parametrize("before", [[_head()], [_head(), _part(b"all", more=False)]])
 def test_a_client_that_leaves_gets_no_second_start(before: list[Message]) -> None:
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
+    async def script(_login: Login, send: Send, _receive: Receive) -> None:
         for message in before:
             await send(_without_headers(message))
         raise ClientDisconnect
 
-    assert _sent(application, Login()) == before
-
-
-def test_a_client_that_leaves_early_is_noted() -> None:
-    async def application(_scope: Scope, _receive: Receive, _send: Send) -> None:
-        raise ClientDisconnect
-
-    head, body = _sent(application, Login())
-    assert (head["status"], body["body"]) == (security.GONE, b"")
+    assert _sent(script) == before
 
 
 @pytest.mark.parametrize("accepts", [False, True])
 def test_a_websocket_is_closed(accepts: bool) -> None:
-    login = Login()
     accept = [{"type": "websocket.accept"}] * accepts
 
-    async def application(_scope: Scope, _receive: Receive, send: Send) -> None:
+    async def script(login: Login, send: Send, _receive: Receive) -> None:
         for message in accept:
             await send(message)
         await login.until_stopped()
 
-    assert _sent(application, login, "websocket") == [*accept, CLOSE]
+    assert _sent(script, "websocket") == [*accept, CLOSE]
 
 
 @pytest.mark.parametrize("by", ["application", "client"])
 def test_a_closed_websocket_is_not_closed_again(by: str) -> None:
-    login = Login()
     closed: Message = {"type": "websocket.close", "code": 1000}
 
-    async def application(_scope: Scope, receive: Receive, send: Send) -> None:
+    async def script(login: Login, send: Send, receive: Receive) -> None:
         if by == "client":
             await receive()
         else:
@@ -264,8 +249,7 @@ def test_a_closed_websocket_is_not_closed_again(by: str) -> None:
         await login.until_looked(2)
 
     left: Message = {"type": "websocket.disconnect", "code": 1001}
-    told = _sent(application, login, "websocket", (left,))
-    assert told == ([] if by == "client" else [closed])
+    assert _sent(script, "websocket", (left,)) == ([] if by == "client" else [closed])
 
 
 def _with_slow_answers(folder: Path) -> tuple[FastAPI, threading.Event]:
@@ -314,7 +298,7 @@ def _revoked_when(app: FastAPI, begun: threading.Event) -> Iterator[dict[str, st
 
 def test_every_moment_of_an_answer(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     app, begun = _with_slow_answers(tmp_path)
-    with serving(app) as url, httpx.Client(base_url=url, timeout=60.0) as client:
+    with on_a_server(app) as url, httpx.Client(base_url=url, timeout=60.0) as client:
         with _revoked_when(app, begun) as bearer:
             answer = client.get("/api/v1/slow/none", headers=bearer)
         assert (answer.status_code, answer.json()["type"]) == (401, "/problems/sign-in")

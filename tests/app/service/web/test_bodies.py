@@ -12,9 +12,10 @@ from app.requests.base import RequestModel
 from app.requests.charts import MAX_FIELD
 from app.service.api import routers
 from app.service.identity import LOCAL_USER
-from app.service.limits.user_limits import USER_LIMITS, ConcurrencyLimit, UserLimits
+from app.service.limits.user_limits import USER_LIMITS
 from app.service.web.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
-from tests.app.clients import state_of
+from app.service.web.security import GONE
+from tests.app.clients import limited, state_of
 
 PADDING = " " * SMALL_BYTES
 WISH = {"chart": "KP\nPK", "material": "acrylic"}
@@ -62,17 +63,21 @@ def test_faults_of_a_large_request_are_told_like_those_of_a_small_one(
     small = client.post("/api/v1/predict", json=body).json()
     large = _post(client, "predict", _padded(body)).json()
     assert large["status"] == 422
-    for one in ("detail", "field", "remedy", "errors"):
-        assert large[one] == small[one]
+    for part in ("detail", "field", "remedy", "errors"):
+        assert large[part] == small[part]
 
 
-def test_what_is_no_request_is_told_by_the_worker_too(client: TestClient) -> None:
-    problem = _post(client, "predict", _padded([])).json()
-    assert (problem["status"], problem["field"]) == (422, "body")
-    assert "Send a JSON object" in problem["remedy"]
-    problem = _post(client, "predict", b"{" + PADDING.encode()).json()
-    assert (problem["status"], problem["field"]) == (422, "body")
-    assert "not valid JSON" in problem["detail"]
+@pytest.mark.parametrize("padding", ["", PADDING])
+def test_what_is_no_request_is_told_by_the_service_and_by_a_worker(
+    client: TestClient, padding: str
+) -> None:
+    for content, part, says in (
+        ("[]", "remedy", "Send a JSON object"),
+        ("{", "detail", "not valid JSON"),
+    ):
+        problem = _post(client, "predict", f"{content}{padding}".encode()).json()
+        assert (problem["status"], problem["field"]) == (422, "body")
+        assert says in problem[part]
 
 
 def test_a_worker_decodes_a_large_job(client: TestClient, computed: list[Any]) -> None:
@@ -109,11 +114,9 @@ def test_no_design_is_larger_than_the_service_decodes(client: TestClient) -> Non
 def test_a_field_of_as_many_values_as_a_view_takes_is_read(client: TestClient) -> None:
     field = {"values": [0.5] * MAX_FIELD, "low": 0.0, "high": 1.0}
     body = {**WISH, "colour": "field", "field": field}
-    found = client.put("/api/v1/views/a-field-too-large", json=body)
-    assert (found.status_code, found.json()["field"]) == (
-        422,
-        "field",
-    )  # of another size than KP/PK
+    refused = client.put("/api/v1/views/a-field-too-large", json=body)
+    assert refused.status_code == 422
+    assert refused.json()["field"] == "field"  # of another size than KP/PK
 
 
 def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
@@ -126,19 +129,12 @@ def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
 
 
 def test_open_bodies_of_one_user_are_bounded(client: TestClient) -> None:
-    state = state_of(client)
-    usual, state.concurrency = (
-        state.concurrency,
-        ConcurrencyLimit(UserLimits(body_bytes=SMALL_BYTES)),
-    )
-    try:
+    with limited(client, body_bytes=SMALL_BYTES) as limit:
         refused = _post(client, "predict", _padded(WISH))
         assert (refused.status_code, refused.json()["field"]) == (429, "body_bytes")
-        assert state.concurrency.held("body_bytes", LOCAL_USER) == 0
+        assert limit.held("body_bytes", LOCAL_USER) == 0
         assert client.post("/api/v1/predict", json=WISH).status_code == 200
-    finally:
-        state.concurrency = usual
-    assert USER_LIMITS.body_bytes >= 2 * state.settings.max_body_bytes
+    assert USER_LIMITS.body_bytes >= 2 * state_of(client).settings.max_body_bytes
 
 
 def test_a_client_that_goes_in_the_middle_of_a_body_is_no_error_of_the_service(
@@ -159,7 +155,7 @@ def test_a_client_that_goes_in_the_middle_of_a_body_is_no_error_of_the_service(
     assert client.portal is not None
     with caplog.at_level(logging.INFO):
         client.portal.call(client.app, scope, receive, send)
-    assert sent[0]["status"] == 499
+    assert (sent[0]["status"], sent[1]["body"]) == (GONE, b"")
     assert [record.levelname for record in caplog.records] == ["INFO"]
 
 

@@ -1,17 +1,21 @@
 """Refusals in words: what is to blame, and what would be accepted."""
 
+from itertools import product
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
 from app.service.problems import KINDS, ServiceError, type_uri
+from tests.app.rest import refusal
 
 API = "/api/v1"
 STRETCH = {"chart": "KP\nPK", "material": "acrylic", "direction": "wale", "strain": 0.2}
 FIND = {"targets": [{"quantity": "modulus_course_n_per_mm", "value": 0.2}]}
 NO_TEST = {"name": "a.csv", "content": "bm90aGluZw=="}
 TESTS = {"a.csv", "b.csv"}
+RIB = {"fabric": "rib", "columns": 120, "rows": 100}
+VIEW = {"material": "acrylic"}
 
 
 @pytest.mark.parametrize(
@@ -52,15 +56,21 @@ TESTS = {"a.csv", "b.csv"}
             "units",
         ),
         ("/jobs", {"kind": "curve", "request": {"chart": "K"}}, "request.material", "Give"),
+        ("/views/solid", VIEW | {"chart": RIB}, "chart", "at most 10000"),
+        (
+            "/views/still",
+            VIEW | {"chart": RIB | {"columns": 1000, "rows": 1000}, "rectangles": True},
+            "rectangle_block",
+            "Use blocks of 5 or more",
+        ),
     ],
 )
 def test_a_refusal_names_field_and_remedy(
     client: TestClient, path: str, body: dict[str, Any], field: str, remedy: str
 ) -> None:
-    answer = client.post(f"{API}{path}", json=body)
-    assert answer.status_code == 422
-    assert answer.json()["field"] == field
-    assert remedy in answer.json()["remedy"]
+    problem = refusal(client, path.removeprefix("/"), body)
+    assert problem["field"] == field
+    assert remedy in problem["remedy"]
 
 
 def test_all_errors_are_reported_at_once(client: TestClient) -> None:
@@ -108,8 +118,8 @@ def test_faults_that_the_library_finds_are_told_together(
     problem = client.post(f"{API}{path}", json=body).json()
     assert {fault["field"] for fault in problem["errors"]} == wrong, problem["errors"]
     assert problem["errors"][0]["detail"] == problem["detail"]
-    told = [fault["detail"] for fault in problem["errors"]]
-    assert len(told) == len(set(told)) > 1
+    details = [fault["detail"] for fault in problem["errors"]]
+    assert len(details) == len(set(details)) > 1
 
 
 def test_every_type_has_a_page(client: TestClient) -> None:
@@ -133,25 +143,35 @@ def test_a_form_is_refused_with_a_request_for_json(client: TestClient) -> None:
 
 
 @pytest.mark.parametrize(
-    "path",
+    ("path", "kind"),
     [
-        "/designs/no.such",
-        "/designs/a",  # unknown, however short
-        "/designs/a/versions",
-        "/designs/a/versions/1",
-        "/jobs/b",
-        "/shared/c",
-        "/designs/abc/versions/0",
-        "/designs/abc/versions/two",
-        f"/jobs/{'j' * 65}",
-        "/shared/a.b",
-        "/views/a.b/picture",
-        "/materials/steel",
+        *product(
+            (
+                "/designs/no.such",
+                "/designs/a",  # unknown, however short
+                "/designs/a/versions",
+                "/designs/a/versions/1",
+                "/designs/abc/versions/0",
+                "/designs/abc/versions/two",
+                "/designs/a/events",
+                "/jobs/b",
+                f"/jobs/{'j' * 65}",
+                "/shared/c",
+                "/shared/a.b",
+                "/views/a.b/picture",
+                "/views/a/events",
+                "/materials/steel",
+            ),
+            ("not-found",),
+        ),
+        ("/nothing", "http"),
     ],
 )
-def test_impossible_and_unknown_addresses_are_not_found(client: TestClient, path: str) -> None:
+def test_impossible_and_unknown_addresses_are_not_found(
+    client: TestClient, path: str, kind: str
+) -> None:
     answer = client.get(f"{API}{path}")
-    assert (answer.status_code, answer.json()["type"]) == (404, "/problems/not-found")
+    assert (answer.status_code, answer.json()["type"]) == (404, f"/problems/{kind}")
     assert answer.json()["remedy"]
 
 

@@ -1,4 +1,4 @@
-"""What a client accepts of compressed answers."""
+"""Compressed answers that a client accepts or refuses."""
 
 import pytest
 from starlette.datastructures import Headers

@@ -4,17 +4,16 @@ from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
-from starlette.websockets import WebSocketDisconnect
 
 from app.service.identity import current_user
 from app.service.web import sessions
 from app.service.web.passes import ViewPasses
-from tests.app.clients import bearing, tokens_of, watching
+from tests.app.clients import bearing, closed_with, tokens_of, watching
+from tests.app.rest import draw
 from tests.app.service.web.test_security import guarded_service
 
-BODY = {"chart": "KP", "material": "acrylic"}
 FRAME = {"Origin": "null"}
-"""What browsers say of a sandboxed frame, of any site."""
+"""The origin that browsers give a sandboxed frame of any site."""
 
 
 def _watch(client: TestClient, path: str) -> None:
@@ -23,13 +22,11 @@ def _watch(client: TestClient, path: str) -> None:
 
 
 def _refused(client: TestClient, path: str) -> None:
-    with pytest.raises(WebSocketDisconnect) as closed:
-        _watch(client, path)
-    assert closed.value.code == 1008
+    assert closed_with(client, path, **FRAME) == 1008
 
 
 def test_a_frame_watches_with_the_pass_of_its_view_only(client: TestClient) -> None:
-    url = client.put("/api/v1/views/with-pass", json=BODY).json()["url"]
+    url = draw(client, "with-pass")["url"]
     path, code = url.split("/#")
     assert path == "/view/with-pass"
     _watch(client, f"{path}?pass={code}")
@@ -37,8 +34,8 @@ def test_a_frame_watches_with_the_pass_of_its_view_only(client: TestClient) -> N
         _refused(client, path + wrong)
     _refused(client, f"/view/another?pass={code}")
     body = {"chart": "KP"}
-    asked = client.post(f"/api/v1/charts/parse?pass={code}", json=body, headers=FRAME)
-    assert asked.status_code == 403
+    parsed = client.post(f"/api/v1/charts/parse?pass={code}", json=body, headers=FRAME)
+    assert parsed.status_code == 403
 
 
 def test_a_pass_ends_with_the_token_it_was_asked_with(
@@ -47,8 +44,9 @@ def test_a_pass_ends_with_the_token_it_was_asked_with(
     monkeypatch.setattr(sessions, "REMEMBERED_S", 0.0)
     with guarded_service(require_login=True, data_dir=tmp_path) as lab:
         made = tokens_of(lab).create("ada")
-        url = lab.put("/api/v1/views/of-ada", json=BODY, headers=bearing(made.token)).json()["url"]
-        path = url.replace("/#", "?pass=")
+        lab.headers.update(bearing(made.token))
+        path = draw(lab, "of-ada")["url"].replace("/#", "?pass=")
+        del lab.headers["Authorization"]
         _watch(lab, path)
         tokens_of(lab).revoke(made.id)
         _refused(lab, path)

@@ -40,9 +40,9 @@ def test_headers_are_described(schema: dict[str, Any]) -> None:
 
 def test_results_of_jobs_are_distinguished_by_their_kind(schema: dict[str, Any]) -> None:
     answer = schema["paths"]["/api/v1/jobs/{job}/result"]["get"]["responses"]["200"]
-    told = answer["content"]["application/json"]["schema"]
-    assert told["discriminator"]["propertyName"] == "kind"
-    assert set(told["discriminator"]["mapping"]) == set(KINDS)
+    result = answer["content"]["application/json"]["schema"]
+    assert result["discriminator"]["propertyName"] == "kind"
+    assert set(result["discriminator"]["mapping"]) == set(KINDS)
 
 
 @pytest.mark.parametrize("path", FIXED)

@@ -23,8 +23,8 @@ EXAMPLES = int(os.environ.get("KNITCORE_SCHEMA_EXAMPLES", "4"))
 
 @pytest.fixture(scope="module")
 def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    service = Service(tmp_path_factory.mktemp("schema"), job_timeout_s="1", workers="2")
-    with service.running():
+    folder = tmp_path_factory.mktemp("schema")
+    with Service(folder, job_timeout_s="1", workers="2") as service:
         yield service.url
 
 
@@ -32,10 +32,10 @@ def _faults(documented: dict[str, Any], case: Any, response: Any) -> list[str]:
     """Where an answer is not as documented; Schemathesis cannot read `prefixItems`."""
     answers = documented["paths"][case.operation.path][case.operation.method]["responses"]
     media = response.headers.get("content-type", [""])[0]
-    found = answers[str(response.status_code)].get("content", {}).get(media, {})
-    if "schema" not in found or not media.endswith("json"):
+    content = answers[str(response.status_code)].get("content", {}).get(media, {})
+    if "schema" not in content or not media.endswith("json"):
         return []
-    whole = found["schema"] | {"components": documented["components"]}
+    whole = content["schema"] | {"components": documented["components"]}
     return [error.message for error in jsonschema_rs.iter_errors(whole, response.json())]
 
 

@@ -10,6 +10,7 @@ import meshio
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from numpy.typing import NDArray
 
 from app.context import Context
 from app.operations.chart.predict import PredictRequest
@@ -34,6 +35,7 @@ from knitcore.materials import Interval, Material, material
 from knitcore.prediction.prediction import Prediction
 from knitcore.yarn.library.store import stored_charts
 from tests.app.command_line import run
+from tests.app.rest import post
 
 LOADS = [0.01, 0.05, 0.2]
 
@@ -41,15 +43,15 @@ LOADS = [0.01, 0.05, 0.2]
 def _charts() -> dict[str, StitchChart]:
     """Every stored repeat, the pure fabrics, ribs, welts and random charts, each shown twice."""
     rng = np.random.default_rng(14)
-    found = [StitchChart.of_fabric(fabric, 2, 2) for fabric in Fabric]
-    found += stored_charts("acrylic")
-    found += [StitchChart.parse("K" * k + "P" * p) for k in (2, 4, 5, 7) for p in (1, 2, 5)]
-    found += [StitchChart(rib.purl.T) for rib in found[-12:]]
-    found += [
+    ribs = [StitchChart.parse("K" * k + "P" * p) for k in (2, 4, 5, 7) for p in (1, 2, 5)]
+    pure = [StitchChart.of_fabric(fabric, 2, 2) for fabric in Fabric]
+    random = [
         StitchChart(rng.random((int(rng.integers(2, 7)), int(rng.integers(2, 7)))) < 0.5)
         for _ in range(100)
     ]
-    return {chart.key: chart.tile(2, 2) for chart in found}
+    welts = [StitchChart(rib.purl.T) for rib in ribs]
+    charts = [*pure, *stored_charts("acrylic"), *ribs, *welts, *random]
+    return {chart.key: chart.tile(2, 2) for chart in charts}
 
 
 CHARTS = _charts()
@@ -81,14 +83,15 @@ def test_all_ways_of_asking_give_one_answer(
     atlas = build_atlas(used, [chart.canonical() for chart in charts])
     for chart in charts:
         answer, body = predict(chart, used), {"chart": chart.text, "material": yarn}
-        told = _operation(body)
-        _agrees_with_library(told, answer)
+        request = PredictRequest.model_validate(body)
+        result = predict_operation(request, Context(Path())).model_dump(mode="json")
+        _agrees_with_library(result, answer)
         _agrees_with_atlas(atlas, chart, answer)
         _agrees_with_report(_report(chart, yarn, monkeypatch), answer)
         _agrees_with_files(chart, used, answer)
         file.write_text(chart.text)
-        assert run("predict", file, "--material", yarn) == told
-        assert client.post("/api/v1/predict", json=body).json() == told
+        assert run("predict", file, "--material", yarn) == result
+        assert client.post("/api/v1/predict", json=body).json() == result
 
 
 @in_yarns
@@ -100,8 +103,8 @@ def test_all_ways_of_asking_give_one_curve(
     used, file = material(yarn), tmp_path / "chart.txt"
     for chart in charts:
         own = curve(chart, used, direction, LOADS)
-        asked = {"chart": chart.text, "material": yarn, "direction": direction}
-        served = client.post("/api/v1/curve", json=asked | {"stress_n_per_mm": LOADS}).json()
+        body = {"chart": chart.text, "material": yarn, "direction": direction}
+        served = post(client, "curve", body | {"stress_n_per_mm": LOADS})
         assert served["strain"] == own.strain.tolist()
         assert served["strain_interval"] == np.array([own.strain_low, own.strain_high]).tolist()
         ends = np.array([own.stress_low, own.stress_high])
@@ -114,18 +117,18 @@ def test_all_ways_of_asking_give_one_curve(
         assert shown["strain"][-1] == pytest.approx(own.strain[-1])
 
 
-def _agrees_with_library(told: Any, answer: Prediction) -> None:
-    assert told["provenance"] == answer.provenance
+def _agrees_with_library(result: Any, answer: Prediction) -> None:
+    assert result["provenance"] == answer.provenance
     for direction in Direction:
         along = answer.along(direction)
         interval, size = along.modulus_interval_n_per_mm, along.relaxed_interval_mm
-        assert told[f"modulus_{direction}_n_per_mm"] == along.modulus_n_per_mm
-        assert told[f"modulus_{direction}_interval_n_per_mm"] == [interval.low, interval.high]
+        assert result[f"modulus_{direction}_n_per_mm"] == along.modulus_n_per_mm
+        assert result[f"modulus_{direction}_interval_n_per_mm"] == [interval.low, interval.high]
         assert interval.low < along.modulus_n_per_mm < interval.high
-        assert told[f"relaxed_{direction}_mm"] == along.relaxed_mm
-        assert told[f"relaxed_{direction}_interval_mm"] == [size.low, size.high]
+        assert result[f"relaxed_{direction}_mm"] == along.relaxed_mm
+        assert result[f"relaxed_{direction}_interval_mm"] == [size.low, size.high]
         assert size.low < along.relaxed_mm < size.high
-        low, high = told[f"modulus_{direction}_bounds_n_per_mm"]
+        low, high = result[f"modulus_{direction}_bounds_n_per_mm"]
         assert low <= along.modulus_n_per_mm <= high
 
 
@@ -178,26 +181,21 @@ def test_a_glove_has_one_size_wherever_it_is_told(
     wool = material("glove-wool")
     shaped = glove(Hand(), wool).shaped
     body = {"chart": shaped.chart.text, "outline": shaped.outline, "material": "glove-wool"}
-    told = client.post("/api/v1/predict", json=body).json()
-    in_cm = f"{told['width_mm'] / 10:.1f} × {told['height_mm'] / 10:.1f} cm at rest"
+    result = post(client, "predict", body)
     for side in ("width", "height"):
-        low, high = told[f"{side}_interval_mm"]
-        assert low < told[f"{side}_mm"] < high
+        low, high = result[f"{side}_interval_mm"]
+        assert low < result[f"{side}_mm"] < high
 
     pages = pattern_pages(Piece.plain(shaped), wool, ChartStyle())
-    assert any(in_cm in text for text in _texts(pages))
-    assert any(in_cm in text for text in _report(shaped, "glove-wool", monkeypatch))
-
-    file = tmp_path / "glove.vtu"
-    file.write_bytes(write_vtu(Piece.plain(shaped), wool))
-    mesh = meshio.read(file)
-    points = mesh.points[np.unique(mesh.cells_dict["quad"])]
-    np.testing.assert_allclose(np.ptp(points[:, :2], axis=0), [told["width_mm"], told["height_mm"]])
+    for texts in (_texts(pages), _report(shaped, "glove-wool", monkeypatch)):
+        assert any(_in_cm(result) in text for text in texts)
+    size = _size_mm(write_vtu(Piece.plain(shaped), wool), tmp_path)
+    np.testing.assert_allclose(size, [result["width_mm"], result["height_mm"]])
 
     gauge = {"stitches_per_10_cm": 20, "rows_per_10_cm": 30}
-    counted = client.post("/api/v1/predict", json=body | {"gauge": gauge}).json()
+    counted = post(client, "predict", body | {"gauge": gauge})
     mean = mean_stitch_mm(shaped, wool)
-    assert counted["width_mm"] == pytest.approx(told["width_mm"] * 5 / mean[0])
+    assert counted["width_mm"] == pytest.approx(result["width_mm"] * 5 / mean[0])
 
 
 @pytest.mark.parametrize("outline", [None, "\n".join(["..xxxxxxxx.."] * 4 + ["x" * 12] * 8)])
@@ -211,57 +209,44 @@ def test_files_and_pages_have_the_size_of_a_known_gauge(
         "material": "acrylic",
         "gauge": {"stitches_per_10_cm": 20, "rows_per_10_cm": 30, "known_by": "relaxation"},
     }
-    told = client.post("/api/v1/predict", json=body).json()
-    made = client.post("/api/v1/export", json=body | {"to": "vtu"}).json()
-    file = tmp_path / "cloth.vtu"
-    file.write_bytes(base64.b64decode(made["content"]))
-    mesh = meshio.read(file)
-    points = mesh.points[np.unique(mesh.cells_dict["quad"])]
-    size = [told["width_mm"], told["height_mm"]]
-    np.testing.assert_allclose(np.ptp(points[:, :2], axis=0), size, rtol=0.02)
+    result = post(client, "predict", body)
+    made = base64.b64decode(post(client, "export", body | {"to": "vtu"})["content"])
+    size = [result["width_mm"], result["height_mm"]]
+    np.testing.assert_allclose(_size_mm(made, tmp_path), size, rtol=0.02)
 
     shaped = ShapedChart.rectangle(chart)
     if outline is not None:
         shaped = ShapedChart(chart, outline_marks(outline))
-    gauge = GaugeInput(**body["gauge"]).relaxed_size()
-    piece = replace(Piece.plain(shaped), gauge=gauge)
-    in_cm = f"{told['width_mm'] / 10:.1f} × {told['height_mm'] / 10:.1f} cm at rest"
-    assert any(in_cm in text for text in _texts(pattern_pages(piece, acrylic, ChartStyle())))
-    assert any(in_cm in text for text in _report(piece, "acrylic", monkeypatch))
+    piece = replace(Piece.plain(shaped), gauge=GaugeInput(**body["gauge"]).relaxed_size())
+    pages = pattern_pages(piece, acrylic, ChartStyle())
+    for texts in (_texts(pages), _report(piece, "acrylic", monkeypatch)):
+        assert any(_in_cm(result) in text for text in texts)
 
 
-@pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
-@pytest.mark.parametrize("text", ["KKPP", "K/K/P/P", "KP/KK", "KKPP/KKPP/PPKK/PPKK", "KP/PK"])
+KNOWN = RelaxedSize.from_gauge(stitches_per_10_cm=24, rows_per_10_cm=36)
+MIXED = ("KKPP", "K/K/P/P", "KP/KK", "KKPP/KKPP/PPKK/PPKK", "KP/PK")
+
+
+@pytest.mark.parametrize(
+    ("yarn", "text", "gauge"),
+    [
+        *((yarn, text, None) for yarn in ("acrylic", "cotton") for text in MIXED),
+        *(("acrylic", text, KNOWN) for text in ("K", "KP/PK", "KKPP")),
+    ],
+)
 @pytest.mark.parametrize("direction", Direction)
 def test_a_long_free_strip_stretches_like_its_curve(
-    yarn: str, text: str, direction: Direction
+    yarn: str, text: str, gauge: RelaxedSize | None, direction: Direction
 ) -> None:
-    """Ends that slide; within 10 % of the strain at each stress."""
-    chart = StitchChart.parse(text).resized(12, 32)
-    along = predict(chart, material(yarn)).along(direction)
+    """Ends that slide; within 10 % of the strain at each stress, and as large as its stitches."""
+    chart, used = StitchChart.parse(text).resized(12, 32), material(yarn)
+    answer = predict(chart, used, gauge)
+    along, across = answer.along(direction), answer.along(direction.other)
     strains = along.strain([0.05, 0.1, 0.2])
-    test = strip_test(chart, material(yarn), direction, strains.tolist(), clamps="sliding")
+    test = strip_test(chart, used, direction, strains.tolist(), clamps="sliding", size=gauge)
     np.testing.assert_allclose(along.strain(test.stress_n_per_mm), strains, rtol=0.1)
-    across = predict(chart, material(yarn)).along(direction.other)
     area = 12 * 32 * along.relaxed_mm * across.relaxed_mm
-    assert test.length_mm * test.width_mm == pytest.approx(area, rel=0.03)
-
-
-@pytest.mark.parametrize("text", ["K", "KP/PK", "KKPP"])
-@pytest.mark.parametrize("direction", Direction)
-def test_a_strip_of_a_known_gauge_stretches_like_the_curve_of_that_gauge(
-    text: str, direction: Direction
-) -> None:
-    """Within 10 %, and 12 stitches of 24 lie on 5 x 6.7 cm: 24 and 36 of them on 10 cm."""
-    chart = StitchChart.parse(text).resized(24, 12)
-    gauge = RelaxedSize.from_gauge(stitches_per_10_cm=24, rows_per_10_cm=36)
-    along = predict(chart, material("acrylic"), gauge).along(direction)
-    strains = along.strain([0.05, 0.1, 0.2])
-    test = strip_test(
-        chart, material("acrylic"), direction, strains.tolist(), clamps="sliding", size=gauge
-    )
-    np.testing.assert_allclose(along.strain(test.stress_n_per_mm), strains, rtol=0.1)
-    assert test.length_mm * test.width_mm == pytest.approx(50 * 200 / 3)
+    assert test.length_mm * test.width_mm == pytest.approx(area, rel=1e-6 if gauge else 0.03)
 
 
 @pytest.mark.parametrize("direction", Direction)
@@ -272,11 +257,11 @@ def test_a_target_pressure_agrees_with_the_pressure_command(
     """The laws of every day, a tube a quarter wider on the limb; within 1 %."""
     chart = StitchChart.of_fabric(fabric, 2, 2)
     atlas = build_atlas(material("acrylic"), [chart.canonical()])
-    told = run(
+    shown = run(
         "pressure", "--material", "acrylic", "--fabric", str(fabric),
         "--direction", str(direction), "--rest-mm", "200", "--worn-mm", "250",
     )  # fmt: skip
-    middle = float(np.sqrt(np.prod(told["mmhg"])))
+    middle = float(np.sqrt(np.prod(shown["mmhg"])))
     target = Target(Quantity(f"pressure_{direction}_mmhg"), middle, limb=WornTube(200.0, 250.0))
     value, _, _ = values_of(atlas, target)
     assert value[0] == pytest.approx(middle, rel=0.01)
@@ -296,14 +281,22 @@ def test_a_region_of_a_report_says_what_is_predicted_of_it(
     for part in (rib if fill is None else StitchChart.parse(fill), garter):
         for direction in Direction:
             along = predict(part, material("acrylic")).along(direction)
-            assert (
-                _with_interval(along.modulus_n_per_mm, along.modulus_interval_n_per_mm) in written
-            )
+            shown = _with_interval(along.modulus_n_per_mm, along.modulus_interval_n_per_mm)
+            assert shown in written
 
 
-def _operation(body: dict[str, str]) -> Any:
-    request = PredictRequest.model_validate(body)
-    return predict_operation(request, Context(Path())).model_dump(mode="json")
+def _in_cm(result: dict[str, float]) -> str:
+    return f"{result['width_mm'] / 10:.1f} × {result['height_mm'] / 10:.1f} cm at rest"
+
+
+def _size_mm(vtu: bytes, folder: Path) -> NDArray[np.float64]:
+    """Width and height of the cloth in a file of stitches."""
+    file = folder / "cloth.vtu"
+    file.write_bytes(vtu)
+    mesh = meshio.read(file)
+    points = mesh.points[np.unique(mesh.cells_dict["quad"])]
+    size: NDArray[np.float64] = np.ptp(points[:, :2], axis=0)
+    return size
 
 
 def _with_interval(value: float, interval: Interval) -> str:

@@ -26,12 +26,28 @@ TUBE = {"chart": "KP", "material": "acrylic", "girths": CONE}
 STOCKINETTE_TUBE = YARN | {"chart": None, "fabric": "stockinette", "direction": "course"}
 WORN = STOCKINETTE_TUBE | {"rest_mm": 120, "worn_mm": 150}
 TOO_LARGE_TO_BEND = "\n".join("K" * row + "P" * (40 - row) for row in range(1, 9))
-BEYOND, GLUED = [[0, 0], [1e9, 0], [0, 1]], [{"kind": "glued", "edge": "hem"}]
+BEYOND, CROSSED = [[0, 0], [1e9, 0], [0, 1]], [[0, 0], [50, 80], [50, 0], [0, 80]]
+GLUED, FREE = [{"kind": "glued", "edge": "hem"}], [{"kind": "pulled", "edge": "hem", "y_n": 1}]
 PIECE: dict[str, Any] = {
     "outline": [[0, 0], [50, 0], [50, 80]],
     "edges": {"hem": [1]},
     "conditions": [{"kind": "held", "edge": "hem"}],
 }
+RIB = {"name": "Cuff", "material": "acrylic", "chart": "KPKP\nKPKP"}
+NO_DESIGNS: tuple[dict[str, Any], ...] = (
+    {"chart": "KQ"}, {"name": ""}, {"name": "a\u0000b"}, {"name": "x" * 201}, {"version": 3},
+    {"format": "other"}, {"owner": "eve"}, {"note": "a\u0000b"},
+)  # fmt: skip
+NO_FIELD = {"values": [1.0, 2.0], "low": 0, "high": 1}
+ELSEWHERE = {"id": "a", "name": "A", "colour": "#ff0000", "runs": [[7, 0, 1]]}
+WITHOUT_FRICTION: tuple[tuple[dict[str, Any], str], ...] = (
+    ({"branch": "published"}, "branch"),
+    ({"flat": True, "cell_course_mm": 3.0}, "flat cell_course_mm"),
+    ({"loop_lengths_mm": [[11.0, 12.0]], "chart": "KP"}, "loop_lengths_mm"),
+    ({"chart": "KKKKKKP\nKKKKPKK\nKKPKKKK\nPKKKKKK\nKPKKKKK\nKKKPKKK"}, "chart"),
+    ({"friction": 3.0}, "friction"),
+)
+"""Changes of a relaxation that friction does not allow."""
 
 REQUESTS: list[tuple[str, dict[str, Any], str, str]] = [
     ("charts/parse", {"text": "KQ"}, "chart", ""),
@@ -52,8 +68,6 @@ REQUESTS: list[tuple[str, dict[str, Any], str, str]] = [
     ("stretch", PULL | {"strain": "much"}, "strain", ""),
     ("stretch", PULL | {"strain": None}, "strain", "is missing."),
     ("stretch", PULL | {"force_n": 2.0}, "force_n", "strain is given as well."),
-    ("stretch", PULL | {"direction": "up"}, "direction", ""),
-    ("stretch", PULL | {"steps": 0}, "steps", ""),
     ("stretch", PULL | {"steps": 99, "chart": LARGE_RIB}, "steps", ""),
     ("stretch", PULL | {"material": "steel"}, "material", ""),
     ("stretch", PULL | {"chart": "K?"}, "chart", ""),
@@ -65,12 +79,24 @@ REQUESTS: list[tuple[str, dict[str, Any], str, str]] = [
     ("stretch", PULL | {"outline": "\n".join(["xxxx.xxxx"] * 6)}, "outline", "2 pieces"),
     ("piece", YARN | {"piece": PIECE | {"outline": BEYOND}}, "piece.outline.1.0", "10000"),
     ("piece", YARN | {"piece": PIECE | {"conditions": GLUED}}, "piece.conditions.0.kind", "sewn"),
+    ("piece", YARN | {"piece": PIECE | {"outline": CROSSED}}, "outline", ""),
+    ("piece", YARN | {"piece": PIECE | {"edges": {"hem": [99]}}}, "edges.hem", ""),
+    ("piece", YARN | {"piece": PIECE | {"edges": {"low": [1]}}}, "edge", ""),
+    ("piece", YARN | {"piece": PIECE | {"conditions": FREE}}, "conditions", ""),
     ("curl", YARN | {"chart": "KKK\nKKK", "outline": "x.x\nx.x"}, "outline", "2 parts"),
     ("curl", YARN | {"chart": GARTER | {"columns": 101, "rows": 100}}, "chart", ""),
     ("limb", TUBE | {"girths": CONE[::-1]}, "girths", ""),
     ("limb", TUBE | {"girths": [CONE[0], {"at_mm": 200, "girth_mm": 220}]}, "girths", ""),
     ("limb", TUBE | {"girths": [NO_LIMB, CONE[1]]}, "girths.0.girth_mm", "10"),
     ("views/solid", YARN | {"colour": "pressure"}, "colour", ""),
+    ("views/still", YARN | {"curl": {"id": "gone"}}, "curl.id", ""),
+    ("views/still", YARN | {"curl": {"id": "gone"}, "stretch": {"id": "x", "step": 0}}, "curl", ""),
+    ("views/still", YARN | {"outline": "xx"}, "outline", ""),
+    ("views/still", YARN | {"colour": "field"}, "field", ""),
+    ("views/still", YARN | {"colour": "field", "field": NO_FIELD}, "field", ""),
+    ("views/still", YARN | {"colour": "strain"}, "colour", ""),
+    ("views/still", YARN | {"colour": "region", "regions": [ELSEWHERE]}, "regions", ""),
+    *(("designs", RIB | change, *change, "") for change in NO_DESIGNS),
     (
         "garment",
         {"garment": {"template": "wrist-brace", "wrist_mm": 170}, "material": "acrylic"},
@@ -99,6 +125,18 @@ REQUESTS: list[tuple[str, dict[str, Any], str, str]] = [
     ("relax", HELD | {"loop_lengths_mm": []}, "loop_lengths_mm", ""),
     ("relax", HELD | {"branch": "published", "flat": True}, "branch", ""),
     ("relax", HELD | {"cell_wale_mm": 90.0}, "cell_wale_mm", ""),
+    *(
+        ("relax", YARN | {"history": "agitated"} | change, fields, "")
+        for change, fields in WITHOUT_FRICTION
+    ),
+    (
+        "sweep",
+        YARN
+        | {"direction": "course", "max_strain": 0.2}
+        | {"there_and_back": True, "slide_quenching": True, "flat": True},
+        "flat slide_quenching",
+        "",
+    ),
     (
         "export",
         {"chart": {"fabric": "rib", "rows": LARGE_SIDE, "columns": LARGE_SIDE}, "to": "glb"},
@@ -126,7 +164,8 @@ def test_the_service_names_field_problem_and_remedy(
     client: TestClient, address: str, body: dict[str, Any], field: str, says: str
 ) -> None:
     problem = refusal(client, address, body)
-    assert problem["field"] == field
+    assert problem["field"] == field.partition(" ")[0]
+    assert [error["field"] for error in problem["errors"]] == field.split()
     assert says in problem["detail"]
     assert problem["detail"]
     assert problem["remedy"]
@@ -139,6 +178,10 @@ RELAX = ("relax", "rib", "--material", "cotton")
 STOCKINETTE = ("--material", "glove-wool:glove", "--fabric", "stockinette", "--direction", "wale")
 PRESSURE = ("pressure", *STOCKINETTE, "--worn-mm", "180")
 LIMB = ("limb", "stockinette", "--size", "40x4", *ACRYLIC, "--girth")
+STRETCH = (
+    *("stretch", "garter", "--size", "9x6", *ACRYLIC, "--direction", "wale", "--strain", "0.2"),
+    "--out",
+)
 CHARACTERISE = ("characterise", "--out", "new")
 MINE = (
     *("--yarn", "mine", "--bending-modulus-n-mm2", "0.02", "--contact-stiffness-n-per-mm3", "0.01"),
@@ -196,6 +239,10 @@ COMMANDS: list[tuple[tuple[str, ...], str]] = [
     ((*CHARACTERISE, *MINE, "0.7", "--loop-lengths", "12"), "not inside the yarn"),
     ((*CHARACTERISE, "cotton", "--scheduler", "somewhere"), "not an address"),
     (("curl", "garter", "--size", "4x4", *ACRYLIC, "--out", "shape.obj"), "out"),
+    *(((*STRETCH, out), "out") for out in ("nowhere/fields.npz", ".", "fields.doc")),
+    (("import", "none.png"), "does not exist"),
+    (("import", "."), "is a folder"),
+    (("export", "rib", "--size", "2x2", "--to", "png", "-o", "none/a.png"), "is not a folder"),
 ]
 
 

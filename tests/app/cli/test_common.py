@@ -1,8 +1,5 @@
 """Kernels are compiled once on a machine, and a command says so."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -10,6 +7,7 @@ import pytest
 from knitcore import warm_up
 from knitcore.base.compiled import COMPILING
 from tests.app.command_line import printed
+from tests.app.running import python
 
 KERNEL = """
 from knitcore.base.compiled import compiled
@@ -33,29 +31,21 @@ assert gc.isenabled()
 
 
 def stderr(folder: Path, program: str) -> str:
-    """What the first call of a kernel in a program says."""
+    """Words of a program on stderr when it first calls a kernel."""
     (folder / "kernel.py").write_text(KERNEL)
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache")}
-    told = subprocess.run(
-        [sys.executable, "-c", CALL, program],
-        cwd=folder,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return told.stderr
+    return python("-c", CALL, program, cwd=folder, env=_cache(folder / "cache")).stderr
 
 
-def test_a_command_says_once_that_it_compiles_and_is_silent_when_that_is_done(
-    tmp_path: Path,
+def _cache(folder: Path) -> dict[str, str]:
+    return {"NUMBA_CACHE_DIR": str(folder)}
+
+
+@pytest.mark.parametrize(("program", "said"), [("command", f"{COMPILING}\n"), ("library", "")])
+def test_only_a_command_says_that_it_compiles_and_only_when_it_does(
+    tmp_path: Path, program: str, said: str
 ) -> None:
-    assert stderr(tmp_path, "command") == f"{COMPILING}\n"
-    assert stderr(tmp_path, "command") == ""
-
-
-def test_the_library_prints_nothing(tmp_path: Path) -> None:
-    assert stderr(tmp_path, "library") == ""
+    assert stderr(tmp_path, program) == said
+    assert stderr(tmp_path, program) == ""
 
 
 def nothing() -> None:
@@ -64,9 +54,9 @@ def nothing() -> None:
 
 def test_warm_up_names_the_parts_that_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(warm_up, "TASKS", (nothing,))
-    told = printed("warm-up")
-    assert told.stdout == ""
-    assert told.stderr.splitlines() == [
+    result = printed("warm-up")
+    assert result.stdout == ""
+    assert result.stderr.splitlines() == [
         "Compiling kernels for this processor in 1 parts …",
         "1 of 1: nothing",
     ]
@@ -125,19 +115,9 @@ def test_a_second_process_compiles_what_is_needed_last(
     tmp_path: Path, study: str, module: str, spared: set[str]
 ) -> None:
     def compiled(cache: str) -> set[str]:
-        told = subprocess.run(
-            [sys.executable, "-c", COMPILED, study],
-            env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / cache)},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        return {name.removeprefix("knitcore.") for name in told.stdout.split()}
+        names = python("-c", COMPILED, study, env=_cache(tmp_path / cache)).stdout.split()
+        return {name.removeprefix("knitcore.") for name in names}
 
-    subprocess.run(
-        [sys.executable, "-m", "knitcore.warm_up", module],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kept")},
-        check=True,
-    )
+    python("-m", "knitcore.warm_up", module, env=_cache(tmp_path / "kept"))
     assert spared <= compiled("new")
     assert not spared & compiled("kept")

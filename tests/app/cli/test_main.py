@@ -1,9 +1,5 @@
 """The help of the command line."""
 
-import subprocess
-import sys
-from collections.abc import Iterator
-
 import click
 import pytest
 from click.testing import CliRunner
@@ -11,7 +7,9 @@ from click.testing import CliRunner
 from app.cli.commands import command_of
 from app.cli.main import SECTIONS, main
 from app.operations.registry import operations
+from scripts.site import every_command
 from tests.app.operations.test_registry import ASKING
+from tests.app.running import python
 
 NAMES_SO_FAR = frozenset(
     """
@@ -23,21 +21,7 @@ NAMES_SO_FAR = frozenset(
 )
 
 
-def every_command(
-    group: click.Command = main, path: tuple[str, ...] = ()
-) -> Iterator[tuple[str, click.Command]]:
-    """All commands with the words that call them."""
-    if not isinstance(group, click.Group):
-        yield " ".join(path), group
-        return
-    context = click.Context(group)
-    for name in group.list_commands(context):
-        command = group.get_command(context, name)
-        assert command is not None
-        yield from every_command(command, (*path, name))
-
-
-EVERY = dict(every_command())
+EVERY = dict(every_command(main, click.Context(main)))
 
 
 def test_the_help_has_sections_and_every_command_is_in_one() -> None:
@@ -67,10 +51,7 @@ def test_the_help_loads_no_other_operation(
         "import atexit, sys; from app.cli.main import main;"
         "atexit.register(lambda: print(*sys.modules, sep='\\n')); main(sys.argv[1:])"
     )
-    shown = subprocess.run(
-        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=True
-    )
-    modules = set(shown.stdout.splitlines())
+    modules = set(python("-c", code, *words).stdout.splitlines())
     subjects = {m.removeprefix("app.operations.") for m in modules if "app.operations." in m}
     assert subjects - {"perform", "registry"} == loaded
     assert not modules & absent

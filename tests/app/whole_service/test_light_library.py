@@ -1,12 +1,13 @@
 """The library without its extras: predictions work, and what needs more says what to install."""
 
 import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
+
+from tests.app.running import python
 
 PROJECT = tomllib.loads(
     (Path(__file__).resolve().parents[3] / "pyproject.toml").read_text(encoding="utf-8")
@@ -27,38 +28,38 @@ finally:
 """
 
 
-def light(*arguments: str) -> subprocess.CompletedProcess[str]:
+def light(arguments: str) -> subprocess.CompletedProcess[str]:
     """The command line where only the plain dependencies are installed."""
     extras = PROJECT["optional-dependencies"]
     lines = [line for extra in ("files", "cluster", "service") for line in extras[extra]]
     names = [Requirement(line).name for line in lines]
     absent = {MODULES.get(name, name.replace("-", "_")) for name in names} - {"knitcore"}
-    code = WITHOUT.format(absent=absent, arguments=list(arguments))
-    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    code = WITHOUT.format(absent=absent, arguments=arguments.split())
+    return python("-c", code, check=False)
 
 
-def test_a_prediction_needs_the_light_library_only_and_loads_no_solver() -> None:
-    told = light("predict", "garter", "--size", "5x5", "--material", "acrylic", "--json")
-    assert told.returncode == 0, told.stderr
-    assert '"provenance":"measured"' in told.stdout
-    loaded = set(told.stderr.split())
-    assert not loaded & {
-        "numba",
-        "scipy",
-        "numpy.f2py",
-        "pydantic_settings",
-        "app.operations.chart.curve",
-    }
+@pytest.mark.parametrize(
+    ("command", "shown", "spared"),
+    [
+        (
+            "predict garter --size 5x5 --material acrylic --json",
+            '"provenance":"measured"',
+            {"numba", "scipy", "numpy.f2py", "pydantic_settings", "app.operations.chart.curve"},
+        ),
+        ("--help", "predict", {"numba", "scipy"}),
+    ],
+)
+def test_predictions_and_help_need_the_light_library_only_and_load_no_solver(
+    command: str, shown: str, spared: set[str]
+) -> None:
+    done = light(command)
+    assert done.returncode == 0, done.stderr
+    assert shown in done.stdout
+    assert not spared & set(done.stderr.split())
 
 
 @pytest.mark.parametrize("command", ["fit a.csv b.csv", "measure bending a.png", "serve"])
 def test_a_command_without_its_packages_names_the_extra(command: str) -> None:
-    told = light(*command.split())
-    assert told.returncode == 2
-    assert "pip install 'knitcore[service]'" in told.stderr
-
-
-def test_help_lists_all_commands() -> None:
-    told = light("--help")
-    assert told.returncode == 0, told.stderr
-    assert "predict" in told.stdout
+    done = light(command)
+    assert done.returncode == 2
+    assert "pip install 'knitcore[service]'" in done.stderr

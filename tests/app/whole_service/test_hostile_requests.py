@@ -1,6 +1,6 @@
 """Requests that no schema describes: none is a surprise to the service, and it stays up.
 
-:mod:`tests.app.service.test_documented` sends those that the schema describes, right and wrong.
+Those that the schema describes, right and wrong, are sent by ``test_documented.py``.
 """
 
 import json

@@ -1,25 +1,30 @@
-"""One way to write intervals, rows and repeats, in every request and answer of the service."""
+"""One way to write intervals, rows and repeats in every request and answer; and one version."""
 
+import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
+import knitcore
 from app.operations.registry import operations
 from app.requests.charts import CellLines, ChartLines, RepeatText
 from knitcore.formats.designs.layout import Motif
+from tests.app.command_line import printed
 
 Schema = dict[str, Any]
+PROJECT = Path(__file__).resolve().parents[3] / "pyproject.toml"
 NAMED_ELSEWHERE = {"interval_source", "intervals"}
-"""What intervals rest on, and those of `values` by the name of the quantity."""
+"""The sources of intervals, and the intervals of `values` by the name of the quantity."""
 
 
 @pytest.fixture
 def shapes(schema: Schema) -> dict[str, Schema]:
-    found: dict[str, Schema] = schema["components"]["schemas"]
-    assert {operation.result.__name__ for operation in operations().values()} <= set(found)
-    return found
+    schemas: dict[str, Schema] = schema["components"]["schemas"]
+    assert {operation.result.__name__ for operation in operations().values()} <= set(schemas)
+    return schemas
 
 
 def _fields(shapes: dict[str, Schema]) -> Iterator[tuple[str, str, Schema, dict[str, Schema]]]:
@@ -106,13 +111,13 @@ def test_no_interval_is_written_otherwise(shapes: dict[str, Schema]) -> None:
 
 def test_charts_repeats_and_cells_are_each_written_in_one_way(shapes: dict[str, Schema]) -> None:
     """A chart is lines, a repeat has its rows between slashes; both have their top row first."""
-    told = {kind: _description(kind) for kind in (ChartLines, RepeatText, Motif, CellLines)}
+    descriptions = {kind: _description(kind) for kind in (ChartLines, RepeatText, Motif, CellLines)}
     ways = {
         "chart": ("K/P lines, the top row first",),
-        "repeat": (told[RepeatText],),
-        "fill": (told[RepeatText], "Repeat that fills it"),
-        "motif": (told[Motif],),
-        "cells": (told[CellLines],),
+        "repeat": (descriptions[RepeatText],),
+        "fill": (descriptions[RepeatText], "Repeat that fills it"),
+        "motif": (descriptions[Motif],),
+        "cells": (descriptions[CellLines],),
         "outline": ("Lines of x",),
     }
     seen = set()
@@ -136,10 +141,18 @@ def test_rows_and_columns_count_from_0_at_the_bottom_left(shapes: dict[str, Sche
 
 @pytest.mark.parametrize("written", ["KP\nPP", "KP/PP", "kp\n--"])
 def test_a_chart_is_taken_as_lines_and_with_slashes(client: TestClient, written: str) -> None:
-    asked = {"chart": "KP\nPP", "material": "acrylic"}
-    expected = client.post("/api/v1/predict", json=asked).json()
-    assert client.post("/api/v1/predict", json=asked | {"chart": written}).json() == expected
+    body = {"chart": "KP\nPP", "material": "acrylic"}
+    expected = client.post("/api/v1/predict", json=body).json()
+    assert client.post("/api/v1/predict", json=body | {"chart": written}).json() == expected
 
 
 def _description(kind: Any) -> str:
     return str(kind.__metadata__[0].description)
+
+
+def test_library_commands_and_service_have_the_version_of_pyproject(client: TestClient) -> None:
+    version = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["version"]
+    assert knitcore.__version__ == version
+    assert printed("--version").stdout.split()[-1] == version
+    assert client.get("/api/v1/version").json() == {"version": version, "api": "v1"}
+    assert client.get("/openapi.json").json()["info"]["version"] == version

@@ -1,7 +1,6 @@
 """CHART is a file, standard input, a repeat in one line or a fabric, in every command."""
 
 import io
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -103,15 +102,6 @@ def example_of(parameter: click.Parameter) -> Iterator[str]:
         yield "file.json"
     else:
         yield "acrylic" if parameter.type is click.STRING else "1"
-
-
-def test_answers_do_not_depend_on_how_the_chart_is_given(tmp_path: Path) -> None:
-    file = tmp_path / "rib.txt"
-    file.write_text("KKP\nKKP")
-    more = ("--material", "acrylic", "--json")
-    piped = CliRunner().invoke(main, ["predict", "-", *more], input="KKP\nKKP\n")
-    assert run("predict", "KKP/KKP", *more[:2]) == run("predict", file, *more[:2])
-    assert json.loads(piped.stdout) == run("predict", "KKP/KKP", *more[:2])
 
 
 def test_standard_input_may_be_a_file_of_any_kind(tmp_path: Path) -> None:

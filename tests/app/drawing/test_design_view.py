@@ -1,0 +1,77 @@
+"""Scenes of views, made without a service."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.context import Context
+from app.drawing.computed import PosedView, StretchView
+from app.drawing.design_view import ViewRequest, build_scene
+from app.drawing.fabric import RECTANGLE, Box, FabricScene
+
+SMALL = {"chart": "KPKP\nPKPK\nKPKP", "material": "acrylic"}
+
+
+def scene_of(
+    request: Mapping[str, object], view: PosedView | StretchView | None = None
+) -> FabricScene:
+    """The scene of a view, of a computed shape if it is given."""
+    return build_scene(ViewRequest.model_validate(request), view, Context(Path()))
+
+
+def test_outlines_stay_on_the_fabric() -> None:
+    ground = scene_of(SMALL).ground
+    corners = ground.box_corners_mm(Box(0, 0, 3, 4))
+    np.testing.assert_allclose(np.ptp(corners, axis=0), ground.extent_mm, rtol=1e-6)
+    np.testing.assert_allclose(ground.box_corners_mm(Box(0, 0, 99, 99)), corners)
+
+
+def test_a_huge_chart_is_drawn_around_its_focus() -> None:
+    chart = {"fabric": "stockinette", "columns": 400, "rows": 300}
+    focus = {"row": 299, "column": 0}
+    scene = scene_of({"chart": chart, "material": "acrylic", "focus": focus})
+    drawing = scene.drawing()
+    assert drawing.part.shapes.index.size <= 40_000
+    np.testing.assert_array_equal(
+        drawing.part.placement.centres_mm[-1, 0], scene.placement.centres_mm[299, 0]
+    )
+    assert drawing.ground.shape == (300, 400)
+    assert drawing.picture is not None
+
+
+def test_every_way_to_colour_the_stitches() -> None:
+    regions = [
+        {"id": "a", "name": "A", "colour": "#ff0000", "yarn": "red", "runs": [[0, 0, 2]]},
+        {"id": "b", "name": "B", "colour": "#00ff00", "runs": [[0, 1, 2], [1, 0, 1]]},
+        {"id": "c", "name": "C", "colour": "#0000ff", "runs": [[2, 0, 4]], "hidden": True},
+    ]
+
+    def colours(colour: str, **more: object) -> np.ndarray:
+        return scene_of(SMALL | {"colour": colour, "regions": regions, **more}).colours
+
+    palette = {"yarn": "#101010", "seed": "#123456"}
+    plain = [0x10, 0x10, 0x10]
+    by_yarn, by_region = (colours(c, palette=palette) for c in ("yarn", "region"))
+    assert by_yarn[0].tolist() == [[255, 0, 0], [255, 0, 0], plain, plain]
+    assert by_region[0].tolist() == [[255, 0, 0], [0, 255, 0], [0, 255, 0], plain]
+    assert by_region[2].tolist() == [plain] * 4
+    assert colours("phase", palette=palette)[1, 1].tolist() == [0x12, 0x34, 0x56]
+    field = {"values": list(range(12)), "low": 0, "high": 11}
+    assert colours("field", field=field)[0, 0].tolist() == [0x01, 0x19, 0x59]
+
+
+@pytest.mark.parametrize(("groups", "count"), [("stitch", 12), ("block", 2), ("region", 1)])
+def test_rectangles_stand_for_stitches_blocks_or_regions(groups: str, count: int) -> None:
+    body = SMALL | {
+        "rectangles": True,
+        "rectangle_groups": groups,
+        "rectangle_block": 3,
+        "regions": [{"id": "a", "name": "A", "colour": "#ff0000", "runs": [[0, 0, 2]]}],
+    }
+    scene = scene_of(body)
+    rectangles = scene.rectangles_mm
+    assert rectangles is not None
+    assert rectangles.shape == (count, 4, 2)
+    assert scene.drawing().weight == 12 + RECTANGLE * count

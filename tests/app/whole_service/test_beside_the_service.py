@@ -1,0 +1,106 @@
+"""Every command of the command line beside a service at work: nothing is lost by it.
+
+A process that closes an SQLite file and takes itself for the last one removes the log in which the
+newest changes are. It may do so only if no service has the file open.
+"""
+
+import gzip
+import json
+from pathlib import Path
+
+import httpx2 as httpx
+
+from app.cli.main import main
+from app.service.designs.store import DesignStore
+from tests.app.cli.test_main import EVERY
+from tests.app.clients import bearing
+from tests.app.databases import is_whole, opened
+from tests.app.painter import Painter, painting, until_painted
+from tests.app.running import Service, knitcore, python, wait_until
+
+PAINTERS = 3
+PREDICT = "predict"
+"""In the place of all operations: none of them opens the database."""
+REFUSED = {"serve": "another service", "restore": "already"}
+"""Commands that must not succeed beside a service, and what they say."""
+
+
+def arguments_of(folder: Path, token: str) -> dict[str, list[str]]:
+    """Arguments of each command; a command that is not here fails the test."""
+    return {
+        "token create": ["bob"],
+        "token list": [],
+        "token revoke": [token],
+        "backup": [str(folder / "backup.gz")],
+        "doctor": [],
+        PREDICT: ["seed", "--size", "4x4", "--material", "acrylic"],
+        "restore": [str(folder / "backup.gz")],
+        "serve": ["--port", "0"],
+        "warm-up": ["--help"],  # does not touch the data, and takes a minute
+    }
+
+
+def _elsewhere(file: Path) -> None:
+    """Another program opens and closes the file."""
+    code = (
+        "import sqlite3, sys; c = sqlite3.connect(sys.argv[1])\n"
+        "c.execute('SELECT * FROM designs').fetchone(); c.close()"
+    )
+    python("-c", code, file)
+
+
+def _until_refused(client: httpx.Client, token: str) -> None:
+    wait_until(lambda: client.get("/api/v1/designs", headers=bearing(token)).status_code == 401)
+
+
+def _made(service: Service, user: str) -> dict[str, str]:
+    done = knitcore("token", "create", user, "--json", env=service.environment)
+    assert done.returncode == 0, done.stderr
+    made: dict[str, str] = json.loads(done.stdout)
+    return made
+
+
+def _revisions(backup: Path) -> dict[str, int]:
+    with gzip.open(backup, "rt") as lines:
+        rows = [json.loads(line) for line in lines]
+    return {r["row"]["id"]: r["row"]["revision"] for r in rows if r.get("table") == "designs"}
+
+
+def test_commands_beside_the_service_lose_nothing(tmp_path: Path) -> None:
+    service = Service(tmp_path, require_login="true", requests_per_s="100000")
+    file = tmp_path / "data" / "knitcore.sqlite3"
+    log = file.with_name(f"{file.name}-wal")
+    with service.running() as client:
+        ada = _made(service, "ada")
+        client.headers.update(bearing(ada["token"]))
+        painters = [Painter.with_a_design(client, n) for n in range(PAINTERS)]
+        leaver = _made(service, "leaver")
+        assert client.get("/api/v1/designs", headers=bearing(leaver["token"])).is_success
+        ours = log.stat().st_ino
+        given = arguments_of(tmp_path, leaver["id"])
+        own = {words for words in EVERY if main.entries[words.split()[0]][0].startswith(".")}
+        assert {*own, PREDICT} == set(given), "a new command: say what it is given"
+        with painting(service.url, painters):
+            for name, arguments in given.items():
+                before = {p.design: p.acknowledged for p in painters}
+                done = knitcore(*name.split(), *arguments, env=service.environment)
+                refusal = REFUSED.get(name)
+                assert (done.returncode == 0) is (refusal is None), f"{name}: {done}"
+                assert refusal is None or refusal in done.stderr
+                assert log.stat().st_ino == ours, name
+                if name == "backup":
+                    saved = _revisions(tmp_path / "backup.gz")
+                    assert all(saved[d] >= revision for d, revision in before.items())
+            _elsewhere(file)
+            assert log.stat().st_ino == ours
+            _until_refused(client, leaver["token"])
+            late = _made(service, "late")
+            assert client.get("/api/v1/designs", headers=bearing(late["token"])).is_success
+            assert client.get("/readyz").status_code == 200
+            until_painted(painters, sum(p.acknowledged for p in painters) + PAINTERS)
+            service.kill()
+    assert is_whole(file)
+    with opened(tmp_path / "data", migrated=False) as database:
+        for painter in painters:
+            kept = DesignStore(database).get("ada", painter.design)
+            painter.check(kept.revision, kept.document.chart)
