@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from knitcore.formats.designs.design_file import design_from_mapping
-from knitcore.formats.read.chart_files import read_piece
+from knitcore.formats.read.chart_files import read_noted_piece
 from tests.browser.axe import violations
 from tests.browser.page import kept_design
 
@@ -40,7 +40,7 @@ def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: 
     with page.expect_download() as caught:
         page.locator("#export-make").click()
     caught.value.save_as(tmp_path / "glove.txt")
-    piece = read_piece(tmp_path / "glove.txt")
+    piece = read_noted_piece(tmp_path / "glove.txt").piece
     assert {yarn.name for yarn in piece.yarns} == {"blue", "orange", "green", "purple"}
     kept = design_from_mapping(
         {"format": "knitcore-design", "version": 2}

@@ -57,7 +57,7 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
     """
     del context
     with stored([request.file]) as (path,):
-        design, notes = _noted_design_in(path)
+        design, notes = noted_design_in(path)
     chart = StitchChart.parse(design.chart)
     return ImportResult(
         **dict(design),
@@ -68,18 +68,14 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
     )
 
 
-def design_in(path: Path) -> FoundDesign:
-    """The parts of a design that a file holds.
+def noted_design_in(path: Path) -> tuple[FoundDesign, tuple[str, ...]]:
+    """The parts of a design that a file holds, and the notes of its reader.
 
     Raises
     ------
     InputError
         If it holds no chart.
     """
-    return _noted_design_in(path)[0]
-
-
-def _noted_design_in(path: Path) -> tuple[FoundDesign, tuple[str, ...]]:
     if path.suffix.lower() == ".json":
         return FoundDesign.of(read_design(path), chart=read_chart(path).text), ()
     content = read_noted_piece(path)
