@@ -33,12 +33,10 @@ class SegmentMap(Result):
         Segment between the stitches (row, column) and (row, column + 1).
     wale_odd : bool array (rows - 1, columns), or (rows, columns) if periodic
         Segment between the stitches (row, column) and (row + 1, column).
-    periodic : whether the chart is a repeat that continues beyond its edges.
     """
 
     course_odd: Mask
     wale_odd: Mask
-    periodic: bool
 
     def counts(self, direction: Direction) -> SegmentCounts:
         """Numbers of even and odd segments that run in this direction."""
@@ -72,4 +70,4 @@ def segment_map(
         course_odd = course_odd[:, :-1]
     if not periodic:
         wale_odd = wale_odd[:-1]
-    return SegmentMap(course_odd, wale_odd, periodic=periodic)
+    return SegmentMap(course_odd, wale_odd)

@@ -9,6 +9,7 @@ from knitcore.chart.fabric import Fabric
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.paper_samples import Sample, load_samples, sample
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.paper.bezier_relax import first_shapes, lowest, relax_published
 from knitcore.yarn.paper.bezier_shape import unknown_names
 from knitcore.yarn.paper.bezier_stitch import Stitch
@@ -53,10 +54,12 @@ def test_published_energies_and_shares(known):
 @pytest.mark.parametrize(("course_mm", "energy"), [(2.80, 0.40451), (5.32, 0.89431)])
 def test_authors_example_curve(course_mm, energy):
     # their sample results for stockinette, core300x, first and last point
-    yarn, loop_length_mm = sample("acrylic", "stockinette").as_configured()
+    entries = sample("acrylic", "stockinette").parameters
+    configured = {entry.name: entry.configured for entry in entries}
+    loop_length_mm = configured.pop("loop_length_mm")
     cell = relax_published(
         "stockinette",
-        replace(yarn, core_radius_mm=0.300),
+        YarnModel(**(configured | {"core_radius_mm": 0.300})),
         loop_length_mm,
         cell_course_mm=course_mm,
         convention=Convention.AUTHORS_CODE,
