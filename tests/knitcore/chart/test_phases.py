@@ -113,12 +113,3 @@ def test_the_reference_has_odd_segments_where_the_repeat_has_any(
     repeat: str, reference: Fabric
 ) -> None:
     assert reference_fabric(StitchChart.parse(repeat)) is reference
-
-
-@given(stitch_charts())
-def test_phases_of_a_tube_are_those_of_the_middle_of_a_chart_repeated_around(
-    chart: StitchChart,
-) -> None:
-    around = quarter_phases(chart.tile(1, 3))
-    middle = around[:, 2 * chart.columns : 4 * chart.columns]
-    np.testing.assert_array_equal(quarter_phases(chart, tube=True), middle)
