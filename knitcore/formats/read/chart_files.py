@@ -16,10 +16,21 @@ MAX_FILE_BYTES = 16_000_000
 
 @dataclass(frozen=True)
 class PieceInFile:
-    """The piece in a file, and notes on what was left out or taken in one of several ways."""
+    """The piece in a file, without what is not of it, such as a program's waste.
+
+    Attributes
+    ----------
+    piece : the face, its outline and its yarns.
+    notes : what was left out or taken in one of several ways, and warnings.
+    """
 
     piece: Piece
     notes: tuple[str, ...] = ()
+
+    @property
+    def chart(self) -> StitchChart:
+        """The face grid."""
+        return self.piece.chart
 
 
 def read_chart(path: str | Path) -> StitchChart:
@@ -43,7 +54,7 @@ def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
     if file.suffix.lower() == ".json":
         return read_design(_checked(file)).to_chart(), ()
     content = read_noted_piece(file)
-    return content.piece.chart, content.notes
+    return content.chart, content.notes
 
 
 def read_noted_piece(path: str | Path) -> PieceInFile:
@@ -94,8 +105,7 @@ def _read_text(file: Path) -> Piece | PieceInFile:
 def _read_knitout(file: Path) -> PieceInFile:
     from knitcore.formats.read.knitout_reader import knitted_chart
 
-    knitted = knitted_chart(_text(file))
-    return PieceInFile(knitted.piece, knitted.notes)
+    return knitted_chart(_text(file))
 
 
 def _text(file: Path) -> str:

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 import pytest
 
 from knitcore import InputError
-from knitcore.formats.read.knitout_reader import KnittedChart, knitted_chart
+from knitcore.formats.read.chart_files import PieceInFile
+from knitcore.formats.read.knitout_reader import knitted_chart
 
 HEAD = [";!knitout-2", ";;Machine: SWG091N2", ";;Carriers: 1 2 3"]
 
@@ -40,7 +41,7 @@ def dropped(beds: str) -> list[str]:
     return [f"drop {bed}{n}" for n, bed in enumerate(beds, 1)]
 
 
-def read(*lines: str, head: Sequence[str] = HEAD) -> KnittedChart:
+def read(*lines: str, head: Sequence[str] = HEAD) -> PieceInFile:
     return knitted_chart("\n".join([*head, *lines]) + "\n")
 
 
