@@ -67,12 +67,12 @@ LINEAR = {
     "yarn/study/bent_cell.py": "a linear response, which hangs on no last digit",
     "yarn/study/yarn_tube.py": "the same",
     "yarn/solve/clasps.py": "logarithms of determinants, compared with a margin",
-    "yarn/study/jumps.py": "a measure of what was found",
+    "yarn/study/sweep.py": "a measure of what was found",
     "yarn/study/rs_geometry.py": "the same",
     "yarn/study/whole_chart.py": "the force that is left",
     "cloth/space/curl.py": "turns what was found",
     "cloth/space/surface.py": "draws what was found",
-    "linear/direct_factor.py": "the solver of cut cloth, which leaves no saddle",
+    "linear/grid_factor.py": "the solver of cut cloth, which leaves no saddle",
 }
 """Files of these rooms that use BLAS, and why they may."""
 

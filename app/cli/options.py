@@ -136,11 +136,13 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     """
     with chart_file(chart) as file:
         if file is not None:
-            from knitcore.formats.read.chart_files import read_chart  # a fabric needs no readers
+            from knitcore.formats.read.chart_files import read_noted_chart  # slow to import
 
             if size is not None:
                 raise InputError("size", "does not go with a file.", "Leave --size out.")
-            return read_chart(file)
+            chart_in_file, notes = read_noted_chart(file)
+            tell(notes)
+            return chart_in_file
     named = _chart_of_name(chart)
     if named is None and not _is_one_line(chart):
         raise _no_chart(chart)
@@ -155,6 +157,12 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     if named is not None and not is_repeat:
         raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
     return cloth if named is None else cloth.repeat()
+
+
+def tell(notes: Iterable[str]) -> None:
+    """Print the notes of a file's reader, beside the result, which may be piped on."""
+    for note in notes:
+        click.echo(f"note: {note}", err=True)
 
 
 @contextlib.contextmanager

@@ -18,7 +18,7 @@ LEFT, RIGHT, BELOW, ABOVE = 1, 2, 4, 8
 
 
 def surroundings(
-    chart: StitchChart, *, periodic: bool = False, tube: bool = False, stitch: Mask | None = None
+    chart: StitchChart, *, periodic: bool = False, stitch: Mask | None = None
 ) -> Codes:
     """The 4-bit code of odd segments around every stitch, shape (rows, columns).
 
@@ -28,7 +28,6 @@ def surroundings(
     periodic : treat the chart as a repeat. Otherwise a segment that would cross an edge takes the
         parity of the same stitch's segment on the other side (a lone row or column counts as
         even), so that a swatch of a pure fabric is pure up to its edge.
-    tube : join the last column to the first only, as in cloth that is knitted in the round.
     stitch : bool (rows, columns), where a chart with an outline (not joined) has stitches; its
         outline is an edge like that of a rectangle. Codes elsewhere mean nothing.
 
@@ -37,27 +36,21 @@ def surroundings(
     >>> surroundings(StitchChart.parse("KKP"))
     array([[0, 2, 3]], dtype=uint8)
     """
-    segments = segment_map(chart, periodic=periodic, tube=tube)
+    segments = segment_map(chart, periodic=periodic)
     course, wale = segments.course_odd.T, segments.wale_odd
     inside = np.ones_like(chart.purl) if stitch is None else stitch
-    if periodic or tube:
-        left, right = np.roll(course, 1, axis=0), course
-    else:
-        left, right = _before_and_after(course, inside[:, 1:].T & inside[:, :-1].T)
     if periodic:
+        left, right = np.roll(course, 1, axis=0), course
         below, above = np.roll(wale, 1, axis=0), wale
     else:
+        left, right = _before_and_after(course, inside[:, 1:].T & inside[:, :-1].T)
         below, above = _before_and_after(wale, inside[1:] & inside[:-1])
     code = left.T * LEFT | right.T * RIGHT | below * BELOW | above * ABOVE
     return code.astype(np.uint8)
 
 
 def quarter_phases(
-    chart: StitchChart | str,
-    *,
-    periodic: bool = False,
-    tube: bool = False,
-    stitch: Mask | None = None,
+    chart: StitchChart | str, *, periodic: bool = False, stitch: Mask | None = None
 ) -> Codes:
     """Phase of every quarter cell, with edges and outline as in :func:`surroundings`.
 
@@ -74,7 +67,7 @@ def quarter_phases(
            [0, 0, 0, 2, 2, 2]], dtype=uint8)
     """
     chart = as_chart(chart)
-    codes = surroundings(chart, periodic=periodic, tube=tube, stitch=stitch)
+    codes = surroundings(chart, periodic=periodic, stitch=stitch)
     phases = QUARTERS_OF_CODE[codes]  # (rows, columns, 2, 2)
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
 

@@ -29,16 +29,14 @@ class SegmentMap(Result):
 
     Attributes
     ----------
-    course_odd : bool array (rows, columns - 1), or (rows, columns) if periodic or of a tube
+    course_odd : bool array (rows, columns - 1), or (rows, columns) if periodic
         Segment between the stitches (row, column) and (row, column + 1).
     wale_odd : bool array (rows - 1, columns), or (rows, columns) if periodic
         Segment between the stitches (row, column) and (row + 1, column).
-    periodic : whether the chart is a repeat that continues beyond its edges.
     """
 
     course_odd: Mask
     wale_odd: Mask
-    periodic: bool
 
     def counts(self, direction: Direction) -> SegmentCounts:
         """Numbers of even and odd segments that run in this direction."""
@@ -47,29 +45,22 @@ class SegmentMap(Result):
         return SegmentCounts(even=int(odd_map.size) - odd, odd=odd)
 
 
-def segment_map(
-    chart: StitchChart | str, *, periodic: bool = False, tube: bool = False
-) -> SegmentMap:
+def segment_map(chart: StitchChart | str, *, periodic: bool = False) -> SegmentMap:
     """The even/odd maps of a chart, course-wise and wale-wise.
 
     Parameters
     ----------
     chart : the chart, from the face side.
     periodic : join the last column to the first and the top row to the bottom one, as in a repeat.
-    tube : join the last column to the first only, as in cloth that is knitted in the round.
 
     Examples
     --------
     >>> rib = StitchChart.of_fabric("rib", rows=3, columns=4)
     >>> segment_map(rib).counts(Direction.COURSE), segment_map(rib).counts(Direction.WALE)
     (SegmentCounts(even=0, odd=9), SegmentCounts(even=8, odd=0))
-    >>> segment_map(rib, tube=True).counts(Direction.COURSE)
-    SegmentCounts(even=0, odd=12)
     """
     purl = as_chart(chart).purl
     course_odd, wale_odd = (purl ^ np.roll(purl, -1, axis=axis) for axis in (1, 0))
-    if not (periodic or tube):
-        course_odd = course_odd[:, :-1]
     if not periodic:
-        wale_odd = wale_odd[:-1]
-    return SegmentMap(course_odd, wale_odd, periodic=periodic)
+        course_odd, wale_odd = course_odd[:, :-1], wale_odd[:-1]
+    return SegmentMap(course_odd, wale_odd)

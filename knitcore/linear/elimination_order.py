@@ -5,10 +5,12 @@ touches cannot be known from the chart, so the cuts are found in the pattern its
 wave halves it, and a least vertex cover of what crosses the halves is the cut (König's theorem).
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import maximum_bipartite_matching
+from scipy.sparse.csgraph import breadth_first_order, maximum_bipartite_matching, shortest_path
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
@@ -65,29 +67,12 @@ def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:
     return ~rows, columns
 
 
-@compiled
 def _steps(touching: Bools) -> Array:
     """(n,) steps to each block of a pattern from the one farthest from the first."""
-    n = touching.shape[0]
-    begin = 0
-    queue, steps = np.empty(n, np.int64), np.empty(n)
-    for _ in range(2):
-        for i in range(n):
-            steps[i] = -1.0
-        steps[begin] = 0.0
-        queue[0] = begin
-        count = 1
-        for k in range(n):
-            if k == count:
-                break
-            i = queue[k]
-            for j in range(n):
-                if touching[i, j] and steps[j] < 0.0:
-                    steps[j] = steps[i] + 1.0
-                    queue[count] = j
-                    count += 1
-        begin = queue[count - 1]
-    return steps
+    links: Any = csr_array(touching)
+    farthest = breadth_first_order(links, 0, return_predecessors=False)[-1]
+    steps = shortest_path(links, "D", unweighted=True, indices=farthest)
+    return np.where(np.isfinite(steps), steps, -1.0)
 
 
 @compiled

@@ -8,20 +8,28 @@ For a comparison with general sparse solvers see ``docs/swatch.md``.
 The factor serves as a preconditioner of conjugate gradients in double precision, so single
 precision is enough for it: half the memory and half the time. Only where single precision cannot
 decide whether the matrix is positive definite is it factorised again in double precision.
+Matrices of other meshes have a factor of SuperLU.
 """
+
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
-from knitcore.linear.direct_factor import IndefiniteTangentError
 from knitcore.linear.front_tree import Block, BlockRows, CornerFront, FrontTree, Indices
 
 LEAF_CELLS = 8
 """Boxes are not halved below this many cells a side (a flat optimum from 6 to 10)."""
 SIDE_BY_SIDE = 500
 """Fewest boxes for which two threads pay off, one for each branch of the tree."""
+
+
+class IndefiniteTangentError(Exception):
+    """The matrix is not positive definite; the caller decides what to do."""
 
 
 class GridFactor:
@@ -173,3 +181,24 @@ def _fronts(columns: int, rows: int) -> list[CornerFront]:
 
     add(0, columns, 0, rows)
     return fronts
+
+
+def positive_definite_factor(matrix: Any) -> Callable[[Array], Array]:
+    """SuperLU of a sparse symmetric matrix, in double precision: a function that solves with it.
+
+    Raises
+    ------
+    IndefiniteTangentError
+        If the matrix is not positive definite.
+    """
+    from scipy.sparse.linalg import splu  # slow to import
+
+    # pivots stay on the diagonal, so that their signs are those of the eigenvalues
+    options = {"SymmetricMode": True}
+    try:
+        factor = splu(csc_matrix(matrix), "MMD_AT_PLUS_A", 0.0, options=options)
+    except RuntimeError as error:  # exactly singular
+        raise IndefiniteTangentError from error
+    if not np.all(factor.U.diagonal() > 0.0):
+        raise IndefiniteTangentError
+    return factor.solve

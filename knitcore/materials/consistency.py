@@ -51,13 +51,8 @@ def consistent_law(figures: Mapping[str, Figure]) -> ConstitutiveLaw:
         beta_xx=figures["beta_xx"].corrected,
         beta_yy=figures["beta_yy"].corrected,
     )
-    check_stated_constants(
-        law,
-        modulus_course=figures["Y_x"].corrected,
-        modulus_wale=figures["Y_y"].corrected,
-        poisson_yx=nu_yx,
-        poisson_xy=nu_xy,
-    )
+    moduli = {"modulus_course": figures["Y_x"].corrected, "modulus_wale": figures["Y_y"].corrected}
+    check_stated_constants(law, moduli | {"poisson_yx": nu_yx, "poisson_xy": nu_xy})
     for name, coupling in (("C_xxyy", law.stiffness_xxyy), ("C_yyxx", law.stiffness_yyxx)):
         figure = figures[name]
         # A coupling is a product of two rounded figures, so its own rounding is not enough.
@@ -70,37 +65,33 @@ def consistent_law(figures: Mapping[str, Figure]) -> ConstitutiveLaw:
     return law
 
 
-def check_stated_constants(
-    law: ConstitutiveLaw,
-    *,
-    modulus_course: float | None = None,
-    modulus_wale: float | None = None,
-    poisson_yx: float | None = None,
-    poisson_xy: float | None = None,
-) -> None:
-    """Refuse a law whose linear constants differ from those stated with it.
+def check_stated_constants(law: ConstitutiveLaw, stated: Mapping[str, float | None]) -> None:
+    """Refuse a law whose moduli or Poisson ratios differ from those stated with it by name.
 
     Raises
     ------
     InputError
         Naming the constant, its stated value and the law's.
     """
-    for name, stated in (("modulus_course", modulus_course), ("modulus_wale", modulus_wale)):
-        actual = getattr(law, name)
-        if stated is not None and abs(actual / stated - 1) > MODULUS_TOLERANCE:
-            _refuse(name, stated, actual)
-    for name, stated in (("poisson_yx", poisson_yx), ("poisson_xy", poisson_xy)):
-        actual = getattr(law, name)
-        if stated is not None and abs(actual - stated) > POISSON_TOLERANCE:
-            _refuse(name, stated, actual)
+    for name, value in stated.items():
+        if value is None:
+            continue
+        actual: float = getattr(law, name)
+        is_ratio = name.startswith("poisson")
+        off, allowed = (
+            (actual - value, POISSON_TOLERANCE)
+            if is_ratio
+            else (actual / value - 1, MODULUS_TOLERANCE)
+        )
+        if abs(off) > allowed:
+            problem = f"{value:g} is stated, but the stiffnesses give {actual:.4g}."
+            raise InputError(name, problem, _RELATIONS)
+
+
+_RELATIONS = "nu_yx = C_yyxx/C_yyyy, nu_xy = C_xxyy/C_xxxx and Y = (1 - nu_xy nu_yx) C must hold."
 
 
 def _diagonal(modulus: Figure, stiffness: Figure, factor: float) -> float:
     low = stiffness.corrected - stiffness.half_unit
     high = stiffness.corrected + stiffness.half_unit
     return min(max(modulus.corrected / factor, low), high)
-
-
-def _refuse(name: str, stated: float, actual: float) -> None:
-    remedy = "nu_yx = C_yyxx/C_yyyy, nu_xy = C_xxyy/C_xxxx and Y = (1 - nu_xy nu_yx) C must hold."
-    raise InputError(name, f"{stated:g} is stated, but the stiffnesses give {actual:.4g}.", remedy)

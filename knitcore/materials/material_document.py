@@ -55,7 +55,7 @@ class LawDocument(_Model):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        if None not in self._stiffnesses() or None not in self._engineering():
+        if None not in self._stiffnesses() or None not in self._engineering().values():
             return self
         raise ValueError(
             "give stiffness_xxxx, stiffness_yyyy, stiffness_xxyy and stiffness_yyxx, or "
@@ -65,8 +65,9 @@ class LawDocument(_Model):
     def _stiffnesses(self) -> tuple[float | None, ...]:
         return self.stiffness_xxxx, self.stiffness_yyyy, self.stiffness_xxyy, self.stiffness_yyxx
 
-    def _engineering(self) -> tuple[float | None, ...]:
-        return self.modulus_course, self.modulus_wale, self.poisson_yx, self.poisson_xy
+    def _engineering(self) -> dict[str, float | None]:
+        names = "modulus_course", "modulus_wale", "poisson_yx", "poisson_xy"
+        return {name: getattr(self, name) for name in names}
 
     def to_law(self) -> ConstitutiveLaw:
         """The law.
@@ -78,17 +79,11 @@ class LawDocument(_Model):
         """
         others = {f.name: getattr(self, f.name) for f in fields(ConstitutiveLaw)[4:]}
         if None in self._stiffnesses():
-            stated = (value or 0.0 for value in self._engineering())
+            stated = (value or 0.0 for value in self._engineering().values())
             law = ConstitutiveLaw.of_moduli(*stated, **others)
         else:
             law = ConstitutiveLaw(*(value or 0.0 for value in self._stiffnesses()), **others)
-        check_stated_constants(
-            law,
-            modulus_course=self.modulus_course,
-            modulus_wale=self.modulus_wale,
-            poisson_yx=self.poisson_yx,
-            poisson_xy=self.poisson_xy,
-        )
+        check_stated_constants(law, self._engineering())
         return law
 
     @classmethod
@@ -233,18 +228,8 @@ class FabricDocument(_Model):
         )
 
 
-_SHARED = (
-    "stitch_course_mm",
-    "stitch_wale_mm",
-    "stitch_size_source",
-    "origin",
-    "loop_length_mm",
-    "hand_loop_length_mm",
-    "yarn_diameter_mm",
-    "hand_yarn_diameter_mm",
-    "setting",
-    "law_source",
-)
+_OWN = {"law", "standard_deviation", "inconsistent", "measured"}
+_SHARED = tuple(name for name in FabricDocument.model_fields if name not in _OWN)
 """Fields shared with a record; only the figures that the paper prints stay in the library."""
 _CURVES = ("curve_course", "curve_wale")
 

@@ -94,15 +94,15 @@ def modulus_of(stiffness: Array, direction: Direction) -> float:
     return float(1.0 / np.linalg.inv(stiffness)[direction.axis, direction.axis])
 
 
-def phase_grid(chart: StitchChart, material: Material, *, periodic: bool = True) -> PhaseGrid:
-    """The quarter grid of a chart.
+def phase_grid(chart: StitchChart, material: Material) -> PhaseGrid:
+    """The quarter grid of a chart that repeats.
 
     Raises
     ------
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    phases = quarter_phases(chart, periodic=periodic)
+    phases = quarter_phases(chart, periodic=True)
     width, height = np.zeros(4), np.zeros(4)
     for phase in np.unique(phases):
         record = material.record(PHASES[phase])
@@ -111,11 +111,7 @@ def phase_grid(chart: StitchChart, material: Material, *, periodic: bool = True)
 
 
 def homogenise(
-    chart: StitchChart | str,
-    material: Material | str,
-    *,
-    periodic: bool = True,
-    most_cells: int = MAX_CELLS,
+    chart: StitchChart | str, material: Material | str, *, most_cells: int = MAX_CELLS
 ) -> EffectiveSheet:
     """Effective linear constants of a chart that repeats indefinitely.
 
@@ -123,8 +119,6 @@ def homogenise(
     ----------
     chart : one repeat.
     material : laws and relaxed sizes of the phases.
-    periodic : whether stitches at the edge have neighbours across it. A chart that is not a repeat
-        (a patchwork) keeps the phases it has alone; the deformation is periodic in any case.
     most_cells : grids with more quarter cells are coarsened by lamination first: exact for layers
         and inside large patches, in random charts up to 7 % off (one level) to 28 % (three).
 
@@ -141,7 +135,7 @@ def homogenise(
     0.0301
     """
     chart, material = as_chart(chart), as_material(material)
-    grid = phase_grid(chart, material, periodic=periodic)
+    grid = phase_grid(chart, material)
     fine = _sheet_grid(grid, material)
     stiffness = _solve(coarsened(fine, most_cells))
     nu_yx, nu_xy = _poisson(stiffness, grid, material)

@@ -157,9 +157,7 @@ class LocalModuli(Result):
         return self.table.anisotropy[self.codes]
 
 
-def local_moduli(
-    chart: StitchChart | str, material: Material | str, *, periodic: bool = False
-) -> LocalModuli:
+def local_moduli(chart: StitchChart | str, material: Material | str) -> LocalModuli:
     """Local moduli of every stitch.
 
     Raises
@@ -175,7 +173,7 @@ def local_moduli(
     array([[0.303, 0.303, 0.028, 0.013, 0.013, 0.013, 0.013, 0.013]])
     """
     chart, material = as_chart(chart), as_material(material)
-    codes = surroundings(chart, periodic=periodic)
+    codes = surroundings(chart)
     if not material.is_complete:
         for phase in np.unique(QUARTERS_OF_CODE[np.unique(codes)]):
             material.record(PHASES[phase])

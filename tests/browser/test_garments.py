@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from knitcore.formats.designs.design_file import design_from_mapping
-from knitcore.formats.read.chart_files import read_piece
+from knitcore.formats.read.chart_files import read_noted_piece
 from tests.browser.axe import violations
 from tests.browser.page import exported, kept_design
 
@@ -36,7 +36,7 @@ def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: 
     page.locator("#planner-make").click()
     expect(page.locator("#planner-dialog")).not_to_be_visible()
     exported(page, "written").save_as(tmp_path / "glove.txt")
-    piece = read_piece(tmp_path / "glove.txt")
+    piece = read_noted_piece(tmp_path / "glove.txt").piece
     assert {yarn.name for yarn in piece.yarns} == {"blue", "orange", "green", "purple"}
     written = {field: kept_design(page)[field] for field in ("name", "chart", "outline", "regions")}
     kept = design_from_mapping({"format": "knitcore-design", "version": 2} | written)

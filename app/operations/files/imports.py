@@ -69,7 +69,7 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
 
 
 def design_in(path: Path) -> tuple[FoundDesign, tuple[str, ...]]:
-    """The parts of a design that a file holds, and notes on them.
+    """The parts of a design that a file holds, and the notes of its reader.
 
     Raises
     ------

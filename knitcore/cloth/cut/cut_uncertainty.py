@@ -14,7 +14,7 @@ from knitcore.base.errors import InputError
 from knitcore.cloth.cut.cut_results import PieceTest
 from knitcore.cloth.flat.margins import sampled_steps
 from knitcore.cloth.flat.strip_uncertainty import STEP, law_parameters
-from knitcore.linear.direct_factor import positive_definite_factor
+from knitcore.linear.grid_factor import positive_definite_factor
 from knitcore.materials.material import Material
 from knitcore.prediction.quarter_laws import SPREAD_AT
 

@@ -17,7 +17,7 @@ from knitcore.base.errors import Cancelled, check_cancelled
 from knitcore.cloth.cut.assembly import Assembled, PieceEnergy
 from knitcore.cloth.cut.conditions import Constraints
 from knitcore.cloth.flat.equilibrium_path import MAX_HALVINGS, MAX_NEWTON_STEPS, StepError
-from knitcore.linear.direct_factor import IndefiniteTangentError, positive_definite_factor
+from knitcore.linear.grid_factor import IndefiniteTangentError, positive_definite_factor
 
 Solve = Callable[[Array], Array]
 """A function that solves a linear system with a tangent for the unknowns."""

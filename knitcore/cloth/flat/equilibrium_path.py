@@ -20,8 +20,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, Progress, check_cancelled
 from knitcore.base.threads import one_blas_thread
 from knitcore.cloth.flat.grid_sheet import Linearisation, Sheet, State
-from knitcore.linear.direct_factor import IndefiniteTangentError
-from knitcore.linear.grid_factor import GridFactor
+from knitcore.linear.grid_factor import GridFactor, IndefiniteTangentError
 
 Balanced = TypeVar("Balanced")
 

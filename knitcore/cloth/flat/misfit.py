@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled
-from knitcore.chart.fabric import PHASES, Fabric
 from knitcore.cloth.flat.equilibrium_path import Equilibrium, Path, Tolerance, run_path
 from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet
@@ -26,12 +25,10 @@ class Misfit:
     ----------
     course, wale : (rows, columns) laid-out size over natural size - 1, of each quarter cell; 0
         where there is no fabric.
-    by_fabric : mean (course, wale) of each fabric in the chart.
     """
 
     course: Array
     wale: Array
-    by_fabric: dict[Fabric, tuple[float, float]]
 
     @property
     def largest(self) -> float:
@@ -44,16 +41,7 @@ def misfit(grid: QuarterGrid) -> Misfit:
     course = np.diff(grid.column_lines) / grid.natural_width - 1
     wale = np.diff(grid.row_lines)[:, None] / grid.natural_height - 1
     course[~grid.cloth] = wale[~grid.cloth] = 0.0
-    phases = grid.law_of_cell % len(PHASES)
-    codes = np.where(grid.cloth, phases, len(PHASES))
-    return Misfit(
-        course,
-        wale,
-        {
-            PHASES[code]: (float(course[codes == code].mean()), float(wale[codes == code].mean()))
-            for code in np.unique(phases[grid.cloth])
-        },
-    )
+    return Misfit(course, wale)
 
 
 def relaxed_shape(sheet: Sheet, *, cancelled: Cancelled | None = None) -> SwatchTest:

@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.cloth.flat.fields import Fields
@@ -98,12 +98,8 @@ def strain_crosses_figure(test: SwatchTest, step: int = -1, crosses: int = 400) 
     return _laid_out(figure, "Principal strains")
 
 
-def stress_strain_figure(
-    test: StripTest,
-    measured_strain: ArrayLike | None = None,
-    measured_stress_n_per_mm: ArrayLike | None = None,
-) -> Any:
-    """The curve of a strip test, with a measured one for comparison if given."""
+def stress_strain_figure(test: StripTest) -> Any:
+    """The curve of a strip test."""
     go = plotly_objects()
     figure = go.Figure(
         go.Scatter(
@@ -112,15 +108,6 @@ def stress_strain_figure(
             name=f"simulated, {test.sheet.model.energy}",
         )
     )
-    if measured_strain is not None and measured_stress_n_per_mm is not None:
-        figure.add_trace(
-            go.Scatter(
-                x=np.asarray(measured_strain),
-                y=np.asarray(measured_stress_n_per_mm),
-                mode="markers",
-                name="measured",
-            )
-        )
     figure.update_layout(
         title="Simulated strip test (geometry after ISO 20932-1), not a certified test",
         xaxis_title=f"strain {test.direction}-wise",

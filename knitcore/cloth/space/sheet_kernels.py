@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
@@ -288,67 +289,18 @@ def points_on(x: Array, points: Ints) -> Array:
 def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
     """Pairs of points nearer than ``reach`` that are more than ``apart`` away within the sheet.
 
-    The points are sorted into boxes of side ``reach``. ``home`` (k, 2): their places
-    in the flat sheet, mm.
+    They come in the order of boxes of side ``reach``, so that pairs that lie together share points.
+    ``home`` (k, 2): their places in the flat sheet, mm.
     """
     if not len(at):
         return np.empty((0, 2), np.int64)
-    inside = at - at.min(axis=0)
-    count = (inside.max(axis=0) / reach).astype(np.int64) + 1
-    x, y, z = np.minimum((inside / reach).astype(np.int64), count - 1).T
-    box = (x * count[1] + y) * count[2] + z
-    order = np.argsort(box, kind="stable")
-    pairs = np.empty((16 * len(at), 2), np.int64)
-    while (listed := _listed(at, home, reach, apart, count, box, order, box[order], pairs)) > len(
-        pairs
-    ):
-        pairs = np.empty((listed, 2), np.int64)
-    return pairs[:listed]
-
-
-@compiled
-def _listed(
-    at: Array,
-    home: Array,
-    reach: float,
-    apart: float,
-    count: Ints,
-    box: Ints,
-    order: Ints,
-    ordered: Ints,
-    pairs: Ints,
-) -> int:
-    """Fill ``pairs`` and return their number; pairs for which there is no room are only counted.
-
-    Parameters
-    ----------
-    count : (3,) boxes along each axis.
-    box, order, ordered : each point's box, the points by rising box, and their boxes.
-    """
-    listed = 0
-    for place in range(at.shape[0]):
-        i = order[place]
-        b = box[i]
-        bz = b % count[2]
-        by = (b // count[2]) % count[1]
-        bx = b // (count[2] * count[1])
-        for ax in range(max(0, bx - 1), min(count[0], bx + 2)):
-            for ay in range(max(0, by - 1), min(count[1], by + 2)):
-                first = (ax * count[1] + ay) * count[2]
-                start = np.searchsorted(ordered, first + max(0, bz - 1))
-                stop = np.searchsorted(ordered, first + min(count[2], bz + 2))
-                for other in range(start, stop):
-                    j = order[other]
-                    if j <= i:
-                        continue
-                    dx, dy, dz = at[j, 0] - at[i, 0], at[j, 1] - at[i, 1], at[j, 2] - at[i, 2]
-                    if dx * dx + dy * dy + dz * dz >= reach * reach:
-                        continue
-                    along, up = home[j, 0] - home[i, 0], home[j, 1] - home[i, 1]
-                    if along * along + up * up < apart * apart:
-                        continue
-                    if listed < pairs.shape[0]:
-                        pairs[listed, 0] = i
-                        pairs[listed, 1] = j
-                    listed += 1
-    return listed
+    tree = cKDTree(at, compact_nodes=False, balanced_tree=False)
+    first, second = tree.query_pairs(reach, output_type="ndarray").T
+    along, up = (home[second] - home[first]).T
+    far = along * along + up * up >= apart * apart
+    boxes = ((at - at.min(axis=0)) / reach).astype(np.int64)
+    order = np.lexsort(boxes.T[::-1])
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(at))
+    keys = np.sort(rank[first[far]] * len(at) + rank[second[far]])
+    return np.stack([order[part] for part in np.divmod(keys, len(at))], axis=1)

@@ -16,10 +16,21 @@ MAX_FILE_BYTES = 16_000_000
 
 @dataclass(frozen=True)
 class PieceInFile:
-    """The piece in a file, and notes on what was left out or taken in one of several ways."""
+    """The piece in a file, without what is not of it, such as a program's waste.
+
+    Attributes
+    ----------
+    piece : the face, its outline and its yarns.
+    notes : what was left out or taken in one of several ways, and warnings.
+    """
 
     piece: Piece
     notes: tuple[str, ...] = ()
+
+    @property
+    def chart(self) -> StitchChart:
+        """The face grid."""
+        return self.piece.chart
 
 
 def read_chart(path: str | Path) -> StitchChart:
@@ -27,21 +38,27 @@ def read_chart(path: str | Path) -> StitchChart:
 
     Parameters
     ----------
-    path : as for :func:`read_piece`.
+    path : as for :func:`read_noted_piece`.
 
     Raises
     ------
     InputError
-        As :func:`read_piece`, but for an outline in several parts.
+        As :func:`read_noted_piece`, but for an outline in several parts.
     """
+    return read_noted_chart(path)[0]
+
+
+def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
+    """Read a file as :func:`read_chart` does, with the notes of the reader."""
     file = Path(path)
     if file.suffix.lower() == ".json":
-        return read_design(_checked(file)).to_chart()
-    return read_piece(file).chart
+        return read_design(_checked(file)).to_chart(), ()
+    content = read_noted_piece(file)
+    return content.chart, content.notes
 
 
-def read_piece(path: str | Path) -> Piece:
-    """The chart in a file, with its outline and its yarns.
+def read_noted_piece(path: str | Path) -> PieceInFile:
+    """The chart in a file, with its outline and its yarns, and the notes of the reader.
 
     Parameters
     ----------
@@ -53,11 +70,6 @@ def read_piece(path: str | Path) -> Piece:
     InputError
         If the file is missing, too large, of another kind, or its content does not match its name.
     """
-    return read_noted_piece(path).piece
-
-
-def read_noted_piece(path: str | Path) -> PieceInFile:
-    """Read a file as :func:`read_piece` does, with the notes of the reader."""
     file = _checked(Path(path))
     content = _READERS[file.suffix.lower()](file)
     return content if isinstance(content, PieceInFile) else PieceInFile(content)
@@ -93,8 +105,7 @@ def _read_text(file: Path) -> Piece | PieceInFile:
 def _read_knitout(file: Path) -> PieceInFile:
     from knitcore.formats.read.knitout_reader import knitted_chart
 
-    knitted = knitted_chart(_text(file))
-    return PieceInFile(knitted.piece, knitted.notes)
+    return knitted_chart(_text(file))
 
 
 def _text(file: Path) -> str:

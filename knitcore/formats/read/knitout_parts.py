@@ -1,15 +1,18 @@
 """The loops of a program that are the piece, told from waste and from other pieces.
 
 Decided by the graph of loops: what stands on what, and which yarn goes on. Programs knit waste
-yarn before and after a piece; it is what the piece stands on, or what hangs from it. Sections are
-compared by size. One that has a pattern of its own counts more than one that only repeats the beds
-below it, and one knitted on both beds at once (interlock, a tube) counts less, since only waste is
-knitted so around a piece of knits and purls. Sections that are not clearly smaller are stripes.
+yarn before and after a piece; it is what the piece stands on, or what hangs from it. The piece is
+what is bound off, and what lies between two courses of a draw thread. Otherwise sections are
+compared by size. One that has a shape or a pattern of its own counts more than one that only
+repeats the beds below it, and one knitted on both beds at once (interlock, a tube) counts less,
+since only waste is knitted so around a piece of knits and purls. Sections that are not clearly
+smaller are stripes, and so is what lies between two sections of the piece.
 """
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from knitcore.base.errors import InputError
 from knitcore.formats.read.knitout_machine import Loop
@@ -35,7 +38,12 @@ class _Section:
 
     carriers: Carriers
     stitches: list[Loop]
-    weight: float = 0.0
+    factor: float = 1.0
+
+    @property
+    def weight(self) -> float:
+        """Number of stitches, more or less by what they are."""
+        return self.factor * len(self.stitches)
 
     def told(self) -> str:
         lines = f"lines {self.stitches[0].line} to {self.stitches[-1].line}"
@@ -81,8 +89,11 @@ def main_part(loops: Sequence[Loop]) -> Part:
     stitches, notes = _joined(knitted, loops)
     if not stitches:
         return Part((), ())
-    sections = _sections(stitches)
-    first, last = _span_of_piece(sections)
+    bound_off = {parent for loop in loops if is_chained(loop) for parent in loop.parents}
+    sections = _sections(stitches, bound_off)
+    first, last = _span_of_piece(sections, bound_off)
+    inside = sections[first : last + 1]
+    likeliest = max(section.factor for section in inside)
     for is_before, side in ((True, sections[:first]), (False, sections[last + 1 :])):
         for carriers in dict.fromkeys(section.carriers for section in side):
             name = f"carrier {named(carriers)}"
@@ -91,12 +102,14 @@ def main_part(loops: Sequence[Loop]) -> Part:
                 if is_before
                 else f"what {name} knits after the piece hangs from it"
             )
-            sizes = "; ".join(s.told() for s in side if s.carriers == carriers)
+            left_out = [section for section in side if section.carriers == carriers]
+            sizes = "; ".join(section.told() for section in left_out)
+            alike = max(section.factor for section in left_out) == likeliest
             notes.append(
-                f"Waste: {relation} ({sizes}). It is left out; if it belongs to the piece, name "
-                f"the yarns by lines such as: ; carrier {carriers[0]} knits #efe9dd wool"
+                f"Waste{', by its size alone' if alike else ''}: {relation} ({sizes}). It is left "
+                "out; if it belongs to the piece, name the yarns of the piece by lines such as: "
+                f"; carrier {carriers[0]} knits #efe9dd wool"
             )
-    inside = sections[first : last + 1]
     return Part(tuple(loop for section in inside for loop in section.stitches), tuple(notes))
 
 
@@ -148,7 +161,7 @@ def _joined(stitches: list[Loop], loops: Sequence[Loop]) -> tuple[list[Loop], li
     return [loop for loop in stitches if root(loop.number) == main], [note]
 
 
-def _sections(stitches: Sequence[Loop]) -> list[_Section]:
+def _sections(stitches: Sequence[Loop], bound_off: Collection[Loop]) -> list[_Section]:
     """Split stitches where the yarn changes, but not where yarns take turns."""
     turns: list[_Section] = []
     for loop in stitches:
@@ -163,8 +176,9 @@ def _sections(stitches: Sequence[Loop]) -> list[_Section]:
             sections.append(_Section(turn.carriers, []))
         sections[-1].stitches += turn.stitches
         end = max(end, last_of[index])
-    for section in sections:
-        section.weight = _weight(section.stitches)
+    inside = _without_surroundings(sections)
+    for place, section in enumerate(sections):
+        section.factor = _factor(section.stitches, bound_off) if place in inside else 0.0
     return sections
 
 
@@ -190,16 +204,34 @@ def _ends_of_turns(carriers: Sequence[Carriers]) -> list[int]:
     ]
 
 
-def _weight(stitches: Sequence[Loop]) -> float:
-    """Number of stitches, more for a pattern of its own and less for one on both beds at once."""
-    inside = set(stitches)
-    below = [parent for loop in stitches for parent in loop.parents if parent not in inside]
-    changed = any(p.bed != loop.bed for loop in stitches for p in loop.parents if p.parents)
-    begun = all(not parent.parents for parent in below)
-    patterned = changed or (begun and len({loop.bed for loop in stitches}) > 1)
+def _factor(stitches: Sequence[Loop], bound_off: Collection[Loop]) -> float:
+    """How much a stitch of a section counts: by its edge, shape or pattern, or by its two beds."""
     if is_on_two_beds(stitches):
-        return TWO_BEDS * len(stitches)
-    return len(stitches) * (PATTERNED if patterned else 1.0)
+        return TWO_BEDS
+    inside = set(stitches)
+    links = [(loop, parent) for loop in stitches for parent in loop.parents]
+    begun = all(parent in inside or not parent.parents for _, parent in links)
+    changed = any(
+        (parent.parents and parent.bed != loop.bed)
+        or (parent in inside and parent.needle != loop.needle)
+        for loop, parent in links
+    )
+    ended = any(loop in bound_off for loop in stitches)
+    patterned = changed or ended or (begun and len({loop.bed for loop in stitches}) > 1)
+    return PATTERNED if patterned else 1.0
+
+
+def _is_cast_on(stitches: Sequence[Loop]) -> bool:
+    """Say whether a section is cast on anew, on needles that hold loops of another yarn."""
+    inside = set(stitches)
+    begin = [loop for loop in stitches if inside.isdisjoint(loop.parents)]
+    own = [o for o in begin if any(p.onto and p.carriers == o.carriers for p in o.parents)]
+    return 2 * len(own) > len(begin)
+
+
+def _is_course(stitches: Sequence[Loop], width: int) -> bool:
+    """Say whether stitches are one course, over most of a width."""
+    return len({loop.name for loop in stitches}) == len(stitches) > width / 2
 
 
 def is_on_two_beds(stitches: Sequence[Loop]) -> bool:
@@ -215,11 +247,25 @@ def is_on_two_beds(stitches: Sequence[Loop]) -> bool:
     return over > alone
 
 
-def _span_of_piece(sections: Sequence[_Section]) -> tuple[int, int]:
+def _without_surroundings(sections: Sequence[_Section]) -> range:
+    """Places of sections between two courses of a draw thread, or from the last cast-on on."""
+    width = len({loop.needle for section in sections for loop in section.stitches})
+    threads = [i for i, section in enumerate(sections) if _is_course(section.stitches, width)]
+    for begin, end in pairwise(threads):
+        if end > begin + 1 and sections[begin].carriers == sections[end].carriers:
+            return range(begin + 1, end)
+    begun = (i for i, section in enumerate(sections) if _is_cast_on(section.stitches))
+    return range(max(begun, default=0), len(sections))
+
+
+def _span_of_piece(sections: Sequence[_Section], bound_off: Collection[Loop]) -> tuple[int, int]:
     """The first and the last section of the piece."""
-    main = max(range(len(sections)), key=lambda index: sections[index].weight)
+    bound = [i for i, s in enumerate(sections) if any(o in bound_off for o in s.stitches)]
+    main = max(bound or range(len(sections)), key=lambda i: sections[i].weight)
     enough = CLEARLY_SMALLER * sections[main].weight
-    first = last = main
+    yarn = sections[main].carriers
+    alike = [i for i, s in enumerate(sections) if s.carriers == yarn and s.weight >= enough]
+    first, last = min(alike + bound), max(alike + bound)
     while first > 0 and sections[first - 1].weight >= enough:
         first -= 1
     while last + 1 < len(sections) and sections[last + 1].weight >= enough:

@@ -13,7 +13,6 @@ import sys
 import typing
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import cycle
 from typing import Any
@@ -22,6 +21,7 @@ import numpy as np
 
 from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.read.chart_files import PieceInFile
 from knitcore.formats.read.knitout_courses import Fabric, fabric_of
 from knitcore.formats.read.knitout_machine import Loop, knitting_of
 from knitcore.formats.read.knitout_parts import main_part, named, part_knitted_by
@@ -38,27 +38,8 @@ class KnitoutMismatchError(KnitcoreError):
     """Error for a program of this library that does not knit its chart: it is not exported."""
 
 
-@dataclass(frozen=True)
-class KnittedChart:
-    """The piece that a program knits.
-
-    Attributes
-    ----------
-    piece : the face, its outline and its yarns, without cast-on, bind-off and waste.
-    notes : omissions, and warnings of the machine.
-    """
-
-    piece: Piece
-    notes: tuple[str, ...]
-
-    @property
-    def chart(self) -> StitchChart:
-        """The face grid."""
-        return self.piece.chart
-
-
-def knitted_chart(program: str) -> KnittedChart:
-    """The face of a flat program of knits and purls.
+def knitted_chart(program: str) -> PieceInFile:
+    """The face of a flat program of knits and purls, without cast-on, bind-off and waste.
 
     Comments ``; carrier 1 knits #rrggbb name`` name the carriers that knit the chart. Without
     them the piece is told from waste by the loops.
@@ -89,7 +70,7 @@ def knitted_chart(program: str) -> KnittedChart:
     notes = [*part.notes, *yarn_notes, *fabric.notes, *knitting.notes]
     if any(len(names) > 1 for names in carriers):
         notes.append("Yarns that knit together (plating) count as one yarn.")
-    return KnittedChart(_piece(fabric, yarns), tuple(notes))
+    return PieceInFile(_piece(fabric, yarns), tuple(notes))
 
 
 def _yarns(

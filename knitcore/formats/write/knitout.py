@@ -14,7 +14,7 @@ Specification: https://textiles-lab.github.io/knitout/knitout.html
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
@@ -52,14 +52,12 @@ class KnitoutProgram:
     text : the program, one instruction a line.
     transfers : loops moved across the beds between the chart's courses.
     shaping_transfers : further loops moved to shape the edges.
-    finishing_transfers : loops moved to bind off.
     carriers : yarn carriers, without that of the waste yarn.
     """
 
     text: str
     transfers: int
     shaping_transfers: int
-    finishing_transfers: int
     carriers: int = 1
 
 
@@ -92,7 +90,6 @@ def knitout_program(
     plan = plan_carriers(piece)
     body = _Body(piece, plan)
     courses = [*body.cast_on(), *body.courses()]
-    finishing = [*(body.waste() if finish is Finish.WASTE else body.bind_off())]
     yarns = piece.yarns
     lines = [
         ";!knitout-2",
@@ -102,7 +99,7 @@ def knitout_program(
         f";;Carriers: {' '.join(map(str, range(1, plan.waste + 1)))}",
         *(f"; carrier {k} knits {yarns[y].colour} {yarns[y].name}" for k, y in plan.yarns.items()),
         *courses,
-        *finishing,
+        *(body.waste() if finish is Finish.WASTE else body.bind_off()),
     ]
     stitch = piece.shaped.stitch
     changed = (piece.chart.purl[1:] ^ piece.chart.purl[:-1]) & stitch[1:] & stitch[:-1]
@@ -110,14 +107,9 @@ def knitout_program(
     return KnitoutProgram(
         "\n".join(lines) + "\n",
         crossings,
-        _transfers(courses) - crossings,
-        _transfers(finishing),
+        sum(line.startswith("xfer") for line in courses) - crossings,
         len(plan.yarns),
     )
-
-
-def _transfers(lines: Iterable[str]) -> int:
-    return sum(line.startswith("xfer") for line in lines)
 
 
 class _Body:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from knitcore.base.arrays import Array, Codes, Indices, Mask
+from knitcore.base.arrays import Array, Codes, Mask, runs
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
 from knitcore.cloth.space.surface import Surface, corners_of, filled
@@ -54,9 +54,11 @@ def course_centre_lines(
     radius, kinds = yarn_radius_mm(chart, material), loop_kinds(chart)
     lines: list[Array] = []
     for row in range(chart.rows):
-        for columns in _runs(shown[row]):
-            shapes = np.stack([loop_centre_line(int(k), POINTS) for k in kinds[row, columns]])
-            shapes[..., 0] += columns[:, None] + 0.5
+        for start, stop, is_shown in runs(shown[row]):
+            if not is_shown:
+                continue
+            shapes = np.stack([loop_centre_line(int(k), POINTS) for k in kinds[row, start:stop]])
+            shapes[..., 0] += np.arange(start, stop)[:, None] + 0.5
             shapes[..., 1] += row + 0.5
             line = np.concatenate([shapes[:, :-1].reshape(-1, 3), shapes[-1, -1:]])
             lines.append(surface.at(line[:, 0], line[:, 1], radius * line[:, 2]))
@@ -141,13 +143,6 @@ def _closed(mesh: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(mesh.vertices, faces)
 
 
-def _runs(stitches: Mask) -> list[Indices]:
-    """Columns of the stitches of a row, those side by side together."""
-    columns = np.flatnonzero(stitches)
-    runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
-    return [run for run in runs if len(run)]
-
-
 def loop_kinds(chart: StitchChart) -> Codes:
     """Kind of loop of each stitch, 0 to 15, shape (rows, columns).
 
@@ -155,10 +150,8 @@ def loop_kinds(chart: StitchChart) -> Codes:
     an edge the stitch itself stands in for the missing neighbour.
     """
     purl = chart.purl.astype(np.uint8)
-    left = np.concatenate([purl[:, :1], purl[:, :-1]], axis=1)
-    right = np.concatenate([purl[:, 1:], purl[:, -1:]], axis=1)
-    above = np.concatenate([purl[1:], purl[-1:]], axis=0)
-    kinds: Codes = purl * SELF | left * LEFT | right * RIGHT | above * ABOVE
+    wide, high = np.pad(purl, ((0, 0), (1, 1)), "edge"), np.pad(purl, ((0, 1), (0, 0)), "edge")
+    kinds: Codes = purl * SELF | wide[:, :-2] * LEFT | wide[:, 2:] * RIGHT | high[1:] * ABOVE
     return kinds
 
 

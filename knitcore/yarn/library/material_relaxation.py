@@ -22,7 +22,6 @@ def relax(
     material: Material | str | YarnModel | None = ...,
     loop_length_mm: ArrayLike | None = ...,
     *,
-    yarn: YarnModel | None = ...,
     branch: OnSplines | None = ...,
     **options: Any,
 ) -> RelaxedRepeat: ...
@@ -34,7 +33,6 @@ def relax(
     material: Material | str | YarnModel | None = ...,
     loop_length_mm: ArrayLike | None = ...,
     *,
-    yarn: YarnModel | None = ...,
     branch: Branch | str | None,
     **options: Any,
 ) -> RelaxedCell: ...
@@ -45,7 +43,6 @@ def relax(
     material: Material | str | YarnModel | None = None,
     loop_length_mm: ArrayLike | None = None,
     *,
-    yarn: YarnModel | None = None,
     branch: Branch | str | None = None,
     **options: Any,
 ) -> RelaxedCell:
@@ -57,7 +54,6 @@ def relax(
     material : whose yarn and loop length are taken, or its identifier; or a yarn.
     loop_length_mm : mm of yarn per stitch instead of the material's; needed beside a yarn. One
         number, one for every course, or one for every stitch.
-    yarn : parameters of the yarn instead of the material's.
     branch, options : as for :func:`knitcore.yarn.study.relax.relax`: the factors of the energy,
         sizes to hold, a flat fabric, resolution, starts, a time limit and cancellation.
 
@@ -76,16 +72,17 @@ def relax(
     True
     """
     chart = as_chart(chart)
+    yarn = None
     if isinstance(material, YarnModel):
-        material, yarn = None, material
-    if material is not None:
+        yarn = material
+    elif material is not None:
         length = (
             None
             if loop_length_mm is None
             else float(np.asarray(loop_length_mm, dtype=float).mean())
         )
         used = yarn_for(as_material(material), chart, length)
-        yarn = yarn or used.yarn
+        yarn = used.yarn
         loop_length_mm = used.loop_length_mm if loop_length_mm is None else loop_length_mm
     if yarn is None:
         raise InputError("material", "is missing.", "Give one, or a yarn and loop_length_mm.")

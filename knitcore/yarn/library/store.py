@@ -113,12 +113,6 @@ class StoredStitch:
     unmirrored: Unmirrored | None = None
     bending: RepeatBending | None = None
 
-    @property
-    def lowest_energy_n_mm(self) -> float:
-        """Energy of a stitch of the lowest state found, with or without symmetries, N·mm."""
-        others = [state.energy_n_mm for state in (self.free, self.unmirrored) if state is not None]
-        return min([self.energy_n_mm, *others])
-
     def centre_lines(self, per_span: int = 2) -> Array:
         """(rows, points, 3): centre lines across the repeat, mm, bottom course first."""
         per_stitch = self.controls.shape[1] // self.chart.columns

@@ -55,26 +55,6 @@ class Sample:
     bending_share: float
     parameters: tuple[Parameter, ...]
 
-    def as_configured(self) -> tuple[YarnModel, float]:
-        """Yarn and loop length (mm) of the authors' public configuration file.
-
-        It differs from the paper's table in B (0.045 N·mm²), loop length and core radius.
-
-        Raises
-        ------
-        InputError
-            If the authors published no configuration for this sample.
-        """
-        values = {p.name: p.configured for p in self.parameters if p.configured is not None}
-        if not values:
-            raise InputError(
-                "yarn",
-                f"The authors published no configuration for {self.yarn_id} {self.fabric}.",
-                "Use acrylic.",
-            )
-        loop_length_mm = values.pop("loop_length_mm")
-        return YarnModel(**values), loop_length_mm
-
 
 def _rows(name: str) -> list[dict[str, str]]:
     path = files("knitcore.yarn.model") / "data" / name

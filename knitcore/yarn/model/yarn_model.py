@@ -33,11 +33,6 @@ class YarnModel:
     InputError
         If a value is not finite, has the wrong sign, or is so far out of range that its unit must
         be wrong.
-
-    Examples
-    --------
-    >>> YarnModel(0.046, 6e-4, 2.4, 0.75, 0.25).shell_mm
-    1.0
     """
 
     bending_modulus_n_mm2: float
@@ -70,8 +65,3 @@ class YarnModel:
                 f"{self.radius_mm:g} mm.",
                 "Give a core radius below the yarn's radius.",
             )
-
-    @property
-    def shell_mm(self) -> float:
-        """Uncompressed thickness of the two shells between two cores: 2r - 2r_core, mm."""
-        return 2.0 * (self.radius_mm - self.core_radius_mm)

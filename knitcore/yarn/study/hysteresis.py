@@ -138,17 +138,6 @@ class Hysteresis:
         return float(self.legs[-1].strain[-1])
 
     @property
-    def stiffer_at_turn(self) -> float:
-        """Stiffness in the first step of unloading over that in the last of loading (last cycle).
-
-        Without friction it is near 1; the finer the steps, the nearer it comes to the tangents'.
-        """
-        there, back = self.legs[-2:]
-        pulling = np.diff(there.stress_n_per_mm[-2:]) / np.diff(there.strain[-2:])
-        easing = np.diff(back.stress_n_per_mm[:2]) / np.diff(back.strain[:2])
-        return float(easing[0] / pulling[0])
-
-    @property
     def closes_within(self) -> float:
         """Change of the greatest stress from the first cycle to the last, over the first."""
         first, last = self.legs[0].stress_n_per_mm[-1], self.legs[-2].stress_n_per_mm[-1]

@@ -12,6 +12,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -33,7 +34,6 @@ from knitcore.yarn.solve.newton import COURSE, WALE, Options, minimise
 from knitcore.yarn.solve.search import SAME_ENERGY, check_reached
 from knitcore.yarn.solve.splines import MAX_STITCHES_RULED, RelaxedRepeat, relaxed_repeat
 from knitcore.yarn.solve.topology import clearance_at
-from knitcore.yarn.study.jumps import find_jumps
 
 DEFAULT_POINTS = 25
 _OFF_WORK = 0.1
@@ -47,6 +47,10 @@ _TOLERANCE = 4e-6
 """Tolerance of the energy in cells of more than four stitches: stresses differ from those of 1e-7
 by 0.03 % of the largest in the median and 1 % at most (with 1e-6 by 0.01 and 0.6 %), in two thirds
 of the time."""
+_JUMP = 4.0
+"""A step whose shape changes this much more than the steps around it is a jump."""
+_JUMP_FLOOR = 0.004
+"""The change is also at least this much, root mean square over the stitch, in loop lengths."""
 
 
 class Stretch(Protocol):
@@ -293,3 +297,34 @@ def _off_work(cells: list[RelaxedCell], along: Direction) -> set[int]:
         if missed > _OFF_WORK * abs(work) and missed > SAME_ENERGY * scale:
             jumps.add(i)
     return jumps
+
+
+def find_jumps(centre_lines: list[Array], loop_length_mm: float) -> tuple[int, ...]:
+    """Steps i, from state i - 1 to i, at which the shape changes far more than at those around.
+
+    The change is the root mean square displacement of the centre lines, less its mean and affine
+    part. Fewer than four states have no jumps.
+
+    Parameters
+    ----------
+    centre_lines : one state after the other, mm, each (courses, points, 3).
+    loop_length_mm : mean length of yarn in a stitch.
+    """
+    if len(centre_lines) < 4:
+        return ()
+    changes = np.array(
+        [_change(before, after) / loop_length_mm for before, after in pairwise(centre_lines)]
+    )
+    jumps = []
+    for i, change in enumerate(changes):
+        around = np.delete(changes[max(i - 4, 0) : i + 5], min(i, 4))
+        if change > _JUMP_FLOOR and change > _JUMP * float(np.median(around)):
+            jumps.append(i + 1)
+    return tuple(jumps)
+
+
+def _change(before: Array, after: Array) -> float:
+    a, b = before.reshape(-1, 3), after.reshape(-1, 3)
+    a, b = a - a.mean(axis=0), b - b.mean(axis=0)
+    affine = np.linalg.lstsq(a, b, rcond=None)[0]
+    return float(np.sqrt(np.mean(np.sum((b - a @ affine) ** 2, axis=1))))

@@ -21,6 +21,7 @@ from app.requests.charts import PureFabricChart, to_chart, to_repeat
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.write.knitout import knitout_program
 from tests.app.command_line import run
 
 EXAMPLE_OF_EACH = ("chart.txt", "KKP/PPK", "- for standard input", "rib with --size 31x20")
@@ -113,6 +114,19 @@ def test_standard_input_may_be_a_file_of_any_kind(tmp_path: Path) -> None:
         with CliRunner().isolation(input=content):
             chart = resolve_chart("-", None)
         assert (chart.rows, chart.columns) == shape
+
+
+@pytest.mark.parametrize("name", sorted(COMMANDS))
+def test_notes_of_the_reader_are_printed_beside_the_result(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = tmp_path / "rib.k"
+    program.write_text(knitout_program(StitchChart.parse("KP/KP")).text + "x-roller-advance 100\n")
+    chart_fields(name, str(program))
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "note: Yarn of carrier 2 counts as waste yarn." in printed.err
+    assert "x-roller-advance (1 line from line" in printed.err
 
 
 @pytest.mark.parametrize("name", ["rib", "KKP"])

@@ -8,8 +8,7 @@ import pytest
 from scipy.sparse import coo_array
 
 from knitcore.cloth.flat.grid import corners_of
-from knitcore.linear.direct_factor import IndefiniteTangentError, positive_definite_factor
-from knitcore.linear.grid_factor import GridFactor
+from knitcore.linear.grid_factor import GridFactor, IndefiniteTangentError, positive_definite_factor
 
 LOWER = (..., *np.tril_indices(8))
 

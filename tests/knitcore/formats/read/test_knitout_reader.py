@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 import pytest
 
 from knitcore import InputError
-from knitcore.formats.read.knitout_reader import KnittedChart, knitted_chart
+from knitcore.formats.read.chart_files import PieceInFile
+from knitcore.formats.read.knitout_reader import knitted_chart
 
 HEAD = [";!knitout-2", ";;Machine: SWG091N2", ";;Carriers: 1 2 3"]
 
@@ -40,7 +41,7 @@ def dropped(beds: str) -> list[str]:
     return [f"drop {bed}{n}" for n, bed in enumerate(beds, 1)]
 
 
-def read(*lines: str, head: Sequence[str] = HEAD) -> KnittedChart:
+def read(*lines: str, head: Sequence[str] = HEAD) -> PieceInFile:
     return knitted_chart("\n".join([*head, *lines]) + "\n")
 
 
@@ -168,6 +169,55 @@ def test_waste_after_a_piece_hangs_from_it() -> None:
     knitted = read(*lines, *dropped(RIB))
     assert knitted.chart.text == "\n".join(["PKPKPK"] * 4)
     assert "hangs from it" in knitted.notes[0]
+
+
+def waste(rows: int, *then: str, ended: bool = True) -> list[str]:
+    """Plain courses of carrier 2, which begin a program."""
+    return [*tucks("2", 6), *courses("2", "f" * 6, rows), *["outhook 2"] * ended, *then]
+
+
+CHAIN = [
+    line
+    for n in range(1, 6)
+    for line in (f"xfer f{n} b{n}", "rack 1", f"xfer b{n} f{n + 1}", "rack 0", f"knit + f{n + 1} 1")
+]
+CHAIN += ["knit - f6 1", "knit + f6 1"] * 2
+NARROWED = ["xfer f6 b6", "rack -1", "xfer b6 f5", "rack 0", *courses("1", "f" * 5, 2, first=1)]
+
+
+@pytest.mark.parametrize(
+    ("lines", "text"),
+    [
+        ([*waste(24), "in 1", *courses("1", "f" * 6, 15), *CHAIN], ["K" * 6] * 15),
+        (
+            [*waste(12, "in 3", *courses("3", "f" * 6, 1), "in 1", ended=False),
+             *courses("1", "f" * 6, 4, first=1), *courses("3", "f" * 6, 1, first=1),
+             *courses("2", "f" * 6, 12)],
+            ["K" * 6] * 4,
+        ),
+        ([*waste(8), *tucks("1", 6), *courses("1", "f" * 6, 3)], ["K" * 6] * 3),
+        (
+            [*waste(5), "in 1", *courses("1", "f" * 6, 1), *NARROWED],
+            ["K" * 6] * 3,
+        ),
+    ],
+    ids=["bound off", "between draw threads", "with its own cast-on", "shaped"],
+)  # fmt: skip
+def test_a_piece_may_be_smaller_than_its_plain_waste(lines: list[str], text: list[str]) -> None:
+    knitted = read(*lines)
+    assert knitted.chart.text == "\n".join(text)
+    assert any(note.startswith("Waste: ") and "carrier 2" in note for note in knitted.notes)
+
+
+def test_a_note_says_where_only_size_tells_waste_from_the_piece() -> None:
+    knitted = read(*waste(12), "in 1", *courses("1", "f" * 6, 4))
+    assert knitted.notes[0].startswith("Waste, by its size alone: what carrier 1 knits after")
+
+
+def test_a_thin_stripe_does_not_end_the_piece() -> None:
+    lines = [*stockinette(9), "in 3", *courses("3", "f" * 6, 2, first=1)]
+    knitted = read(*lines, *courses("1", "f" * 6, 9, first=1))
+    assert knitted.piece.yarn_of[:, 0].tolist() == [0] * 9 + [1] * 2 + [0] * 9
 
 
 def test_stripes_are_yarns_of_the_piece() -> None:

@@ -67,7 +67,6 @@ def test_single_steps_are_decreases_and_larger_ones_are_bound_off() -> None:
 def test_transfers_only_where_the_kind_changes_in_a_wale(fabric: Fabric, transfers: int) -> None:
     program = knitout_program(StitchChart.of_fabric(fabric, rows=4, columns=6))
     assert program.transfers == transfers
-    assert program.finishing_transfers == 0
     assert program.text.count("xfer") == transfers
 
 

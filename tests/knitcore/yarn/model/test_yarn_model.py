@@ -26,4 +26,4 @@ def test_a_yarn_that_cannot_be_is_refused_by_the_name_of_its_field(name, value):
 
 
 def test_a_yarn_without_a_core_is_allowed():
-    assert YarnModel(**(GOOD | {"core_radius_mm": 0.0})).shell_mm == pytest.approx(1.48)
+    assert YarnModel(**(GOOD | {"core_radius_mm": 0.0})).core_radius_mm == 0.0

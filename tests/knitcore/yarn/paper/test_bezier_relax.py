@@ -8,6 +8,7 @@ from knitcore import ConvergenceError, Fabric, UnravelledError
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.paper_samples import Sample, load_samples, sample
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.paper.bezier_relax import first_shapes, lowest, relax_published
 from knitcore.yarn.paper.bezier_shape import unknown_names
 from knitcore.yarn.paper.bezier_stitch import Stitch
@@ -53,8 +54,10 @@ def test_published_energies_and_shares(known):
 @pytest.mark.parametrize(("course_mm", "energy"), [(2.80, 0.40451), (5.32, 0.89431)])
 def test_authors_example_curve(course_mm, energy):
     # their sample results for stockinette, core300x, first and last point
-    yarn, loop_length_mm = sample("acrylic", "stockinette").as_configured()
-    yarn = replace(yarn, core_radius_mm=0.300)
+    entries = sample("acrylic", "stockinette").parameters
+    configured = {entry.name: entry.configured for entry in entries}
+    loop_length_mm = configured.pop("loop_length_mm")
+    yarn = YarnModel(**(configured | {"core_radius_mm": 0.300}))
     options = {"cell_course_mm": course_mm, "convention": Convention.AUTHORS_CODE, "starts": 1}
     cell = relax_published("stockinette", yarn, loop_length_mm, **options)
     assert cell.cell_course_mm == course_mm

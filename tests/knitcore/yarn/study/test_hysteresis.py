@@ -31,7 +31,9 @@ def test_unloading_takes_less_force(loop):
     known = np.interp(there.strain[2:-1], back.strain[::-1], back.stress_n_per_mm[::-1])
     assert np.all(known < 0.92 * there.stress_n_per_mm[2:-1])
     # the first step back is stiffer than the last one there
-    assert 1.5 < loop.stiffer_at_turn < 3.0
+    pulling = np.diff(there.stress_n_per_mm[-2:]) / np.diff(there.strain[-2:])
+    easing = np.diff(back.stress_n_per_mm[:2]) / np.diff(back.strain[:2])
+    assert 1.5 < easing / pulling < 3.0
 
 
 def test_the_area_of_the_loop_is_the_work_against_friction(loop):
@@ -127,7 +129,6 @@ def test_without_friction_nothing_is_lost(stockinette):
     free = hysteresis(stockinette, "course", 0.2, 0.0, points=6, cycles=1)
     assert np.all(free.lost_n_mm == 0.0)
     assert abs(free.lost_share) < 1e-4
-    assert free.stiffer_at_turn == pytest.approx(1.0, abs=1e-3)  # the same two points
     assert free.left_strain == pytest.approx(0.0, abs=1e-4)
 
 

@@ -9,7 +9,7 @@ from knitcore.yarn.library.store import stored_stitch
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.study.relax import relax
-from knitcore.yarn.study.sweep import sweep
+from knitcore.yarn.study.sweep import find_jumps, sweep
 from tests.knitcore.yarn.relaxed import relaxed
 
 
@@ -109,3 +109,13 @@ def test_a_stretch_that_opens_at_another_strain_than_it_folds_jumps_once():
     assert folds < opens
     lower = curve.energy_n_mm < there.energy_n_mm * (1.0 - 1e-3)
     assert np.flatnonzero(lower).tolist() == list(range(folds, opens))
+
+
+def test_jumps_are_found_where_the_shape_changes_abruptly():
+    line = np.linspace(0, 1, 50)
+    lines = [
+        np.stack([line, np.sin((3 + 0.05 * i + (2 if i > 5 else 0)) * line), 0 * line], 1)[None]
+        for i in range(12)
+    ]
+    assert find_jumps(lines, 3.0) == (6,)
+    assert find_jumps(lines[:5], 3.0) == ()

@@ -1,4 +1,4 @@
-"""Stress-strain curves as plotly figures."""
+"""Stress-strain curves, yarn and cloth in space, as plotly figures."""
 
 from functools import singledispatch
 from typing import Any
@@ -10,9 +10,14 @@ from knitcore.base.showing import INKS
 from knitcore.chart.fabric import Direction
 from knitcore.cloth.flat.strip_figures import plotly_objects, stress_strain_figure
 from knitcore.cloth.flat.strip_results import StripTest
+from knitcore.cloth.space.curl import CurledPiece
+from knitcore.draw.tubes import tube_mesh
 from knitcore.prediction.curve import ChartCurve
 from knitcore.prediction.prediction import SHOWN_STRESS_N_PER_MM, Prediction
-from knitcore.yarn.model.relaxed_cell import Sweep
+from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
+
+YARN, CLOTH = "#d9b48a", "#c7a77f"
+SIDES = 8
 
 
 @singledispatch
@@ -89,3 +94,49 @@ def _add_band(drawn: Any, low: Array, high: Array, stress: Array, ink: str) -> N
         hoverinfo="skip",
         showlegend=False,
     )
+
+
+@singledispatch
+def view(of: object) -> Any:
+    """A relaxed cell as yarn, four stitches each way, or a curled piece as cloth; for plotly.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Raises
+    ------
+    TypeError
+        For anything else.
+    """
+    raise TypeError(
+        f"a {type(of).__name__} has no shape in space; give a relaxed cell or a curled piece"
+    )
+
+
+@view.register
+def _(of: RelaxedCell) -> Any:
+    go = plotly_objects()
+    drawn = go.Figure()
+    for line in of.tiled_lines():
+        mesh = tube_mesh(line, of.yarn.core_radius_mm, SIDES)
+        x, y, z = mesh.vertices.T
+        i, j, k = mesh.faces.T
+        drawn.add_mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, color=YARN, hoverinfo="skip")
+    return _in_space(drawn)
+
+
+@view.register
+def _(of: CurledPiece) -> Any:
+    go = plotly_objects()
+    x, y, z = np.moveaxis(of.corners_mm, -1, 0)
+    scale = [[0, CLOTH], [1, CLOTH]]
+    drawn = go.Figure(go.Surface(x=x, y=y, z=z, showscale=False, colorscale=scale))
+    return _in_space(drawn)
+
+
+def _in_space(drawn: Any) -> Any:
+    axes = {f"{axis}axis_title": f"{axis} (mm)" for axis in "xyz"}
+    drawn.update_scenes(aspectmode="data", **axes)
+    drawn.update_layout(margin={"l": 0, "r": 0, "t": 0, "b": 0})
+    return drawn
