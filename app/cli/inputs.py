@@ -31,7 +31,7 @@ from ..requests.base import UNIT
 from ..requests.charts import IS_REPEAT
 from ..requests.faults import OF_VALUES, problem_in_words, remedy_in_words
 from ..requests.uploads import UploadedFile
-from .options import chart_file, is_fabric, resolve_chart
+from .options import chart_file, is_fabric, resolve_chart, show_notes
 
 FILE = click.Path(path_type=Path)
 MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."
@@ -193,9 +193,10 @@ def _chart_input(model: type[BaseModel]) -> Input:
 
 def _design_fields(file: Path, model: type[BaseModel]) -> dict[str, Any]:
     """Read the fields of the request that a file holds."""
-    from ..operations.files.imports import design_in
+    from ..operations.files.imports import noted_design_in
 
-    design = design_in(file)
+    design, notes = noted_design_in(file)
+    show_notes(notes)
     return {name: part for name, part in design if name in model.model_fields and part is not None}
 
 

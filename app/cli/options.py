@@ -27,7 +27,15 @@ STITCHES = frozenset("KkPp|•–-")
 """Signs of stitches in a repeat in one line, as in a chart file."""
 SEPARATORS = frozenset("/, ")
 STANDARD_INPUT = "-"
-_KINDS = {b"\x89PNG": ".png", b"{": ".json", b";!knitout": ".k", b"\xef\xbb\xbf;!": ".k"}
+_KINDS = {
+    b"\x89PNG": ".png",
+    b"\xff\xd8\xff": ".jpg",
+    b"GIF8": ".gif",
+    b"{": ".json",
+    b"\xef\xbb\xbf{": ".json",
+    b";!knitout": ".k",
+    b"\xef\xbb\xbf;!": ".k",
+}
 """First bytes of files, and the names that their readers expect; all others are texts."""
 
 
@@ -144,11 +152,9 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     """
     with chart_file(chart) as file:
         if file is not None:
-            from knitcore.formats.read.chart_files import read_chart  # a fabric needs no readers
-
             if size is not None:
                 raise InputError("size", "does not go with a file.", "Leave --size out.")
-            return read_chart(file)
+            return _chart_in(file)
     named = _chart_of_name(chart)
     if named is None and not _is_one_line(chart):
         raise _no_chart(chart)
@@ -163,6 +169,22 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     if named is not None and not is_repeat:
         raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
     return cloth if named is None else cloth.repeat()
+
+
+def _chart_in(file: Path) -> StitchChart:
+    from knitcore.formats.read.chart_files import read_chart, read_noted_piece  # no fabric does
+
+    if file.suffix.lower() == ".json":
+        return read_chart(file)
+    content = read_noted_piece(file)
+    show_notes(content.notes)
+    return content.piece.chart
+
+
+def show_notes(notes: Sequence[str]) -> None:
+    """Print the notes of a reader beside the result, which may be piped on."""
+    for note in notes:
+        click.echo(f"Note: {note}", err=True)
 
 
 @contextlib.contextmanager
