@@ -49,7 +49,9 @@ _ROW_BEGINS = (
 )
 _BARE = re.compile(rf"(?P<numbers>\d{{1,4}}){_SIDE}\s?[.:)]\s", _I)
 _BODY = re.compile(r"(?=.*(?:\d|,|knit|purl))[*\[(]?\s?(?:[kp]\s?\d|[kp]\s?,|knit\b|purl\b)", _I)
-_CAST_ON = re.compile(r"\b(?:cast[- ]?on|co)\b\s?:?\s?(\d{1,4}|[a-z]+)\b(\s?\(\d+[,)\s])?", _I)
+_CAST_ON = re.compile(
+    r"\b(?:cast[- ]?on|co)(?![a-z])\s?:?\s?(\d{1,4}|[a-z]+)\b(\s?\(\d+[,)\s])?", _I
+)
 _MULTIPLE = re.compile(
     r"multiple of (\d{1,3})(?: sts?| stitches)?(?:,? (?:\+|plus|and) (\d{1,3}))?", _I
 )
@@ -152,7 +154,7 @@ def looks_written(text: str) -> bool:
         line = " ".join(_REMARK.sub("", raw).split())
         if number > MAX_LINES:
             return False
-        if _row_begins(line) or re.match(r"(?:cast[- ]?on|co)\b\s?:?\s?\w", line, _I):
+        if _row_begins(line) or re.match(r"(?:cast[- ]?on|co)(?![a-z])\s?:?\s?\w", line, _I):
             return True
         if (cast_on := _CAST_ON.search(line)) and _number(cast_on[1]):
             return True
@@ -316,9 +318,9 @@ class _Reader:
         is_join = _JOIN.search(line.text) is not None
         if multiple is not None:
             pattern.multiple = int(multiple[1]), int(multiple[2] or 0)
-        elif cast_on is not None and _number(cast_on[1]):
+        if cast_on is not None and _number(cast_on[1]):
             self._cast_on(line, cast_on)
-        elif not is_join and not _FLAT.search(line.text):
+        elif multiple is None and not is_join and not _FLAT.search(line.text):
             self._remark(line, line.text)
             return
         if is_join or _FLAT.search(line.text):

@@ -239,7 +239,8 @@ class _Reader:
         count = max(self._rows, default=1)
         missing = next((i for i in range(1, count + 1) if i not in self._rows), None)
         if missing is not None:
-            name = f"row {missing} is missing" if self._rows else "there are no rows"
+            first = f": {self._pattern.remarks[0][:60]!r} is none" if self._pattern.remarks else ""
+            name = f"row {missing} is missing" if self._rows else f"there are no rows{first}"
             raise InputError(
                 "rows", f"{name}.", 'Number the rows from 1 without gaps: "Row 1: Knit."'
             )
@@ -284,6 +285,12 @@ class _Reader:
             if key not in known:
                 known[key] = row.work(needle)
             work = known[key]
+            if number == 1 and (work.first or work.last):
+                self._notes.append(
+                    f"Row 1 makes {len(work.stitches)} of the {needle} stitches cast on: the chart "
+                    "begins with row 1."
+                )
+                work = Work(0, 0, work.stitches)
             needle = len(work.stitches)
             purls = tuple(stitch.purl for stitch in work.stitches)
             yarns = tuple(stitch.yarn for stitch in work.stitches)

@@ -6,7 +6,7 @@ and ``*k2, p2* 3 times``; at the edges decreases, ``m1``, casting on and binding
 """
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -25,7 +25,9 @@ NUMBER_WORDS = {
         ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=1
     )
 }
-_COUNT = re.compile(r"[.(\[–—]\s*(\d{1,4}) (?:sts?|stitch(?:es)?)\s*[)\]]?[ .]*$", re.IGNORECASE)
+_COUNT = re.compile(
+    r"(?:[.(\[–—=-]\s*(\d{1,4}) (?:sts?|stitch(?:es)?)\s*[)\]]?|\((\d{1,4})\))[ .]*$", re.IGNORECASE
+)
 _TOKEN = re.compile(r"\*+|[\[\](){},;.:]|\d+(?![\w/])|[^\s*\[\](){},;.:]+")
 _STITCH = re.compile(r"([kp])(\d{0,5})|(knit|purl)s?", re.IGNORECASE)
 _SHAPED = ("ssk", "ssp", "k2tog", "p2tog", "k3tog", "p3tog", "m1", "m1p")
@@ -249,7 +251,8 @@ def read_row(line: Line, body: str, yarns: int = 1, *, again: bool = True) -> Ro
         raise line.wrong("it is written for several sizes.", "Keep the numbers of one size.")
     first, last, words = _edges(words)
     parts = _Reader(line, words, yarns, again=again).parts()
-    return RowWords(line, first, last, parts, int(count[1]) if count else None)
+    stated = int(count[1] or count[2]) if count else None
+    return RowWords(line, first, last, parts, stated)
 
 
 def is_ambiguous(body: str) -> bool:
@@ -258,7 +261,7 @@ def is_ambiguous(body: str) -> bool:
 
 
 _OFTEN = re.compile(
-    r"rep\w* (?:from )?\*+ (?:(?:to end )?(?:\d+|\w+) times?|twice|[x×]\s?\d+)"
+    r"rep\w* (?:from )?\*+(?: to \*+|-\*+)? (?:(?:to end )?(?:\d+|\w+) times?|twice|[x×]\s?\d+)"
     r"(?! more| in all| in total| altogether| total)",
     re.IGNORECASE,
 )
@@ -276,6 +279,10 @@ def _edges(words: str) -> tuple[int, int, str]:
     if (loss := _LOSS_AT_END.search(words)) is not None:
         last, words = last - int(loss[1]), words[: loss.start()]
     return first, last, words
+
+
+_THE_REST = -1
+"""Stitches left by a repeat that is said to end with what follows."""
 
 
 @dataclass
@@ -315,7 +322,9 @@ class _Reader:
         if len(elastic) == 1:
             part = parts[elastic[0]]
             after = sum(taken(other.unit) for other in parts[elastic[0] + 1 :])
-            if after != part.leave:
+            if part.leave == _THE_REST:
+                parts[elastic[0]] = replace(part, leave=after)
+            elif after != part.leave:
                 problem = f"{after} stitches follow the repeat, but it says {part.leave}."
                 raise self._line.wrong(problem, 'Make "to last N sts" agree with what follows.')
         return tuple(parts)
@@ -335,6 +344,9 @@ class _Reader:
                 self._open("*")
         elif word in ("rep", "repeat"):
             self._repeat()
+        elif word in ("end", "ending", "ends") and self._is_repeated():
+            self._skip("with")
+            self._stack[-1].parts[-1] = replace(self._stack[-1].parts[-1], leave=_THE_REST)
         elif word == "with" and self._yarns > 1:
             self._change_yarn()
         elif _STITCH.fullmatch(word):
@@ -344,6 +356,11 @@ class _Reader:
             self._add(Part((WrittenStitch(purl, word, self._named_yarn()),)))
         else:
             raise self._unknown(self._next - 1)
+
+    def _is_repeated(self) -> bool:
+        """Say whether the last words repeat to the end."""
+        parts = self._stack[-1].parts
+        return len(self._stack) == 1 and bool(parts) and parts[-1].leave == 0
 
     def _take(self) -> str:
         self._next += 1
@@ -404,14 +421,16 @@ class _Reader:
         elif self._peek().startswith("*") or self._peek() in _BRACKETS:
             return
         else:
-            frame = self._stack.pop()
-            if self._stack or not frame.parts or not all(p.leave is None for p in frame.parts):
-                raise self._line.wrong(
-                    '"repeat" names no star.', 'Write "*k1, p1; rep from * to end".'
-                )
-            self._stack.append(_Frame())
-            leave, times, more = self._tail()
-            self._add_unit(frame, leave or 0, None if times is None else times + max(more, 0))
+            self._repeat_all()
+
+    def _repeat_all(self) -> None:
+        """Repeat all words before, as in "k1, p1 to end"."""
+        frame = self._stack.pop()
+        if self._stack or not frame.parts or not all(p.leave is None for p in frame.parts):
+            raise self._line.wrong('"repeat" names no star.', 'Write "*k1, p1; rep from * to end".')
+        self._stack.append(_Frame())
+        leave, times, more = self._tail()
+        self._add_unit(frame, leave or 0, None if times is None else times + max(more, 0))
 
     def _end_star(self, *, is_from: bool) -> None:
         """Read on after "*k2, p2; rep from *", or "*k2, p2*" which may name the stars again."""
@@ -419,10 +438,11 @@ class _Reader:
         if not is_from and self._peek() in (",", ";") and self._peek(1) in ("rep", "repeat"):
             self._next += 1
         if not is_from and self._skip("rep", "repeat", "work"):
-            is_from = self._skip("from", "between")
+            self._skip("from", "between")
+            is_from = self._peek().startswith("*")
         if is_from:
             self._skip("*", "**")
-            if self._peek() in ("to", "and") and self._peek(1).startswith("*"):
+            if self._peek() in ("to", "and", "-", "–") and self._peek(1).startswith("*"):
                 self._next += 2
             self._skip("s")
         leave, times, more = self._tail()
@@ -531,6 +551,10 @@ class _Reader:
             count = NUMBER_WORDS.get(word) or int(word)
         if count is not None:
             self._skip("st", "sts", "stitch", "stitches")
+            if self._peek() in ("to", "until", "till", "til", "across", "around") and count:
+                self._add(Part(stitch * min(count, MAX_STITCHES_PER_SIDE + 1)))
+                self._repeat_all()
+                return
         elif self._peek() in ("all", "every", "each"):
             self._next += 1
             self._skip("st", "sts", "stitch", "stitches")
@@ -565,8 +589,9 @@ class _Reader:
         name = re.split(r"[,;*\[\](){}]|\.(?:\s|$)", self._words[start:], maxsplit=1)[0].strip()
         name = name[:40] or self._tokens[place][0]
         kind = next((kind for names, kind in _NAMES if re.fullmatch(names, name.lower())), "")
-        is_counted = len(self._stack) == 1 and all(p.leave is None for p in self._stack[0].parts)
-        where = f"stitch {self._stack[0].size + 1}, " if is_counted else ""
+        is_counted = all(part.leave is None for part in self._stack[0].parts)
+        stitch = sum(frame.size for frame in self._stack) + 1
+        where = f"stitch {stitch}, " if is_counted else ""
         if re.fullmatch(r"[kp]{2,}", name, re.IGNORECASE):
             remedy = 'Separate stitches by commas; a line of a chart stands without "Row".'
         else:

@@ -264,7 +264,7 @@ def test_a_request_passes_its_fields_to_the_library() -> None:
 
 
 YARN_ALONE = {"characterise", "import", "material", "relax", "rs", "sweep", "tube", "whole"}
-"""They compute from the yarn or its stitches' size, not from laws; `material` is named with them."""
+"""They compute from the yarn or the size of its stitches; the address of `material` names laws."""
 
 
 @pytest.mark.parametrize("name", operations())
