@@ -12,8 +12,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from knitcore.base.errors import InputError
-from knitcore.chart.stitch_chart import StitchChart, check_chart_size
+from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
 
+MAX_CHARACTERS = 4 * MAX_STITCHES_PER_SIDE**2
+"""The largest chart with a space and a bar beside every stitch."""
 BLANK = " "
 _KNIT = frozenset("Kk|│∣□☐▢⬜◻▯◽▫")
 _PURL = frozenset("Pp•–-—−―ー─━_·∙・●⚫■▪⬛◼▮◾⬤")
@@ -65,6 +67,9 @@ def read_text_chart(text: str) -> tuple[StitchChart, tuple[str, ...]]:
     ('The 3 blank squares are read as knits, as in printed charts.',)
     """
     lines = text.lstrip("\ufeff").splitlines()
+    if len(text) > MAX_CHARACTERS:
+        remedy = f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns."
+        raise InputError("chart", f"the text has {len(text)} characters.", remedy)
     if not any(_is_drawn_with_hashes(line) or _is_framed(line) for line in lines):
         try:
             return StitchChart.parse(text), ()

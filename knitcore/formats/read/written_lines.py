@@ -87,7 +87,9 @@ _KEPT = re.compile(
 _STITCHES = re.compile(r"\(\s?[*\[(]?\s?(?:[kp]\s?\d|[kp]\b|knit|purl|ss[kp]|m1|yo|sl)", _I)
 _REMARK = re.compile(r"(?:^|\s)(?://|#(?![0-9a-f]{6}\b)).*", _I)
 _SIDE_FIRST = re.compile(r"(\((?:RS|WS)\)):? ((?:and|&) (?:all|every|each) [^:(]*)", _I)
-MAX_LINES = 200
+MAX_LINES = 20_000
+"""Most lines of a pattern; the longest has 1000 rows."""
+MAX_LOOKED_AT = 200
 """Lines among which one tells that a text is written rows."""
 
 
@@ -152,7 +154,7 @@ def looks_written(text: str) -> bool:
     """Say whether a text is meant as written rows rather than as lines of K and P."""
     for number, raw in enumerate(text.splitlines()):
         line = " ".join(_REMARK.sub("", raw).split())
-        if number > MAX_LINES:
+        if number > MAX_LOOKED_AT:
             return False
         if _row_begins(line) or re.match(r"(?:cast[- ]?on|co)(?![a-z])\s?:?\s?\w", line, _I):
             return True
@@ -206,7 +208,11 @@ class _Reader:
         self._depth = 0
 
     def read(self, text: str) -> Pattern:
-        for number, raw in enumerate(text.lstrip("\ufeff").splitlines(), start=1):
+        lines = text.lstrip("\ufeff").splitlines()
+        if len(lines) > MAX_LINES:
+            problem = f"the text has {len(lines)} lines."
+            raise InputError("rows", problem, f"Use at most {MAX_LINES}.")
+        for number, raw in enumerate(lines, start=1):
             words = " ".join(raw.split())
             if _YARN.fullmatch(words) is None:
                 words = self._without_remarks(" ".join(_REMARK.sub("", words).split()))

@@ -69,6 +69,7 @@ def test_plain_charts_need_no_note(text: str) -> None:
         ("hello", "'h', which is neither K nor P"),
         ("", "no stitches"),
         ("K" * 1001, "too large"),
+        ("-" * 4_000_001, "4000001 characters"),
     ],
 )
 def test_what_is_no_chart_is_refused_by_line_and_name(text: str, says: str) -> None:

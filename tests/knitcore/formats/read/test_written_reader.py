@@ -108,6 +108,7 @@ def test_a_strict_text_needs_no_note() -> None:
         ("all rs rounds k. all ws rounds p.", "rounds have no wrong side"),
         ("Row 1: k2, [p1, [yo] twice] 3 times.", "stitch 4, 'yo'"),
         ("Row 1: k4 (never closed\nRow 2: p4", "bracket is not closed"),
+        ("Row 1: k1\n" * 20_001, "20001 lines"),
         ("Row 1: " + "[" * 100, "too many brackets"),
         ("Row 1: [*k1; rep from * to end] twice", "stands inside another repeat"),
     ],
