@@ -40,6 +40,8 @@ _LEFT = re.compile(rf"\s*{_NUMBER}[.:)]?(?=[\s|│┃║KkPp□■•\-])", re.I
 _RIGHT = re.compile(rf"(?<=[\s|│┃║KkPp□■•\-])[.:(]?{_NUMBER}\s*$", re.IGNORECASE)
 _BARS = "|│┃║"
 _BORDER = re.compile(r"(?=.*[+┌┐└┘├┤┬┴┼╔╗╚╝╠╣╦╩╬┏┓┗┛═|])[-+─━═=_┌┐└┘├┤┬┴┼╔╗╚╝╠╣╦╩╬┏┓┗┛|\s:]+")
+_RULE = re.compile(r"\s*\|?(?:\s*:?-{3,}:?\s*\|)+(?:\s*:?-{3,}:?)?\s*")
+_CELL = re.compile(r"\|\s\S\s\|")
 _LEGEND = re.compile(
     r"\s*(?P<sign>\S|blank|empty|\(blank\)|\(empty\))(?:\s*[=:→]+\s*|\s+[-–]\s+|\s+)(?P<words>.*[A-Za-z]{1,}.*)",
     re.IGNORECASE,
@@ -120,6 +122,7 @@ class _Reader:
         left_out: list[str] = []
         seen = False
         gap = 0
+        has_cells = any(_CELL.search(line) for line in self._lines)
         for number, raw in enumerate(self._lines, start=1):
             line = "".join(_plain(sign) for sign in raw).rstrip()
             if not line.strip():
@@ -133,6 +136,8 @@ class _Reader:
                 left_out.append(line.strip())
                 continue
             if _BORDER.fullmatch(line) and set(line) & set("+┌└├╔╚╠┏┗═"):
+                continue
+            if has_cells and _RULE.fullmatch(line):
                 continue
             if re.fullmatch(r"[\d\s|│]+", line) and not re.fullmatch(r"[01\s|│]+", line):
                 self._note("The line of column numbers is left out.")

@@ -35,6 +35,7 @@ from knitcore.formats.read.text_chart import read_text_chart
         ("+---+\n|- -|\n| - |\n+---+", "PKP/KPK", "border"),
         ("┌──┐\n│●○│\n│○●│\n└──┘", "PK/KP", "border"),
         ("| K | P |\n| P | K |", "KP/PK", "lines of the grid"),
+        ("| K | P |\n|---|---|\n| P | K |", "KP/PK", "lines of the grid"),
         ("| - |   |\n|   | - |", "PK/KP", "lines of the grid"),
         ("o = purl\n. = knit\n\no.o\n.o.", "PKP/KPK", "by its legend"),
         ("My rib\nKPKP\nPKPK", "KPKP/PKPK", "remarks: 'My rib'"),
