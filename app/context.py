@@ -19,14 +19,6 @@ if TYPE_CHECKING:
     from .service.results.atlases import Extent
 
 
-def _never() -> bool:
-    return False
-
-
-def _untold(done: float, total: float) -> None:
-    """Ignore progress."""
-
-
 class Context:
     """Materials, stored results, cancellation and progress.
 
@@ -45,8 +37,8 @@ class Context:
         data_dir: Path | Callable[[], Path],
         *,
         local: bool = False,
-        cancelled: Callable[[], bool] = _never,
-        progress: Callable[[float, float], None] = _untold,
+        cancelled: Callable[[], bool] = lambda: False,
+        progress: Callable[[float, float], None] = lambda done, total: None,
         before: object = None,
     ) -> None:
         self._data_dir = data_dir

@@ -1,21 +1,23 @@
 """Relaxed sizes against knitted swatches: ``python -m studies.knitdb FOLDER``.
 
-FOLDER holds ``measured.csv`` (name, relaxed_width_mm, relaxed_height_mm) and ``charts/NAME.txt``
-(top row first), as decoded from KnitDB (Hofmann et al., KnitPick, UIST 2019). The comparison is of
-ratios to the stockinette of the same yarn, measured and predicted, so that neither yarn nor gauge
-is fitted. The yarn is not in the library: the pure fabrics of ``--material`` are used instead.
+FOLDER holds ``measured.csv`` (name, mass_g, relaxed_width_mm, relaxed_height_mm) and charts, top
+row first: ``charts/NAME.txt``, and ``charts/NAME.whole.txt`` with the frame of the swatch, as
+decoded from KnitDB (Hofmann et al., KnitPick, UIST 2019). Sizes are compared as ratios to the
+stockinette of the same yarn, measured and predicted, so that neither yarn nor gauge is fitted. The
+yarn is not in the library: the pure fabrics of ``--material`` are used instead.
 
-It prints the rms factor by which widths and heights are missed, Spearman's rank correlation, and
-the share inside the 90 % intervals, compared with the null model (all charts are like stockinette)
-and the mixture of pure fabrics without folds. One number of the model, the most that real fabric
-folds, was fitted to 29 of these swatches: its optimum here and the leave-one-out figure are printed
-too.
+It prints, of each swatch, widths and heights over those of stockinette; then the rms factors by
+which they are missed. Which of the candidates is used (all like stockinette, the mixture of pure
+fabrics, or folds by one of several rules) is chosen without the texture that is judged
+(:mod:`studies.claims`).
 """
 
 import argparse
 import csv
-from collections.abc import Callable
-from dataclasses import replace
+import re
+from collections import Counter
+from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,11 +26,23 @@ from scipy.stats import spearmanr
 
 from knitcore import StitchChart, material, predict
 from knitcore.base.arrays import Array
+from knitcore.chart.fabric import PHASES
+from knitcore.chart.phases import quarter_phases
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Z_SCORE
-from knitcore.prediction.densities import densities
+from knitcore.materials.material import loop_lengths_mm
+from knitcore.prediction.densities import Densities, densities
 from knitcore.prediction.learned import packaged_model
 from knitcore.prediction.mixture import Mixture
+from studies.claims import Nested, nested
+
+POWERS = (1, 2, 3)
+MOST = (0.5, 0.7, 0.87, 1.0, 1.2, 2.0, np.inf)
+"""Powers of straightness, and most that fabric folds, among which the rule was chosen."""
+ALL_ALIKE = "all like stockinette"
+NO_FOLDS = "mixture, no folds"
+_ONE_FABRIC = 0.9
+"""Share of a pure fabric from which on a swatch counts as that texture."""
 
 
 def main() -> None:
@@ -37,48 +51,56 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--material", default="lace-acrylic", help="whose pure fabrics are used")
     arguments = parser.parse_args()
-    of, model = material(arguments.material), packaged_model()
-    names, charts, first, true, ratio, spread = compared(arguments.folder, of)
-    for row in zip(names, np.exp(true), np.exp(ratio), np.exp(Z_SCORE * spread), strict=True):
-        print(f"{row[0]:28}", *(np.round(part, 2) for part in row[1:]))
+    swatches = compared(arguments.folder, material(arguments.material))
+    columns = swatches.true, swatches.predicted, Z_SCORE * swatches.log_sd
+    for name, *values in zip(swatches.names, *map(np.exp, columns), strict=True):
+        print(f"{name:28}", *(np.round(value, 2) for value in values))
     print("swatch, measured width and height over stockinette's, predicted, interval factor")
-    made_of = [densities(chart) for chart in charts]
-    mixture = np.log([Mixture.of(composition.shares, of).size_mm for composition in made_of])
-    mixture -= mixture[first]
-    for name, logs in (("predicted", ratio), ("mixture, no folds", mixture), ("null", 0 * true)):
-        print(f"{name:18} rms {factor(logs - true)}  rank {ranks(logs, true)}")
-    others = np.arange(len(names)) != first
-    inside = np.abs(ratio - true)[others] <= Z_SCORE * spread[others]
-    print(f"cover {inside.mean():.2f} of {inside.size} in the 90 % intervals")
-
-    def missed(most: float) -> Array:
-        fitted_to = replace(model, most_folded=most)
-        sizes = np.log([fitted_to.response(composition, of).size_mm for composition in made_of])
-        return np.asarray(sizes - sizes[first] - true)
-
-    best, left_out = fitted(missed, len(names))
-    print(
-        f"most_folded {model.most_folded:g}, here best {best:.2f}; left out one by one {left_out}"
-    )
+    judged = swatches.judged
+    print(f"in sample          rms {factor(swatches.missed)}")
+    print(f"chosen without it  rms {factor(judged.missed)}")
+    for name in (ALL_ALIKE, NO_FOLDS):
+        print(f"{name:18} rms {factor(swatches.candidates[name])}")
+    for index, times in Counter(judged.chosen).most_common():
+        print(f"  chosen {times:2} times: {list(swatches.candidates)[index]}")
+    print(f"rank  {ranks(swatches.predicted, swatches.true)}")
+    yarn = yarn_used(arguments.folder, material(arguments.material))
+    print("yarn against mass: rms", *(f"{np.exp(np.sqrt(np.mean(logs**2))):.3f}" for logs in yarn))
+    print(f"cover {swatches.inside.mean():.2f} of {swatches.inside.size} in the 90 % intervals")
 
 
 class Compared(NamedTuple):
-    """Swatches against their predictions.
+    """Swatches other than stockinette against their predictions.
 
     Attributes
     ----------
-    names, charts : of the swatches.
-    first : index of stockinette.
+    names, textures : of the swatches; swatches of one texture are left out together.
     true, predicted : (swatches, 2) logarithms of widths and heights over those of stockinette.
     log_sd : (swatches, 2) standard deviations of the predicted ones.
+    candidates : by name, (swatches, 2) errors of the null, the mixture and each rule of folds.
     """
 
     names: list[str]
-    charts: list[StitchChart]
-    first: int
+    textures: list[str]
     true: Array
     predicted: Array
     log_sd: Array
+    candidates: dict[str, Array]
+
+    @property
+    def missed(self) -> Array:
+        """(swatches, 2) errors of the predictions."""
+        return self.predicted - self.true
+
+    @property
+    def judged(self) -> Nested:
+        """Errors of the candidate that is chosen on the other textures."""
+        return nested(np.array([*self.candidates.values()]), self.textures)
+
+    @property
+    def inside(self) -> np.ndarray:
+        """(swatches, 2) whether the 90 % interval holds the measured size."""
+        return np.abs(self.missed) <= Z_SCORE * self.log_sd
 
 
 def compared(folder: Path, of: Material) -> Compared:
@@ -89,29 +111,91 @@ def compared(folder: Path, of: Material) -> Compared:
     logs = np.log([(a.relaxed_course_mm, a.relaxed_wale_mm) for a in answers])
     spread = np.array([(a.course.relaxed_log_sd, a.wale.relaxed_log_sd) for a in answers])
     true = np.log(measured / measured[first])
-    return Compared(names, charts, first, true, logs - logs[first], spread)
+    made_of = [densities(chart) for chart in charts]
+    others = np.arange(len(names)) != first
+    return Compared(
+        [name for name, other in zip(names, others, strict=True) if other],
+        [
+            _texture(name, composition)
+            for name, composition, other in zip(names, made_of, others, strict=True)
+            if other
+        ],
+        true[others],
+        (logs - logs[first])[others],
+        spread[others],
+        {name: (sizes - sizes[first] - true)[others] for name, sizes in _candidates(made_of, of)},
+    )
+
+
+class Yarn(NamedTuple):
+    """Logarithms of a swatch's yarn over stockinette's, less those of its mass, (swatches,) each.
+
+    Attributes
+    ----------
+    missed : by the loop lengths of a material's pure fabrics, weighted by their quarter stitches.
+    null : by the same loop length in every stitch.
+    """
+
+    missed: Array
+    null: Array
+
+
+def yarn_used(folder: Path, of: Material) -> Yarn:
+    """Yarn in the swatches that were weighed, frames included, against their masses."""
+    rows = [row for row in _measured(folder) if row["mass_g"]]
+    first = next(i for i, row in enumerate(rows) if row["name"].endswith("Stockinette"))
+    wholes = [_chart(folder / "charts" / f"{row['name']}.whole.txt") for row in rows]
+    lengths = [
+        float(loop_lengths_mm(quarter_phases(whole, periodic=True), of).sum()) for whole in wholes
+    ]
+    stitches = [whole.purl.size for whole in wholes]
+    masses = [float(row["mass_g"]) for row in rows]
+    logs = np.log(np.array([lengths, stitches], dtype=float)) - np.log(masses)
+    over = logs - logs[:, first : first + 1]
+    others = np.arange(len(rows)) != first
+    return Yarn(*over[:, others])
+
+
+def _texture(name: str, made_of: Densities) -> str:
+    fabric = int(made_of.shares.argmax())
+    return PHASES[fabric] if made_of.shares[fabric] > _ONE_FABRIC else name
+
+
+def _candidates(made_of: list[Densities], of: Material) -> Iterator[tuple[str, Array]]:
+    """Logarithms of sizes (swatches, 2) by the null, the mixture, and rules of folds."""
+    model = packaged_model()
+    mixtures = [Mixture.of(composition.shares, of) for composition in made_of]
+    flat = np.log([mixture.size_mm for mixture in mixtures])
+    features = np.array([composition.features for composition in made_of])
+    fold, _ = model.folding(model.sample(features, np.array([m.numbers for m in mixtures])))
+    straight = np.array([composition.straight for composition in made_of])
+    runs = np.array([composition.even for composition in made_of])
+    yield ALL_ALIKE, np.zeros_like(flat)
+    yield NO_FOLDS, flat
+    for power, most in product(POWERS, MOST):
+        for how, weight in (("", np.ones_like(runs)), (", even runs", runs)):
+            shown = straight**power * weight / (1 + np.abs(fold) / most)
+            yield f"folds, power {power}, at most {most:g}{how}", flat + shown * fold
 
 
 def read(folder: Path) -> tuple[list[str], np.ndarray, list[StitchChart]]:
     """Names, (swatches, 2) relaxed sizes in mm, and charts."""
-    with (folder / "measured.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = _measured(folder)
     names = [row["name"] for row in rows]
     sizes = np.array(
         [[float(row[f"relaxed_{side}_mm"]) for side in ("width", "height")] for row in rows]
     )
-    texts = [(folder / "charts" / f"{name}.txt").read_text(encoding="utf-8") for name in names]
-    return names, sizes, [StitchChart.parse(text) for text in texts]
+    return names, sizes, [_chart(folder / "charts" / f"{name}.txt") for name in names]
 
 
-def fitted(missed: Callable[[float], Array], count: int) -> tuple[float, str]:
-    """Best value of the fitted number, and the rms factor of swatches that it was not fitted to."""
-    tried = np.linspace(0.3, 3.0, 28)
-    table = np.array([missed(most) for most in tried])  # (values, swatches, 2)
-    squares = (table**2).sum(axis=2)
-    left = [squares[:, np.arange(count) != i].sum(axis=1).argmin() for i in range(count)]
-    rest = np.array([table[left[i], i] for i in range(count)])
-    return float(tried[squares.sum(axis=1).argmin()]), factor(rest)
+def _measured(folder: Path) -> list[dict[str, str]]:
+    with (folder / "measured.csv").open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def _chart(file: Path) -> StitchChart:
+    """A chart; stitches of a frame that are neither K nor P are counted as K."""
+    return StitchChart.parse(re.sub(r"[^KP\n]", "K", file.read_text(encoding="utf-8")))
 
 
 def factor(logs: np.ndarray) -> str:

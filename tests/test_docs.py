@@ -1,11 +1,22 @@
-"""Every Python example in the documentation runs, page by page, top to bottom."""
+"""Every Python example in the documentation runs, page by page, top to bottom.
 
+A section with measured numbers names what makes them: its example, a program, or an invisible line
+``<!-- from: tests/test_x.py::test_name, studies/x.py, knitcore/x.py::NAME, paper Table 5 -->``.
+"""
+
+import ast
+import contextlib
+import importlib.util
+import io
 import pkgutil
 import re
 import shlex
 import tomllib
+from collections.abc import Iterable
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from click.testing import CliRunner
@@ -47,11 +58,122 @@ def _with_examples(page: Path) -> object:
 
 
 @pytest.mark.parametrize("page", [_with_examples(p) for p in PAGES if FENCE.search(p.read_text())])
-def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_examples_run(page: Path) -> None:
+    _printed(page)
+
+
+@cache
+def _printed(page: Path) -> dict[str, str]:
+    """Run the examples of a page, and keep what each of them prints."""
+    printed = {}
     namespace: dict[str, object] = {"__name__": "example"}
-    for block in FENCE.findall(page.read_text()):
-        exec(compile(block, _id(page), "exec"), namespace)  # noqa: S102 - our own pages
+    with TemporaryDirectory() as folder, contextlib.chdir(folder):
+        for block in FENCE.findall(page.read_text()):
+            with contextlib.redirect_stdout(io.StringIO()) as output:
+                exec(compile(block, _id(page), "exec"), namespace)  # noqa: S102 - our own pages
+            printed[block] = output.getvalue()
+    return printed
+
+
+MEASURED = re.compile(r"(?<![\w.,/])(?:\d+\.\d+(?![\w.]*\d)|\d[\d,]*(?= ?%| m?s(?!\w)))")
+"""A decimal, a pair of them such as 1.05/1.19, a percentage or a time."""
+NUMERAL = re.compile(r"(?<![\w.])\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?")
+UNMEASURED = re.compile(
+    r"^```.*?^```$|^ {4}.*?$|`[^`]*`|<!--.*?-->|\$\$.*?\$\$|\$[^$\n]*\$|(?<=\])\([^)]*\)"
+    r"|(?:Python|WCAG|CC BY|arXiv) \d[\d.]*",
+    re.MULTILINE | re.DOTALL,
+)
+"""Code, formulas, addresses, and numbers of versions."""
+SECTION = re.compile(r"^```.*?^```$|^#+ ", re.MULTILINE | re.DOTALL)
+SENTENCE = re.compile(r"(?<=[.|])\s+|\n\n|^```.*?^```$", re.MULTILINE | re.DOTALL)
+MAKERS = re.compile(r"<!-- from: (.*?) -->", re.DOTALL)
+PROGRAM = re.compile(r"`(make [a-z-]+|python -m (?:scripts|studies)[\w.]*)")
+WRITTEN = {"docs/evidence.md": "studies.evidence"}
+"""Pages that a program writes, and names."""
+UNTRACED = 2
+"""So many numbers of a section may stand without a maker."""
+
+
+def _sections(text: str) -> list[str]:
+    """Split a page at its headings, which comments in code are not."""
+    starts = [found.start() for found in SECTION.finditer(text) if found[0].startswith("#")]
+    return [text[begin:end] for begin, end in pairwise([0, *starts, len(text)])]
+
+
+def _values(text: str) -> set[float]:
+    """Numbers of an example or of its output, also as percentages."""
+    values = {float(numeral.replace(",", "")) for numeral in NUMERAL.findall(text)}
+    return values | {round(100 * value, 9) for value in values}
+
+
+def _about_evidence(text: str) -> list[str]:
+    """Sentences, and rows of tables, that refer to the page of evidence."""
+    return [sentence for sentence in SENTENCE.split(text) if "evidence.md" in sentence]
+
+
+def _untraced(section: str, page: Path) -> list[str]:
+    """Measured numbers of a section that neither its examples nor the evidence hold."""
+    for sentence in _about_evidence(section):
+        section = section.replace(sentence, "")
+    held = _values("".join(FENCE.findall(section)))
+    numbers = [number.replace(",", "") for number in MEASURED.findall(UNMEASURED.sub("", section))]
+    left = [number for number in numbers if float(number) not in held]
+    if len(left) > UNTRACED and page.parent != NOTEBOOKS:
+        held = _values("".join(_printed(page)[block] for block in FENCE.findall(section)))
+    return [number for number in left if float(number) not in held]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=_id)
+def test_measured_numbers_have_a_maker(page: Path) -> None:
+    if program := WRITTEN.get(_id(page)):
+        assert f"python -m {program}" in page.read_text()
+        return
+    without = {
+        section.partition("\n")[0]: untraced
+        for section in _sections(page.read_text())
+        if not MAKERS.search(section) and not PROGRAM.search(section)
+        if len(untraced := _untraced(section, page)) > UNTRACED
+    }
+    assert not without
+
+
+def _tests_of(path: Path) -> set[str]:
+    nodes = ast.walk(ast.parse(path.read_text()))
+    return {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
+
+
+def _makes(maker: str, section: str) -> bool:
+    """Whether a maker exists, and, if it is a constant, is the number that a section prints."""
+    path, _, name = maker.partition("::")
+    if re.fullmatch(r"paper (?:Fig\.|Note|Table) \w+", maker):
+        return True
+    if maker.startswith(("knitcore ", "make ", "python ")):
+        return not _missing([maker])
+    if not (ROOT / path).is_file():
+        return False
+    if name.startswith("test_"):
+        return name in _tests_of(ROOT / path)
+    if not name:
+        return "__main__" in (ROOT / path).read_text()
+    constant = pkgutil.resolve_name(f"{path.removesuffix('.py').replace('/', '.')}:{name}")
+    values = {constant, round(100 * constant, 9)} if isinstance(constant, int | float) else set()
+    return not values or bool(values & _values(UNMEASURED.sub("", section)))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=_id)
+def test_makers_of_numbers_exist(page: Path) -> None:
+    for section in _sections(page.read_text()):
+        makers = [maker.strip() for line in MAKERS.findall(section) for maker in line.split(",")]
+        assert not [maker for maker in makers if not _makes(maker, section)]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=_id)
+def test_numbers_of_the_evidence_are_its_numbers(page: Path) -> None:
+    evidence = set(NUMERAL.findall((ROOT / "docs" / "evidence.md").read_text()))
+    for sentence in _about_evidence(page.read_text()):
+        numbers = MEASURED.findall(UNMEASURED.sub("", sentence))
+        missing = {number for number in numbers if "." in number} - evidence
+        assert not missing, sentence
 
 
 @pytest.mark.parametrize("page", PAGES, ids=_id)
@@ -116,16 +238,33 @@ def test_the_requests_of_the_quickstart_run(tmp_path: Path) -> None:
             job = response.headers.get("location", job).rsplit("/", 1)[-1]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=_id)
+@cache
+def _help(*command: str) -> str:
+    return CliRunner().invoke(main, [*command, "--help"]).output
+
+
+def _missing(commands: Iterable[str]) -> list[str]:
+    """Commands, targets and programs that do not exist, or lack an option that is named."""
+    targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    missing = []
+    for command in commands:
+        words = shlex.split(command, comments=True)
+        if words[0] == "make":
+            exists = words[1] in targets
+        elif words[:2] == ["python", "-m"]:
+            exists = importlib.util.find_spec(words[2]) is not None
+        else:
+            path = [word for word in words[1:3] if re.fullmatch(r"[a-z-]+", word)]
+            shown = _help(*path[: 2 if path[0] in {"measure", "token"} else 1])
+            options = [word for word in words if word.startswith("--")]
+            exists = "Usage" in shown and all(option in shown for option in options)
+        missing += [] if exists else [command]
+    return missing
+
+
+@pytest.mark.parametrize("page", [*PAGES, *MORE_PAGES], ids=_id)
 def test_commands_and_their_options_exist(page: Path) -> None:
-    text = "\n".join(SHELL.findall(page.read_text().replace("\\\n", " ")))
-    for line in text.splitlines():
-        if not line.startswith("knitcore "):
-            continue
-        words = shlex.split(line, comments=True)
-        options = [word for word in words if word.startswith("--")]
-        path = [word for word in words[1:3] if re.fullmatch(r"[a-z-]+", word)]
-        group = path[:2] if path[0] in {"measure", "token"} else path[:1]
-        shown = CliRunner().invoke(main, [*group, "--help"]).output
-        assert "Usage" in shown
-        assert [option for option in options if option not in shown] == [], line
+    text = page.read_text().replace("\\\n", " ")
+    lines = "\n".join(SHELL.findall(text)).splitlines()
+    commands = [line for line in lines if line.startswith(("knitcore ", "make ", "python -m "))]
+    assert not _missing([*commands, *PROGRAM.findall(text)])

@@ -47,13 +47,13 @@ their commands with ``app.cli.options``.
 
 
 def imports(file: Path) -> set[str]:
-    found: set[str] = set()
+    modules: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module:
-            found |= {node.module} | {f"{node.module}.{name.name}" for name in node.names}
+            modules |= {node.module} | {f"{node.module}.{name.name}" for name in node.names}
         elif isinstance(node, ast.Import):
-            found |= {name.name for name in node.names}
-    return found
+            modules |= {name.name for name in node.names}
+    return modules
 
 
 def rooms_imported(room: Path) -> set[str]:
@@ -109,6 +109,18 @@ def test_what_programs_beside_the_product_import_from_it_exists(folder: str) -> 
                 module = importlib.import_module(str(node.module))
                 missing = {n.name for n in node.names if not hasattr(module, n.name)}
                 assert all(importlib.util.find_spec(f"{module.__name__}.{n}") for n in missing)
+
+
+ACROSS = {"notebook/test_notebook.py", "prediction/test_continuity.py"}
+"""Tests that several modules of ``knitcore`` must pass together."""
+
+
+def test_tests_of_the_library_stand_where_their_modules_do() -> None:
+    tests = ROOT / "tests" / "knitcore"
+    files = {file.relative_to(tests) for file in tests.rglob("test_*.py")}
+    modules = {file: file.with_name(file.name.removeprefix("test_")) for file in files}
+    without = {file for file, name in modules.items() if not (ROOT / "knitcore" / name).exists()}
+    assert {file.as_posix() for file in without} == ACROSS
 
 
 APP_FLOOR = {name: floor for floor, names in enumerate(APP_FLOORS) for name in names}

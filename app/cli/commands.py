@@ -19,7 +19,7 @@ from pydantic import BaseModel
 from knitcore.base.errors import InputError
 
 from ..context import Context
-from ..operations.perform import Viewed, carried_out
+from ..operations.perform import carried_out
 from ..operations.registry import Operation
 from ..requests.base import IntervalResult
 from .common import emit, json_option, telling_what_is_compiled, user_data_dir
@@ -41,10 +41,9 @@ def command_of(operation: Operation[Any, Any], name: str, line: str = "") -> cli
             with telling_what_is_compiled():
                 more = declared.fields or dict
                 request = inputs.request(given, more(**_options_for(declared.fields, given)))
-                outcome = carried_out(run, request, Context(user_data_dir, local=True))
+                result = carried_out(run, request, Context(user_data_dir, local=True)).result
         except InputError as error:
             raise _with_options(error, command) from error
-        result = outcome.result if isinstance(outcome, Viewed) else outcome
         emit(result, "\n".join(declared.lines(result)), as_json=given["as_json"])
         for remark in () if given["as_json"] else _remarks(result):
             click.echo(remark, err=True)  # the result may be piped on

@@ -181,7 +181,12 @@ def _chart_input(model: type[BaseModel]) -> Input:
         if "outline" in model.model_fields and size is None:
             with chart_file(text) as file:
                 if file is not None:
-                    return _design_fields(file, model)
+                    from ..operations.files.imports import design_in  # a repeat needs no readers
+
+                    design, notes = design_in(file)
+                    show_notes(notes)
+                    known = ((n, part) for n, part in design if n in model.model_fields)
+                    return {name: part for name, part in known if part is not None}
         chart = resolve_chart(text, size, is_repeat=is_repeat)
         if is_fabric(text) and size is not None:
             named = {"fabric": text.lower(), "columns": chart.columns, "rows": chart.rows}
@@ -189,15 +194,6 @@ def _chart_input(model: type[BaseModel]) -> Input:
         return {"chart": chart.text}
 
     return Input("chart", [click.Argument(["chart"], metavar="CHART"), size], fields)
-
-
-def _design_fields(file: Path, model: type[BaseModel]) -> dict[str, Any]:
-    """Read the fields of the request that a file holds."""
-    from ..operations.files.imports import noted_design_in
-
-    design, notes = noted_design_in(file)
-    show_notes(notes)
-    return {name: part for name, part in design if name in model.model_fields and part is not None}
 
 
 def _value_of(name: str) -> Callable[[Given], dict[str, Any]]:

@@ -22,7 +22,7 @@ SECTIONS: dict[str, dict[str, Entry]] = {
     "Design": {
         "find": ("design.find", "Find repeats that meet targets, the surest first."),
         "fill": ("design.fill", "Design a chart with given moduli at each stitch."),
-        "shape": ("design.shape", "Design a chart that takes given widths when it is stretched."),
+        "shape": ("design.fill", "Design a chart that takes given widths when it is stretched."),
         "atlas": ("design.atlas", "Predict every repeat of a material, for `knitcore find`."),
     },
     "Fabric": {

@@ -53,7 +53,7 @@ class OutFile(click.Path):
         if self.suffixes and path.suffix.lower() not in self.suffixes:
             known = " or ".join(self.suffixes)
             raise InputError(field, f"{path.name} has no known file type.", f"Use {known}.")
-        check_writable(path, field)
+        _check_writable(path, field)
         return path
 
 
@@ -114,16 +114,8 @@ def write_table(file: Path, head: Sequence[str], rows: Iterable[Sequence[object]
         writer.writerows(rows)
 
 
-def check_writable(path: Path | None, field: str) -> None:
-    """Refuse a file that cannot be written, before anything is computed.
-
-    Raises
-    ------
-    InputError
-        If there is no such folder, it cannot be written to, or the name is that of a folder.
-    """
-    if path is None:
-        return
+def _check_writable(path: Path, field: str) -> None:
+    """Refuse a folder, and a file in a folder that does not exist or that cannot be written."""
     if not path.parent.is_dir():
         raise InputError(
             field, f"{path.parent} is not a folder.", "Name a file in a folder that exists."

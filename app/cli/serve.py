@@ -65,7 +65,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
 @contextlib.contextmanager
 def _prepared(settings: Settings, address: str) -> Iterator[Database]:
     """Lock and migrate the data, and report failed checks; yields the database to serve."""
-    from ..service.doctor import check_folder, examine_start
+    from ..service.doctor import check_folder, examine
     from ..service.store.database import Database
     from ..service.store.schema import migrate
 
@@ -77,7 +77,7 @@ def _prepared(settings: Settings, address: str) -> Iterator[Database]:
     ):
         database.check_pages()
         migrate(database)
-        for check in examine_start(settings, database).failed:
+        for check in examine(settings, database).failed:
             log.warning("%s: %s %s", check.name, check.problem, check.remedy)
         yield database
 

@@ -18,7 +18,7 @@ from ..requests.base import first_fault
 from .common import emit, json_option, open_database, user_settings
 
 if TYPE_CHECKING:
-    from ..service.web.tokens import Tokens
+    from ..service.web.sessions import Tokens
 
 
 @click.command("doctor")
@@ -73,7 +73,7 @@ def warm_up(as_json: bool) -> None:
 
 @contextlib.contextmanager
 def _tokens() -> Iterator[Tokens]:
-    from ..service.web.tokens import Tokens
+    from ..service.web.sessions import Tokens
 
     with open_database(user_settings()) as database:
         yield Tokens(database)

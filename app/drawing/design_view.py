@@ -148,13 +148,11 @@ def build_scene(
         centres = stretch.positions_mm[step].astype(float)
         placement = carried(shapes, centres, flat_lattice(chart, material))
         room = np.ptp(stretch.positions_mm, axis=(1, 2)).max(axis=0).astype(float)
-    colours = stitch_colours(
+    colours = request.pass_to(
+        stitch_colours,
         request.colour,
         chart,
         material,
-        palette=request.palette,
-        regions=request.regions,
-        field=request.field,
         stretch=stretch,
         step=step,
         mmhg=None if posed is None else posed.mmhg,

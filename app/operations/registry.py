@@ -56,7 +56,7 @@ class Operation(Generic[Request, Result]):
     ----------
     run : the function that does it. Its name is that of the client's method, of the kind of job
         and, by default, of the address; its annotations are the models of request and result; its
-        docstring is the description in the API's reference.
+        docstring is the description in the API's reference. It raises KnitcoreErrors.
     summary : one line.
     tag : heading in the API's reference.
     example : a small request, which the reference shows and the tests send.

@@ -1,5 +1,6 @@
 """Bases of requests and results."""
 
+import json
 import math
 from collections.abc import Callable
 from inspect import signature
@@ -39,12 +40,32 @@ def read(model: Any, content: bytes | str) -> Any:
     InvalidRequestError
     """
     try:
-        return TypeAdapter(model).validate_json(content)
+        sent = TypeAdapter(model).validate_json(content)
+        json.loads(content, object_pairs_hook=unrepeated)
+        return sent
+    except json.JSONDecodeError as error:
+        fault = {"type": "json_invalid", "loc": ("body",), "ctx": {"error": error.msg}}
+        raise InvalidRequestError([fault]) from None
     except ValidationError as error:
         faults = error.errors(include_url=False, include_input=False)
         raise InvalidRequestError(
             [fault | {"loc": ("body", *fault["loc"])} for fault in faults]
         ) from None
+
+
+def unrepeated(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object of JSON, whose names differ: which of two values was meant, nobody can say.
+
+    Raises
+    ------
+    json.JSONDecodeError
+    """
+    values = dict(pairs)
+    if len(values) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise json.JSONDecodeError(f"{twice!r} comes twice in one object", "", 0)
+    return values
 
 
 def first_fault(error: ValidationError) -> str:
@@ -73,7 +94,10 @@ class NoRequest(RequestModel):
 
 
 class ResultModel(BaseModel):
-    """A result, or a part of one, read from the attributes of a library result."""
+    """A result, or a part of one, read from the attributes of a library result.
+
+    A model that has all fields of a dataclass of the library inherits them from it.
+    """
 
     model_config = ConfigDict(from_attributes=True)
 

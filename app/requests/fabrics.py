@@ -160,19 +160,7 @@ class LawResult(LawConstants):
     )
 
 
-def law_constants(law: ConstitutiveLaw) -> dict[str, float]:
-    """Return the fields of :class:`LawResult`, which name the unit of each constant of a law."""
-    return {name: getattr(law, name.removesuffix(UNIT)) for name in LawResult.model_fields}
-
-
-def moduli_of(law: ConstitutiveLaw) -> dict[str, float]:
-    """Return the fields of :class:`Moduli` of a law."""
-    return {
-        "modulus_course_n_per_mm": law.modulus_course,
-        "modulus_wale_n_per_mm": law.modulus_wale,
-    }
-
-
-def elastic_constants_of(law: ConstitutiveLaw) -> dict[str, float]:
-    """Return the fields of :class:`ElasticConstants` of a law."""
-    return moduli_of(law) | {"poisson_yx": law.poisson_yx, "poisson_xy": law.poisson_xy}
+def law_fields(law: ConstitutiveLaw, *models: type[ResultModel]) -> dict[str, float]:
+    """Return the constants of a law that models have fields for, under these fields' names."""
+    names = (name for model in models for name in model.model_fields)
+    return {name: getattr(law, name.removesuffix(UNIT)) for name in names}

@@ -46,22 +46,18 @@ class HeldInput(RequestModel):
     )
 
 
-class PulledInput(RequestModel):
+class PulledInput(RequestModel, Pulled):
     """An edge in a clamp that does not turn and moves freely under a force."""
 
     kind: Literal["pulled"]
     edge: EdgeName
-    x_n: float = 0.0
-    y_n: float = 0.0
 
 
-class TractionInput(RequestModel):
+class TractionInput(RequestModel, Traction):
     """A load spread evenly along an edge, per length at rest."""
 
     kind: Literal["traction"]
     edge: EdgeName
-    x_n_per_mm: float = 0.0
-    y_n_per_mm: float = 0.0
 
 
 class SewnInput(RequestModel):

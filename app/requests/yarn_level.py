@@ -22,19 +22,17 @@ from knitcore.materials import Material
 from knitcore.yarn.library.yarns import ChartYarn, yarn_for, yarn_friction
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
+from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.friction import MAX_COEFFICIENT, MAX_STITCHES
 from knitcore.yarn.study.hysteresis import TAKE_DOWN_N_PER_MM, WORN_N_PER_MM, History
 from knitcore.yarn.study.relax import Branch, RelaxedRepeat, relax
 
 from ..context import Context
-from .base import Ends, RequestModel, ResultModel
+from .base import Ends, Positive, RequestModel, ResultModel
 from .charts import MaterialName, RepeatInput, to_chart, to_repeat
 from .faults import with_others
 
-LoopLength = Annotated[float, Field(gt=0, le=1000)]
-LoopLengths = list[
-    Annotated[list[LoopLength], Field(min_length=1, max_length=MAX_STITCHES_PER_SIDE)]
-]
+LoopLengths = list[Annotated[list[Positive], Field(min_length=1, max_length=MAX_STITCHES_PER_SIDE)]]
 
 
 class StitchRequest(RequestModel):
@@ -116,14 +114,9 @@ def _yarn(material: Material, repeat: StitchChart, loop_length_mm: float | None)
     return used if loop_length_mm is None else replace(used, loop_length_mm=loop_length_mm)
 
 
-class YarnResult(ResultModel):
+class YarnResult(ResultModel, YarnModel):
     """The yarn that was used, and the source of its numbers."""
 
-    bending_modulus_n_mm2: float
-    contact_stiffness_n_per_mm3: float
-    contact_exponent: float
-    radius_mm: float
-    core_radius_mm: float
     provenance: str
     estimated: bool
 
@@ -150,24 +143,11 @@ def _lengths(request: YarnLevelRequest, used: ChartYarn, rows: int, columns: int
 
 
 def relax_requested(
-    repeat: StitchChart,
-    used: ChartYarn,
-    request: YarnLevelRequest,
-    context: Context,
-    sizes_mm: tuple[float | None, float | None] = (None, None),
+    repeat: StitchChart, used: ChartYarn, request: YarnLevelRequest, context: Context
 ) -> RelaxedCell:
     """Relax in the requested branch, at held sizes of a stitch if they are given."""
-    return relax(
-        repeat,
-        used.yarn,
-        _lengths(request, used, repeat.rows, repeat.columns),
-        branch=request.branch,
-        convention=request.convention,
-        cell_course_mm=sizes_mm[0],
-        cell_wale_mm=sizes_mm[1],
-        flat=request.flat,
-        cancelled=context.cancelled,
-    )
+    lengths = _lengths(request, used, repeat.rows, repeat.columns)
+    return request.pass_to(relax, repeat, used.yarn, lengths, cancelled=context.cancelled)
 
 
 Request = TypeVar("Request", bound=YarnLevelRequest)

@@ -46,39 +46,28 @@ class Checks(BaseModel):
         return [check for check in self.checks if not check.ok]
 
 
-def examine(settings: Settings) -> Checks:
-    """Look at settings, folder, database and cluster; changes nothing."""
-    checks = _examine(settings, partial(_check_database, settings), _cluster_check(settings))
-    checks.checks.append(_checked("service", partial(_holder, settings)))
-    return checks
-
-
-def examine_start(settings: Settings, database: Database) -> Checks:
-    """The same for a service that starts, with its own database, whose pages it has looked at."""
-    return _examine(settings, database.check, _cluster_check(settings))
-
-
-def examine_running(settings: Settings, database: Database, cluster: Cluster | None) -> Checks:
-    """The same while the service runs, without a look at every page of the database."""
-    return _examine(settings, database.check, cluster.check if cluster is not None else None)
-
-
-def _cluster_check(settings: Settings) -> Callable[[], None]:
-    return partial(check_cluster, settings.scheduler or "")
-
-
-def _examine(
-    settings: Settings, database: Callable[[], object], cluster: Callable[[], object] | None
+def examine(
+    settings: Settings, database: Database | None = None, cluster: Cluster | None = None
 ) -> Checks:
+    """Look at settings, folder, database and cluster; changes nothing.
+
+    Parameters
+    ----------
+    database, cluster : of the service that asks. Without a database, that of the settings is looked
+        through page by page, and the service that has it now is named.
+    """
     checks: dict[str, Callable[[], object]] = {
         "settings": settings.check,
         "data folder": partial(check_folder, settings.folder),
-        "file modes": partial(check_modes, settings.folder),
-        "free space": partial(check_space, settings.folder),
-        "database": database,
+        "file modes": partial(_check_modes, settings.folder),
+        "free space": partial(_check_space, settings.folder),
+        "database": database.check if database else partial(_check_database, settings),
     }
-    if settings.scheduler is not None and cluster is not None:
-        checks["cluster"] = cluster
+    if settings.scheduler is not None:
+        connect = partial(_check_cluster, settings.scheduler)
+        checks["cluster"] = cluster.check if cluster else connect
+    if database is None:  # a second service would be refused
+        checks["service"] = lambda: holder(settings.store_url, settings.process_name)
     return Checks(checks=[_checked(name, check) for name, check in checks.items()])
 
 
@@ -112,13 +101,8 @@ def check_folder(folder: Path) -> None:
         )
 
 
-def check_modes(folder: Path) -> None:
-    """Refuse data that other users of the machine can read.
-
-    Raises
-    ------
-    InputError
-    """
+def _check_modes(folder: Path) -> None:
+    """Refuse data that other users of the machine can read."""
     if not folder.is_dir() or not folder.stat().st_mode & 0o077:
         return
     for file in sorted(folder.glob("*.sqlite3*")):
@@ -130,13 +114,8 @@ def check_modes(folder: Path) -> None:
             )
 
 
-def check_space(folder: Path) -> None:
-    """Refuse a disk that is about to be full.
-
-    Raises
-    ------
-    InputError
-    """
+def _check_space(folder: Path) -> None:
+    """Refuse a disk that is about to be full."""
     if not folder.is_dir():
         return
     free = shutil.disk_usage(folder).free
@@ -156,18 +135,8 @@ def _check_database(settings: Settings) -> None:
         check_schema(database)
 
 
-def _holder(settings: Settings) -> str | None:
-    """The service that runs on the data now; a second one would be refused."""
-    return holder(settings.store_url, settings.process_name)
-
-
-def check_cluster(address: str) -> None:
-    """Refuse a cluster that does not answer or has no workers.
-
-    Raises
-    ------
-    ClusterError
-    """
+def _check_cluster(address: str) -> None:
+    """Refuse a cluster that does not answer or has no workers."""
     from .compute.cluster import Cluster  # its library is needed here only
 
     with closing(Cluster(address)) as cluster:

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 from pydantic import BaseModel, Field
 
-from .doctor import examine_running
+from .doctor import examine
 from .identity import LOCAL_USER, current_user
 from .problems import Problem, RefusedError, UnavailableError
 
@@ -54,9 +54,7 @@ async def readyz(request: Request) -> Readiness:
     state = request.app.state
     try:
         async with asyncio.timeout(PATIENCE_S):
-            report = await asyncio.to_thread(
-                examine_running, state.settings, state.database, state.cluster
-            )
+            report = await asyncio.to_thread(examine, state.settings, state.database, state.cluster)
     except TimeoutError:
         raise NotReadyError("The database or the cluster does not answer.") from None
     for check in report.failed:

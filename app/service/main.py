@@ -18,7 +18,6 @@ from fastapi import FastAPI
 from ..context import Context
 from ..operations.chart.predict import PredictRequest, predict
 from ..viewer import relay
-from ..viewer.client import viewer_page
 from ..viewer.views import Views
 from . import VERSION, health, memory
 from .api import routers
@@ -26,7 +25,7 @@ from .compute.answers import Answers, RecentResults
 from .compute.compute import Compute
 from .compute.processes import processes
 from .compute.workers import Worker
-from .designs.idempotency import forget_old_keys
+from .designs.conditions import forget_old_keys
 from .designs.store import DesignStore
 from .designs.watching import Watched
 from .jobs.runner import JobRunner
@@ -44,8 +43,7 @@ from .web.passes import ViewPasses
 from .web.reference import serve_kinds, serve_reference
 from .web.schema import install_schema
 from .web.security import AccessControl
-from .web.sessions import Sessions
-from .web.tokens import REMEMBERED_S, Login, Tokens
+from .web.sessions import REMEMBERED_S, Login, Sessions, Tokens
 
 if TYPE_CHECKING:
     from .compute.cluster import Cluster
@@ -69,7 +67,9 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     current_default_thread_limiter().total_tokens = THREADS  # FastAPI's
     given: Database | None = app.state.database
     app.state.database = given or await asyncio.to_thread(_open_database, chosen)
-    app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
+    token = chosen.token.get_secret_value() if chosen.token else None
+    tokens, sessions = Tokens(app.state.database), Sessions(app.state.database)
+    app.state.login = await asyncio.to_thread(Login, tokens, sessions, token)
     app.state.cluster = _cluster(chosen)
     app.state.compute = Compute(
         _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
@@ -80,7 +80,7 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
     app.state.recent = RecentResults()
     app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
-    app.state.viewer_page = viewer_page()
+    app.state.viewer_page = relay.viewer_page()
     job_store = JobStore(app.state.database, chosen.process_name)
     app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
     await app.state.jobs.resume()
@@ -90,7 +90,7 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(asyncio.to_thread(_warm_up)),
     ]
     if chosen.require_login:
-        ending = _end_jobs_of_the_revoked(Tokens(app.state.database), app.state.jobs)
+        ending = _end_jobs_of_the_revoked(tokens, app.state.jobs)
         janitors.append(asyncio.create_task(ending))
     yield
     for janitor in janitors:
@@ -219,11 +219,6 @@ def _open_database(settings: Settings) -> Database:
     database = Database(settings.store_url)
     migrate(database)
     return database
-
-
-def _login(database: Database, settings: Settings) -> Login:
-    token = settings.token.get_secret_value() if settings.token else None
-    return Login(Tokens(database), Sessions(database), token)
 
 
 async def _end_jobs_of_the_revoked(tokens: Tokens, jobs: JobRunner) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import cached_property
 from ipaddress import ip_address
@@ -22,16 +22,9 @@ from knitcore.base.errors import InputError
 
 from .memory import machine_bytes
 
-NO_SETTINGS = frozenset(
-    f"KNITCORE_{name}"
-    for name in (
-        "CONFIG",
-        "STUDY_DATA",
-        # of tests:
-        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES"),
-        "WORKER_NICENESS",
-    )
-)
+OTHERS = ("CONFIG", "STUDY_DATA", "WORKER_NICENESS")
+OF_TESTS = ("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES")
+"""Variables of the environment that are no settings."""
 
 
 class Settings(BaseSettings):
@@ -223,9 +216,11 @@ class Settings(BaseSettings):
         return self
 
 
-def _check_names(environment: Iterable[str]) -> None:
-    """Refuse a misspelt variable: without its login, a service would be open."""
-    known = {f"KNITCORE_{name.upper()}" for name in Settings.model_fields} | NO_SETTINGS
+def _check_names(environment: Mapping[str, str]) -> None:
+    """Refuse a misspelt variable: without its login, a service would be open. Refuse an empty one:
+    an empty folder would be the present one."""
+    names = (*Settings.model_fields, *OTHERS, *OF_TESTS)
+    known = {f"KNITCORE_{name.upper()}" for name in names}
     for name in sorted(environment):
         if name.upper().startswith("KNITCORE_") and name.upper() not in known:
             near = get_close_matches(name.upper(), known, 1)
@@ -234,3 +229,5 @@ def _check_names(environment: Iterable[str]) -> None:
                 "is not a setting.",
                 f"Did you mean {near[0]}?" if near else "Leave it out; docs/serving.md has all.",
             )
+        if name.upper() in known and not environment[name].strip():
+            raise InputError(name, "is empty.", "Give it a value, or leave it out.")

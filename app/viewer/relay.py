@@ -1,11 +1,16 @@
-"""viser's client page and websocket, served from the page's own port and origin."""
+"""viser's client page, with our scripts before its own, and its websocket, served from the page's
+own port and origin."""
 
 import asyncio
 import contextlib
+import hashlib
 import logging
 import time
+from dataclasses import dataclass
+from pathlib import Path
 from types import NoneType
 
+import viser
 import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
@@ -14,7 +19,7 @@ from starlette.websockets import WebSocketState
 from ..service.designs.parameters import DesignId, private_name
 from ..service.identity import current_user
 from ..service.limits.user_limits import ConcurrencyLimit, OverLimitError, RateLimit
-from .client import ViewerPage
+from ..service.web.page import script_tag
 from .incoming import BURST, PER_S, RefusedMessageError, passed_on
 from .private_port import RELAY_HEADERS
 from .views import View, Views
@@ -22,11 +27,47 @@ from .views import View, Views
 log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
+CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
+SCRIPTS = ("viser/notices.js", "viser/yarn.js", "viser/aside.js", "viser/frame.js")
+STYLE = """<style>
+  /* viser's notes are about the computer, not about the fabric. */
+  .mantine-Notifications-root { display: none !important; }
+  /* viser fades the scene while it loads pictures of surroundings, of which there are none. */
+  canvas { opacity: 1 !important; }
+  /* Where viser draws rectangles to select with: one more layer that every frame would blend. */
+  canvas[width="0"] { display: none !important; }
+</style>"""
+VIEW_STYLE = """<style>
+  /* The page around the view has all controls; viser's own would repeat them. */
+  .mantine-Paper-root { display: none !important; }
+  /* The page's theme shows through. */
+  html, body, #root, #root div { background-color: transparent !important; }
+</style>"""
 OPENING_S = 8.0
 """Time for which a browser waits for a view: its page may load before its first scene is made."""
 LOOK_AGAIN_S = 0.05
 ENDS = (NoneType, asyncio.CancelledError, WebSocketDisconnect, websockets.ConnectionClosed)
 """Ends of the two directions of a connection, whichever side left."""
+
+
+@dataclass(frozen=True)
+class ViewerPage:
+    """The page of a view, without viser's control panel."""
+
+    content: bytes
+    tag: str
+
+
+def viewer_page() -> ViewerPage:
+    """Put it together."""
+    page = with_scripts(CLIENT_PAGE.read_text(encoding="utf-8"), VIEW_STYLE).encode()
+    return ViewerPage(page, f'"{hashlib.sha256(page).hexdigest()[:16]}"')
+
+
+def with_scripts(page: str, more: str = "") -> str:
+    """A page of viser's client that draws as ours do, with more for its head."""
+    scripts = "".join(map(script_tag, SCRIPTS))
+    return page.replace("<head>", f"<head>{more}{scripts}{STYLE}", 1)
 
 
 @router.get("/view/{design}")
@@ -68,22 +109,17 @@ async def _watched(socket: WebSocket, name: str, view: View, views: Views) -> No
     try:
         if coarse:
             await asyncio.to_thread(view.writer.redraw)  # nothing finer is sent
-        await _joined(socket, view)
+        async with websockets.connect(
+            f"ws://127.0.0.1:{view.port}",
+            subprotocols=list(socket.scope["subprotocols"]) or None,
+            additional_headers=RELAY_HEADERS,
+            max_size=None,
+            compression=None,
+        ) as inner:
+            await socket.accept(subprotocol=inner.subprotocol)
+            await _carry(socket, inner, view)
     finally:
         views.watch(name, -1, coarse=coarse)
-
-
-async def _joined(socket: WebSocket, view: View) -> None:
-    offered = list(socket.scope["subprotocols"])
-    async with websockets.connect(
-        f"ws://127.0.0.1:{view.port}",
-        subprotocols=offered or None,
-        additional_headers=RELAY_HEADERS,
-        max_size=None,
-        compression=None,
-    ) as inner:
-        await socket.accept(subprotocol=inner.subprotocol)
-        await _carry(socket, inner, view)
 
 
 async def _opened(views: Views, name: str) -> View | None:

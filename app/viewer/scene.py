@@ -15,6 +15,8 @@ from ..drawing.fabric import Box, Drawing, FabricScene, Ground
 from .camera import CameraSide, place_camera
 from .cloth import UNITS_PER_MM, ShownStitches
 
+Colour = tuple[int, int, int]
+
 STILL_S = 0.4
 """Tubes that a stretch has flattened are drawn again after this time without another change."""
 MARK = (232, 72, 44)
@@ -24,6 +26,7 @@ SCALE = (128, 120, 112)
 SCALE_BELOW = (1.8, 0.045)
 """The scale lies this many stitches below the fabric, and this share of its height at least."""
 PAPER = (255, 252, 246)
+UNSHADED: dict[str, Any] = {"cast_shadow": False, "receive_shadow": False}
 COARSE_WINDOW = 10_000
 """Stitches drawn as yarn without a GPU, of a chart that is too large to be drawn whole."""
 
@@ -78,16 +81,7 @@ class SceneWriter:
             corners, top = ground.box_corners_mm(box), ground.top_mm
             loops = [np.column_stack([corners, np.full(4, z)]) for z in (top, -top)]
             pairs = np.concatenate([np.stack([c, np.roll(c, -1, axis=0)], axis=1) for c in loops])
-            self._put(
-                "mark",
-                self._server.scene.add_line_segments(
-                    "/mark",
-                    points=_units(pairs),
-                    colors=MARK,
-                    thickness=3.0,
-                    thickness_units="screen",
-                ),
-            )
+            self._put_lines("mark", _units(pairs), MARK, 3.0)
 
     def look(self, side: CameraSide) -> None:
         """Turn everybody's camera to a side."""
@@ -144,43 +138,17 @@ class SceneWriter:
             return
         corners = _lifted(scene.rectangles_mm - middle, scene)
         first = 4 * np.arange(len(corners))[:, None]
-        self._put(
-            "panes",
-            self._server.scene.add_mesh_simple(
-                "/panes",
-                vertices=corners.reshape(-1, 3),
-                faces=(first + np.array([0, 1, 2, 0, 2, 3])).reshape(-1, 3).astype(np.uint32),
-                color=PAPER,
-                opacity=0.55,
-                side="double",
-                cast_shadow=False,
-                receive_shadow=False,
-            ),
-        )
+        faces = (first + np.array([0, 1, 2, 0, 2, 3])).reshape(-1, 3).astype(np.uint32)
+        self._put_mesh("panes", corners.reshape(-1, 3), faces, PAPER, opacity=0.55)
         lines = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 3)
-        self._put(
-            "rectangles",
-            self._server.scene.add_line_segments(
-                "/rectangles", points=lines, colors=INK, thickness=1.5, thickness_units="screen"
-            ),
-        )
+        self._put_lines("rectangles", lines, INK, 1.5)
 
     def _draw_body(self, scene: FabricScene, middle: Array) -> None:
         if scene.body is None:
             self._put("body", None)
             return
-        self._put(
-            "body",
-            self._server.scene.add_mesh_simple(
-                "/body",
-                vertices=_units(scene.body.sunk_mm(scene.top_mm) - np.append(middle, 0.0)),
-                faces=scene.body.faces,
-                color=SKIN,
-                side="double",
-                cast_shadow=False,
-                receive_shadow=False,
-            ),
-        )
+        vertices = _units(scene.body.sunk_mm(scene.top_mm) - np.append(middle, 0.0))
+        self._put_mesh("body", vertices, scene.body.faces, SKIN)
 
     def _draw_sheet(self, drawing: Drawing) -> None:
         """All of a chart that is too large, as a picture behind the part that is drawn."""
@@ -197,8 +165,7 @@ class SceneWriter:
                 render_height=UNITS_PER_MM * float(height),
                 format="png",
                 position=(0.0, 0.0, -2.0 * UNITS_PER_MM * drawing.ground.top_mm),
-                cast_shadow=False,
-                receive_shadow=False,
+                **UNSHADED,
             ),
         )
 
@@ -218,16 +185,7 @@ class SceneWriter:
                 [[right, below - tick, 0.0], [right, below + tick, 0.0]],
             ]
         )
-        self._put(
-            "scale",
-            self._server.scene.add_line_segments(
-                "/scale",
-                points=_units(points),
-                colors=SCALE,
-                thickness=2.0,
-                thickness_units="screen",
-            ),
-        )
+        self._put_lines("scale", _units(points), SCALE, 2.0)
         words = f"{length:g} mm" if length < 10 else f"{length / 10:g} cm"
         beside = UNITS_PER_MM * np.array([right - length - tick, below, 0.0])
         self._put(
@@ -236,6 +194,27 @@ class SceneWriter:
                 "/scale/words", words, position=tuple(beside), anchor="center-right"
             ),
         )
+
+    def _put_lines(
+        self, name: str, points: NDArray[np.float32], colour: Colour, thickness: float
+    ) -> None:
+        lines = self._server.scene.add_line_segments(
+            f"/{name}", points, colour, thickness=thickness, thickness_units="screen"
+        )
+        self._put(name, lines)
+
+    def _put_mesh(
+        self,
+        name: str,
+        vertices: NDArray[np.float32],
+        faces: NDArray[np.uint32],
+        colour: Colour,
+        **more: Any,
+    ) -> None:
+        mesh = self._server.scene.add_mesh_simple(
+            f"/{name}", vertices, faces, color=colour, side="double", **UNSHADED, **more
+        )
+        self._put(name, mesh)
 
     def _put(self, name: str, handle: Any) -> None:
         """Note a layer's new handle; the same name replaced the old one, None removes it."""

@@ -13,12 +13,11 @@ from knitcore.garment.shaped import outline_marks
 from ..context import Context
 from ..drawing.computed import PosedView, StretchView
 from ..drawing.design_view import StretchStep, ViewRequest, build_scene
-from ..drawing.fabric import FabricScene
-from ..drawing.solid import MAX_SOLID, solid_glb
+from ..drawing.fabric import MAX_SOLID, FabricScene, solid_glb
 from ..requests.charts import to_chart
 from ..service.problems import ServiceError
-from .client import with_scripts
 from .incoming import WantedPicture
+from .relay import with_scripts
 from .still import still_png
 from .views import View, new_view
 

@@ -39,7 +39,8 @@ class MeasuredStrip:
     direction : of the pull.
     width_mm, length_mm : of the strip at rest; length None where it is unknown.
     strain : (levels,) clamp to clamp, increasing.
-    stress_n_per_mm, waist : (pulls, levels); NaN where a pull does not reach.
+    stress_n_per_mm, waist : (pulls, levels); NaN where a pull does not reach, or the strain across
+        was not measured.
     across_mm : distance at rest of the two points, half-way between the clamps and as far from the
         middle, between which the waist is read; None for the edges.
     """
@@ -85,10 +86,10 @@ class MeasuredStrip:
     @property
     def means(self) -> tuple[Array, Array]:
         """Mean stress and waist over the pulls, (levels,); NaN where none reaches."""
-        reached = np.isfinite(self.stress_n_per_mm).sum(axis=0)
         with np.errstate(invalid="ignore"):
             stress, waist = (
-                np.nansum(values, axis=0) / reached for values in (self.stress_n_per_mm, self.waist)
+                np.nansum(values, axis=0) / np.isfinite(values).sum(axis=0)
+                for values in (self.stress_n_per_mm, self.waist)
             )
         return np.asarray(stress), np.asarray(waist)
 

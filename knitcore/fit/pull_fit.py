@@ -40,6 +40,7 @@ from knitcore.law.least_squares import (
 )
 from knitcore.materials.law_uncertainty import LawUncertainty
 from knitcore.materials.measured_curves import MeasuredCurve
+from knitcore.measure.plausibility import check_units
 from knitcore.measure.stretch_test import StretchRun, StretchTest, check_pair
 from knitcore.measure.uniaxial_files import Marks
 
@@ -163,7 +164,7 @@ def fit_law(
     if reduction is Reduction.RECOMMENDED:
         problem = "the recommended reduction needs simulated tests."
         raise InputError("reduction", problem, "Call knitcore.fit.strip_fit.fit_tests.")
-    notes = [*course.notes, *wale.notes, *check_pair(course, wale)]
+    notes = [*course.notes, *wale.notes, *check_pair(course, wale), *check_units(course, wale)]
     fits, ratios, law = _fit(course, wale, reduction)
     replicates = [
         [_quantities(_fit(c, w, reduction)[2]) for c, w in replicas]
@@ -196,6 +197,10 @@ def _fit(
 ) -> tuple[tuple[DirectionFit, DirectionFit], tuple[float, float], ConstitutiveLaw]:
     """Fits (course, wale), Poisson ratios (yx, xy), law."""
     tests = (course, wale)
+    for test in tests:
+        if not np.isfinite(test.pooled().strain_across).all():
+            remedy = f"Measure it, or use the {Reduction.RECOMMENDED} reduction."
+            raise InputError(test.source, "has no strain across the pull.", remedy)
     ratios = tuple(_poisson_ratio(test, reduction) for test in tests)
     fits = tuple(
         fit_direction(*_points(test, reduction), poisson_coupling=ratios[1 - axis])

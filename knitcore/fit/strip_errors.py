@@ -119,10 +119,13 @@ class LinearFit:
             curves.append(
                 CurveUncertainty(log_stress, math.sqrt(self.covariance[lock_up, lock_up]))
             )
-            rms = math.hypot(
-                math.sqrt(np.nanmean((WAIST_NOISE * waist_error) ** 2)), self.flattening[test]
-            )
-            waists.append(rms / max(math.sqrt(np.mean(waist**2)), 1e-3))
+            if np.isfinite(waist).all():
+                missed = math.sqrt(np.nanmean((WAIST_NOISE * waist_error) ** 2))
+                rms = math.hypot(missed, self.flattening[test])
+                waists.append(rms / max(math.sqrt(np.mean(waist**2)), 1e-3))
+            else:  # the prior's, carried through the fit
+                name = ("poisson_yx", "poisson_xy")[test]
+                waists.append(errors[name] / max(abs(getattr(law, name)), 1e-3))
         return LawUncertainty(
             log_modulus_course=errors["modulus_course"] / law.modulus_course,
             log_modulus_wale=errors["modulus_wale"] / law.modulus_wale,

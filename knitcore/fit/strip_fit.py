@@ -13,8 +13,8 @@ unknown the ends are left free to narrow, so that the strip strains evenly.
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -32,6 +32,8 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.least_squares import fit_direction
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials.law_uncertainty import LawUncertainty
+from knitcore.measure.plausibility import check_units
+from knitcore.measure.stretch_tables import TableReading
 from knitcore.measure.stretch_test import StretchTest, check_pair
 from knitcore.measure.uniaxial_files import read_stretch_test
 
@@ -100,6 +102,9 @@ def fit_tests(
     file_format: str | None = None,
     width_course_mm: float | None = None,
     width_wale_mm: float | None = None,
+    length_course_mm: float | None = None,
+    length_wale_mm: float | None = None,
+    columns: Mapping[str, str] | None = None,
     cancelled: Cancelled | None = None,
 ) -> LawFit:
     """Fit a law to two files (see :mod:`knitcore.measure.uniaxial_files` for their layout).
@@ -110,6 +115,8 @@ def fit_tests(
     reduction : how points become constants.
     file_format : ``"h5"`` or ``"csv"``; found out from the content if None.
     width_course_mm, width_wale_mm : clamped widths, in place of those in the files.
+    length_course_mm, length_wale_mm : distances of the clamps at rest, in place of those there.
+    columns : what a table calls our columns, such as ``{"force_n": "Channel 2 (N)"}``.
     cancelled : called between simulated tests.
 
     Raises
@@ -119,12 +126,20 @@ def fit_tests(
     CancelledError
         If ``cancelled`` returned True.
     """
-    tests = [
-        read_stretch_test(path, marks=reduction.marks, file_format=file_format)
-        for path in (course, wale)
-    ]
     widths = (width_course_mm, width_wale_mm)
+    lengths = (length_course_mm, length_wale_mm)
+    tests = [
+        read_stretch_test(
+            path, marks=reduction.marks, file_format=file_format,
+            reading=TableReading(width, length, columns or {}),
+        )
+        for path, width, length in zip((course, wale), widths, lengths, strict=True)
+    ]  # fmt: skip
     tests = [t if w is None else t.with_width(w) for t, w in zip(tests, widths, strict=True)]
+    tests = [
+        t if length is None else replace(t, length_mm=length)
+        for t, length in zip(tests, lengths, strict=True)
+    ]
     if reduction is Reduction.RECOMMENDED:
         return fit_simulated(tests[0], tests[1], cancelled=cancelled)
     return fit_law(tests[0], tests[1], reduction=reduction)
@@ -142,7 +157,7 @@ def fit_simulated(
     CancelledError
         If ``cancelled`` returned True.
     """
-    notes = [*course.notes, *wale.notes, *check_pair(course, wale)]
+    notes = [*course.notes, *wale.notes, *check_pair(course, wale), *check_units(course, wale)]
     tests = (course, wale)
     strips = [MeasuredStrip.of(t, d) for t, d in zip(tests, Direction, strict=True)]
     for test, strip in zip(tests, strips, strict=True):
@@ -169,8 +184,10 @@ def fit_simulated(
         notes=tuple(notes),
         uncertainty=fit.uncertainty,
         waist_rms={
-            d: rms((w - strip.means[1])[np.isfinite(w)])
+            d: rms(missed[np.isfinite(missed)])
             for d, w, strip in zip(Direction, fit.waist, strips, strict=True)
+            for missed in [w - strip.means[1]]
+            if np.isfinite(missed).any()
         },
     )
 
@@ -238,6 +255,8 @@ class _Problem:
         logs = []
         for strip in self.strips:
             stress, waist = strip.means
+            usual = -math.tanh(COUPLING_PRIOR[0]) * strip.strain
+            waist = np.where(np.isfinite(waist), waist, usual)
             fit = fit_direction(strip.strain, waist, stress, np.ones(LEVELS), 0.0)
             share = min(fit.alpha, 0.9 / float(strip.strain[-1]))
             floor = 1e-3 * float(stress.max())
@@ -287,7 +306,7 @@ def _residual(strip: MeasuredStrip, law: ConstitutiveLaw, cells: int) -> tuple[A
     wanted_stress, wanted_waist = strip.means
     force = (stress - wanted_stress) / force_noise(wanted_stress)
     flat = flattening(waist, wanted_waist)
-    narrowing = (waist + flat - wanted_waist) / WAIST_NOISE
+    narrowing = np.nan_to_num((waist + flat - wanted_waist) / WAIST_NOISE)  # 0 where not measured
     return np.concatenate([force + STOPPED_SHORT * failed, narrowing]), flat / FLATTENING
 
 

@@ -24,6 +24,8 @@ FIT_LIMIT_N = 1.0
 CORE_N = 3.0
 CORE_TOLERANCE = 0.02
 MIN_READINGS = 15
+THICKNESS_TIMES = 4.0
+"""The squeezed thickness is between the diameter over this and the diameter times this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +95,10 @@ def fit_compression(
         check_range(f"{test.name}, {name}", value, 0.01, 50, "mm", "its size")
     depth, force, depth_core, thickness = _loading(test)
     area = probe_width_mm * diameter
+    if not diameter / THICKNESS_TIMES < thickness < diameter * THICKNESS_TIMES:
+        problem = f"a yarn {diameter:g} mm thick is squeezed by {thickness:.3g} mm."
+        remedy = "Give depth and diameter in mm, not in µm or m."
+        raise InputError(f"{test.name}, depth_mm", problem, remedy)
 
     def law(at: Array, k: float, p: float) -> Array:
         ratio = thickness / (depth_core - at)

@@ -1,4 +1,4 @@
-"""Read stretch tests: the HDF5 layout of the paper's authors, and a simple table.
+"""Read stretch tests: the HDF5 layout of the paper's authors, and tables.
 
 HDF5: one group ``videoN`` per pull with ``forces`` (n,) in N, ``traj`` (7, 2, n) in pixels (right,
 left, bottom, top, centre, clamp bottom, clamp top; the pull is vertical in the image) and
@@ -7,10 +7,7 @@ the strain along is read between the other two. The datasets ``clampSize`` (px, 
 clamp of 35.5 mm) and ``fabricSize`` (px, the clamped width). ``video1`` conditions the sample and
 is not used.
 
-Table (CSV, or the first sheet of an XLSX or XLS workbook): a header line with ``strain_along,
-strain_across, force_n, width_mm`` and, for repeated pulls, ``run``, the distance of the clamps at
-rest, ``length_mm``, and that of the points between which the strain across is read, ``across_mm``;
-one row per point in the order of the pull.
+Tables are in :mod:`knitcore.measure.stretch_tables`.
 """
 
 import re
@@ -21,29 +18,21 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from knitcore.base.arrays import Array, Indices
+from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.measure.stretch_test import (
-    MIN_POINTS,
-    StretchRun,
-    StretchTest,
-    check_run,
-    misread_forces,
-    until_unloaded,
+from knitcore.measure.stretch_tables import (
+    WIDER_THAN_CLAMPED,
+    TableReading,
+    read_stretch_table,
+    sound_runs,
 )
-from knitcore.measure.tables import numbers, read_table, rows_by_label
+from knitcore.measure.stretch_test import MIN_POINTS, StretchRun, StretchTest, misread_forces
 
 CLAMP_MM = 35.5
-CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
-TABLE_LENGTHS = {"length_mm": "the clamps", "across_mm": "the points tracked across"}
-"""Optional columns, each with the marks between which it is measured."""
-MAX_TABLE_BYTES = 64 * 2**20
 MAX_PIXEL = 1e6
 MAX_FORCE_N = 1e6
 MAX_FRAMES = 2_000_000
 MAX_VIDEOS = 100
-WIDER_THAN_CLAMPED = 1.2
-"""Tracked points farther apart than this share of the clamped width mean a misread width."""
 _RIGHT, _LEFT, _BOTTOM, _TOP, _CENTRE, _CLAMP_BOTTOM, _CLAMP_TOP = range(7)
 
 
@@ -64,7 +53,11 @@ class Marks(StrEnum):
 
 
 def read_stretch_test(
-    path: Path, *, marks: Marks = Marks.CLAMPS, file_format: str | None = None
+    path: Path,
+    *,
+    marks: Marks = Marks.CLAMPS,
+    file_format: str | None = None,
+    reading: TableReading | None = None,
 ) -> StretchTest:
     """A test from a file; the format is taken from the content unless it is given.
 
@@ -73,6 +66,7 @@ def read_stretch_test(
     path : HDF5, CSV or workbook.
     marks : for HDF5, which points give the strain along the pull.
     file_format : ``"h5"``, ``"csv"`` (any table) or None.
+    reading : for tables, what a file does not say.
 
     Raises
     ------
@@ -94,7 +88,9 @@ def read_stretch_test(
         )
     if file_format == "csv" and actual == "h5":
         raise InputError(path.name, "is an HDF5 file, not a CSV.", "Use the format h5.")
-    return _read_hdf5(path, marks) if actual == "h5" else _read_table(path)
+    if actual == "h5":
+        return _read_hdf5(path, marks)
+    return read_stretch_table(path, reading)
 
 
 # -- HDF5 ----------------------------------------------------------------------------------------
@@ -148,7 +144,7 @@ def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
         )
         for key, pull in pulls.items()
     ]
-    runs = _sound(runs, notes)
+    runs = sound_runs(runs, notes)
     if not runs:
         raise _no_pull(name, notes)
     length_mm = float(np.nanmedian(first.clamps[:9])) * mm_per_px
@@ -189,27 +185,6 @@ class _Tracked:
     clamps: Array
     across: Array
     force: Array
-
-
-def _sound(runs: list[StretchRun], notes: list[str]) -> list[StretchRun]:
-    """The pulls that a fit can use, without their unloading; refuses if there is none."""
-    sound: list[StretchRun] = []
-    refused: InputError | None = None
-    for whole in runs:
-        run = until_unloaded(whole)
-        try:
-            check_run(run)
-        except InputError as error:
-            refused = error
-            notes.append(f"{run.name} is left out: {error.problem}")
-            continue
-        if run.length < whole.length:
-            after = whole.length - run.length
-            notes.append(f"{run.name}: {after} frames after the unloading are left out.")
-        sound.append(run)
-    if refused is not None and not sound:
-        raise refused
-    return sound
 
 
 def _tracked(
@@ -290,87 +265,3 @@ def _numbers(name: str, file: h5py.File, key: str) -> Array:
 
 def _text(value: object) -> str:
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
-
-
-# -- tables --------------------------------------------------------------------------------------
-
-
-def _read_table(path: Path) -> StretchTest:
-    if path.stat().st_size > MAX_TABLE_BYTES:
-        raise InputError(path.name, "is larger than 64 MB.", "Thin the points out.")
-    table = read_table(path, ", ".join(CSV_COLUMNS))
-    table.columns = [_column_name(str(c)) for c in table.columns]
-    _check_header(path.name, list(table.columns))
-    given = [*CSV_COLUMNS, *(name for name in TABLE_LENGTHS if name in table)]
-    values = {name: numbers(f"{path.name}, column {name}", table[name]) for name in given}
-    if len(table) == 0:
-        raise InputError(path.name, "has no rows.", "Give one row per point.")
-    labelled = rows_by_label(table, "run", "").items()
-    runs_and_widths = [_run(path.name, label, rows, values) for label, rows in labelled]
-    runs, widths = zip(*runs_and_widths, strict=True)
-    lengths = {
-        column: _length(path.name, column, values[column])
-        for column in TABLE_LENGTHS
-        if column in values
-    }
-    clamps, across = (lengths.get(column) for column in TABLE_LENGTHS)
-    if across is not None and across > WIDER_THAN_CLAMPED * min(widths):
-        problem = f"{across:g} mm is more than the clamped width."
-        remedy = "Give the distance, in mm at rest, of the points that you track across."
-        raise InputError(f"{path.name}, column across_mm", problem, remedy)
-    return StretchTest(path.name, "", runs, widths, (), clamps, across)
-
-
-def _length(name: str, column: str, length: Array) -> float:
-    """A length at rest, the same in all rows."""
-    if length.min() < 5 or np.ptp(length) > 0.01 * length[0]:
-        raise InputError(
-            f"{name}, column {column}",
-            f"goes from {length.min():g} to {length.max():g} mm.",
-            f"Give the distance of {TABLE_LENGTHS[column]} at rest in mm, the same in every row.",
-        )
-    return float(length[0])
-
-
-def _column_name(text: str) -> str:
-    """The documented name of a column: ``Force (N)`` and ``force`` are ``force_n``."""
-    name = re.sub(r"[^\w%]+", "_", text.strip().lower()).strip("_")
-    return {"force": "force_n", "width": "width_mm", "length": "length_mm"}.get(name, name)
-
-
-def _check_header(name: str, columns: list[str]) -> None:
-    percent = [c for c in columns if "strain" in c and ("%" in c or "percent" in c)]
-    if percent:
-        remedy = "Divide the strains by 100 and name the columns strain_along and strain_across."
-        raise InputError(f"{name}, {percent[0]}", "is a strain in percent (%).", remedy)
-    missing = [c for c in CSV_COLUMNS if c not in columns]
-    if missing:
-        problem = f"has no column {', '.join(missing)} (it has {', '.join(columns[:8])})."
-        raise InputError(name, problem, f"The header line must name {', '.join(CSV_COLUMNS)}.")
-
-
-def _run(
-    name: str, label: str, rows: Indices, values: dict[str, Array]
-) -> tuple[StretchRun, float]:
-    title = f"{name}, run {label}" if label else name
-    width = values["width_mm"][rows]
-    if width.min() < 5:
-        row = int(rows[np.argmin(width)])
-        problem = f"{width.min():g} in row {row + 2} is below 5 mm, so it may be in cm or m."
-        remedy = "Give the clamped width at rest in mm."
-        raise InputError(f"{title}, column width_mm", problem, remedy)
-    if np.ptp(width) > 0.01 * width[0]:
-        row = int(rows[np.argmax(np.abs(width - width[0]) > 0.01 * width[0])])
-        problem = f"changes from {width[0]:g} to {values['width_mm'][row]:g} mm in row {row + 2}."
-        remedy = "Stress is force per width at rest: give that width in every row of a run."
-        raise InputError(f"{title}, column width_mm", problem, remedy)
-    force = values["force_n"][rows]
-    good = ~misread_forces(force)
-    run = StretchRun(
-        name=title,
-        strain_along=values["strain_along"][rows][good],
-        strain_across=values["strain_across"][rows][good],
-        stress=force[good] / width[0],
-    )
-    check_run(run, first_row=int(rows[0]) + 2)
-    return run, float(width[0])

@@ -67,6 +67,7 @@ class Densities:
     excess : (…, densities) less those of the pure fabrics, weighted by the shares.
     straight : (…, 2) straightness of the fold lines, from 0 to 1. First along columns, which folds
         the width: 1 in a rib, 0 in a welt and in stockinette; then along rows: 1 in a welt.
+    even : (…, 2) how even the runs beside those lines are, from 0 to 1: 1 in KKPP, 0.4 in KKKP.
     ways : (…, 4) parts, adding up to 1, in which the chart is a rib, a welt, and neither, by its
         odd segments: along the course, along the wale, and at one stitch along both. Of the last,
         sparse purls (or knits) come last: all of it where they are a seventh of all stitches, none
@@ -76,12 +77,13 @@ class Densities:
     shares: Array
     excess: Array
     straight: Array
+    even: Array
     ways: Array
 
     @property
-    def arrays(self) -> tuple[Array, Array, Array, Array]:
-        """All features."""
-        return self.shares, self.excess, self.straight, self.ways
+    def arrays(self) -> tuple[Array, Array, Array, Array, Array]:
+        """All of them, in the order in which they are given."""
+        return self.shares, self.excess, self.straight, self.even, self.ways
 
     @property
     def mixed(self) -> Array:
@@ -153,7 +155,7 @@ def densities_of(purl: NDArray[np.bool_], mean: Mean = _mean) -> Densities:
     sparse = 4 * one_sided * (1 - one_sided)
     parts = course * (1 - neither), (1 - course) * (1 - neither)
     ways = np.stack([*parts, neither * (1 - sparse), neither * sparse], axis=-1)
-    return Densities(shares, values - shares @ _pure(), straight, ways)
+    return Densities(shares, values - shares @ _pure(), straight, _evenness(sign, mean), ways)
 
 
 @cache
@@ -193,6 +195,25 @@ def _lines(sign: Array, mean: Mean) -> Array:
         smooth = mean(back(change * _weights(along, _SMOOTHED_OVER[-1])) ** 2)
         shares.append(np.divide(smooth, plain, out=np.zeros_like(plain), where=plain > _NO_CHANGE))
     return np.stack(shares, axis=-1)
+
+
+def _evenness(sign: Array, mean: Mean) -> Array:
+    """(…, 2) how even runs of K and P are beside the changes along the course, then the wale.
+
+    In a folded rib the shorter runs hide behind the longer ones, so the width falls at most to the
+    share of the longer: by ln 2 if the runs are equal, by ln 6/5 if one column in six is purl
+    (Spencer, *Knitting Technology*, on 1×1 and 6×3 ribs). This is that logarithm over ln 2, the
+    mean over all changes.
+    """
+    kx, ky, back = _waves(sign)
+    means = []
+    for across, axis in ((kx, -1), (ky, -2)):
+        longer = 1 + np.abs(back(_weights(across, _SMOOTHED_OVER[-1])))
+        changes = _odd_sides(sign, axis)
+        even = mean(changes * (1 - np.log2(np.minimum(longer, 2.0))))
+        number = mean(changes)
+        means.append(np.divide(even, number, out=np.zeros_like(even), where=number > _NO_CHANGE))
+    return np.stack(means, axis=-1)
 
 
 def _waves(sign: Array) -> tuple[Array, Array, Callable[[Array], Array]]:

@@ -35,14 +35,15 @@ from knitcore.prediction.size import RelaxedSize
 STRESS_GRID = np.array([400.0, 800.0, 2000.0, 4000.0, 8000.0, 12000.0])
 """Stresses over B / L³ at which strains are learned: about 0.01 to 0.3 N/mm."""
 
-MAX_FOLDED = 0.87
+MAX_FOLDED = 1.0
 """Knitted fabric folds less than the yarn level predicts, which has no friction and no set. In
 logarithms a fold f becomes f / (1 + |f| / MAX_FOLDED), times the squared straightness of the fold
-lines: folds that cross hinder each other. The number was fitted to the 29 swatches of KnitDB, and
-the power was chosen there from 1, 2 and 3 (studies/knitdb.py)."""
+lines, since folds that cross hinder each other, and the evenness of the runs beside them, since a
+short run cannot hide a long one. The number and the power were chosen on the 29 swatches of KnitDB
+(studies/knitdb.py, which judges the choice on textures left out)."""
 
-SHOWN_LOG_SD = 0.055
-"""Residual of that fit: standard deviation of the logarithm of a swatch's width or height."""
+SHOWN_LOG_SD = 0.066
+"""Standard deviation of the logarithm of a swatch's width or height, on those textures."""
 
 
 _TOE = 0.15
@@ -170,7 +171,6 @@ class LearnedModel:
         regression's variance, such that 90 % of the left-out values lie in their 90 % intervals,
         by ways (:class:`knitcore.prediction.densities.Densities`). A chart has their mean.
     sweeps : of each sample; None where it was only relaxed.
-    most_folded : see :data:`MAX_FOLDED`.
     """
 
     charts: tuple[str, ...]
@@ -183,7 +183,6 @@ class LearnedModel:
     folding_scale: Array
     unfolding_scale: Array
     sweeps: tuple[SweptChart | None, ...]
-    most_folded: float = MAX_FOLDED
 
     def response(
         self,
@@ -264,7 +263,7 @@ class LearnedModel:
         deviation = composition.uncertainty @ self.folding_scale * np.sqrt(variance)[..., None]
         if simulated:
             return fold, deviation
-        shown = composition.straight**2 / (1.0 + np.abs(fold) / self.most_folded)
+        shown = composition.straight**2 * composition.even / (1.0 + np.abs(fold) / MAX_FOLDED)
         rest = SHOWN_LOG_SD * np.asarray(composition.mixed)[..., None]
         return shown * fold, np.hypot(rest, shown * deviation)
 

@@ -271,11 +271,12 @@ def _densities_of(
     up, along = _windows(rows), _windows(columns)
     own = densities_of(repeat.purl, lambda values: (up @ values.astype(float) @ along.T).ravel())
     counts = np.outer(np.diff(rows), np.diff(columns)).ravel()
-    shares, excess, straight, ways = (
+    shares, excess, straight, even, ways = (
         values + mean - np.average(values, axis=0, weights=counts)
         for values, mean in zip(own.arrays, whole.arrays, strict=True)
     )
-    return Densities(_shares(shares), excess, np.clip(straight, 0.0, 1.0), _shares(ways))
+    straight, even = np.clip([straight, even], 0.0, 1.0)
+    return Densities(_shares(shares), excess, straight, even, _shares(ways))
 
 
 def _windows(cuts: Indices) -> Array:

@@ -332,10 +332,14 @@ def _scattered(values: Array, rows_: NDArray[np.bool_]) -> Array:
     return full
 
 
-def report(arrays: dict[str, NDArray[np.generic]], yarns: list[str]) -> Iterator[str]:
-    """Lines of two tables: median and 90 % quantile of the factor by which left-out charts are
-    missed, and the share of them inside the 90 % interval. The second compares 2-D charts with a
-    null model: the mixture, times the mean factor of the class.
+Table = tuple[str, list[list[str]]]
+"""The line of heads of a table, and the cells of its rows."""
+
+
+def report(arrays: dict[str, NDArray[np.generic]], yarns: list[str]) -> tuple[Table, Table]:
+    """Two tables: median and 90 % quantile of the factor by which left-out charts are missed, and
+    the share of them inside the 90 % interval. The second compares 2-D charts with a null model:
+    the mixture, times the mean factor of the class.
     """
     kinds = np.array([kind_of(StitchChart.parse(str(text))) for text in arrays["charts"]])
     values = {name: np.asarray(arrays[name], dtype=float) for name in _REPORTED}
@@ -349,10 +353,7 @@ def report(arrays: dict[str, NDArray[np.generic]], yarns: list[str]) -> Iterator
     strain_sd = np.sqrt(rest_sd**2 + np.einsum("njk,nk->nj", slopes**2, fold_sd**2))
     at = {direction: len(STRESS_GRID) * direction.axis for direction in Direction}
 
-    yield (
-        "| at 0.05 N/mm | charts × yarns | width | height | course strain | wale strain "
-        "| course, known size | wale, known size |"
-    )
+    of_kinds = []
     yarn_names = np.array(yarns)
     groups = {kind: kinds == kind for kind in _KINDS}
     groups |= {f"2-D, {yarn}": groups["2-D"] & (yarn_names == yarn) for yarn in _YARNS}
@@ -360,22 +361,26 @@ def report(arrays: dict[str, NDArray[np.generic]], yarns: list[str]) -> Iterator
         pairs = [(fold[of, i], fold_sd[of, i]) for i in range(2)]
         for missed, spread in ((strain, strain_sd), (rest, rest_sd)):
             pairs += [(missed[of, first + 2], spread[of, first + 2]) for first in at.values()]
-        cells = " | ".join(_factors(*pair) for pair in pairs)
-        yield f"| {name} | {np.count_nonzero(of):,} | {cells} |"
-
-    yield (
-        "| 2-D charts at | course: mean of the class | learned | known size "
-        "| wale: mean of the class | learned | known size |"
-    )
+        cells = (_factors(*pair) for pair in pairs)
+        of_kinds.append([name, f"{np.count_nonzero(of):,}", *cells])
+    of_stresses = []
     two = groups["2-D"]
     for i, stress in _REPORTED_AT.items():
         logs = []
         for first in at.values():
             ratio = values["ratio"][two, first + i]
             logs += [ratio - np.nanmean(ratio), strain[two, first + i], rest[two, first + i]]
-        yield f"| {stress:g} N/mm | {' | '.join(map(_factors, logs))} |"
+        of_stresses.append([f"{stress:g} N/mm", *map(_factors, logs)])
+    return (_HEADS, of_kinds), (_HEADS_OF_STRESSES, of_stresses)
 
 
+_HEADS = (
+    "| at 0.05 N/mm | charts × yarns | width | height | course strain | wale strain "
+    "| course, known size | wale, known size |"
+)
+_HEADS_OF_STRESSES = (
+    "| 2-D charts at | course: null | learned | known size | wale: null | learned | known size |"
+)
 _REPORTED_AT = {0: 0.01, 2: 0.05, 5: 0.3}
 """Stresses of the grid, and about what they are in N/mm."""
 
@@ -406,8 +411,8 @@ def main() -> None:
     """Run ``python -m scripts.training.learned``."""
     every = rows()
     arrays = arrays_of(every)
-    for line in report(arrays, [row.yarn_name for row in every]):
-        sys.stdout.write(line + "\n")
+    for heads, cells in report(arrays, [row.yarn_name for row in every]):
+        sys.stdout.write("\n".join([heads, *(f"| {' | '.join(row)} |" for row in cells), ""]))
     kept = {name: values for name, values in arrays.items() if name not in _REPORTED_ONLY}
     np.savez_compressed(FILE, **kept)  # type: ignore[arg-type]
 

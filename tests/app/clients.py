@@ -9,7 +9,7 @@ from fastapi.testclient import TestClient
 
 from app.service.main import create_app
 from app.service.settings import Settings
-from app.service.web.tokens import Tokens
+from app.service.web.sessions import Tokens
 
 VIEW_PROTOCOLS = [f"viser-v{viser.__version__}"]
 

@@ -5,7 +5,7 @@ from typing import Any
 from pydantic import Field
 
 from knitcore.chart.fabric import Direction
-from knitcore.chart.segments import segment_map
+from knitcore.chart.segments import SegmentCounts, segment_map
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.draw.laid_out import size_at_rest
 from knitcore.garment.shaped import ShapedChart, outline_marks
@@ -26,11 +26,8 @@ class PredictRequest(GaugedRequest):
     outline: OutlineInput = None
 
 
-class SegmentCountsResult(ResultModel):
+class SegmentCountsResult(ResultModel, SegmentCounts):
     """Segments of one direction by their symmetry."""
-
-    even: int
-    odd: int
 
 
 class PredictResult(ElasticConstants, Extensibility, IntervalResult):
@@ -99,10 +96,10 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
     to_relax = worth_relaxing(chart, material, predicted)
     return PredictResult.of(
         predicted,
-        **by_direction,
-        **vars(size_at_rest(shaped, material, predicted)),
         rows=chart.rows,
         columns=chart.columns,
+        **by_direction,
+        **vars(size_at_rest(shaped, material, predicted)),
         segments={direction: segments.counts(direction) for direction in Direction},
         poisson_yx=predicted.course.poisson,
         poisson_xy=predicted.wale.poisson,

@@ -118,7 +118,6 @@ def _result(piece: CurledPiece, request: CurlRequest) -> CurlResult:
         flat_width_mm=float(flat[0]),
         flat_height_mm=float(flat[1]),
         corners_mm=corner_lists(piece.corners_mm, piece.used) if request.corners else None,
-        notes=list(piece.notes),
     )
 
 

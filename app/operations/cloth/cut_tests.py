@@ -90,34 +90,19 @@ class TrellisResult(PieceTestResult):
 
 
 def bias(request: BiasRequest, context: Context) -> BiasResult:
-    """Force and waist of a strip cut at an angle, on the bias by default.
-
-    Raises
-    ------
-    InputError, CancelledError
-    """
+    """Force and waist of a strip cut at an angle, on the bias by default."""
     size = request.width_mm, request.length_mm
     return BiasResult.of_pull(*request.pull(bias_test, size, context))
 
 
 def biaxial(request: BiaxialRequest, context: Context) -> BiaxialResult:
-    """Forces on the edges of a rectangle that is pulled in both directions.
-
-    Raises
-    ------
-    InputError, CancelledError
-    """
+    """Forces on the edges of a rectangle that is pulled in both directions."""
     size = request.width_mm, request.length_mm
     return BiaxialResult.of_pull(*request.pull(biaxial_test, size, context))
 
 
 def trellis(request: TrellisRequest, context: Context) -> TrellisResult:
-    """Force of a hinged frame that shears a square.
-
-    Raises
-    ------
-    InputError, CancelledError
-    """
+    """Force of a hinged frame that shears a square."""
     size, angle = (request.side_mm, request.side_mm), math.radians(request.angle_deg)
     test, material = request.pull(trellis_test, size, context, shear_angle=angle)
     return TrellisResult.of_pull(test, material, angle_deg=np.degrees(test.shear_angle))

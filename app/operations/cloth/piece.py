@@ -77,10 +77,6 @@ class PieceResult(PieceTestResult):
 def piece(request: PieceRequest, context: Context) -> PieceResult:
     """Forces, motions and strains of a piece of any outline whose edges are held, moved, pulled,
     loaded or sewn to a tape.
-
-    Raises
-    ------
-    InputError, CancelledError
     """
     material = context.material(request.material)
     return _result(request, _test(request, material, context), material)

@@ -146,10 +146,6 @@ def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:
     """Nonlinear strip test of the whole chart; stops when the caller disconnects.
 
     A test that was run a short while ago is returned from memory.
-
-    Raises
-    ------
-    InputError, CancelledError
     """
     chart = to_chart(request.chart)
     check_stitches(chart.stitches, MAX_STITCHES, instead=", or the command line")
@@ -176,18 +172,17 @@ def _test(
         size=request.relaxed_size,
         laws=None,  # those that the request chooses are in the material
     )
-    test = pull(
+    test = request.pass_to(
+        pull,
         sheet,
-        request.direction,
-        load_levels(_last_strain(sheet, request, context), request.steps),
-        clamps=request.clamps,
+        levels=load_levels(_last_strain(sheet, request, context), request.steps),
         cancelled=context.cancelled,
         progress=lambda done, _: context.progress(done, total),
     )
-    margins = stretch_margins(
+    margins = request.pass_to(
+        stretch_margins,
         test,
         material,
-        request.clamps,
         progress=lambda done: context.progress(request.steps + done, total),
         cancelled=context.cancelled,
     )
@@ -199,14 +194,8 @@ def _last_strain(sheet: Sheet, request: StretchRequest, context: Context) -> flo
     match request.strain, request.force_n:
         case float(strain), None:
             return strain
-        case None, float(force_n):
-            return strain_at_force(
-                sheet,
-                request.direction,
-                force_n,
-                clamps=request.clamps,
-                cancelled=context.cancelled,
-            )
+        case None, float():
+            return request.pass_to(strain_at_force, sheet, cancelled=context.cancelled)
         case None, None:
             raise InputError("strain", "is missing.", "Give a strain or a force.")
         case _:

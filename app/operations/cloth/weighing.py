@@ -171,12 +171,7 @@ class BorderResult(ResultModel):
 
 
 def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResult]:
-    """A strip 25 mm wide bends over the edge of a table by its weight, as in Peirce's test.
-
-    Raises
-    ------
-    InputError, ConvergenceError, CancelledError
-    """
+    """A strip 25 mm wide bends over the edge of a table by its weight, as in Peirce's test."""
     repeat = to_repeat(request.chart)
     cloth = request.cloth(repeat, context)
     axis = 0 if request.direction is Direction.COURSE else 1
@@ -201,12 +196,7 @@ def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResul
 
 
 def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
-    """A round piece drapes over a disc by its weight; its shadow gives the drape coefficient.
-
-    Raises
-    ------
-    InputError, ConvergenceError, CancelledError
-    """
+    """A round piece drapes over a disc by its weight; its shadow gives the drape coefficient."""
     repeat = to_repeat(request.chart)
     cloth = request.cloth(repeat, context)
     draped = request.pass_to(drape_cloth, cloth, cancelled=context.cancelled)
@@ -232,10 +222,6 @@ def border(request: BorderRequest, context: Context) -> BorderResult:
 
     The weight of the border balances the moment with which the piece curls; a strip of both shows
     whether that is enough.
-
-    Raises
-    ------
-    InputError, ConvergenceError, CancelledError
     """
     inner = request.cloth(to_repeat(request.chart), context)
     edge = StitchChart.of_fabric(request.border, rows=2, columns=2)

@@ -1,18 +1,21 @@
-"""A chart with a target stiffness, given as a map or part by part."""
+"""Charts with a target stiffness, given as a map or part by part, or a target outline."""
 
+import csv
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import click
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
 from knitcore.design.part_targets import Parts, PartTarget, target_maps, target_parts
+from knitcore.design.shape import fill_shape
 from knitcore.formats.read.stitch_maps import read_wanted_moduli
 from knitcore.garment.shaped import outline_marks
 
@@ -45,6 +48,11 @@ Map = Annotated[list[list[Modulus]], Field(min_length=1, max_length=1000)]
 StitchRun = tuple[
     Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]
 ]
+
+
+Rounded = Annotated[list[float], BeforeValidator(lambda values: np.round(values, 5).tolist())]
+Gaps = Annotated[list[Known], BeforeValidator(list)]
+Width = Annotated[float, Field(gt=0.05, lt=3)] | None
 
 
 class WishInput(RequestModel):
@@ -146,6 +154,51 @@ class FillResult(IntervalResult):
     messages: list[str]
 
 
+class ShapeRequest(LawsRequest):
+    """A profile of widths at a stretch."""
+
+    material: MaterialName
+    direction: Direction = Field(Direction.WALE, description="Direction of the pull.")
+    strain: float = Field(gt=0, le=5, description="Strain from clamp to clamp: 0.3 is 30 %.")
+    width: list[Width] = Field(
+        min_length=3,
+        max_length=1000,
+        description="Stretched width over width at rest, line by line across the pull, from the "
+        "bottom (wale-wise) or the left (course-wise); null where any width will do.",
+    )
+    across: int = Field(ge=3, le=1000, description="Stitches in a line.")
+    repeats: Extent = "small"
+    smallest_band: int = Field(4, ge=1, le=100, description="Fewest lines in a band.")
+    seed: Seed = 0
+
+
+class BandResult(ResultModel):
+    """A band of lines of one repeat."""
+
+    repeat: RepeatText
+    first: int = Field(
+        ge=1, description="First line of the band, counted from 1 at the bottom or the left."
+    )
+    lines: int
+
+
+class ShapeResult(ResultModel):
+    """A chart, and the outline of its swatch."""
+
+    kind: Literal["shape"] = "shape"
+    rows: int
+    columns: int
+    chart: ChartLines
+    bands: list[BandResult]
+    width: Rounded = Field(description="Width in the finite swatch, to compare with the target.")
+    wanted: Gaps
+    rms: float = Field(description="Rms of the differences, over the width at rest.")
+    largest: float
+    force_n: float
+    pulls: int = Field(description="Number of swatches that were computed.")
+    messages: list[str]
+
+
 def fill(request: FillRequest, context: Context) -> FillResult:
     """Patches of repeats from the atlas, matched at their edges; reports targets that are missed.
 
@@ -220,7 +273,7 @@ def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float
 )
 @atlas_option
 @design_option
-def _command(
+def _fill_command(
     request: FillRequest,
     context: Context,
     target: Path,
@@ -237,7 +290,7 @@ def _command(
     return result
 
 
-def _lines(r: FillResult) -> list[str]:
+def _fill_lines(r: FillResult) -> list[str]:
     head = (
         f"{size_in_words(r.columns, r.rows)} in {len(r.patches)} patches; "
         f"{r.off_share:.1%} of the stitches with a target miss it by more than 10 %"
@@ -245,7 +298,67 @@ def _lines(r: FillResult) -> list[str]:
     return [r.chart, head]
 
 
-OPERATION = Operation(
+def shape(request: ShapeRequest, context: Context) -> ShapeResult:
+    """Bands of repeats across the pull, chosen, checked in the finite swatch and chosen again."""
+    return _shaped(request, context.atlas(request.material, request.repeats), context)
+
+
+def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResult:
+    shaped = request.pass_to(
+        fill_shape,
+        np.array([np.nan if w is None else w for w in request.width], dtype=float),
+        material=context.material(request.material),
+        atlas=atlas,
+        progress=context.share,
+        cancelled=context.cancelled,
+    )
+    return ShapeResult.of(
+        shaped,
+        rows=shaped.chart.rows,
+        columns=shaped.chart.columns,
+        chart=shaped.chart.text,
+        wanted=shaped.target,
+    )
+
+
+@atlas_option
+@design_option
+def _shape_command(
+    request: ShapeRequest, context: Context, atlas: Path | None, out: Path | None
+) -> ShapeResult:
+    table = context.atlas(request.material, request.repeats, atlas)
+    result = _shaped(request, table, context)
+    write_design_of(result.chart, request.material, "Shape", out)
+    return result
+
+
+@click.argument("profile", type=click.Path(path_type=Path))
+def _widths(profile: Path) -> dict[str, Any]:
+    """Read the column ``width`` of a CSV; an empty field means any width."""
+    try:
+        with profile.open(newline="", encoding="utf-8") as stream:
+            names, *rows = csv.reader(stream)
+        column = [name.strip() for name in names].index("width")
+        values = [row[column].strip() if row else "" for row in rows]
+        return {"width": [float(value) if value else None for value in values]}
+    except FileNotFoundError:
+        raise InputError("profile", f"there is no file {profile}.", "Check its name.") from None
+    except (IndexError, ValueError):
+        raise InputError(
+            "profile", f"{profile.name} is not a profile.", "Give a column `width` of numbers."
+        ) from None
+
+
+def _shape_lines(r: ShapeResult) -> list[str]:
+    bands = ", ".join(f"{b.lines} of {b.repeat}" for b in r.bands)
+    head = (
+        f"{size_in_words(r.columns, r.rows)}; widths {r.rms:.1%} off (rms), {r.largest:.1%} at "
+        f"most; {r.force_n:.2f} N; from the first line: {bands}"
+    )
+    return [r.chart, head]
+
+
+FILL = Operation(
     fill,
     tag="design",
     summary="A chart for a map of target stiffness",
@@ -256,9 +369,30 @@ OPERATION = Operation(
     },
     job=True,
     command=Command(
-        _lines,
+        _fill_lines,
         more="TARGET is a CSV of row, column and target moduli, such as `export --to csv` writes.",
         names=dict.fromkeys((*MAPS, "rows", "columns", "wishes", "chart")),
-        run=_command,
+        run=_fill_command,
+    ),
+)
+SHAPE = Operation(
+    shape,
+    tag="design",
+    summary="A chart that takes a target outline when it is stretched",
+    example={
+        "material": "acrylic",
+        "strain": 0.2,
+        "across": 6,
+        "width": [0.9, 0.9, 0.9, 0.9, 0.9, 0.9, 0.9, 0.9],
+    },
+    job=True,
+    command=Command(
+        _shape_lines,
+        more="PROFILE is a CSV with a column `width`, stretched width over width at rest, one line "
+        "across the pull after the other from the bottom (or the left); empty where any width "
+        "will do.",
+        names={"width": None},
+        fields=_widths,
+        run=_shape_command,
     ),
 )

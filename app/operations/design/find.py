@@ -170,8 +170,8 @@ def _ranked(
         message=message,
         interval_source=INTERVAL_SOURCE,
         searched=sum(len(atlas) for atlas in atlases),
-        candidates=[_candidate(c) for c in ranking.candidates],
-        elsewhere=[_candidate(c) for c in elsewhere],
+        candidates=[CandidateResult.of(c, **vars(c.cost)) for c in ranking.candidates],
+        elsewhere=[CandidateResult.of(c, **vars(c.cost)) for c in elsewhere],
     )
 
 
@@ -182,10 +182,6 @@ def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atl
     return [
         context.within(number * part, part).atlas(name, extent) for number, name in enumerate(names)
     ]
-
-
-def _candidate(candidate: Candidate) -> CandidateResult:
-    return CandidateResult.of(candidate, **vars(candidate.cost))
 
 
 _TARGET = re.compile(

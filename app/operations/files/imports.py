@@ -71,7 +71,7 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
         If it holds no chart.
     """
     with stored([request.file]) as (path,):
-        design, notes = noted_design_in(path, _scale(request, context))
+        design, notes = design_in(path, _scale(request, context))
     chart = StitchChart.parse(design.chart)
     return ImportResult(
         **dict(design),
@@ -94,9 +94,7 @@ def _scale(request: ImportRequest, context: Context) -> PictureScale | None:
     return PictureScale(request.columns, request.rows, request.aspect, ratio)
 
 
-def noted_design_in(
-    path: Path, scale: PictureScale | None = None
-) -> tuple[FoundDesign, tuple[str, ...]]:
+def design_in(path: Path, scale: PictureScale | None = None) -> tuple[FoundDesign, tuple[str, ...]]:
     """The parts of a design that a file holds, and the notes of its reader.
 
     Raises

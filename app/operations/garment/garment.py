@@ -78,8 +78,7 @@ class WristBrace(Template):
 
     def plan(self, **yarn: Any) -> GarmentPlan:
         """The garment's plan, for a material, gauges and a linear density."""
-        sizes = self.wrist_mm, self.length_mm
-        return wrist_brace(*sizes, fit=self.fit, edge_mm=self.edge_mm, **yarn)
+        return self.pass_to(wrist_brace, fit=self.fit, **yarn)
 
 
 class SockLeg(Template):
@@ -92,7 +91,7 @@ class SockLeg(Template):
 
     def plan(self, **yarn: Any) -> GarmentPlan:
         """The garment's plan for a yarn."""
-        return sock_leg(self.ankle_mm, self.calf_mm, self.length_mm, fit=self.fit, **yarn)
+        return self.pass_to(sock_leg, fit=self.fit, **yarn)
 
 
 class Limb(Template):
@@ -111,9 +110,7 @@ class Limb(Template):
     def plan(self, **yarn: Any) -> GarmentPlan:
         """The garment's plan for a yarn."""
         girths = [Girth(at, around) for at, around in self.profile]
-        return limb_tube(
-            "sleeve", girths, fit=self.fit, body=self.body, hem=self.hem, hem_mm=self.hem_mm, **yarn
-        )
+        return self.pass_to(limb_tube, "sleeve", girths, fit=self.fit, **yarn)
 
 
 class FingerSize(RequestModel):

@@ -105,7 +105,7 @@ def _and_write(request: GloveRequest, context: Context, out: Path | None) -> Glo
     if out is not None:
         # the 3D view's libraries take a second to load
         from ...drawing.design_view import Curled, ViewRequest, build_scene
-        from ...drawing.solid import solid_glb
+        from ...drawing.fabric import solid_glb
         from ...drawing.stitch_colours import Colour
 
         shaped = worn.plan.shaped

@@ -188,10 +188,11 @@ def _command(request: PressureRequest, context: Context, law: Path | None) -> Pr
 
 def _lines(r: PressureResult) -> list[str]:
     (low, high), (low_kpa, high_kpa) = r.mmhg, r.kpa
+    locked = "" if r.lock_up_share is None else f" ({r.lock_up_share:.0%} of the lock-up)"
     lines = [
         f"pressure  {low:.1f} to {high:.1f} mmHg "
         f"({low_kpa:.2f} to {high_kpa:.2f} kPa), axially free to fixed",
-        f"strain    {r.strain:.3f} around the limb{_locked(r.lock_up_share)}",
+        f"strain    {r.strain:.3f} around the limb{locked}",
     ]
     if r.mmhg_with_law_spread is not None:
         low, high = r.mmhg_with_law_spread
@@ -200,10 +201,6 @@ def _lines(r: PressureResult) -> list[str]:
         low, high = r.rest_mm_for_target
         lines.append(f"size      {low:.1f} to {high:.1f} mm unworn; middle shown above")
     return lines
-
-
-def _locked(share: float | None) -> str:
-    return "" if share is None else f" ({share:.0%} of the lock-up)"
 
 
 OPERATION = Operation(

@@ -7,7 +7,12 @@ import click
 from pydantic import Field
 
 from knitcore.base.errors import InputError
-from knitcore.measure.compression import PROBE_WIDTH_MM, average_compression, fit_compression
+from knitcore.measure.compression import (
+    PROBE_WIDTH_MM,
+    CompressionMean,
+    average_compression,
+    fit_compression,
+)
 from knitcore.measure.compression_files import read_compression
 
 from ...context import Context
@@ -45,15 +50,8 @@ class CompressionSampleResult(ResultModel):
     rms_n: float
 
 
-class CompressionMeanResult(ResultModel):
+class CompressionMeanResult(ResultModel, CompressionMean):
     """Mean over the samples of one yarn."""
-
-    yarn: str
-    samples: int
-    k_n_per_mm3: float
-    k_standard_deviation_n_per_mm3: float | None
-    p: float
-    p_standard_deviation: float | None
 
 
 class CompressionResult(ResultModel):

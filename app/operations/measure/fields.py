@@ -13,7 +13,7 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel
 from knitcore.fit.calibration import Calibration, ForceCurve
 from knitcore.fit.calibration import calibrate as calibrated
-from knitcore.fit.field_comparison import Edges
+from knitcore.fit.field_comparison import Edges, FrameError
 from knitcore.fit.field_comparison import compare as compared
 from knitcore.fit.measured_field import MeasuredField, load_field
 from knitcore.fit.pull_fit import Reduction
@@ -27,7 +27,7 @@ from ...cli.options import out_option
 from ...context import Context
 from ...requests.base import Floats, RequestModel, ResultModel
 from ...requests.charts import MaterialName
-from ...requests.fabrics import LawResult, LawsRequest, law_constants
+from ...requests.fabrics import LawResult, LawsRequest, law_fields
 from ...requests.faults import CheckedBy
 from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
@@ -60,15 +60,8 @@ class FieldRequest(RequestModel):
         return field.only(set(self.frames)) if self.frames else field
 
 
-class FrameErrorResult(ResultModel):
+class FrameErrorResult(ResultModel, FrameError):  # noqa: N818 - nothing that is raised
     """Simulated minus measured displacement at one frame, in per cent of the width."""
-
-    frame: int
-    applied_stretch: float
-    ux_rms_percent_width: float
-    ux_max_percent_width: float
-    uy_rms_percent_width: float
-    uy_max_percent_width: float
 
 
 class CompareRequest(FieldRequest, LawsRequest):
@@ -201,7 +194,7 @@ def _result(request: CalibrateRequest, calibration: Calibration) -> CalibrateRes
         _load(request.field), calibration.law, request.direction, edges=Edges.MEASURED
     )
     return CalibrateResult.of(
-        calibration, **law_constants(calibration.law), comparison=errors.frames
+        calibration, **law_fields(calibration.law, LawResult), comparison=errors.frames
     )
 
 

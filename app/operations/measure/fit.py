@@ -1,27 +1,25 @@
 """Fitting a law to stretch tests."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
+import click
+import numpy as np
 from pydantic import Field
 
+from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.fit.pull_fit import LawFit, Reduction, Residuals
 from knitcore.fit.strip_fit import fit_tests
 from knitcore.formats.read.law_files import LawFile, save_law
 from knitcore.materials.material_document import CurveDocument
+from knitcore.measure.stretch_tables import TableReading
 from knitcore.measure.uniaxial_files import read_stretch_test
 
 from ...cli.options import out_option, write_table
 from ...context import Context
 from ...requests.base import Floats, RequestModel, ResultModel
-from ...requests.fabrics import (
-    ElasticConstants,
-    LawConstants,
-    LawResult,
-    elastic_constants_of,
-    law_constants,
-)
+from ...requests.fabrics import ElasticConstants, LawConstants, LawResult, law_fields
 from ...requests.faults import CheckedBy
 from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
@@ -30,9 +28,12 @@ PLOTTED_POINTS = 2000
 """Largest number of points of a residual plot: more than a screen resolves."""
 
 
+_ANY_SIZE = TableReading(width_mm=100.0, length_mm=100.0)
+
+
 def _read(file: UploadedFile, _: Context) -> None:
     with stored([file]) as (path,):
-        read_stretch_test(path)
+        read_stretch_test(path, reading=_ANY_SIZE)
 
 
 class FitRequest(RequestModel):
@@ -58,6 +59,18 @@ class FitRequest(RequestModel):
     width_wale_mm: float | None = Field(
         None, ge=5, le=10_000, description="Clamped width, in place of the wale-wise test's."
     )
+    length_course_mm: float | None = Field(
+        None, ge=5, le=10_000, description="Distance of the clamps at rest, course-wise test."
+    )
+    length_wale_mm: float | None = Field(
+        None, ge=5, le=10_000, description="Distance of the clamps at rest, wale-wise test."
+    )
+    columns: dict[str, Annotated[str, Field(max_length=200)]] | None = Field(
+        None,
+        max_length=10,
+        description="What a tester's table calls our columns: strain_along or extension_mm, "
+        'strain_across, force_n, width_mm; such as {"force_n": "Channel 2 (N)"}.',
+    )
     residuals: bool = Field(False, description="Return residuals at each point too.")
 
 
@@ -77,7 +90,7 @@ class ResidualPoints(ResultModel):
     """Measured points and the fitted stress there."""
 
     strain_along: Floats
-    strain_across: Floats
+    strain_across: Floats = Field(description="Empty where it was not measured.")
     stress_n_per_mm: Floats
     fitted_n_per_mm: Floats
 
@@ -123,8 +136,7 @@ def _result(fit: LawFit, *, residuals: bool) -> FitResult:
     names = {name: name.removesuffix("_n_per_mm") for name in LawErrors.model_fields}
     return FitResult.of(
         fit,
-        **elastic_constants_of(fit.law),
-        **law_constants(fit.law),
+        **law_fields(fit.law, ElasticConstants, LawResult),
         standard_errors={name: errors.get(constant) for name, constant in names.items()},
         residuals={d: _points(r) for d, r in fit.residuals.items()} if residuals else None,
         curves={d: CurveDocument.from_curve(c) for d, c in fit.curves.items()},
@@ -133,12 +145,28 @@ def _result(fit: LawFit, *, residuals: bool) -> FitResult:
 
 def _points(residuals: Residuals) -> ResidualPoints:
     step = max(1, -(-len(residuals.stress) // PLOTTED_POINTS))
+    across = residuals.strain_across
     return ResidualPoints(
-        **{
-            name: getattr(residuals, name.removesuffix("_n_per_mm"))[::step]
-            for name in ResidualPoints.model_fields
-        }
+        strain_along=residuals.strain_along[::step],
+        strain_across=across[::step] if np.isfinite(across).all() else [],
+        stress_n_per_mm=residuals.stress[::step],
+        fitted_n_per_mm=residuals.fitted[::step],
     )
+
+
+@click.option(
+    "--column",
+    multiple=True,
+    metavar="NAME=TITLE",
+    help="What a tester's table calls one of our columns, such as 'force_n=Channel 2 (N)'.",
+)
+def _columns(column: tuple[str, ...]) -> dict[str, Any]:
+    pairs = [text.partition("=") for text in column]
+    for (_, sign, _), text in zip(pairs, column, strict=True):
+        if not sign:
+            remedy = "Write our name and the table's: force_n=Load."
+            raise InputError("column", f"{text!r} does not say which column is which.", remedy)
+    return {"columns": {name.strip(): title.strip() for name, _, title in pairs} or None}
 
 
 @out_option("--residuals", help="Write points and fit to FILE.csv.")
@@ -183,6 +211,10 @@ OPERATION = Operation(
     example={"test_course": example_file("course.csv"), "test_wale": example_file("wale.csv")},
     job=True,
     command=Command(
-        _lines, more="Each is an HDF5, CSV or XLSX file.", names={"residuals": None}, run=_command
+        _lines,
+        more="Each is an HDF5, CSV or XLSX file.",
+        names={"residuals": None, "columns": None},
+        run=_command,
+        fields=_columns,
     ),
 )

@@ -18,7 +18,6 @@ from knitcore.yarn.library.yarn_material import material_of
 from knitcore.yarn.library.yarn_table import (
     TENSIONS,
     YarnPlan,
-    YarnRow,
     YarnTable,
     characterise_yarns,
     plan_for_material,
@@ -217,15 +216,9 @@ def _result(table: YarnTable) -> CharacteriseResult:
     return CharacteriseResult.of(
         plan,
         reference=reference,
-        rows=[_row(row) for row in table.rows],
+        rows=[row.flat() | {"curves": row.document.get("curves", {})} for row in table.rows],
         material=materials.get(reference),
         materials=materials,
-    )
-
-
-def _row(row: YarnRow) -> CharacterisedFabric:
-    return CharacterisedFabric.model_validate(
-        {**row.flat(), "curves": row.document.get("curves", {})}
     )
 
 
@@ -278,7 +271,9 @@ def _command(
     )
     results = [_result(table) for table in tables]
     for result in results:
-        _write_materials(result, out)
+        for setting, document in result.materials.items():
+            suffix = "" if setting == result.reference else f"-{setting}"
+            save_material_file(document.to_material(), out / f"{result.identifier}{suffix}.json")
     rows = [(result.identifier, row) for result in results for row in result.rows]
     of_row = set(FabricRow.model_fields)
     table = ([yarn, *row.model_dump(mode="json", include=of_row).values()] for yarn, row in rows)
@@ -298,12 +293,6 @@ def _show(batch: BatchProgress) -> None:
     failed = f", {batch.failed} failed" if batch.failed else ""
     label = batch.key.rpartition(".")[0]  # without the digest
     click.echo(f"{batch.done} of {batch.total} stitches{failed} {label}".rstrip(), err=True)
-
-
-def _write_materials(result: CharacteriseResult, folder: Path) -> None:
-    for setting, document in result.materials.items():
-        suffix = "" if setting == result.reference else f"-{setting}"
-        save_material_file(document.to_material(), folder / f"{result.identifier}{suffix}.json")
 
 
 def _lines(results: YarnsResult) -> list[str]:

@@ -17,14 +17,14 @@ from knitcore.materials.estimate.estimate import (
     estimate_yarn,
 )
 from knitcore.materials.estimate.estimated_material import estimated_material
-from knitcore.materials.estimate.yarn_statistics import left_out
+from knitcore.materials.estimate.yarn_statistics import LeftOut, left_out
 from knitcore.materials.material_document import MaterialDocument
 from knitcore.materials.material_files import save_material_file
 
 from ...cli.options import out_option
 from ...context import Context
 from ...requests.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
-from ...requests.fabrics import LawResult, law_constants
+from ...requests.fabrics import LawResult, law_fields
 from ..registry import Command, Operation
 
 
@@ -55,19 +55,11 @@ class EstimateRequest(YarnFacts):
     swatches: list[SwatchInput] = Field(default_factory=list, max_length=4)
 
 
-class LeftOutResult(ResultModel):
+class LeftOutResult(ResultModel, LeftOut):
     """Errors for the library's yarns when each is left out; rms errors are factors."""
 
-    measured: list[Fabric]
-    values: int
-    strain_rms_factor: float
-    modulus_rms_factor: float
-    modulus_median_factor: float
     modulus_within_two: float = Field(description="Share predicted within a factor of two.")
-    alpha_rms_factor: float
-    beta_rms_factor: float
     modulus_coverage: float = Field(description="Coverage of the 90 % intervals.")
-    strain_coverage: float
 
 
 class FabricEstimateResult(ResultModel):
@@ -120,7 +112,7 @@ def _result(estimate: YarnEstimate) -> EstimateResult:
     return EstimateResult.of(
         estimate,
         fabrics={
-            fabric: FabricEstimateResult.of(f, law=law_constants(f.law), **_values(f))
+            fabric: FabricEstimateResult.of(f, law=law_fields(f.law, LawResult), **_values(f))
             for fabric, f in estimate.fabrics.items()
         },
         interval_source=INTERVAL_SOURCE,

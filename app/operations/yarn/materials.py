@@ -30,15 +30,7 @@ from ...requests.base import (
     ResultModel,
 )
 from ...requests.charts import MaterialName
-from ...requests.fabrics import (
-    ElasticConstants,
-    Extensibility,
-    LawResult,
-    Moduli,
-    elastic_constants_of,
-    law_constants,
-    moduli_of,
-)
+from ...requests.fabrics import ElasticConstants, Extensibility, LawResult, Moduli, law_fields
 from ...service.identity import current_user
 from ...service.results.own_materials import added_by, own_materials
 from ..registry import Command, Operation
@@ -181,7 +173,7 @@ def summary(material: Material, *, added_by_you: bool) -> MaterialSummary:
         id=material.identifier,
         description=description(material),
         fabrics={
-            fabric: FabricSummary.of(record, **moduli_of(record.law))
+            fabric: FabricSummary.of(record, **law_fields(record.law, Moduli))
             for fabric, record in material.fabrics.items()
         },
         added_by_you=added_by_you,
@@ -196,8 +188,8 @@ def description(material: Material) -> str:
 def _detail(record: FabricRecord) -> FabricDetail:
     return FabricDetail.of(
         record,
-        **elastic_constants_of(record.law),
-        law=law_constants(record.law),
+        **law_fields(record.law, ElasticConstants),
+        law=law_fields(record.law, LawResult),
         lock_up_strain_course=record.law.lock_up_strain(Direction.COURSE),
         lock_up_strain_wale=record.law.lock_up_strain(Direction.WALE),
         uncertainty_source=record.uncertainty.source,

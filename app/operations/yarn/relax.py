@@ -23,7 +23,7 @@ from knitcore.yarn.study.whole_chart import WINDOWS_FROM
 
 from ...cli.options import loop_lengths
 from ...context import Context
-from ...requests.base import Ends, IntervalResult, Known, ResultModel
+from ...requests.base import Ends, IntervalResult, Known, Positive, ResultModel
 from ...requests.fabrics import FoundGauge
 from ...requests.yarn_level import (
     HISTORIES,
@@ -55,12 +55,8 @@ class RelaxRequest(RubbedRequest):
         "unless a coefficient is given. As-knitted if only a coefficient is given.",
     )
 
-    cell_course_mm: float | None = Field(
-        None, gt=0, le=1000, description="Hold a stitch at this width."
-    )
-    cell_wale_mm: float | None = Field(
-        None, gt=0, le=1000, description="Hold a stitch at this height."
-    )
+    cell_course_mm: Positive | None = Field(None, description="Hold a stitch at this width.")
+    cell_wale_mm: Positive | None = Field(None, description="Hold a stitch at this height.")
     centre_lines: bool = Field(False, description="Return the centre lines of the yarn too.")
 
     @property
@@ -202,7 +198,7 @@ def _relaxed(
     request: RelaxRequest, repeat: StitchChart, used: ChartYarn, context: Context
 ) -> RelaxResult:
     sizes = request.cell_course_mm, request.cell_wale_mm
-    cell = relax_requested(repeat, used, request, context, sizes)
+    cell = relax_requested(repeat, used, request, context)
     unmirrored, rests = None, None
     if request.friction is not None:
         cell, rests = _after_history(on_splines(cell), request.friction, request, context)

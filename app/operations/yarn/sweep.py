@@ -25,7 +25,7 @@ from knitcore.yarn.study.sweep import sweep as swept
 from ...cli.options import loop_lengths
 from ...context import Context
 from ...requests.base import EndsOfList, Floats, IntervalResult
-from ...requests.fabrics import ElasticConstants, elastic_constants_of
+from ...requests.fabrics import ElasticConstants, law_fields
 from ...requests.yarn_level import (
     RubbedRequest,
     YarnResult,
@@ -207,7 +207,7 @@ def _result(
 def _swept_law(fitted: SimulatedLaw) -> SweptLaw:
     law = vars(fitted.law)
     constants = {name: law[name] for name in SweptLaw.model_fields if name in law}
-    return SweptLaw.of(fitted, **elastic_constants_of(fitted.law), **constants)
+    return SweptLaw.of(fitted, **law_fields(fitted.law, ElasticConstants), **constants)
 
 
 def _pulling(zero: RelaxedCell, request: SweepRequest, context: Context) -> Callable[..., Sweep]:

@@ -71,9 +71,7 @@ def tube(request: TubeRequest, context: Context) -> TubeResult:
     flat = relax(
         repeat, used.yarn, used.loop_length_mm, branch="mirrored", cancelled=context.cancelled
     )
-    round_cell = in_the_round(
-        flat, request.wales, face_outside=request.face_outside, cancelled=context.cancelled
-    )
+    round_cell = request.pass_to(in_the_round, flat, cancelled=context.cancelled)
     leads_to = lowest(flat, cancelled=context.cancelled)
     notes = list(leads_to.notes)
     if leads_to.mirrored is not None:

@@ -103,9 +103,8 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
         "asked": request.model_dump(mode="json", include={"flat", "convention"}),
     }
     before = context.kept.found(KeptSheet, inputs)
-    relaxed = relax_whole(
-        chart, used.yarn, used.loop_length_mm, convention=request.convention, flat=request.flat,
-        tolerance=request.tolerance, rounds=request.rounds,
+    relaxed = request.pass_to(
+        relax_whole, chart, used.yarn, used.loop_length_mm,
         resume=None if before is None else before.sheet(),
         kept=lambda sheet: context.kept.keep(inputs, KeptSheet.of(sheet)),
         progress=context.progress, cancelled=context.cancelled,
@@ -115,9 +114,9 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
     course, wale = size_intervals(relaxed)
     return WholeResult.of(
         relaxed,
-        notes=[*relaxed.notes, resumed] if after else [*relaxed.notes],
         rows=chart.rows,
         columns=chart.columns,
+        notes=[*relaxed.notes, resumed] if after else [*relaxed.notes],
         cell_course_interval_mm=course,
         cell_wale_interval_mm=wale,
         interval_source=YARN_LEVEL_ERRORS,

@@ -28,7 +28,7 @@ from ..designs.store import DesignStore
 from ..designs.watching import PERIOD_S, QUIET_S
 from ..problems import Problem
 from ..web.bodies import BoundedRoute
-from ..web.events import event_stream
+from ..web.events import event_stream, stream_of
 
 CONFLICT: Responses = {
     409: {"model": Problem, "description": "It conflicts with the present state."}
@@ -118,10 +118,7 @@ def get_design(
 @router.get(
     "/designs/{design}/events",
     summary="Follow a design",
-    response_class=StreamingResponse,
-    responses={
-        200: {"content": {"text/event-stream": {}}, "description": "Events `others`, `changed`."}
-    },
+    **stream_of("Events `others`, `changed`."),
 )
 def get_design_events(
     design: DesignId, store: Store, owner: Owner, request: Request

@@ -16,7 +16,7 @@ from ..jobs.kinds import JobRequest, JobResult, read_job
 from ..jobs.runner import JobRunner
 from ..problems import NotFoundError, Problem
 from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
-from ..web.events import event_stream
+from ..web.events import event_stream, stream_of
 from ..web.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
 
 EVENT_PERIOD_S = 0.25
@@ -69,12 +69,7 @@ async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
     return await runner.status(owner, job)
 
 
-@router.get(
-    "/jobs/{job}/events",
-    summary="Follow a job",
-    response_class=StreamingResponse,
-    responses={200: {"content": {"text/event-stream": {}}, "description": "Events `status`."}},
-)
+@router.get("/jobs/{job}/events", summary="Follow a job", **stream_of("Events `status`."))
 async def get_job_events(
     job: JobId, runner: Runner, owner: Owner, request: Request
 ) -> StreamingResponse:

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Path, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
-from ...operations.perform import Viewed, carried_out
+from ...operations.perform import carried_out
 from ...operations.registry import Operation, operations
 from ...requests.charts import size_of
 from ..compute.answers import Answers
@@ -33,8 +33,8 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     """The function for FastAPI, with the request as a body or as parameters of the address."""
 
     def made(body: BaseModel, request: Request) -> bytes:
-        outcome = carried_out(operation.run, body, request.app.state.answers.context())
-        result: BaseModel = outcome.result if isinstance(outcome, Viewed) else outcome
+        context = request.app.state.answers.context()
+        result: BaseModel = carried_out(operation.run, body, context).result
         return result.model_dump_json().encode()
 
     def light(body: BaseModel, request: Request) -> Response:

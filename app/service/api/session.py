@@ -11,8 +11,7 @@ from ..identity import current_session
 from ..limits.user_limits import USER_LIMITS, ConcurrencyLimit, Use
 from ..problems import NotFoundError, Problem
 from ..web.security import OPENED_BY, SESSION_COOKIE
-from ..web.sessions import Sessions, SignedIn
-from ..web.tokens import Login
+from ..web.sessions import Login, Sessions, SignedIn
 
 router = APIRouter(tags=["session"])
 

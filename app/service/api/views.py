@@ -36,7 +36,7 @@ from ..limits.fair_queue import FairLock
 from ..limits.user_limits import ConcurrencyLimit
 from ..problems import NotFoundError, Problem
 from ..web.bodies import BoundedRoute
-from ..web.events import abandoned, event_stream
+from ..web.events import abandoned, event_stream, stream_of
 from ..web.passes import ViewPasses
 from ..web.security import OPENED_BY
 
@@ -49,6 +49,7 @@ MAX_STILL_HERE = 5_000
 """Letters of a chart whose still the service draws itself, in 0.1 s; others wait for a worker."""
 
 T = TypeVar("T")
+Route = TypeVar("Route", bound=Callable[..., Any])
 # Separate threads, so that logins and jobs, which use asyncio's, need not wait for drawings.
 _drawing = ThreadPoolExecutor(4, "drawing")
 _pictures = ThreadPoolExecutor(16, "pictures")  # waiting for browsers, up to 25 s each
@@ -117,10 +118,7 @@ async def put_camera(design: DesignId, body: CameraRequest, request: Request) ->
 
 
 @router.get(
-    "/views/{design}/events",
-    summary="Follow clicks on stitches",
-    response_class=StreamingResponse,
-    responses={200: {"content": {"text/event-stream": {}}, "description": "Events `stitch`."}},
+    "/views/{design}/events", summary="Follow clicks on stitches", **stream_of("Events `stitch`.")
 )
 async def get_view_events(design: DesignId, request: Request) -> StreamingResponse:
     """Send an event for each click on a stitch in the view, with its row and column from 0.
@@ -155,49 +153,40 @@ async def get_picture(
     return Response(content, media_type="image/png")
 
 
-def _file(media: str, text: str) -> dict[int | str, dict[str, Any]]:
-    return {200: {"content": {media: {}}, "description": text}}
+def _post_for_file(path: str, summary: str, media: str, text: str) -> Callable[[Route], Route]:
+    """Declare a route that answers with a file, which is described by a text."""
+    answer = {"content": {media: {}}, "description": text}
+    return router.post(path, summary=summary, response_class=Response, responses={200: answer})
 
 
-@router.post(
+@_post_for_file(
     "/views/page",
-    summary="A page to share",
-    response_class=Response,
-    responses=_file("text/html", "One file that needs neither the service nor the network."),
+    "A page to share",
+    "text/html",
+    "One file that needs neither the service nor the network.",
 )
 async def post_page(body: SharedViewRequest, request: Request) -> Response:
     """Make a page in which the fabric turns with the mouse; animated, its stretch test plays."""
     return await _shared(shared_page, body, request, "text/html", "html")
 
 
-@router.post(
-    "/views/recording",
-    summary="A recording to share",
-    response_class=Response,
-    responses=_file("application/octet-stream", "A `.viser` file."),
+@_post_for_file(
+    "/views/recording", "A recording to share", "application/octet-stream", "A `.viser` file."
 )
 async def post_recording(body: SharedViewRequest, request: Request) -> Response:
     """Make a recording for viser's own player."""
     return await _shared(shared_recording, body, request, "application/octet-stream", "viser")
 
 
-@router.post(
-    "/views/solid",
-    summary="The yarn as glTF",
-    response_class=Response,
-    responses=_file("model/gltf-binary", "Binary glTF 2.0 in metres."),
+@_post_for_file(
+    "/views/solid", "The yarn as glTF", "model/gltf-binary", "Binary glTF 2.0 in metres."
 )
 async def post_solid(body: SharedViewRequest, request: Request) -> Response:
     """Export the fabric as it lies, relaxed or stretched, with its colours."""
     return await _shared(shared_solid, body, request, "model/gltf-binary", "glb")
 
 
-@router.post(
-    "/views/still",
-    summary="A picture of a design",
-    response_class=Response,
-    responses=_file("image/png", "A PNG without background."),
-)
+@_post_for_file("/views/still", "A picture of a design", "image/png", "A PNG without background.")
 async def post_still(
     body: ViewRequest,
     request: Request,

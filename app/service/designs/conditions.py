@@ -1,6 +1,23 @@
-"""Conditional requests: every change says which state it was made on."""
+"""Conditional requests: every change says which state it was made on. A client may send a request
+twice because the answer was lost."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import TypeVar
+
+from pydantic import BaseModel
+from sqlalchemy import Connection, insert, select
+from sqlalchemy.exc import IntegrityError
 
 from ..problems import ServiceError
+from ..store.database import Database
+from ..store.tables import idempotency_keys, now
+
+Reply = TypeVar("Reply", bound=BaseModel)
+KEPT_S = 86_400.0
 
 
 class StaleError(ServiceError):
@@ -58,3 +75,78 @@ def check_match(if_match: str | None, revision: int) -> None:
             field="If-Match",
             remedy="Read the design again, apply your change to it, and send the result.",
         )
+
+
+class ReusedKeyError(ServiceError):
+    """One key for two different requests."""
+
+    status, type, title = 422, "input", "This idempotency key was used before"
+
+
+@dataclass(frozen=True)
+class Retry:
+    """An Idempotency-Key and the request that it stands for.
+
+    Attributes
+    ----------
+    owner : who asks.
+    key : as sent by the client.
+    fingerprint : of method, path and body.
+    """
+
+    owner: str
+    key: str
+    fingerprint: str
+
+    @classmethod
+    def of(cls, owner: str, key: str, *request: str) -> Retry:
+        """A key with the fingerprint of its request."""
+        digest = hashlib.sha256("\0".join(request).encode()).hexdigest()
+        return cls(owner, key, digest)
+
+
+def once(
+    database: Database,
+    retry: Retry | None,
+    kind: type[Reply],
+    action: Callable[[Connection], Reply],
+) -> Reply:
+    """Run an action in a transaction; where the request has a key, once for that key.
+
+    Raises
+    ------
+    ReusedKeyError
+        If the key came with another request before.
+    """
+    if retry is None:
+        return database.write(action)
+
+    def guarded(connection: Connection) -> Reply:
+        known = connection.execute(
+            select(idempotency_keys.c.fingerprint, idempotency_keys.c.answer).where(
+                idempotency_keys.c.owner == retry.owner, idempotency_keys.c.key == retry.key
+            )
+        ).one_or_none()
+        if known is not None:
+            if known.fingerprint != retry.fingerprint:
+                raise ReusedKeyError(
+                    "This key came with another request before.",
+                    field="Idempotency-Key",
+                    remedy="Use a new key for every new request.",
+                )
+            return kind.model_validate_json(known.answer)
+        answer = action(connection)
+        values = {"answer": answer.model_dump_json(), "created_at": now()}
+        connection.execute(insert(idempotency_keys).values(asdict(retry) | values))
+        return answer
+
+    try:
+        return database.write(guarded)
+    except IntegrityError:
+        return database.write(guarded)  # its twin was faster: now its answer is there
+
+
+def forget_old_keys(database: Database) -> None:
+    """Drop keys after a day."""
+    old = idempotency_keys.c.created_at < now() - KEPT_S
+    database.write(lambda connection: connection.execute(idempotency_keys.delete().where(old)))

@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from ..identity import asking, current_user
 from ..problems import Problem
-from .idempotency import Retry
+from .conditions import Retry
 
 Responses = dict[int | str, dict[str, Any]]
 MISSING: Responses = {

@@ -8,8 +8,8 @@ from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError, RefusedError
 from ..store.database import Database
 from ..store.tables import designs, hash_of, now, shares
+from .conditions import Retry, once
 from .document import Design, NewShare, Share, SharedDesign, ShareMode, Shares
-from .idempotency import Retry, once
 from .store import add, copied, document_of, find_design, most_of_one
 
 _OPEN = shares.c.revoked_at.is_(None)

@@ -25,7 +25,7 @@ from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError
 from ..store.database import Database
 from ..store.tables import design_versions, designs, now
-from .conditions import ConflictError, check_match
+from .conditions import ConflictError, Retry, check_match, once
 from .document import (
     Design,
     DesignDocument,
@@ -38,7 +38,6 @@ from .document import (
     Versions,
     VersionSummary,
 )
-from .idempotency import Retry, once
 from .painting import kinds_around, paint
 
 DELETED_KEPT_S = 30 * 86_400.0
@@ -80,7 +79,7 @@ class DesignStore:
     def get(self, owner: str, design: str) -> Design:
         """A design that is not deleted."""
         with self._database.read() as connection:
-            return design_of(find_design(connection, owner, design))
+            return _design_of(find_design(connection, owner, design))
 
     def page(
         self, owner: str, *, limit: int, cursor: str | None, deleted: bool, part: str = ""
@@ -103,23 +102,12 @@ class DesignStore:
     ) -> Design:
         """Put a whole document in the place of the present one."""
         content = _content(document)
-
-        def action(connection: Connection) -> Design:
-            row = find_design(connection, owner, design, change=True)
-            check_match(if_match, row.revision)
-            return _changed(connection, row, content)
-
-        return self._told(owner, self._database.write(action))
+        return self._change(owner, design, if_match, lambda *_: content)
 
     def patch(self, owner: str, design: str, patch: DesignPatch, if_match: str | None) -> Design:
         """Change some fields."""
-
-        def action(connection: Connection) -> Design:
-            row = find_design(connection, owner, design, change=True)
-            check_match(if_match, row.revision)
-            return _changed(connection, row, patch.model_dump(exclude_none=True))
-
-        return self._told(owner, self._database.write(action))
+        values = patch.model_dump(exclude_none=True)
+        return self._change(owner, design, if_match, lambda *_: values)
 
     async def paint(self, owner: str, design: str, strokes: Strokes) -> Painted:
         """Merge strokes into the present chart, also if others have painted since.
@@ -169,12 +157,7 @@ class DesignStore:
 
     def recover(self, owner: str, design: str) -> Design:
         """Bring a deleted design back."""
-
-        def action(connection: Connection) -> Design:
-            row = find_design(connection, owner, design, change=True, deleted=True)
-            return _changed(connection, row, {"deleted_at": None})
-
-        return self._told(owner, self._database.write(action))
+        return self._change(owner, design, "*", lambda *_: {"deleted_at": None}, deleted=True)
 
     def keep_version(
         self, owner: str, design: str, name: str, retry: Retry | None = None
@@ -210,17 +193,15 @@ class DesignStore:
     def restore(self, owner: str, design: str, number: int, if_match: str | None) -> Design:
         """Restore a version; the present state is saved as a version first."""
 
-        def action(connection: Connection) -> Design:
-            row = find_design(connection, owner, design, change=True)
-            check_match(if_match, row.revision)
+        def earlier(connection: Connection, row: Row[Any]) -> dict[str, Any]:
             kept = _version(connection, design, number)
             _keep(connection, row, f"Before “{kept.name}” was restored"[:200], automatic=True)
             chart = StitchChart.parse(kept.chart)
             content = {n: getattr(kept, n) for n in ("material", "chart", "note", "layout")}
             size = {"rows": chart.rows, "columns": chart.columns}
-            return _changed(connection, row, {"name": kept.design_name, **content, **size})
+            return {"name": kept.design_name, **content, **size}
 
-        return self._told(owner, self._database.write(action))
+        return self._change(owner, design, if_match, earlier)
 
     def kept(self, owner: str) -> tuple[int, int]:
         """Number of an owner's designs, deleted ones included, and their bytes with versions."""
@@ -233,18 +214,33 @@ class DesignStore:
 
     def forget_deleted(self) -> int:
         """Remove designs that were deleted 30 days ago for good; returns their number."""
+        gone = designs.delete().where(designs.c.deleted_at < now() - DELETED_KEPT_S)
+        return self._database.write(lambda connection: connection.execute(gone).rowcount)
 
-        def action(connection: Connection) -> int:
-            gone = connection.execute(
-                designs.delete().where(designs.c.deleted_at < now() - DELETED_KEPT_S)
-            )
-            return gone.rowcount
+    def _change(
+        self,
+        owner: str,
+        design: str,
+        if_match: str | None,
+        values: Callable[[Connection, Row[Any]], dict[str, Any]],
+        *,
+        deleted: bool = False,
+    ) -> Design:
+        """Change a design that is in the state of If-Match, and tell those who follow it."""
 
-        return self._database.write(action)
+        def action(connection: Connection) -> Design:
+            row = find_design(connection, owner, design, change=True, deleted=deleted)
+            check_match(if_match, row.revision)
+            changes = values(connection, row)
+            if not changes.keys().isdisjoint(_SIZED):
+                changes = _sized(connection, owner, changes, row)
+            stamped = changes | {"revision": row.revision + 1, "changed_at": now()}
+            connection.execute(_CHANGE, stamped | {"design": design})
+            return _stored(connection, design)
 
-    def _told(self, owner: str, design: Design) -> Design:
-        self._tell(owner, design.id, design.revision)
-        return design
+        changed = self._database.write(action)
+        self._tell(owner, design, changed.revision)
+        return changed
 
 
 @cache
@@ -303,7 +299,7 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
         "changed_at": at,
     }
     connection.execute(insert(designs).values(values))
-    return design_of(connection.execute(select(designs).where(designs.c.id == values["id"])).one())
+    return _stored(connection, values["id"])
 
 
 def _count(connection: Connection, owner: str) -> int:
@@ -334,7 +330,11 @@ def copied(row: Row[Any]) -> dict[str, Any]:
     return {n: getattr(row, n) for n in kept} | {"name": f"{row.name[:190]} (copy)"}
 
 
-def design_of(row: Row[Any]) -> Design:
+def _stored(connection: Connection, design: str) -> Design:
+    return _design_of(connection.execute(select(designs).where(designs.c.id == design)).one())
+
+
+def _design_of(row: Row[Any]) -> Design:
     """A row as clients get it."""
     return Design.model_validate({**row._mapping, "document": document_of(row)})
 
@@ -349,14 +349,6 @@ def document_of(row: Row[Any], name: str | None = None) -> DesignDocument:
         note=row.note,
         **dict(layout),
     )
-
-
-def _changed(connection: Connection, row: Row[Any], values: dict[str, Any]) -> Design:
-    if not values.keys().isdisjoint(_SIZED):
-        values = _sized(connection, row.owner, values, row)
-    stamped = values | {"revision": row.revision + 1, "changed_at": now()}
-    connection.execute(_CHANGE, stamped | {"design": row.id})
-    return design_of(connection.execute(select(designs).where(designs.c.id == row.id)).one())
 
 
 def _content(document: DesignDocument) -> dict[str, Any]:
@@ -389,12 +381,7 @@ def _sized(
 
 
 def _check_room(connection: Connection, owner: str, more: int) -> None:
-    """Refuse what an owner has no room for.
-
-    Raises
-    ------
-    OverLimitError
-    """
+    """Refuse what an owner has no room for."""
     total = _kept_bytes(connection, owner)
     if total + more > USER_LIMITS.kept_bytes:
         raise OverLimitError(

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..compute.answers import Answers
 from ..compute.workers import AbandonedError, NotBegunError
-from ..designs.idempotency import Retry
+from ..designs.conditions import Retry
 from ..limits.user_limits import CpuTimeSpentError
 from ..problems import DispossessedError, Problem, ServiceError, StoreError
 from ..web.bodies import SMALL_BYTES

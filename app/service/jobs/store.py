@@ -7,7 +7,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
 
-from ..designs.idempotency import Retry, once
+from ..designs.conditions import Retry, once
 from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError, Problem, StoreError
 from ..store.database import Database

@@ -66,17 +66,7 @@ class KeptResults:
 
     def found(self, kind: type[Result], inputs: Mapping[str, Any]) -> Result | None:
         """The kept result of these inputs."""
-        return self._read(kind, self._file(kind, inputs))
-
-    def keep(self, inputs: Mapping[str, Any], result: BaseModel) -> None:
-        """Keep a result, in place of an earlier one of the same inputs."""
-        self._write(self._file(type(result), inputs), result.model_dump_json().encode())
-
-    def _file(self, kind: type[BaseModel], inputs: Mapping[str, Any]) -> Path:
-        modules = (*SOLVERS, kind.__module__)
-        return self.folder / f"{content_key({'kind': kind.__name__, **inputs}, modules)}.json"
-
-    def _read(self, kind: type[Result], file: Path) -> Result | None:
+        file = self._file(kind, inputs)
         try:
             result = kind.model_validate_json(file.read_bytes())
             os.utime(file)  # the least recently used are removed first
@@ -90,8 +80,9 @@ class KeptResults:
             return None
         return result
 
-    def _write(self, file: Path, content: bytes) -> None:
-        """Keep a result if there is room for it."""
+    def keep(self, inputs: Mapping[str, Any], result: BaseModel) -> None:
+        """Keep a result if there is room for it, in place of an earlier one of the same inputs."""
+        file, content = self._file(type(result), inputs), result.model_dump_json().encode()
         if len(content) > self.max_bytes:
             return
         try:
@@ -106,6 +97,10 @@ class KeptResults:
             self._make_room()
         except OSError as error:
             log.warning("a result cannot be kept in %s: %s", self.folder, error)
+
+    def _file(self, kind: type[BaseModel], inputs: Mapping[str, Any]) -> Path:
+        modules = (*SOLVERS, kind.__module__)
+        return self.folder / f"{content_key({'kind': kind.__name__, **inputs}, modules)}.json"
 
     def _make_room(self) -> None:
         files = []

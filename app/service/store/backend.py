@@ -2,7 +2,7 @@
 
 import contextlib
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -17,12 +17,14 @@ class Backend(ABC):
     one_writer : whether changes wait for one thread, which writes them together.
     clock : seconds since 1970, in SQL.
     snapshot : options of a connection whose reads all see the same state.
+    insert : makes an insertion in its dialect.
     engine : once it is open.
     """
 
     one_writer: bool
     clock: str
     snapshot: Mapping[str, Any] = MappingProxyType({})
+    insert: Callable[[Table], Any]
     engine: Engine
 
     @abstractmethod
@@ -35,9 +37,10 @@ class Backend(ABC):
             If an SQLite file can be neither opened nor made, or cannot be used now.
         """
 
-    @abstractmethod
     def insert_new(self, table: Table) -> Insert:
         """An insertion that leaves existing rows unchanged."""
+        new: Insert = self.insert(table).on_conflict_do_nothing()
+        return new
 
     @abstractmethod
     def reserved(self, process: str, at: str) -> contextlib.AbstractContextManager[None]:

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Iterator
 from types import MappingProxyType
 
-from sqlalchemy import Connection, Engine, Insert, Table, create_engine, text
+from sqlalchemy import Connection, Engine, create_engine, text
 from sqlalchemy.dialects.postgresql import insert
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
@@ -46,6 +46,7 @@ class PostgresqlServer(Backend):
     """
 
     one_writer = False
+    insert = staticmethod(insert)
     clock = "CAST(EXTRACT(EPOCH FROM clock_timestamp()) AS double precision)"
     snapshot = MappingProxyType({"isolation_level": "REPEATABLE READ"})
 
@@ -63,10 +64,6 @@ class PostgresqlServer(Backend):
             pool_timeout=5,
             connect_args={"connect_timeout": 3, "tcp_user_timeout": 10_000},  # s, ms
         )
-
-    def insert_new(self, table: Table) -> Insert:
-        """An insertion that leaves existing rows unchanged."""
-        return insert(table).on_conflict_do_nothing()
 
     def check(self) -> None:
         """Ask whether the name is still reserved for this process."""

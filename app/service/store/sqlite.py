@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Insert, Table, create_engine, event
+from sqlalchemy import Connection, create_engine, event
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.pool import QueuePool
 
@@ -71,6 +71,7 @@ class SqliteFile(Backend):
     """
 
     one_writer = True
+    insert = staticmethod(insert)
     clock = "(julianday('now') - 2440587.5) * 86400.0"
 
     def __init__(self, path: Path) -> None:
@@ -105,10 +106,6 @@ class SqliteFile(Backend):
             self.check()
             write = connection.get_execution_options().get("knitcore_write")
             connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN")
-
-    def insert_new(self, table: Table) -> Insert:
-        """An insertion that leaves existing rows unchanged."""
-        return insert(table).on_conflict_do_nothing()
 
     def connect(self) -> sqlite3.Connection:
         """A connection to the file; a missing one is not created.
@@ -233,12 +230,7 @@ class SqliteFile(Backend):
         return f"Process {service.process} runs on it{at}."
 
     def _check_not_lost(self) -> None:
-        """Refuse to make a database where a service had one before.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse to make a database where a service had one before."""
         path = self.path
         if self.lock.exists() and not (path.exists() and path.stat().st_size):
             raise InputError(
@@ -254,10 +246,6 @@ class SqliteFile(Backend):
 
         What was written into it would not reach the service, and what the service wrote last would
         not be read.
-
-        Raises
-        ------
-        InputError
         """
         service = holder_of(self.path)
         for name, inode in service.files.items() if service is not None else ():

@@ -6,15 +6,17 @@ a design, it is decoded in its turn, one at a time, and has a lower limit. Decod
 would not help: Python runs one at a time.
 """
 
+import json
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from typing import Any
 
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
-from pydantic import ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import WrapValidator
 from starlette.types import Message, Receive
 
+from ...requests.base import unrepeated
 from ...requests.charts import MAX_FIELD
 from ..identity import current_user
 from ..limits.fair_queue import FairLock
@@ -37,11 +39,9 @@ class Undecoded:
     content: bytes
 
 
-def _pass_on(value: Any, decode: ValidatorFunctionWrapHandler) -> Any:
-    return value if isinstance(value, Undecoded) else decode(value)
-
-
-OrUndecoded = WrapValidator(_pass_on)
+OrUndecoded = WrapValidator(
+    lambda value, decode: value if isinstance(value, Undecoded) else decode(value)
+)
 """Mark of a body's model: a worker may decode the body if it is large."""
 
 
@@ -60,14 +60,14 @@ class BoundedRoute(APIRoute):
                 raise _too_large(MAX_DECODED_BYTES)
             content = await request.body()
             if len(content) <= SMALL_BYTES:
-                return await handle(request)
+                return await handle(_Unrepeated(request.scope, request.receive, content))
             if self.to_worker:
                 return await handle(_Uncut(request.scope, request.receive, content))
             if len(content) > MAX_DECODED_BYTES:
                 raise _too_large(MAX_DECODED_BYTES)
             lock: FairLock = request.app.state.large_bodies
             async with lock.turn(current_user.get()):
-                return await handle(request)
+                return await handle(_Unrepeated(request.scope, request.receive, content))
 
         return bounded
 
@@ -79,12 +79,24 @@ class WorkerRoute(BoundedRoute):
     to_worker = True
 
 
-class _Uncut(Request):
-    """A request whose JSON is not decoded."""
+class _Received(Request):
+    """A request whose body has been received."""
 
     def __init__(self, scope: Any, receive: Receive, content: bytes) -> None:
         super().__init__(scope, receive)
         self._body = content
+
+
+class _Unrepeated(_Received):
+    """A request in whose JSON no name may come twice in one object."""
+
+    async def json(self) -> Any:
+        """The body, decoded."""
+        return json.loads(self._body, object_pairs_hook=unrepeated)
+
+
+class _Uncut(_Received):
+    """A request whose JSON is not decoded."""
 
     async def json(self) -> Undecoded:
         """The body as it came."""

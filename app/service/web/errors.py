@@ -42,7 +42,8 @@ def also_wrong(error: RequestValidationError, request: Request) -> Iterator[Inpu
     """Yield the library's errors in the fields whose types are right."""
     if int(request.headers.get("Content-Length", MAX_BYTES + 1)) > MAX_BYTES:
         return
-    body, model = error.body, _model(request)
+    body, field = error.body, getattr(request.scope.get("route"), "body_field", None)
+    model: Any = field.field_info.annotation if field is not None else None
     wrong = [place[1:] for place in (fault["loc"] for fault in error.errors()) if len(place) > 1]
     if isinstance(body, dict) and "kind" in body and isinstance(body.get("request"), dict):
         jobs = {get_args(job.model_fields["kind"].annotation)[0]: job for job in get_args(model)}
@@ -57,11 +58,6 @@ def also_wrong(error: RequestValidationError, request: Request) -> Iterator[Inpu
     yield from faults_of(
         model, dict(_of_their_kinds(model, fields)), request.app.state.answers.context()
     )
-
-
-def _model(request: Request) -> Any:
-    body = getattr(request.scope.get("route"), "body_field", None)
-    return body.field_info.annotation if body is not None else None
 
 
 def _of_their_kinds(model: type[BaseModel], fields: dict[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import aclosing
+from typing import Any
 
 from fastapi import Request
 from fastapi.responses import StreamingResponse
@@ -11,6 +12,12 @@ from ..limits.user_limits import ConcurrencyLimit
 from ..problems import StoppingError
 
 QUIET_S = 15.0
+
+
+def stream_of(events: str) -> dict[str, Any]:
+    """Options of a route whose answer is a stream of such events."""
+    answer = {"content": {"text/event-stream": {}}, "description": events}
+    return {"response_class": StreamingResponse, "responses": {200: answer}}
 
 
 def event_stream(

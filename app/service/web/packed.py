@@ -32,8 +32,13 @@ ASKED_WITH_TAG = {
 
 
 def takes_gzip(headers: Headers) -> bool:
-    """Return whether a client accepts gzip."""
-    return "gzip" in headers.get("accept-encoding", "")
+    """Return whether a client accepts gzip, which a weight of 0 refuses."""
+    weights = {}
+    for part in headers.get("accept-encoding", "").lower().split(","):
+        coding, _, weight = part.partition(";")
+        weights[coding.strip()] = weight.strip().removeprefix("q=")
+    weight = weights.get("gzip", weights.get("*", "0"))
+    return bool(weight.strip("0.")) or not weight
 
 
 def tagged(content: bytes, headers: Headers, media_type: str = "application/json") -> Response:

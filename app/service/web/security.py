@@ -31,9 +31,8 @@ from .bodies import limited
 from .errors import answer_to, unexpected
 from .passes import Opener, ViewPasses
 from .reference import PAGES
-from .sessions import SESSION_S
+from .sessions import REMEMBERED_S, SESSION_S, Login
 from .sign_in import PATH, sign_in_form, sign_in_page, token_page
-from .tokens import REMEMBERED_S, Login
 
 log = logging.getLogger("knitcore.app")
 
@@ -42,6 +41,8 @@ GONE = 499
 """Status, in the log only, of a request whose client left before it was complete."""
 OPENED_BY = "knitcore.opened_by"
 """Token and session of a request, in its scope."""
+LIMITS = "knitcore.limits"
+"""Headers of the answer about the user's rate of requests, in the scope."""
 LOGIN_FAILURES = 20
 """Unknown tokens that one address may try before it must wait 10 s for each. A right token is
 always accepted: 256 random bits cannot be guessed, and a stranger cannot lock others out."""
@@ -117,21 +118,18 @@ class AccessControl:
             await self.app(scope, receive, send)
             return
         scope["headers"] = with_own_cookie_only(scope["headers"])
-        limits: dict[str, str] = {}
         if self.settings.asks_for_login:
             current_user.set(NOBODY)  # until the request's token or session is known
         try:
-            answer = await self._admitted(scope, receive, limits)
+            answer = await self._admitted(scope, receive)
         except ServiceError as error:
             answer = answer_to(error)
         if scope["type"] == "websocket":
             await self._pass_socket(answer, scope, receive, send)
         else:
-            await self._pass_request(answer, scope, receive, send, limits)
+            await self._pass_request(answer, scope, receive, send)
 
-    async def _admitted(
-        self, scope: Scope, receive: Receive, limits: dict[str, str]
-    ) -> Response | None:
+    async def _admitted(self, scope: Scope, receive: Receive) -> Response | None:
         """Let a connection in and note whose it is; a response where the application is not asked.
 
         Raises
@@ -143,11 +141,11 @@ class AccessControl:
         opener = passes.holder(scope)
         self._check(scope, has_pass=opener is not None)
         if opener is not None:
-            await self._by_pass(scope, opener, limits)
+            await self._by_pass(scope, opener)
         elif self.settings.asks_for_login and _is_sign_in(scope):
             return await self._signed_in(scope, receive)
         elif self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
-            return await self._login(scope, limits)
+            return await self._login(scope)
         return None
 
     async def _pass_socket(
@@ -165,12 +163,7 @@ class AccessControl:
             await answered.end(WebSocketClose(code=1008, reason="signed out"), scope, receive)
 
     async def _pass_request(
-        self,
-        answer: Response | None,
-        scope: Scope,
-        receive: Receive,
-        send: Send,
-        limits: dict[str, str],
+        self, answer: Response | None, scope: Scope, receive: Receive, send: Send
     ) -> None:
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
@@ -182,7 +175,7 @@ class AccessControl:
                 headers["Cross-Origin-Opener-Policy"] = "same-origin"
                 headers["Cross-Origin-Resource-Policy"] = "same-origin"
                 headers.setdefault("Cache-Control", "private, no-cache")
-                headers.update(limits)
+                headers.update(scope.get(LIMITS, {}))
             await send(message)
 
         if answer is not None:
@@ -237,7 +230,7 @@ class AccessControl:
             return False
         return name is not None and (name in self.hosts or f"[{name}]" in self.hosts)
 
-    async def _by_pass(self, scope: Scope, opener: Opener, limits: dict[str, str]) -> None:
+    async def _by_pass(self, scope: Scope, opener: Opener) -> None:
         """Let the holder of a pass in while the token or session that asked for it is valid."""
         if opener.opened_by is not None:
             login: Login = scope["app"].state.login
@@ -249,9 +242,9 @@ class AccessControl:
         current_user.set(opener.user)
         current_session.set(opener.session)
         if opener.opened_by is not None:
-            self._count(scope, opener.user, limits)
+            self._count(scope, opener.user)
 
-    async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
+    async def _login(self, scope: Scope) -> Response | None:
         """Let a known user in, unless requests come too often, and note who it is."""
         login: Login = scope["app"].state.login
         headers = Headers(scope=scope)
@@ -261,7 +254,7 @@ class AccessControl:
         if not user:
             return self._stranger(scope, tried=bool(token or link))
         current_user.set(user)
-        self._count(scope, user, limits)
+        self._count(scope, user)
         current_session.set(session)
         scope[OPENED_BY] = identifier, session
         if link and not (token or session) and scope["type"] == "http" and scope["method"] == "GET":
@@ -282,11 +275,11 @@ class AccessControl:
             remedy="Open the page as /?token=…, or send the header Authorization: Bearer ….",
         )
 
-    def _count(self, scope: Scope, user: str, limits: dict[str, str]) -> None:
+    def _count(self, scope: Scope, user: str) -> None:
         """Refuse more requests than one user may send; say how many are left."""
         left, wait = self.rate.take(user)
-        limits["RateLimit-Limit"] = str(self.rate.burst)
-        limits["RateLimit-Remaining"] = str(left)
+        burst = str(self.rate.burst)
+        scope[LIMITS] = {"RateLimit-Limit": burst, "RateLimit-Remaining": str(left)}
         if wait:
             raise TooManyError("You are sending requests too often.", wait)
         concurrency: ConcurrencyLimit = scope["app"].state.concurrency
@@ -314,7 +307,8 @@ class AccessControl:
 
     async def _begin(self, scope: Scope, identifier: str, user: str, to: str) -> Response:
         login: Login = scope["app"].state.login
-        response = RedirectResponse(_own_path(to), 303)
+        own = "/" + to.lstrip("/\\")  # //evil.example would lead to another service
+        response = RedirectResponse(own, 303)
         response.set_cookie(
             SESSION_COOKIE,
             await asyncio.to_thread(login.begin, identifier, user),
@@ -401,11 +395,6 @@ def _place_of(origin: str) -> str | None:
         return urlsplit(origin).netloc.lower()
     except ValueError:
         return None
-
-
-def _own_path(path: str) -> str:
-    """A path of this service: ``//evil.example`` would lead to another."""
-    return "/" + path.lstrip("/\\")
 
 
 def _bearer(headers: Headers) -> str:

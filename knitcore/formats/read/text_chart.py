@@ -74,7 +74,7 @@ def read_text_chart(text: str) -> tuple[StitchChart, tuple[str, ...]]:
         raise InputError("chart", f"the text has {len(text)} characters.", remedy)
     if not any(_is_drawn_with_hashes(line) or _is_framed(line) for line in lines):
         try:
-            return StitchChart.parse(text), ()
+            return StitchChart.parse(text), tuple(_mixed(text))
         except InputError as strict:
             return _Reader(lines, strict).read()
     return _Reader(lines, None).read()
@@ -352,6 +352,17 @@ def is_blank(cells: Sequence[Sequence[str]]) -> bool:
     inner = [row[0] for row in cells]
     ends = {(text[:1] == BLANK, text[-1:] == BLANK) for text in inner}
     return any(BLANK in text.strip() for text in inner) or len(ends) > 1
+
+
+def _mixed(text: str) -> Iterator[str]:
+    """Notes on signs that stand beside letters of the same meaning, and may be something else."""
+    lines = (line for line in text.splitlines() if not line.lstrip().startswith("#"))
+    signs = set("".join(lines))
+    for kind, letters, others in (("knit", "Kk", "|"), ("purl", "Pp", "•–-")):
+        both = [part for part in (letters, others) if signs & set(part)]
+        if len(both) == 2:
+            name = next(sign for sign in others if sign in signs)
+            yield f"{name} is read as {kind}, like {letters[0]}."
 
 
 def _plain(sign: str) -> str:

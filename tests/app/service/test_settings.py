@@ -72,3 +72,11 @@ def test_a_folder_that_cannot_be_made_is_reported(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setenv("KNITCORE_DATA_DIR", "/proc/x")
     result = CliRunner().invoke(main, ["serve", "--port", "0"])
     assert (result.exit_code, "cannot be created" in result.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("name", ["KNITCORE_DATA_DIR", "KNITCORE_TOKEN", "KNITCORE_PORT"])
+def test_an_empty_variable_is_refused(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(name, "")
+    result = CliRunner().invoke(main, ["doctor"])
+    assert result.exit_code == 1
+    assert "FAIL  settings" in result.output

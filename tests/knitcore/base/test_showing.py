@@ -9,7 +9,7 @@ import pytest
 from knitcore import InputError, StitchChart, curve, material, predict, strip_test
 from knitcore.base import showing
 from knitcore.garment.shaped import ShapedChart
-from tests.knitcore.notebook.results import curled, relaxed_cell, sweep
+from tests.knitcore.results import curled, relaxed_cell, sweep
 
 ACRYLIC = material("acrylic")
 GARTER = StitchChart.of_fabric("garter", rows=4, columns=6)

@@ -1,7 +1,5 @@
-import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
 from knitcore.chart.repeats import known_larger_repeats, primitive_repeats, repeats_up_to
@@ -20,32 +18,14 @@ def test_numbers_of_repeats(rows: int, columns: int, stitches: int, count: int) 
 
 def test_the_four_fabrics_are_the_smallest_repeats() -> None:
     fabrics = [StitchChart.of_fabric(f, 2, 2) for f in ("stockinette", "garter", "rib", "seed")]
-    found = [fabric.canonical() for fabric in fabrics]
-    assert len(set(found)) == 4
-    assert set(found) < set(repeats_up_to(2, 2))
-
-
-@given(index=st.integers(0, 1478), across=st.integers(0, 3), down=st.integers(0, 3), data=st.data())
-def test_images_of_a_repeat_are_the_same_fabric(
-    index: int, across: int, down: int, data: st.DataObject
-) -> None:
-    repeat = repeats_up_to(4, 4)[index]
-    image = StitchChart(np.roll(repeat.purl, (down, across), axis=(0, 1)))
-    for turn in (StitchChart.mirror, StitchChart.turn_over):
-        if data.draw(st.booleans()):
-            image = turn(image)
-    assert image.canonical() == repeat
-    assert image.tile(2, 3).canonical() == repeat
+    canonical = [fabric.canonical() for fabric in fabrics]
+    assert len(set(canonical)) == 4
+    assert set(canonical) < set(repeats_up_to(2, 2))
 
 
 @given(chart=stitch_charts(most=4))
 def test_every_chart_is_a_repeat_of_the_list(chart: StitchChart) -> None:
     assert chart.canonical() in repeats_up_to(4, 4)
-
-
-@given(chart=stitch_charts(most=8))
-def test_keys_are_read_back(chart: StitchChart) -> None:
-    assert StitchChart.parse(chart.key) == chart
 
 
 def test_the_larger_ones_are_new_and_fit_8_x_8() -> None:

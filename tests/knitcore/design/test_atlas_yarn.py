@@ -24,9 +24,9 @@ WOOL = material("glove-wool")
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     """A small composite atlas."""
-    found = tmp_path / "wool.npz"
-    build_atlas(WOOL, repeats_up_to(2, 3), file=found)
-    return found
+    atlas_file = tmp_path / "wool.npz"
+    build_atlas(WOOL, repeats_up_to(2, 3), file=atlas_file)
+    return atlas_file
 
 
 class Relaxing:
@@ -38,7 +38,6 @@ class Relaxing:
 
     def __call__(self, task: RepeatTask) -> dict[str, Any]:
         stored = stored_stitch(StitchChart.parse(task.chart), "acrylic")
-        assert stored is not None
         self.done.append(task.chart)
         return {
             "cell_course_mm": stored.cell_course_mm,

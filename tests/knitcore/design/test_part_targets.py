@@ -21,17 +21,13 @@ def test_parts_become_maps() -> None:
 
 
 def test_the_same_target_twice_is_not_a_contradiction() -> None:
-    one = box("one", range(4), range(4), 0.1, None)
-    other = box("other", range(2, 6), range(2, 6), 0.1, 0.2)
-    course, wale = target_maps([one, other], 8, 8)
+    """And stitches of the same targets are one part."""
+    first = box("first", range(4), range(4), 0.1, None)
+    second = box("second", range(2, 6), range(2, 6), 0.1, 0.2)
+    course, wale = target_maps([first, second], 8, 8)
     assert np.count_nonzero(~np.isnan(course)) == 28
     assert np.count_nonzero(~np.isnan(wale)) == 16
-
-
-def test_stitches_of_the_same_targets_are_one_part() -> None:
-    one = box("one", range(4), range(4), 0.1, None)
-    other = box("other", range(2, 6), range(2, 6), None, 0.2)
-    parts = target_parts([one, other], 8, 8)
+    parts = target_parts([first, second], 8, 8)
     assert sorted(np.bincount(parts.ravel()).tolist()) == [4, 12, 12, 36]
     assert parts[2, 2] == parts[3, 3] != parts[0, 0]
 
@@ -39,10 +35,11 @@ def test_stitches_of_the_same_targets_are_one_part() -> None:
 def test_contradictions_are_named_with_both_parts_and_where() -> None:
     palm = box("palm", range(4), range(4), 0.1, None)
     thumb = box("thumb", range(2, 6), range(2, 6), 0.2, None)
-    with pytest.raises(InputError, match=r"“palm” and “thumb” contradict .* in 4 stitches") as told:
+    problem = r"“palm” and “thumb” contradict .* in 4 stitches"
+    with pytest.raises(InputError, match=problem) as error:
         target_maps([palm, thumb], 8, 8)
-    assert "row 3, column 3" in told.value.problem
-    assert "0.1 and 0.2 N/mm course-wise" in told.value.problem
+    assert "row 3, column 3" in error.value.problem
+    assert "0.1 and 0.2 N/mm course-wise" in error.value.problem
 
 
 @pytest.mark.parametrize(

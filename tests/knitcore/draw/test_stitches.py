@@ -37,7 +37,7 @@ def _strand_distance_mm(shapes: StitchShapes) -> float:
 
 
 @given(stitch_charts(7))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_neighbours_in_a_course_join_without_gap_or_kink(chart: StitchChart) -> None:
     shapes = stitch_shapes(chart, ACRYLIC)
     lines = placed_lines(shapes, unstretched(shapes))
@@ -53,7 +53,7 @@ def test_neighbours_in_a_course_join_without_gap_or_kink(chart: StitchChart) -> 
 
 
 @given(stitch_charts(6))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_turning_the_fabric_over_turns_its_yarn_over(chart: StitchChart) -> None:
     shapes, turned = (stitch_shapes(c, ACRYLIC) for c in (chart, chart.turn_over()))
     lines, back = (placed_lines(s, unstretched(s)) for s in (shapes, turned))
@@ -66,14 +66,9 @@ def test_turning_the_fabric_over_turns_its_yarn_over(chart: StitchChart) -> None
 def test_a_pure_fabric_follows_its_relaxed_cell(fabric: Fabric) -> None:
     chart = StitchChart.of_fabric(fabric, rows=6, columns=6)
     stored = stored_stitch(chart, "acrylic")
-    assert stored is not None
     shapes = stitch_shapes(chart, ACRYLIC)
     record = ACRYLIC.record(fabric)
-    scale = np.sqrt(
-        record.stitch_course_mm
-        * record.stitch_wale_mm
-        / (stored.cell_course_mm * stored.cell_wale_mm)
-    )
+    scale = np.sqrt(np.prod(record.stitch_mm) / (stored.cell_course_mm * stored.cell_wale_mm))
     cell = np.tile(cell_lines(stored), (6, 6, 1, 1))[:6, :6] * (1.0, 1.0, scale)
     np.testing.assert_allclose(shapes.lines[shapes.index], cell, atol=2e-3)
 

@@ -13,15 +13,6 @@ def test_vertices_lie_on_the_radius_around_the_line() -> None:
     np.testing.assert_allclose(distance, 0.5, rtol=1e-5)
 
 
-def test_triangles_face_outwards() -> None:
-    line = np.stack([np.linspace(0, 5, 9), np.zeros(9), np.zeros(9)], axis=1)
-    mesh = tube_mesh(line, 1.0, sides=6)
-    corners = mesh.vertices[mesh.faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    outwards = corners.mean(axis=1) * [0, 1, 1]
-    assert (np.einsum("ij,ij->i", normals, outwards) > 0).all()
-
-
 def test_a_straight_tube_encloses_its_volume() -> None:
     line = np.stack([np.zeros(5), np.linspace(0, 4, 5), np.zeros(5)], axis=1)
     mesh = tube_mesh(line, 1.0, sides=64)

@@ -14,39 +14,23 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.uniaxial_files import read_stretch_test
 from tests.knitcore.measure.synthetic import LAW, csv_pair, h5_pair
 
-TRUTH = ConstitutiveLaw(
-    0.15,
-    0.09,
-    0.042,
-    0.042,
-    1.25,
-    1.0,
-    0.015,
-    0.015,
-    0.02,
-    kappa_xx=0.1,
-    kappa_yy=0.3,
-    shear_stiffening=4.0,
-)
+SYMMETRIC = ConstitutiveLaw(0.15, 0.09, 0.042, 0.042, 1.25, 1.0, 0.015, 0.015, 0.02)
+TRUTH = replace(SYMMETRIC, kappa_xx=0.1, kappa_yy=0.3, shear_stiffening=4.0)
 CLAMPED = {Direction.COURSE: (60.0, 92.0), Direction.WALE: (120.0, 40.0)}
 EVEN = {Direction.COURSE: (60.0, None), Direction.WALE: (120.0, None)}
 
 
 def made_strip(
-    direction: Direction,
-    sizes: dict[Direction, tuple[float, float | None]],
-    pulls: int = 3,
-    noise: float = 0.0,
+    direction: Direction, sizes: dict[Direction, tuple[float, float | None]], noise: float = 0.0
 ) -> MeasuredStrip:
     """A simulated test of TRUTH, every pull a little stiffer or softer."""
     strain = np.linspace(0.08, 0.995, LEVELS) * 0.7
-    blank = np.zeros((pulls, LEVELS))
+    blank = np.zeros((3, LEVELS))
     strip = MeasuredStrip(direction, *sizes[direction], strain, blank, blank)
     stress, waist = strip.simulate(TRUTH)
-    scale = 1 + noise * np.linspace(-1, 1, pulls)[:, None]
-    return MeasuredStrip(
-        direction, *sizes[direction], strain, scale * stress, np.repeat(waist[None], pulls, axis=0)
-    )
+    scale = 1 + noise * np.linspace(-1, 1, 3)[:, None]
+    waists = np.repeat(waist[None], 3, axis=0)
+    return replace(strip, stress_n_per_mm=scale * stress, waist=waists)
 
 
 @pytest.mark.parametrize(
@@ -57,12 +41,12 @@ def test_a_law_is_recovered_from_simulated_strips(
     sizes: dict[Direction, tuple[float, float | None]],
 ) -> None:
     strips = [made_strip(d, sizes) for d in Direction]
-    found = fit_strips(strips)
-    assert found.law.modulus_course == pytest.approx(TRUTH.modulus_course, rel=0.02)
-    assert found.law.modulus_wale == pytest.approx(TRUTH.modulus_wale, rel=0.02)
-    assert found.law.alpha_xx == pytest.approx(TRUTH.alpha_xx, rel=0.03)
-    assert found.law.kappa_yy == pytest.approx(TRUTH.kappa_yy, abs=0.05)
-    for strip, stress in zip(strips, found.stress, strict=True):
+    fit = fit_strips(strips)
+    assert fit.law.modulus_course == pytest.approx(TRUTH.modulus_course, rel=0.02)
+    assert fit.law.modulus_wale == pytest.approx(TRUTH.modulus_wale, rel=0.02)
+    assert fit.law.alpha_xx == pytest.approx(TRUTH.alpha_xx, rel=0.03)
+    assert fit.law.kappa_yy == pytest.approx(TRUTH.kappa_yy, abs=0.05)
+    for strip, stress in zip(strips, fit.stress, strict=True):
         assert stress == pytest.approx(strip.means[0], rel=0.01)
 
 

@@ -19,6 +19,7 @@ from knitcore.garment.shaped import ShapedChart
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worked_piece import piece_rows
 from knitcore.garment.worn_piece import Fit, worn
+from tests.knitcore.refusals import refuses
 
 WOOL = material("glove-wool:published")
 PLANS = (
@@ -74,18 +75,11 @@ def test_the_glove_is_shaped_where_rows_begin() -> None:
 
 
 def test_the_gusset_tapers_from_the_thumb_to_its_crotch() -> None:
-    stitches = {
-        girth: next(
-            (
-                n.stitches
-                for n in glove(replace(Hand(), gusset_girth_mm=girth), WOOL).numbers
-                if n.name == "thumb gusset"
-            ),
-            0,
-        )
-        for girth in (0.0, 22.0, 44.0)
-    }
-    assert stitches[0.0] == 0 < stitches[22.0] < stitches[44.0]
+    stitches = []
+    for girth in (0.0, 22.0, 44.0):
+        plan = glove(replace(Hand(), gusset_girth_mm=girth), WOOL)
+        stitches.append(sum(n.stitches for n in plan.numbers if n.name == "thumb gusset"))
+    assert stitches[0] == 0 < stitches[1] < stitches[2]
     ends = np.array([stop for _, stop in PLANS[0].shaped.spans])
     assert np.array_equal(ends, ends[::-1])
 
@@ -111,13 +105,11 @@ def test_the_study_glove_is_tighter_at_the_wrist() -> None:
 @pytest.mark.parametrize("mmhg", [8.0, 15.0, 25.0])
 def test_a_target_pressure_is_reached(mmhg: float) -> None:
     brace = wrist_brace(170, 90, WOOL, fit=Fit(mmhg=mmhg))
-    assert brace.worn[0].pressure is not None
     interval = brace.worn[0].pressure.mmhg
     assert interval.low < mmhg * 1.1
     assert interval.high > mmhg * 0.9
     tube = limb_tube("s", [Girth(0, 200), Girth(200, 220)], WOOL, fit=Fit(mmhg=mmhg), hem_mm=0)
     for place in tube.worn:
-        assert place.pressure is not None
         assert place.pressure.mmhg.low < mmhg * 1.25
         assert place.pressure.mmhg.high > mmhg * 0.75
 
@@ -190,10 +182,10 @@ def test_different_gauges_are_reported_where_they_meet() -> None:
         Region("a", left, StitchChart.of_fabric(Fabric.RIB).repeat()),
         Region("b", ~left, StitchChart.of_fabric(Fabric.GARTER).repeat()),
     ]
-    found = misfits(regions, [Gauge(3.0, 3.0), Gauge(2.0, 2.0)], stitch)
-    assert [(m.first, m.second, m.stitches) for m in found] == [("a", "b", 4)]
-    assert found[0].difference == pytest.approx(0.5)
-    assert "“a” lies beside “b” and its rows are 50 % higher" in found[0].text
+    reported = misfits(regions, [Gauge(3.0, 3.0), Gauge(2.0, 2.0)], stitch)
+    assert [(m.first, m.second, m.stitches) for m in reported] == [("a", "b", 4)]
+    assert reported[0].difference == pytest.approx(0.5)
+    assert "“a” lies beside “b” and its rows are 50 % higher" in reported[0].text
     assert misfits(regions, [Gauge(3.0, 3.0), Gauge(2.0, 2.8)], stitch) == ()
 
 
@@ -230,7 +222,6 @@ def test_a_tube_is_sized_for_a_pressure() -> None:
     rest_mm = fit.rest_mm(170, WOOL, Fabric.STOCKINETTE, Direction.WALE)
     tube = worn(WOOL, Fabric.STOCKINETTE, Direction.WALE, rest_mm, 170)
     assert tube.ease == pytest.approx(rest_mm / 170 - 1)
-    assert tube.pressure is not None
     assert tube.pressure.mmhg.low < 20 < tube.pressure.mmhg.high
     assert fit.rest_mm(170, WOOL, Fabric.GARTER, Direction.WALE) < rest_mm
 
@@ -248,10 +239,8 @@ def test_a_tube_is_sized_for_a_pressure() -> None:
     ],
 )
 def test_measurements_that_cannot_be_knitted(make: object, field: str) -> None:
-    assert callable(make)
-    with pytest.raises(InputError) as caught:
+    with refuses(field):
         make()
-    assert caught.value.field == field
 
 
 def test_a_fit_takes_one_pressure() -> None:

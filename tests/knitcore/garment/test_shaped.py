@@ -6,41 +6,28 @@ from hypothesis.extra.numpy import array_shapes, arrays
 
 from knitcore import Fabric, InputError, StitchChart
 from knitcore.chart.phases import LEFT, RIGHT, surroundings
-from knitcore.formats.designs.design_file import DesignFile, design_from_mapping
 from knitcore.garment.shaped import ShapedChart, largest_rectangle
-from tests.knitcore.charts import stitch_charts
+from tests.knitcore.pieces import pieces
+
+SHAPED = pieces(yarns=1).map(lambda piece: piece.shaped)
 
 
-@st.composite
-def shaped_charts(draw: st.DrawFn) -> ShapedChart:
-    """A trapezium in a random chart."""
-    chart = draw(stitch_charts(most=8))
-    middle = draw(st.integers(0, chart.columns - 1))
-    stitch = np.zeros_like(chart.purl)
-    for row in range(chart.rows):
-        left = draw(st.integers(0, middle))
-        stitch[row, left : draw(st.integers(middle + 1, chart.columns))] = True
-    return ShapedChart(chart, stitch)
-
-
-@given(shaped=shaped_charts())
-def test_text_and_project_file_keep_chart_and_outline(shaped: ShapedChart) -> None:
+@given(shaped=SHAPED)
+def test_text_keeps_chart_and_outline(shaped: ShapedChart) -> None:
     assert ShapedChart.parse(shaped.chart.text, shaped.outline) == shaped
-    design = DesignFile(chart=shaped.chart.text, outline=shaped.outline)
-    assert design_from_mapping(design.model_dump(exclude_none=True)).to_piece().shaped == shaped
 
 
-@given(shaped=shaped_charts())
+@given(shaped=SHAPED)
 def test_spans_are_the_stitches(shaped: ShapedChart) -> None:
     assert sum(stop - start for start, stop in shaped.spans) == shaped.stitches
 
 
-@given(shaped=shaped_charts())
+@given(shaped=SHAPED)
 def test_continued_charts_are_the_same_inside(shaped: ShapedChart) -> None:
     assert ShapedChart(shaped.continued(), shaped.stitch) == shaped
 
 
-@given(shaped=shaped_charts(), fabric=st.sampled_from(Fabric))
+@given(shaped=SHAPED, fabric=st.sampled_from(Fabric))
 def test_a_pure_fabric_is_pure_up_to_its_outline(shaped: ShapedChart, fabric: Fabric) -> None:
     """In rows and columns of several stitches; a lone one has no neighbour to go by."""
     pure = StitchChart.of_fabric(fabric, rows=shaped.chart.rows, columns=shaped.chart.columns)
@@ -90,9 +77,9 @@ def test_no_rectangle_inside_has_more_stitches(stitch: np.ndarray) -> None:
         for right in range(left, columns + 1)
         if stitch[top:bottom, left:right].all()
     )
-    found = stitch[largest_rectangle(stitch)]
-    assert found.all()
-    assert found.size == most
+    inside = stitch[largest_rectangle(stitch)]
+    assert inside.all()
+    assert inside.size == most
 
 
 def test_a_glove_s_largest_part_is_its_palm() -> None:

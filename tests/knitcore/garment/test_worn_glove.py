@@ -16,12 +16,6 @@ def worn() -> GloveOnHand:
     return glove_on_hand(HAND, WOOL)
 
 
-def _girths(worn: GloveOnHand, rows: slice, column: int) -> float:
-    """Length of the lower borders of some rows at the left of a column, mm."""
-    line = worn.corners_mm[rows, column]
-    return float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
-
-
 def test_every_stitch_has_a_place_and_its_face_outside(worn: GloveOnHand) -> None:
     corners, stitch = worn.corners_mm, worn.plan.shaped.stitch
     across = corners[1:, 1:] - corners[:-1, :-1], corners[1:, :-1] - corners[:-1, 1:]
@@ -45,7 +39,8 @@ def test_fingers_are_as_long_and_as_thick_as_the_hands(worn: GloveOnHand) -> Non
     whole = HAND.cuff_mm + HAND.wrist_mm + HAND.palm_mm + HAND.fingers[1].length_mm
     assert reach == pytest.approx(whole, rel=0.02)
     middle = tips.max() - 15
-    half = _girths(worn, slice(back[0], back[-1] + 2), middle)
+    around = worn.corners_mm[back[0] : back[-1] + 2, middle]
+    half = np.linalg.norm(np.diff(around, axis=0), axis=1).sum()
     assert half == pytest.approx(0.5 * HAND.fingers[1].circumference_mm, rel=0.02)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, material
 from knitcore.law.response import (
     MAX_STRESS_N_PER_MM,
     free_response,
@@ -11,20 +11,19 @@ from knitcore.law.response import (
     response_through,
     stiffened,
 )
-from knitcore.materials import material
 
 STRESS, STRAIN = np.array([0.01, 0.1, 1.0]), np.array([0.2, 0.5, 0.8])
 LAW = material("acrylic:published").law(Fabric.RIB)
 
 
 def test_through_points_it_is_linear_a_power_law_and_then_stiff() -> None:
-    found = response_through(STRESS, STRAIN)
-    assert found.modulus_n_per_mm == pytest.approx(0.05)
-    assert found.strain(STRESS) == pytest.approx(STRAIN)
-    assert found.strain([0.0, 0.002, 0.005]) == pytest.approx([0.0, 0.04, 0.1])
-    assert found.strain(np.sqrt(0.001)) == pytest.approx(np.sqrt(0.2 * 0.5))
-    assert found.strain(5) == pytest.approx(0.8)
-    assert found.strain([0, 1]) == pytest.approx([0.0, 0.8])  # whole numbers, too
+    response = response_through(STRESS, STRAIN)
+    assert response.modulus_n_per_mm == pytest.approx(0.05)
+    assert response.strain(STRESS) == pytest.approx(STRAIN)
+    assert response.strain([0.0, 0.002, 0.005]) == pytest.approx([0.0, 0.04, 0.1])
+    assert response.strain(np.sqrt(0.001)) == pytest.approx(np.sqrt(0.2 * 0.5))
+    assert response.strain(5) == pytest.approx(0.8)
+    assert response.strain([0, 1]) == pytest.approx([0.0, 0.8])  # whole numbers, too
 
 
 @pytest.mark.parametrize("direction", Direction)
@@ -44,9 +43,9 @@ def test_stiffened_it_needs_so_many_times_the_stress() -> None:
 
 
 def test_the_stress_at_a_strain_is_the_inverse() -> None:
-    found = response_through(STRESS, STRAIN)
-    assert found.stress(STRAIN[:2]) == pytest.approx(STRESS[:2], rel=0.03)
-    assert found.stress([0, 0.04]) == pytest.approx([0.0, 0.002], abs=1e-6)
+    response = response_through(STRESS, STRAIN)
+    assert response.stress(STRAIN[:2]) == pytest.approx(STRESS[:2], rel=0.03)
+    assert response.stress([0, 0.04]) == pytest.approx([0.0, 0.002], abs=1e-6)
     law = free_response(LAW, Direction.COURSE)
     small = np.geomspace(1e-6, 0.05, 40)
     assert law.strain(law.stress(small)) == pytest.approx(small, rel=2e-3)

@@ -42,42 +42,39 @@ def test_the_products_of_a_sum_are_added_one_by_one():
     target = np.zeros((1, 1), np.float32)
     dense.subtract_product(target, terms[:, :1].copy(), terms[:, 1:].copy(), False)
     total = np.float32(0.0)
-    for one, other in terms:
-        total -= one * other
+    for first, second in terms:
+        total -= first * second
     assert target[0, 0] == total
 
 
-def test_a_matrix_that_is_not_definite_is_refused():
+def test_matrices_that_are_not_definite_or_singular_are_refused():
     front, matrix = _definite(30, 30)
     front -= 1.01 * np.linalg.eigvalsh(matrix)[0] * np.eye(30)
     assert not dense.eliminate(front)
     assert not dense.eliminate(np.full((3, 3), np.nan))
+    with pytest.raises(ZeroDivisionError):
+        dense.solved(np.ones((2, 2)), np.ones(2))
 
 
 @pytest.mark.parametrize("count", [1, 4, 19, 66])
 def test_systems_are_solved(count):
     front, matrix = _definite(count, count)
     right = RNG.standard_normal((3, count))
-    found = right.copy()
+    solution = right.copy()
     assert dense.eliminate(front)
-    dense.substitute(front, found)
-    np.testing.assert_allclose(found, np.linalg.solve(matrix, right.T).T, atol=1e-11)
+    dense.substitute(front, solution)
+    np.testing.assert_allclose(solution, np.linalg.solve(matrix, right.T).T, atol=1e-11)
     general = RNG.standard_normal((count, count))
     np.testing.assert_allclose(
         dense.solved(general, right[0]), np.linalg.solve(general, right[0]), rtol=1e-6
     )
 
 
-def test_a_singular_system_is_refused():
-    with pytest.raises(ZeroDivisionError):
-        dense.solved(np.ones((2, 2)), np.ones(2))
-
-
 def test_products_are_those_of_numpy():
-    one, other = RNG.standard_normal((7, 40)), RNG.standard_normal((40, 13))
-    np.testing.assert_allclose(dense.product(one, other), one @ other, atol=1e-13)
-    np.testing.assert_allclose(dense.times(one, other[:, 2]), one @ other[:, 2], atol=1e-13)
-    assert dense.dot(one[0], one[1]) == pytest.approx(one[0] @ one[1])
-    assert dense.norm(one[0]) == pytest.approx(np.linalg.norm(one[0]))
+    left, right = RNG.standard_normal((7, 40)), RNG.standard_normal((40, 13))
+    np.testing.assert_allclose(dense.product(left, right), left @ right, atol=1e-13)
+    np.testing.assert_allclose(dense.times(left, right[:, 2]), left @ right[:, 2], atol=1e-13)
+    assert dense.dot(left[0], left[1]) == pytest.approx(left[0] @ left[1])
+    assert dense.norm(left[0]) == pytest.approx(np.linalg.norm(left[0]))
     assert dense.times(np.zeros((0, 4)), np.ones(4)).shape == (0,)
     assert dense.product(np.zeros((2, 0)), np.zeros((0, 3))).tolist() == [[0.0] * 3] * 2

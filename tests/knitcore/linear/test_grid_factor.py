@@ -60,7 +60,7 @@ def test_an_indefinite_cell_is_found_in_either_branch(cell):
 
 
 def test_a_factor_dropped_gives_its_memory_back_at_once():
-    """Those of large charts take a gigabyte, too much to wait for the garbage collector."""
+    """A large chart's takes a gigabyte, too much to wait for the garbage collector."""
     gc.disable()
     try:
         factor = GridFactor(3, 2, np.zeros(24, dtype=bool))

@@ -3,13 +3,11 @@
 import numpy as np
 import pytest
 
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import StitchChart, material
+from knitcore.base.arrays import Array
 from knitcore.cloth.space.stitch_sheet import StitchSheet, sheet_of
 from knitcore.cloth.space.tangent import Tangent
 from knitcore.linear.sheet_factor import SheetFactor
-from knitcore.materials import material
-
-Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 
 
 def _sheet(rows: int, columns: int) -> StitchSheet:
@@ -37,8 +35,8 @@ def test_solves_with_the_matrix(rows: int, columns: int, folded: bool) -> None:
     matrix = Tangent(sheet).matrix(x, pairs, free, convex=True, shift=0.01)
     right = np.random.default_rng(0).standard_normal(x.size)
     for again in (False, True, True):
-        found = SheetFactor(matrix, columns + 1, again=again).solve(right)
-        assert np.abs(matrix @ found - right).max() < 1e-3 * np.abs(right).max()
+        solution = SheetFactor(matrix, columns + 1, again=again).solve(right)
+        assert np.abs(matrix @ solution - right).max() < 1e-3 * np.abs(right).max()
 
 
 def test_refuses_a_matrix_that_is_not_positive_definite() -> None:

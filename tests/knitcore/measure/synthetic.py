@@ -12,42 +12,25 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from knitcore import Direction
+from knitcore.base.arrays import Array
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.measure.heavy_elastica import heavy_elastica
 
-Array = NDArray[np.float64]
-
-LAW = ConstitutiveLaw(
-    stiffness_xxxx=0.241,
-    stiffness_yyyy=0.060,
-    stiffness_xxyy=0.036,
-    stiffness_yyxx=0.029,
-    alpha_xx=1.17,
-    alpha_yy=0.802,
-    beta_xx=0.022,
-    beta_yy=0.022,
-)
+LAW = ConstitutiveLaw(0.241, 0.060, 0.036, 0.029, 1.17, 0.802, 0.022, 0.022)
 """Acrylic garter, table 9."""
+WIDTH_MM, LENGTH_MM, PX_PER_MM = 70.0, 90.0, 4.0
 
 
-def pull(
-    direction: Direction, *, law: ConstitutiveLaw = LAW, points: int = 400
-) -> tuple[Array, Array, Array]:
+def pull(direction: Direction, *, points: int = 400) -> tuple[Array, Array, Array]:
     """(strain along, strain across, stress) of an ideal test up to 0.7 of the lock-up strain."""
-    strain = np.linspace(0.0, 0.7 * law.lock_up_strain(direction), points)
-    curve = uniaxial_response(law, direction, strain)
+    strain = np.linspace(0.0, 0.7 * LAW.lock_up_strain(direction), points)
+    curve = uniaxial_response(LAW, direction, strain)
     return curve.strain, curve.transverse_strain, curve.stress
 
 
 def write_csv(
-    path: Path,
-    direction: Direction,
-    *,
-    runs: int = 4,
-    noise: float = 0.0,
-    width_mm: float = 70.0,
-    seed: int = 0,
+    path: Path, direction: Direction, *, runs: int = 4, noise: float = 0.0, seed: int = 0
 ) -> Path:
     random = np.random.default_rng(seed)
     lines = ["run,strain_along,strain_across,force_n,width_mm"]
@@ -57,7 +40,7 @@ def write_csv(
             size=len(stress)
         ).clip(-3, 3)
         lines += [
-            f"{run},{a:.6f},{t:.6f},{s * width_mm:.6f},{width_mm}"
+            f"{run},{a:.6f},{t:.6f},{s * WIDTH_MM:.6f},{WIDTH_MM}"
             for a, t, s in zip(along, across, stress, strict=True)
         ]
     path.write_text("\n".join(lines) + "\n")
@@ -69,38 +52,35 @@ def csv_pair(folder: Path, **options: Any) -> list[Path]:
     return [write_csv(folder / f"{direction}.csv", direction, **options) for direction in Direction]
 
 
-def save_as_xlsx(csv_file: Path) -> Path:
-    """The table of a CSV file as people save it in a workbook."""
+def save_workbook(path: Path, sheets: dict[str, list[list[Any]]]) -> Path:
+    """Rows of cells by the names of their sheets, as people save them in a workbook."""
     book = openpyxl.Workbook()
-    head, *rows = csv.reader(csv_file.read_text().splitlines())
-    book.worksheets[0].append(head)
-    for row in rows:
-        book.worksheets[0].append([float(cell) for cell in row])
-    path = csv_file.with_suffix(".xlsx")
+    book.remove(book.worksheets[0])
+    for name, rows in sheets.items():
+        sheet = book.create_sheet(name)
+        for row in rows:
+            sheet.append(row)
     book.save(path)
     return path
 
 
-def write_h5(
-    path: Path,
-    direction: Direction,
-    *,
-    videos: int = 5,
-    description: str = "Made Yarn Garter {}",
-    px_per_mm: float = 4.0,
-) -> Path:
+def save_as_xlsx(csv_file: Path) -> Path:
+    """The table of a CSV file as a workbook."""
+    head, *rows = csv.reader(csv_file.read_text().splitlines())
+    cells = [head, *([float(cell) for cell in row] for row in rows)]
+    return save_workbook(csv_file.with_suffix(".xlsx"), {"Sheet": cells})
+
+
+def write_h5(path: Path, direction: Direction, *, videos: int = 5) -> Path:
     """The authors' layout; the sample strains evenly, so both gauges see the same strain."""
     along, across, stress = pull(direction)
-    width_mm, length_mm = 70.0, 90.0
     with h5py.File(path, "w") as file:
-        file["clampSize"] = [35.5 * px_per_mm]
-        file["fabricSize"] = [width_mm * px_per_mm]
-        file.attrs["description"] = description.format(
-            "X" if direction is Direction.COURSE else "Y"
-        )
+        file["clampSize"] = [35.5 * PX_PER_MM]
+        file["fabricSize"] = [WIDTH_MM * PX_PER_MM]
+        file.attrs["description"] = f"Made Yarn Garter {direction.of('X', 'Y')}"
         for video in range(1, videos + 1):
-            half_long = 0.5 * length_mm * (1 + along) * px_per_mm
-            half_wide = 0.4 * width_mm * (1 + across) * px_per_mm
+            half_long = 0.5 * LENGTH_MM * (1 + along) * PX_PER_MM
+            half_wide = 0.4 * WIDTH_MM * (1 + across) * PX_PER_MM
             middle = np.full(len(along), 600.0)
             points = np.array(
                 [
@@ -115,7 +95,7 @@ def write_h5(
             )
             group = file.create_group(f"video{video}")
             group["traj"] = points
-            group["forces"] = stress * width_mm
+            group["forces"] = stress * WIDTH_MM
             group["frames"] = np.arange(len(along), dtype=float)
     return path
 
@@ -126,14 +106,7 @@ def h5_pair(folder: Path, **options: Any) -> list[Path]:
 
 
 def hanging_yarn(
-    load: float,
-    *,
-    length_px: float = 1200.0,
-    width_px: float = 30.0,
-    mirrored: bool = False,
-    dark_on_light: bool = False,
-    fibres: int = 0,
-    seed: int = 0,
+    load: float, *, length_px: float = 1200.0, width_px: float = 30.0, fibres: int = 0
 ) -> NDArray[np.uint8]:
     """A grey photo of a yarn of this dimensionless load, clamped at the left border."""
     s, x, y = heavy_elastica(load)
@@ -148,7 +121,7 @@ def hanging_yarn(
         r = np.clip(np.rint(py + offset * tx / norm).astype(int), 0, rows - 1)
         c = np.clip(np.rint(px - offset * ty / norm).astype(int), 0, columns - 1)
         image[r, c] = 0.8
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     for _ in range(fibres):
         start = random.integers(400, 3600)
         walk = np.cumsum(random.normal(size=(80, 2)), axis=0)
@@ -156,10 +129,6 @@ def hanging_yarn(
         c = np.clip((px[start] + walk[:, 1] + np.arange(80)).astype(int), 0, columns - 1)
         image[r, c] = 0.7
     image = gaussian_filter(image, 1.0) + 0.08 + 0.01 * random.normal(size=image.shape)
-    if dark_on_light:
-        image = 1 - image
-    if mirrored:
-        image = image[:, ::-1]
     return np.asarray(np.clip(image, 0, 1) * 255, dtype=np.uint8)
 
 

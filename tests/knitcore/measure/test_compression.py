@@ -4,25 +4,23 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import openpyxl
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from knitcore import InputError
+from knitcore.base.arrays import Array
 from knitcore.measure.compression import average_compression, fit_compression
 from knitcore.measure.compression_files import CompressionTest, read_compression
 from knitcore.measure.workbooks import read_workbook
+from tests.knitcore.measure.synthetic import save_workbook
 
-Array = NDArray[np.float64]
 WORKBOOK = Path(__file__).with_name("made.xls")
 
 
-def squeeze(
-    k: float, p: float, *, diameter: float = 2.0, thickness: float = 3.0
-) -> CompressionTest:
+def squeeze(k: float, p: float) -> CompressionTest:
     """A test that follows the force law from 1 mN to 1 N and stops at the core at 3 N."""
+    diameter, thickness = 2.0, 3.0
     area = 5.0 * diameter
     rho_end = thickness * (1 + p / (area * k * thickness)) ** (-1 / p)
     depth = np.linspace(0, thickness - rho_end, 300)
@@ -37,12 +35,15 @@ def squeeze(
     )
 
 
-@settings(max_examples=30, deadline=None)
+MADE = squeeze(1e-3, 2.5)
+
+
+@settings(max_examples=30)
 @given(k=st.floats(2e-4, 2e-2), p=st.floats(1.2, 4.0))
 def test_a_made_test_gives_its_constants(k: float, p: float) -> None:
-    found = fit_compression(squeeze(k, p))
-    assert found.k_n_per_mm3 == pytest.approx(k, rel=0.05)
-    assert found.p == pytest.approx(p, rel=0.05)
+    fit = fit_compression(squeeze(k, p))
+    assert fit.k_n_per_mm3 == pytest.approx(k, rel=0.05)
+    assert fit.p == pytest.approx(p, rel=0.05)
 
 
 def test_k_is_inverse_to_the_area() -> None:
@@ -58,12 +59,11 @@ def write(path: Path, depth: Array, force: Array, header: str = "depth_mm,force_
 
 
 def test_csv_reads_back(tmp_path: Path) -> None:
-    made = squeeze(1e-3, 2.5)
-    path = write(tmp_path / "mine-1.csv", made.depth_mm, made.force_n)
+    path = write(tmp_path / "mine-1.csv", MADE.depth_mm, MADE.force_n)
     (test,) = read_compression(path)
     assert (test.name, test.yarn, test.diameter_mm) == ("mine-1", "mine", None)
-    found = fit_compression(test, diameter_mm=2.0)
-    assert found.k_n_per_mm3 == pytest.approx(1e-3, rel=0.05)
+    fit = fit_compression(test, diameter_mm=2.0)
+    assert fit.k_n_per_mm3 == pytest.approx(1e-3, rel=0.05)
 
 
 def test_means_are_by_yarn() -> None:
@@ -82,12 +82,13 @@ def test_means_are_by_yarn() -> None:
         (lambda d, f: (d[::40], f[::40]), "readings"),
         (lambda d, f: (d, 1000 * f), "mN"),
         (lambda d, f: (-d, f), "depth"),
+        (lambda d, f: (1000 * d, f), "not in µm"),
+        (lambda d, f: (d / 1000, f), "not in µm or m"),
         (lambda d, f: (d, np.where(np.arange(len(f)) == 7, np.nan, f)), "reading 8"),
     ],
 )
 def test_unusable_tests_are_refused(change: Any, says: str) -> None:
-    made = squeeze(1e-3, 2.5)
-    depth, force = change(made.depth_mm, made.force_n)
+    depth, force = change(MADE.depth_mm, MADE.force_n)
     test = CompressionTest("made-1", "made", depth, force, 2.0)
     with pytest.raises(InputError, match=says) as error:
         fit_compression(test)
@@ -95,42 +96,30 @@ def test_unusable_tests_are_refused(change: Any, says: str) -> None:
 
 
 def test_a_missing_diameter_is_reported() -> None:
-    made = squeeze(1e-3, 2.5)
-    test = CompressionTest("made-1", "made", made.depth_mm, made.force_n, None)
+    test = CompressionTest("made-1", "made", MADE.depth_mm, MADE.force_n, None)
     with pytest.raises(InputError, match="diameter"):
         fit_compression(test)
 
 
 def test_files_that_are_something_else(tmp_path: Path) -> None:
-    made = squeeze(1e-3, 2.5)
     (tmp_path / "a.xls").write_text("depth_mm,force_n\n1,2\n")
     (tmp_path / "b.xls").write_bytes(bytes.fromhex("d0cf11e0a1b11ae1") + b"\0" * 3000)
     (tmp_path / "c.xlsx").write_bytes(b"PK\x03\x04" + b"\0" * 100)
-    write(tmp_path / "d.csv", made.depth_mm, made.force_n, header="depth,force")
-    write(tmp_path / "e.csv", made.depth_mm, np.full(len(made.depth_mm), np.nan))
+    write(tmp_path / "d.csv", MADE.depth_mm, MADE.force_n, header="depth,force")
+    write(tmp_path / "e.csv", MADE.depth_mm, np.full(len(MADE.depth_mm), np.nan))
     (tmp_path / "f.csv").write_text("")
     for name in ("a.xls", "b.xls", "c.xlsx", "d.csv", "e.csv", "f.csv", "g.csv"):
         with pytest.raises(InputError, match=name):
             read_compression(tmp_path / name)
 
 
-def saved_as_xlsx(folder: Path) -> Path:
-    """The same workbook as people save it today, with a column of remarks that is longer."""
-    book = openpyxl.Workbook()
-    book.remove(book.worksheets[0])
-    for name, rows in read_workbook(WORKBOOK).items():
-        sheet = book.create_sheet(name)
-        for row in rows:
-            sheet.append(row)
-        sheet.cell(len(rows) + 3, 9, "end of the test")
-    book.save(folder / "made.xlsx")
-    return folder / "made.xlsx"
-
-
 @pytest.mark.parametrize("kind", ["xls", "xlsx"])
 def test_a_workbook_has_a_sheet_for_each_sample(kind: str, tmp_path: Path) -> None:
     """Made with 1 mN/mm³ and 2.5, and with 10 mN/mm³ and 3; diameters in a sheet of their own."""
-    tests = read_compression(WORKBOOK if kind == "xls" else saved_as_xlsx(tmp_path))
+    remark = [[], [], [*[None] * 8, "end of the test"]]  # a column that is longer
+    sheets = {name: rows + remark for name, rows in read_workbook(WORKBOOK).items()}
+    today = save_workbook(tmp_path / "made.xlsx", sheets)
+    tests = read_compression(WORKBOOK if kind == "xls" else today)
     assert [test.diameter_mm for test in tests] == [2.0, 2.2, 2.4, 1.2, 1.3]
     means = {m.yarn: m for m in average_compression([fit_compression(t) for t in tests])}
     assert {yarn: mean.samples for yarn, mean in means.items()} == {"soft": 3, "firm": 2}

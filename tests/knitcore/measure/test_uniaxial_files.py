@@ -17,7 +17,6 @@ from tests.knitcore.measure.synthetic import LAW, csv_pair, h5_pair, write_csv, 
 
 X = Direction.COURSE
 fit_files = partial(fit_tests, reduction=Reduction.UNIFORM)
-PERCENT_HEADER = "run,strain_along_%,strain_across_%,force_n,width_mm"
 
 
 def test_lost_points_and_unread_forces_are_left_out(tmp_path: Path) -> None:
@@ -49,7 +48,7 @@ def test_an_unloading_at_the_end_of_a_video_is_cut_off(tmp_path: Path) -> None:
         file["video2/traj"] = np.concatenate([points, points[:, :, ::-1]], axis=2)
     fit = fit_files(*files, reduction=Reduction.PUBLISHED)
     close_to(fit.law, LAW, 1e-3)
-    assert any("after the unloading" in note for note in fit.notes)
+    assert any("after the largest force" in note for note in fit.notes)
 
 
 def test_a_senseless_pull_is_left_out_and_only_senseless_pulls_are_refused(tmp_path: Path) -> None:
@@ -73,9 +72,6 @@ def test_names_of_columns_may_carry_units_in_brackets(tmp_path: Path) -> None:
         lines[0] = "Run,Strain along,Strain across,Force (N),Width [mm]"
         file.write_text("\n".join(lines))
     close_to(fit_files(*files).law, LAW, 0.02)
-
-
-# -- bad input -----------------------------------------------------------------------------------
 
 
 def _cell(lines: list[str], row: int, column: int, text: str) -> None:
@@ -109,7 +105,6 @@ def _unload(lines: list[str]) -> None:
         (lambda lines: _cell(lines, 9, 1, "x,y"), ["line 9"]),
         (lambda lines: _cell(lines, 12, 2, "0,3"), ["line 12"]),
         (_in_percent, ["percent", "strain_along", "row"]),
-        (lambda lines: lines.__setitem__(0, PERCENT_HEADER), ["percent", "strain_along_%"]),
         (_in_rows(lambda r, e, t, *fw: (r, t, e, *fw)), ["strain"]),
         (_in_rows(lambda r, e, *tfw: (r, 0.2, *tfw)), ["strain_along", "the same in every row"]),
         (_in_rows(lambda r, e, t, f, w: (r, e, t, 1000 * f, w)), ["newton (not mN"]),
@@ -211,21 +206,6 @@ def test_optional_lengths_of_a_csv_are_read_and_checked(tmp_path: Path, name: st
     written.write_text(written.read_text().replace(",60", ",6", 1))
     with pytest.raises(InputError, match=f"column {name}"):
         read_stretch_test(written)
-
-
-@pytest.mark.parametrize(
-    ("content", "problem"),
-    [
-        (b"strain_along;strain_across;force_n;width_mm\n0,1;0;1;70\n", "semicolons"),
-        (b"strain_along\tforce_n\n0.1\t1\n", "tabs"),
-        ("strain_along,größe\n0.1,1\n".encode("latin-1"), "not text in UTF-8"),
-    ],
-)
-def test_other_kinds_of_csv_are_named(tmp_path: Path, content: bytes, problem: str) -> None:
-    path = tmp_path / "x.csv"
-    path.write_bytes(content)
-    with pytest.raises(InputError, match=problem):
-        read_stretch_test(path)
 
 
 def test_points_outside_the_sample_are_refused(tmp_path: Path) -> None:

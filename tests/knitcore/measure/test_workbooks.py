@@ -9,19 +9,12 @@ import pytest
 from knitcore import InputError
 from knitcore.measure import workbooks
 from knitcore.measure.workbooks import is_workbook, read_workbook
-
-
-def saved(path: Path, *rows: list[object]) -> Path:
-    book = openpyxl.Workbook()
-    sheet = book.worksheets[0]
-    for row in rows:
-        sheet.append(row)
-    book.save(path)
-    return path
+from tests.knitcore.measure.synthetic import save_workbook
 
 
 def test_empty_cells_at_the_end_are_left_out(tmp_path: Path) -> None:
-    path = saved(tmp_path / "a.xlsx", ["force", None, "depth"], [], [1, 2.5, None], [None])
+    rows = [["force", None, "depth"], [], [1, 2.5, None], [None]]
+    path = save_workbook(tmp_path / "a.xlsx", {"Sheet": rows})
     assert is_workbook(path)
     assert read_workbook(path) == {"Sheet": [["force", "", "depth"], [], [1, 2.5]]}
 
@@ -37,7 +30,7 @@ def test_a_cell_in_the_farthest_corner_costs_nothing(tmp_path: Path) -> None:
 def test_a_workbook_with_more_cells_than_are_read_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = saved(tmp_path / "large.xlsx", *([1, 2, 3] for _ in range(10)))
+    path = save_workbook(tmp_path / "large.xlsx", {"Sheet": [[1, 2, 3]] * 10})
     monkeypatch.setattr(workbooks, "MAX_CELLS", 30)
     with pytest.raises(InputError, match=r"large\.xlsx.*is larger than what is read"):
         read_workbook(path)
@@ -56,7 +49,7 @@ def test_a_file_that_unpacks_to_hundreds_of_megabytes_is_refused_unread(tmp_path
 
 
 def test_a_damaged_workbook_is_refused_by_name(tmp_path: Path) -> None:
-    whole = saved(tmp_path / "whole.xlsx", [1, 2]).read_bytes()
+    whole = save_workbook(tmp_path / "whole.xlsx", {"Sheet": [[1, 2]]}).read_bytes()
     (tmp_path / "cut.xlsx").write_bytes(whole[: len(whole) // 2])
     with pytest.raises(InputError, match=r"cut\.xlsx.*cannot be read as a workbook"):
         read_workbook(tmp_path / "cut.xlsx")

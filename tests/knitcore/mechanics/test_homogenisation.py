@@ -4,15 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from hypothesis.extra import numpy as hnp
 
-from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.materials import load_library, material
+from knitcore import Direction, Fabric, StitchChart, material
+from knitcore.materials import load_library
 from knitcore.mechanics.homogenisation import MAX_CELLS, homogenise, modulus_of, phase_grid
 from knitcore.mechanics.lamination import SheetGrid, coarsened
-
-repeats = hnp.arrays(bool, hnp.array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=5))
+from tests.knitcore.charts import stitch_charts
 
 
 @pytest.mark.parametrize("identifier", load_library())
@@ -36,28 +33,19 @@ def test_a_rib_is_an_exact_laminate():
     acrylic = material("acrylic")
     laws = [acrylic.law(f).symmetrised() for f in (Fabric.STOCKINETTE, Fabric.RIB)]
     widths = [acrylic.record(f).stitch_course_mm for f in (Fabric.STOCKINETTE, Fabric.RIB)]
-
-    def row(name):
-        return np.array([[getattr(law, name) for law in laws]])
-
-    grid = SheetGrid(
-        row("stiffness_xxxx"),
-        row("stiffness_yyyy"),
-        row("stiffness_xxyy"),
-        row("shear_modulus"),
-        np.array(widths),
-        np.array([1.0]),
-    ).merged_along_x()
+    constants = "stiffness_xxxx", "stiffness_yyyy", "stiffness_xxyy", "shear_modulus"
+    rows = (np.array([[getattr(law, name) for law in laws]]) for name in constants)
+    grid = SheetGrid(*rows, np.array(widths), np.array([1.0])).merged_along_x()
     sheet = homogenise(StitchChart.parse("KKPP"), acrylic)
     np.testing.assert_allclose(
         sheet.stiffness_n_per_mm, grid.stiffness()[0, 0], rtol=1e-9, atol=1e-12
     )
 
 
-@settings(deadline=None, max_examples=25)
-@given(repeats, st.sampled_from([*load_library()]))
-def test_effective_stiffness_lies_between_the_bounds(grid, identifier):
-    sheet = homogenise(StitchChart(grid), material(identifier))
+@settings(max_examples=25)
+@given(stitch_charts(5), st.sampled_from([*load_library()]))
+def test_effective_stiffness_lies_between_the_bounds(chart, identifier):
+    sheet = homogenise(chart, material(identifier))
     for upper, lower in (
         (sheet.voigt_n_per_mm, sheet.stiffness_n_per_mm),
         (sheet.stiffness_n_per_mm, sheet.reuss_n_per_mm),
@@ -65,13 +53,14 @@ def test_effective_stiffness_lies_between_the_bounds(grid, identifier):
         assert np.linalg.eigvalsh(upper - lower).min() > -1e-9
 
 
-@settings(deadline=None, max_examples=25)
-@given(repeats, st.data())
-def test_the_same_cloth_has_the_same_tensor(grid, data):
-    chart, yarn = StitchChart(grid), material("cotton")
+@settings(max_examples=25)
+@given(stitch_charts(5), st.data())
+def test_the_same_cloth_has_the_same_tensor(chart, data):
+    yarn = material("cotton")
     shift = data.draw(st.tuples(st.integers(0, 4), st.integers(0, 4)))
     reference = homogenise(chart, yarn).stiffness_n_per_mm
-    shifted = homogenise(StitchChart(np.roll(grid, shift, axis=(0, 1))), yarn).stiffness_n_per_mm
+    moved = StitchChart(np.roll(chart.purl, shift, axis=(0, 1)))
+    shifted = homogenise(moved, yarn).stiffness_n_per_mm
     np.testing.assert_allclose(shifted, reference, rtol=1e-8, atol=1e-11)
     np.testing.assert_allclose(
         homogenise(chart.swap(), yarn).stiffness_n_per_mm, reference, rtol=1e-12, atol=1e-15

@@ -6,14 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import PHASES, Direction, Fabric
+from knitcore import Direction, Fabric, InputError, StitchChart, material
+from knitcore.chart.fabric import PHASES
 from knitcore.chart.phases import QUARTERS_OF_CODE, surroundings
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.materials import Laws, load_library, material
+from knitcore.materials import Laws, load_library
 from knitcore.mechanics.local_moduli import local_moduli, stitch_table, windows_of
-
-grids = hnp.arrays(bool, hnp.array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=8))
+from tests.knitcore.charts import stitch_charts
 
 
 @pytest.mark.parametrize("identifier", [*load_library(Laws.PUBLISHED), "cotton:simulation"])
@@ -49,44 +47,37 @@ def test_log_deviations_are_the_delta_method():
     table = stitch_table(yarn)
     for code in range(16):
         phases = QUARTERS_OF_CODE[code]
+        spreads = [yarn.record(PHASES[p]).uncertainty for p in phases.ravel()]
         if len(np.unique(phases)) == 1:
-            spread = yarn.record(PHASES[phases[0, 0]]).uncertainty
+            spread = spreads[0]
             assert table.log_sd_course[code] == pytest.approx(spread.log_modulus_course)
             assert table.log_sd_wale[code] == pytest.approx(spread.log_modulus_wale)
         else:
-            worst = max(
-                yarn.record(PHASES[p]).uncertainty.log_modulus_course for p in phases.ravel()
-            )
-            assert 0 < table.log_sd_course[code] <= worst
+            assert 0 < table.log_sd_course[code] <= max(s.log_modulus_course for s in spreads)
 
 
-@given(grids)
-def test_turning_over_mirrors_the_maps(grid):
-    chart = StitchChart(grid)
+@given(stitch_charts(8))
+def test_turning_over_mirrors_the_maps(chart):
     yarn = material("cotton:published")
     face, back = local_moduli(chart, yarn), local_moduli(chart.turn_over(), yarn)
-    np.testing.assert_allclose(
-        face.modulus_course_n_per_mm, back.modulus_course_n_per_mm[:, ::-1], rtol=1e-13
-    )
-    np.testing.assert_allclose(
-        face.modulus_wale_n_per_mm, back.modulus_wale_n_per_mm[:, ::-1], rtol=1e-13
-    )
+    for name in ("modulus_course_n_per_mm", "modulus_wale_n_per_mm"):
+        np.testing.assert_allclose(getattr(face, name), getattr(back, name)[:, ::-1], rtol=1e-13)
 
 
-@given(grids, st.data())
-def test_a_window_holds_what_a_stroke_changes_and_its_surroundings_determine_it(grid, data):
+@given(stitch_charts(8), st.data())
+def test_a_window_holds_what_a_stroke_changes_and_its_surroundings_determine_it(chart, data):
     touched = tuple(
         slice(*sorted(data.draw(st.tuples(st.integers(0, n), st.integers(0, n)))))
-        for n in grid.shape
+        for n in chart.shape
     )
-    painted = grid.copy()
+    painted = chart.purl.copy()
     painted[touched] ^= data.draw(hnp.arrays(bool, painted[touched].shape))
-    windows = [windows_of(each, n) for each, n in zip(touched, grid.shape, strict=True)]
+    windows = [windows_of(each, n) for each, n in zip(touched, chart.shape, strict=True)]
     changed, around = zip(*windows, strict=True)
     inside = tuple(
         slice(c.start - a.start, c.stop - a.start) for c, a in zip(changed, around, strict=True)
     )
-    codes = surroundings(StitchChart(grid))
+    codes = surroundings(chart)
     codes[changed] = surroundings(StitchChart(painted[around]))[inside]
     np.testing.assert_array_equal(codes, surroundings(StitchChart(painted)))
 

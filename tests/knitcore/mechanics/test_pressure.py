@@ -6,11 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError, material
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.uniaxial import uniaxial_response
-from knitcore.materials import material
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure, rest_circumference
 
 LINEAR = ConstitutiveLaw(0.2, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -20,20 +18,20 @@ GLOVE = material("glove-wool:glove:published").law(Fabric.STOCKINETTE)
 
 def test_a_circular_limb_of_known_radius() -> None:
     """Strain 0.25, tension 0.05 N/mm, radius 200 / 2 pi mm: P = T / R = 1.571 kPa."""
-    found = limb_pressure(LINEAR, Direction.COURSE, 160, 200)
+    tube = limb_pressure(LINEAR, Direction.COURSE, 160, 200)
     expected = 0.05 / (200 / (2 * math.pi)) * 1000
-    assert found.kpa.low == found.kpa.high == pytest.approx(expected)
-    assert found.mmhg.low == pytest.approx(expected * 7.50062, rel=1e-5)
+    assert tube.kpa.low == tube.kpa.high == pytest.approx(expected)
+    assert tube.mmhg.low == pytest.approx(expected * 7.50062, rel=1e-5)
 
 
 def test_the_interval_is_axially_free_to_axially_fixed() -> None:
-    found = limb_pressure(GLOVE, Direction.WALE, 150, 180)
+    tube = limb_pressure(GLOVE, Direction.WALE, 150, 180)
     free = uniaxial_response(GLOVE, Direction.WALE, 0.2)
     fixed = uniaxial_response(GLOVE, Direction.WALE, 0.2, transverse=Transverse.FIXED)
     unit = 2 * math.pi / 180 * 1000
-    assert found.kpa.low == pytest.approx(unit * free.stress[0] / (1 + free.transverse_strain[0]))
-    assert found.kpa.high == pytest.approx(unit * fixed.stress[0])
-    assert found.kpa.low < found.kpa.high
+    assert tube.kpa.low == pytest.approx(unit * free.stress[0] / (1 + free.transverse_strain[0]))
+    assert tube.kpa.high == pytest.approx(unit * fixed.stress[0])
+    assert tube.kpa.low < tube.kpa.high
 
 
 def test_force_over_area_would_be_far_too_small() -> None:
@@ -45,11 +43,11 @@ def test_force_over_area_would_be_far_too_small() -> None:
         for e in range(400)
         if uniaxial_response(GLOVE, Direction.WALE, e / 1000).stress[0] >= stress
     )
-    found = limb_pressure(GLOVE, Direction.WALE, worn / (1 + strain), worn)
-    assert found.mmhg.low > 110
+    tube = limb_pressure(GLOVE, Direction.WALE, worn / (1 + strain), worn)
+    assert tube.mmhg.low > 110
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(mmhg=st.floats(1, 120), worn=st.floats(60, 1200))
 def test_sizing_inverts_the_pressure(mmhg: float, worn: float) -> None:
     for law in (GLOVE, LINEAR):
@@ -63,7 +61,7 @@ def test_sizing_inverts_the_pressure(mmhg: float, worn: float) -> None:
         )
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(100, 199))
 def test_a_tighter_tube_presses_more(rest: float) -> None:
     looser, tighter = (limb_pressure(LINEAR, Direction.WALE, r, 200) for r in (rest + 1, rest))
@@ -87,8 +85,8 @@ def test_near_lock_up_and_beyond_the_tests_are_warned_of() -> None:
 
 
 def test_no_medical_class_is_named() -> None:
-    found = limb_pressure(GLOVE, Direction.WALE, 150, 180)
-    assert "class" not in " ".join(found.warnings).lower()
+    tube = limb_pressure(GLOVE, Direction.WALE, 150, 180)
+    assert "class" not in " ".join(tube.warnings).lower()
 
 
 @pytest.mark.parametrize(

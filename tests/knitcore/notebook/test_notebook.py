@@ -5,26 +5,23 @@ import pytest
 
 from knitcore import StitchChart, curve, material, predict
 from knitcore.notebook import figure, view
-from tests.knitcore.notebook.results import curled, relaxed_cell, sweep
+from tests.knitcore.results import curled, relaxed_cell, sweep
 
 ACRYLIC = material("acrylic")
 RIB = StitchChart.of_fabric("rib", rows=4, columns=4)
 
 
 def test_a_figure_has_the_curve_and_its_band() -> None:
-    found = curve(RIB, ACRYLIC, "course", [0.0, 0.1, 0.2])
-    line, band = figure(found).data
-    assert np.array_equal(line.x, found.strain)
-    assert np.array_equal(line.y, found.stress_n_per_mm)
-    assert np.array_equal(band.x, np.append(found.strain_low, found.strain_high[::-1]))
+    drawn = curve(RIB, ACRYLIC, "course", [0.0, 0.1, 0.2])
+    line, band = figure(drawn).data
+    assert np.array_equal(line.x, drawn.strain)
+    assert np.array_equal(line.y, drawn.stress_n_per_mm)
+    assert np.array_equal(band.x, np.append(drawn.strain_low, drawn.strain_high[::-1]))
 
 
-def test_an_answer_has_both_directions() -> None:
+def test_an_answer_has_both_directions_and_a_sweep_its_points() -> None:
     names = [trace.name for trace in figure(predict(RIB, ACRYLIC)).data if trace.name]
     assert names == ["course", "wale"]
-
-
-def test_a_sweep_has_its_points() -> None:
     (line,) = figure(sweep()).data
     assert np.allclose(line.x, [0.0, 0.1, 0.2])
 

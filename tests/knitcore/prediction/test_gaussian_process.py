@@ -23,11 +23,11 @@ def test_exact_samples_are_met() -> None:
 
 
 def test_the_variance_is_that_of_the_conditioned_prior() -> None:
-    known, wanted = samples(9, 2), samples(3, 3)
-    _, variance = KernelModel.fit(SETTINGS, known, np.zeros((9, 1)))(wanted)
-    cross = covariance(SETTINGS, wanted, known)
+    known, new = samples(9, 2), samples(3, 3)
+    _, variance = KernelModel.fit(SETTINGS, known, np.zeros((9, 1)))(new)
+    cross = covariance(SETTINGS, new, known)
     observed = covariance(SETTINGS, known, known) + SETTINGS.noise * np.eye(9)
-    prior = covariance(SETTINGS, wanted, wanted)
+    prior = covariance(SETTINGS, new, new)
     expected = np.diag(prior - cross @ np.linalg.inv(observed) @ cross.T) + SETTINGS.noise
     assert variance == pytest.approx(expected)
 

@@ -1,7 +1,5 @@
 """The learned answer: exact where it must be, continuous everywhere, honest outside what it saw."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,7 +9,7 @@ from knitcore import RelaxedSize, StitchChart, material
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import LearnedResponse, learned, packaged_model
-from tests.knitcore.charts import stitch_charts
+from tests.knitcore.charts import flipped
 
 ACRYLIC = material("acrylic:published")
 STRESS = np.array([0.05, 0.1, 0.2])
@@ -33,18 +31,7 @@ def test_a_pure_fabric_keeps_its_size_and_law(fabric: str) -> None:
         )
 
 
-@settings(max_examples=10, deadline=None)
-@given(stitch_charts(8))
-def test_the_same_cloth_has_one_answer(some: StitchChart) -> None:
-    found = learned(some, ACRYLIC)
-    for other in (some.mirror(), some.swap(), some.tile(2, 2)):
-        same = learned(other, ACRYLIC)
-        assert same.size_mm == pytest.approx(found.size_mm)
-        assert strains(same) == pytest.approx(strains(found))
-        assert same.log_ratio_sd == pytest.approx(found.log_ratio_sd)
-
-
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(
     st.sampled_from(["K", "KP", "P/K", "KP/PK", "KK/KP", "KKPP", "KKPP/KKPP/PPKK/PPKK"]),
     st.sampled_from(["acrylic", "cotton", "lace-bamboo"]),
@@ -54,20 +41,10 @@ def test_one_stitch_in_1024_changes_an_answer_by_at_most_3_percent(
     text: str, yarn: str, row: int, column: int
 ) -> None:
     whole = StitchChart.parse(text).resized(32, 32)
-    flipped = whole.purl.copy()
-    flipped[row, column] ^= True
-    before, after = (learned(c, material(yarn)) for c in (whole, StitchChart(flipped)))
+    before, after = (learned(c, material(yarn)) for c in (whole, flipped(whole, row, column)))
     assert after.size_mm == pytest.approx(before.size_mm, rel=0.03)
     assert strains(after) == pytest.approx(strains(before), rel=0.03)
     assert after.log_ratio_sd == pytest.approx(before.log_ratio_sd, rel=0.1, abs=0.03)
-
-
-@pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
-def test_a_wider_rib_changes_an_answer_gradually(yarn: str) -> None:
-    ribs = [learned(StitchChart.parse("K" * n + "P" * n), material(yarn)) for n in range(1, 13)]
-    for narrow, wide in pairwise(ribs[3:]):
-        assert np.abs(np.log(strains(wide) / strains(narrow))).max() < np.log(1.3)
-        assert np.abs(np.log(wide.size_mm / narrow.size_mm)).max() < np.log(1.3)
 
 
 def test_a_known_size_is_kept_and_narrows_the_interval() -> None:
@@ -89,15 +66,13 @@ def test_cloth_that_is_narrower_at_rest_stretches_further() -> None:
 
 def test_intervals_widen_away_from_the_training_charts() -> None:
     panels = StitchChart(np.kron([[0, 1], [1, 0]], np.ones((20, 20))).astype(bool))
-    seen, unseen = (
-        learned(StitchChart.parse("KKPP/KKPP/PPKK/PPKK"), ACRYLIC),
-        learned(panels, ACRYLIC),
-    )
+    charts = StitchChart.parse("KKPP/KKPP/PPKK/PPKK"), panels
+    seen, unseen = (learned(chart, ACRYLIC) for chart in charts)
     model = packaged_model()
     numbers = seen.mixture.numbers
     variances = [
         model.folding(model.sample(densities(c).features[None], numbers[None]))[1][0]
-        for c in (StitchChart.parse("KKPP/KKPP/PPKK/PPKK"), panels)
+        for c in charts
     ]
     assert variances[1] > 1.5 * variances[0]
     assert unseen.log_ratio_sd[0, 2] > seen.log_ratio_sd[0, 2]

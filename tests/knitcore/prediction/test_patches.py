@@ -14,14 +14,14 @@ FORCES_N = np.array([1e-3, 0.05, 0.2]) * 80
 
 
 def answers() -> list[Prediction]:
-    """Of the whole, of the left half, and of the right one."""
+    """Predictions of the whole, of the left half, and of the right one."""
     return [predict(chart, YARN) for chart in (BOTH, SEED, KNIT)]
 
 
 def test_what_is_a_mean_is_the_mean_of_both_halves() -> None:
-    found = answers()
+    predictions = answers()
     for direction in Direction:
-        whole, *halves = (answer.along(direction) for answer in found)
+        whole, *halves = (answer.along(direction) for answer in predictions)
         for name in ("poisson", "poisson_sd", "relaxed_mm", "relaxed_log_sd"):
             mean = np.mean([getattr(half, name) for half in halves])
             assert getattr(whole, name) == pytest.approx(mean, rel=0.05), name
@@ -52,7 +52,7 @@ def test_along_the_columns_they_are_side_by_side() -> None:
 
 @pytest.mark.parametrize("chart", [BOTH, KNIT], ids=["patches", "pure"])
 def test_ones_own_gauge_is_the_size_of_the_whole(chart: StitchChart) -> None:
-    found = predict(chart, YARN, size=RelaxedSize(3.0, 2.0, 0.01))
-    assert found.relaxed_course_mm == pytest.approx(3.0)
-    assert found.relaxed_wale_mm == pytest.approx(2.0)
-    assert found.course.relaxed_log_sd == pytest.approx(0.01)
+    sized = predict(chart, YARN, size=RelaxedSize(3.0, 2.0, 0.01))
+    assert sized.relaxed_course_mm == pytest.approx(3.0)
+    assert sized.relaxed_wale_mm == pytest.approx(2.0)
+    assert sized.course.relaxed_log_sd == pytest.approx(0.01)

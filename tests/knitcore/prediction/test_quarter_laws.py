@@ -14,18 +14,18 @@ def test_patches_of_a_repeat_go_on_through_the_piece() -> None:
     garter, rib = (StitchChart.of_fabric(f, rows=10, columns=40) for f in ("garter", "rib"))
     piece = StitchChart([[*g, *r] for g, r in zip(garter.purl, rib.purl, strict=True)])
     acrylic = material("acrylic")
-    found = quarter_laws(piece, acrylic)
-    assert (found.patch == found.patch[0]).all()
+    quarters = quarter_laws(piece, acrylic)
+    assert (quarters.patch == quarters.patch[0]).all()
     np.testing.assert_allclose(
-        found.scale, np.broadcast_to(found.scale[0], found.scale.shape), rtol=0.01
+        quarters.scale, np.broadcast_to(quarters.scale[0], quarters.scale.shape), rtol=0.01
     )
     for column, fabric in ((24, "garter"), (56, "rib")):
         own, code = acrylic.law(fabric), PHASES.index(Fabric(fabric))
-        law = found.laws[4 * int(found.patch[0, column]) + code]
+        law = quarters.laws[4 * int(quarters.patch[0, column]) + code]
         for direction in Direction:
             # the windows of both halves reach across the border
             assert law.modulus(direction) == pytest.approx(own.modulus(direction), rel=0.15)
-    assert np.isfinite(found.scale).all()
+    assert np.isfinite(quarters.scale).all()
 
 
 def test_stitches_fold_by_their_surroundings_and_on_average_like_the_answer() -> None:

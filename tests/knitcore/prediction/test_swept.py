@@ -30,24 +30,21 @@ def simulated() -> Material:
 
 
 def _stored(text: str) -> StoredStitch:
-    found = stored_stitch(StitchChart.parse(text), "acrylic")
-    assert found is not None
-    return found
+    return stored_stitch(StitchChart.parse(text), "acrylic")
 
 
 @pytest.mark.parametrize("text", ["KKPP", "K/K/P", "KP/KK", "KKPP/PPKK"])
 def test_a_simulated_material_answers_like_its_sweep(text: str, simulated: Material) -> None:
     """Strains within 5 %: the answer goes through six stresses of the curve."""
     stored = _stored(text)
-    assert stored.law is not None
     size = stored.cell_course_mm, stored.cell_wale_mm
     sweep = swept_chart(stored.chart, size, stored.law, simulated.fabrics, simulated)
-    found = predict(stored.chart, simulated, swept=sweep)
-    assert found.provenance == "swept"
-    assert (found.relaxed_course_mm, found.relaxed_wale_mm) == pytest.approx(size)
+    prediction = predict(stored.chart, simulated, swept=sweep)
+    assert prediction.provenance == "swept"
+    assert (prediction.relaxed_course_mm, prediction.relaxed_wale_mm) == pytest.approx(size)
     strains, _ = of_law(stored.law)
     for direction, strain in zip(Direction, strains, strict=True):
-        along = found.along(direction)
+        along = prediction.along(direction)
         np.testing.assert_allclose(along.strain(STRESS)[4:], strain[4:], rtol=0.05)
         low, high = along.strain_interval(0.05)
         assert low < along.strain(0.05) < high
@@ -57,26 +54,25 @@ def test_a_simulated_material_finds_the_packaged_sweep(simulated: Material) -> N
     """And no other material does; with a gauge its stretch starts at that size."""
     chart = StitchChart.parse("KP/KK")
     stored = _stored("KP/KK")
-    found = predict(chart, simulated)
-    assert found.provenance == "swept"
-    assert found.relaxed_course_mm == pytest.approx(stored.cell_course_mm, rel=0.02)
+    prediction = predict(chart, simulated)
+    assert prediction.provenance == "swept"
+    assert prediction.relaxed_course_mm == pytest.approx(stored.cell_course_mm, rel=0.02)
     assert predict(StitchChart.parse("KP/KK"), material("acrylic")).provenance == "learned"
     assert packaged_model().sweep_of(chart, material("lace-bamboo")) is None
     known = predict(chart, simulated, RelaxedSize(3.0, 2.0))
     assert known.relaxed_course_mm == 3.0
-    assert known.course.strain(0.05) != pytest.approx(found.course.strain(0.05), rel=0.01)
+    assert known.course.strain(0.05) != pytest.approx(prediction.course.strain(0.05), rel=0.01)
 
 
 @pytest.mark.parametrize("text", ["KKPP", "K/K/P/P", "KKPP/KKPP/PPKK/PPKK"])
 def test_knitted_fabric_folds_less_than_its_sweep_as_the_learned_answer_does(text: str) -> None:
     chart, acrylic = StitchChart.parse(text), material("acrylic")
     sweep = packaged_model().sweep_of(chart, acrylic)
-    assert sweep is not None
-    found, learned = predict(chart, acrylic, swept=sweep), predict(chart, acrylic)
-    assert found.provenance == "swept"
+    swept, learned = predict(chart, acrylic, swept=sweep), predict(chart, acrylic)
+    assert swept.provenance == "swept"
     flat = Mixture.of(densities(chart).shares, acrylic).size_mm
     for direction in Direction:
-        own, other = found.along(direction), learned.along(direction)
+        own, other = swept.along(direction), learned.along(direction)
         fold = np.log(own.relaxed_mm / flat[direction.axis])
         assert abs(fold) <= abs(sweep.folding[direction.axis])
         assert own.relaxed_mm == pytest.approx(other.relaxed_mm, rel=0.06)
@@ -86,7 +82,7 @@ def test_knitted_fabric_folds_less_than_its_sweep_as_the_learned_answer_does(tex
 def _found(text: str, of: Material) -> RelaxedSize:
     stored = _stored(text)
     pure = {f: _stored(StitchChart.of_fabric(f).repeat().key) for f in Fabric}
-    pure_mm = {f: (one.cell_course_mm, one.cell_wale_mm) for f, one in pure.items()}
+    pure_mm = {f: (cell.cell_course_mm, cell.cell_wale_mm) for f, cell in pure.items()}
     cell_mm = stored.cell_course_mm, stored.cell_wale_mm
     return size_from_relaxation(stored.chart, of, cell_mm, pure_mm)
 
@@ -95,9 +91,9 @@ def _found(text: str, of: Material) -> RelaxedSize:
 def test_a_material_of_the_yarn_levels_fabrics_takes_its_size(
     text: str, simulated: Material
 ) -> None:
-    found, stored = _found(text, simulated), _stored(text)
+    relaxed, stored = _found(text, simulated), _stored(text)
     size = stored.cell_course_mm, stored.cell_wale_mm
-    assert (found.course_mm, found.wale_mm) == pytest.approx(size)
+    assert (relaxed.course_mm, relaxed.wale_mm) == pytest.approx(size)
 
 
 def test_measured_cloth_takes_only_a_part_of_the_fold() -> None:
@@ -105,7 +101,7 @@ def test_measured_cloth_takes_only_a_part_of_the_fold() -> None:
     acrylic, chart = material("acrylic"), StitchChart.parse("KKPP")
     flat = (acrylic.record("stockinette").stitch_mm[0] + acrylic.record("rib").stitch_mm[0]) / 2
     stored, pure = _stored("KKPP"), (_stored("K"), _stored("KP"))
-    whole = stored.cell_course_mm / sum(one.cell_course_mm / 2 for one in pure)
+    whole = stored.cell_course_mm / sum(cell.cell_course_mm / 2 for cell in pure)
     part = _found("KKPP", acrylic).course_mm / flat
     assert whole < part < 1
     assert predict(chart, acrylic).relaxed_course_mm == pytest.approx(part * flat, rel=0.05)
@@ -122,7 +118,7 @@ def test_it_makes_the_stretch_of_a_simulated_material_more_certain() -> None:
     assert "relaxation" in " ".join(known.notes)
     for direction in Direction:
         (low, high), (least, most) = (
-            one.along(direction).strain_interval(0.05) for one in (known, learned)
+            each.along(direction).strain_interval(0.05) for each in (known, learned)
         )
         assert math.log(high / low) < 0.9 * math.log(most / least)
         assert (
@@ -144,8 +140,8 @@ def test_only_learned_answers_of_simulated_materials_are_worth_it(
 ) -> None:
     yarn, repeat = material(of), StitchChart.parse(text)
     swatch = repeat.resized(3 * repeat.rows - 1, 2 * repeat.columns + 1)  # cuts its repeat
-    found = worth_relaxing(swatch, yarn, predict(swatch, yarn))
-    assert found == (repeat if worth else None)
+    to_relax = worth_relaxing(swatch, yarn, predict(swatch, yarn))
+    assert to_relax == (repeat if worth else None)
 
 
 def test_large_repeats_and_known_sizes_are_not() -> None:

@@ -10,7 +10,7 @@ from fastapi.testclient import TestClient
 
 from app.context import Context
 from app.drawing.design_view import ViewRequest, build_scene
-from app.drawing.solid import solid_glb
+from app.drawing.fabric import solid_glb
 from app.operations.cloth.curl import CurlRequest, curl
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart

@@ -6,9 +6,16 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from app.service.designs import store as store_module
-from app.service.designs.conditions import ConflictError, StaleError, UnconditionalError
+from app.service.designs.conditions import (
+    KEPT_S,
+    ConflictError,
+    Retry,
+    ReusedKeyError,
+    StaleError,
+    UnconditionalError,
+    forget_old_keys,
+)
 from app.service.designs.document import DesignDocument, DesignPatch, Run, ShareMode, Strokes
-from app.service.designs.idempotency import KEPT_S, Retry, ReusedKeyError, forget_old_keys
 from app.service.designs.sharing import NotAllowedError, Sharing
 from app.service.designs.store import DesignStore
 from app.service.limits.user_limits import OverLimitError, UserLimits
@@ -217,7 +224,7 @@ def test_a_retried_request_takes_effect_once(
     with pytest.raises(ReusedKeyError):
         designs.create("ada", RIB, Retry.of("ada", "key-0001", "POST", "another body"))
     assert designs.create("bob", RIB, Retry.of("bob", "key-0001", "POST", "b")).id != made[0].id
-    monkeypatch.setattr("app.service.designs.idempotency.KEPT_S", KEPT_S - 2 * KEPT_S)
+    monkeypatch.setattr("app.service.designs.conditions.KEPT_S", KEPT_S - 2 * KEPT_S)
     forget_old_keys(database)
     assert designs.create("ada", RIB, retry).id != made[0].id
 

@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import text
 
 from app.cli.main import main
-from app.service.doctor import examine, examine_running, examine_start
+from app.service.doctor import examine
 from app.service.main import create_app
 from app.service.problems import DispossessedError, StoreError
 from app.service.settings import Settings
@@ -80,9 +80,8 @@ def test_nothing_that_a_service_does_drops_its_locks(
         "a copy": lambda: database.backend.keep_copy("copy"),
         "a backup": lambda: back_up(database, tmp_path / "backup.gz"),
         "a migration": lambda: migrate(database),
-        "the start": lambda: examine_start(settings, database),
+        "the start, and readiness": lambda: examine(settings, database),
         "the doctor": lambda: examine(settings),
-        "readiness": lambda: examine_running(settings, database, None),
         "its holder": lambda: holder_of(file),
         "another database": another,
         "fresh connections": database.engine.dispose,

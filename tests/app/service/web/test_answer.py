@@ -20,9 +20,9 @@ from app.service.limits.user_limits import ConcurrencyLimit
 from app.service.main import create_app
 from app.service.problems import StoreError
 from app.service.settings import Settings
-from app.service.web import security, tokens
+from app.service.web import security, sessions
 from app.service.web.security import PAGE_POLICY, AccessControl
-from app.service.web.tokens import Tokens
+from app.service.web.sessions import Tokens
 from tests.app.running import serving
 
 CLOSE = {"type": "websocket.close", "code": 1008, "reason": "signed out"}
@@ -72,7 +72,7 @@ class Login:
 
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (security, tokens):
+    for module in (security, sessions):
         monkeypatch.setattr(module, "REMEMBERED_S", 0.01)
 
 

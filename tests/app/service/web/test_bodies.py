@@ -161,3 +161,12 @@ def test_a_client_that_goes_in_the_middle_of_a_body_is_no_error_of_the_service(
         client.portal.call(client.app, scope, receive, send)
     assert sent[0]["status"] == 499
     assert [record.levelname for record in caplog.records] == ["INFO"]
+
+
+@pytest.mark.parametrize("padding", ["", PADDING])
+@pytest.mark.parametrize("path", ["predict", "jobs", "designs"])
+def test_a_name_that_comes_twice_is_refused(client: TestClient, path: str, padding: str) -> None:
+    content = f'{{"chart": "K", "material": "cotton", "material": "acrylic"}}{padding}'
+    answer = _post(client, path, content.encode())
+    assert answer.status_code in {400, 422}
+    assert "'material' comes twice" in answer.json()["detail"] or path == "jobs"

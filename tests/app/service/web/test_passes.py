@@ -7,7 +7,7 @@ from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from app.service.identity import current_user
-from app.service.web import tokens
+from app.service.web import sessions
 from app.service.web.passes import ViewPasses
 from tests.app.clients import bearing, tokens_of, watching
 from tests.app.service.web.test_security import guarded_service
@@ -44,7 +44,7 @@ def test_a_frame_watches_with_the_pass_of_its_view_only(client: TestClient) -> N
 def test_a_pass_ends_with_the_token_it_was_asked_with(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(tokens, "REMEMBERED_S", 0.0)
+    monkeypatch.setattr(sessions, "REMEMBERED_S", 0.0)
     with guarded_service(require_login=True, data_dir=tmp_path) as lab:
         made = tokens_of(lab).create("ada")
         url = lab.put("/api/v1/views/of-ada", json=BODY, headers=bearing(made.token)).json()["url"]

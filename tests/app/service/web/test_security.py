@@ -192,7 +192,7 @@ def test_views_are_private_too(lab: TestClient, monkeypatch: pytest.MonkeyPatch)
 def test_tokens_are_revoked_expire_and_are_kept_as_hashes(
     lab: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.service.web.tokens.REMEMBERED_S", 0.0)
+    monkeypatch.setattr("app.service.web.sessions.REMEMBERED_S", 0.0)
     tokens = tokens_of(lab)
     made, short = tokens.create("eve", "laptop"), tokens.create("eve", days=1e-9)
     assert lab.get("/api/v1/patterns", headers=bearing(made.token)).status_code == 200

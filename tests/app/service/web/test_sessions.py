@@ -10,8 +10,8 @@ from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from app.service import main as main_module
-from app.service.web import security, tokens
-from app.service.web.sessions import Sessions
+from app.service.web import security, sessions
+from app.service.web.sessions import MAX_SESSIONS, Sessions
 from tests.app.clients import LONG, bearing, drain, served, state_of, tokens_of, watching
 from tests.app.running import wait_until
 
@@ -21,7 +21,7 @@ SESSION = "/api/v1/session"
 @pytest.fixture
 def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
     """A service with logins that looks every instant whether they still hold."""
-    for module in (security, tokens, main_module):
+    for module in (security, sessions, main_module):
         monkeypatch.setattr(module, "REMEMBERED_S", 0.05)
     with served(require_login=True, data_dir=tmp_path) as client:
         yield client
@@ -137,3 +137,13 @@ def test_a_revoked_token_ends_an_event_stream(lab: TestClient) -> None:
     with lab.stream("GET", "/api/v1/views/a-view/events") as stream:
         tokens_of(lab).revoke(ada.id)
         assert "retry" in "".join(stream.iter_text())  # and then it ended
+
+
+def test_the_oldest_of_too_many_sessions_end(lab: TestClient) -> None:
+    ada, bob = tokens_of(lab).create("ada"), tokens_of(lab).create("bob")
+    sessions = Sessions(state_of(lab).database)
+    other = sessions.begin(bob.id, "bob")
+    begun = [sessions.begin(ada.id, "ada") for _ in range(MAX_SESSIONS + 3)]
+    assert [session.id for session in sessions.of("ada", "")][::-1] == begun[3:]
+    assert sessions.find(begun[0]) == ("", "")
+    assert sessions.find(other) == (bob.id, "bob")

@@ -34,13 +34,15 @@ def mixed_grid(rng: np.random.Generator) -> QuarterGrid:
     )
 
 
-def disturbed(sheet: Sheet, rng: np.random.Generator) -> State:
+def disturbed(
+    model: SheetModel, laws: tuple[ConstitutiveLaw, ...] = LAWS, seed: int = 7
+) -> tuple[Sheet, State]:
+    """A sheet of cells of all sizes, stretched unevenly."""
+    rng = np.random.default_rng(seed)
+    sheet = Sheet(mixed_grid(rng), laws, model)
     stretch = np.array([[1.08, 0.03], [-0.02, 1.2]])
-    corners, centres = sheet.grid.corners @ stretch, sheet.grid.centres @ stretch
-    return State(
-        corners + rng.uniform(-0.03, 0.03, corners.shape),
-        centres + rng.uniform(-0.03, 0.03, centres.shape),
-    )
+    nodes = (at @ stretch for at in (sheet.grid.corners, sheet.grid.centres))
+    return sheet, State(*(at + rng.uniform(-0.03, 0.03, at.shape) for at in nodes))
 
 
 def full_tangent(sheet: Sheet, state: State) -> np.ndarray:
@@ -62,9 +64,7 @@ def full_tangent(sheet: Sheet, state: State) -> np.ndarray:
 def test_the_energy_is_that_of_the_laws(
     energy: EnergyModel, laws: tuple[ConstitutiveLaw, ...]
 ) -> None:
-    rng = np.random.default_rng(7)
-    sheet = Sheet(mixed_grid(rng), laws, SheetModel(energy))
-    state = disturbed(sheet, rng)
+    sheet, state = disturbed(SheetModel(energy), laws)
     strains = cell_strains(sheet, state)
     expected = 0.0
     for code, law in enumerate(sheet.laws):
@@ -79,9 +79,8 @@ def test_the_energy_is_that_of_the_laws(
 
 @pytest.mark.parametrize("energy", list(EnergyModel))
 def test_the_kernel_assembles_what_scikit_fem_does(energy: EnergyModel) -> None:
-    rng = np.random.default_rng(7)
-    sheet = Sheet(mixed_grid(rng), LAWS, SheetModel(energy))
-    grid, state = sheet.grid, disturbed(sheet, rng)
+    sheet, state = disturbed(SheetModel(energy))
+    grid = sheet.grid
     lin = sheet.linearise(state)
     cloth = Cloth(sheet, (float(grid.column_lines[0]), float(grid.row_lines[0])))
     piece = PieceEnergy(crossed_mesh(grid), cloth, np.eye(2), element=ElementTriP1(), order=1)
@@ -93,8 +92,8 @@ def test_the_kernel_assembles_what_scikit_fem_does(energy: EnergyModel) -> None:
         expected.tangent.toarray()[by_node][:, by_node],
     )
     assert lin.energy == pytest.approx(expected.energy, rel=1e-12)
-    found = np.concatenate([part.ravel() for part in lin.force])
-    assert np.abs(found - force).max() <= 1e-12 * np.abs(force).max()
+    own_force = np.concatenate([part.ravel() for part in lin.force])
+    assert np.abs(own_force - force).max() <= 1e-12 * np.abs(force).max()
     # the cells' centres eliminated from scikit-fem's tangent
     n = state.corners.size
     inverse = np.linalg.inv(tangent[n:, n:])
@@ -119,10 +118,9 @@ def test_the_kernel_assembles_what_scikit_fem_does(energy: EnergyModel) -> None:
 def test_force_and_tangent_are_derivatives_of_the_energy(
     model: SheetModel, laws: tuple[ConstitutiveLaw, ...]
 ) -> None:
-    rng = np.random.default_rng(3)
-    sheet = Sheet(mixed_grid(rng), laws, model)
-    state = disturbed(sheet, rng)
+    sheet, state = disturbed(model, laws, seed=3)
     lin = sheet.linearise(state)
+    rng = np.random.default_rng(4)
     direction = Nodes(*(rng.normal(size=vectors.shape) for vectors in state))
     step = 1e-6
     ahead, behind = (sheet.energy(state.moved(direction, s)) for s in (step, -step))
@@ -139,9 +137,7 @@ def test_force_and_tangent_are_derivatives_of_the_energy(
 
 
 def test_two_threads_assemble_what_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
-    rng = np.random.default_rng(11)
-    sheet = Sheet(mixed_grid(rng), LAWS, SheetModel())
-    state = disturbed(sheet, rng)
+    sheet, state = disturbed(SheetModel(), seed=11)
     alone = sheet.linearise(state)
     monkeypatch.setattr("knitcore.cloth.flat.grid_sheet.SIDE_BY_SIDE", 1)
     together = sheet.linearise(state)

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from knitcore.chart.fabric import Fabric
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.cloth.flat import chart_sheet, misfit, relaxed_shape, strip_test
+from knitcore import Fabric, StitchChart, material, strip_test
+from knitcore.cloth.flat import chart_sheet, misfit, relaxed_shape
 from knitcore.garment.shaped import outline_marks
-from knitcore.materials import material
 
 ACRYLIC = material("acrylic:published")
 GARTER = StitchChart.of_fabric("garter", rows=6, columns=8)
@@ -48,9 +46,9 @@ def test_a_ribbed_hem_pulls_in_below_any_texture(above: str) -> None:
     rib, texture = (StitchChart.parse(text) for text in ("KKPP", above))
     piece = StitchChart(np.vstack([rib.resized(8, 20).purl, texture.resized(16, 20).purl]))
     sheet = chart_sheet(piece, material("glove-wool"), draw_in=True)
-    found = relaxed_shape(sheet)
-    assert found.converged, found.problem
-    corners = found.states[-1].corners.reshape(sheet.grid.rows + 1, sheet.grid.columns + 1, 2)
+    shape = relaxed_shape(sheet)
+    assert shape.converged, shape.problem
+    corners = shape.states[-1].corners.reshape(sheet.grid.rows + 1, sheet.grid.columns + 1, 2)
     widths = np.ptp(corners[..., 0], axis=1)
     assert widths[0] < 0.8 * widths[-1]
     assert np.all(np.diff(widths) > -0.01 * widths[-1])

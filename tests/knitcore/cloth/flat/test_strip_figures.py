@@ -3,22 +3,15 @@
 import numpy as np
 import pytest
 
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.cloth.flat import strip_test
+from knitcore import StitchChart, material, strip_test
 from knitcore.cloth.flat.strip_figures import (
     displacement_figure,
     strain_crosses_figure,
     stress_strain_figure,
 )
-from knitcore.materials import material
 
-TEST = strip_test(
-    StitchChart.of_fabric("garter", rows=5, columns=8),
-    material("acrylic:published"),
-    "wale",
-    0.4,
-    steps=2,
-)
+GARTER = StitchChart.of_fabric("garter", rows=5, columns=8)
+TEST = strip_test(GARTER, material("acrylic:published"), "wale", 0.4, steps=2)
 
 
 def test_the_displacement_is_drawn_on_the_deformed_shape() -> None:

@@ -9,10 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.cloth.flat import StripTest, chart_sheet, strip_test
+from knitcore import Direction, Fabric, InputError, StitchChart, material, strip_test
+from knitcore.cloth.flat import StripTest, chart_sheet
 from knitcore.cloth.flat.fields import Fields
 from knitcore.cloth.flat.strip import Clamps
 from knitcore.cloth.flat.strip_uncertainty import (
@@ -22,9 +20,10 @@ from knitcore.cloth.flat.strip_uncertainty import (
     model_log_sd,
 )
 from knitcore.law.constitutive import ConstitutiveLaw, Symmetrisation
-from knitcore.materials import Laws, LawUncertainty, Material, load_library, material
+from knitcore.materials import Laws, LawUncertainty, Material, load_library
 from knitcore.materials.law_uncertainty import Z_SCORE, CurveUncertainty
 from knitcore.prediction.quarter_laws import flat_laws
+from tests.knitcore.charts import flipped
 
 ACRYLIC = material("acrylic:published")
 SHEAR_N_PER_MM = 0.02
@@ -41,10 +40,10 @@ def changed(fabric: Fabric, base: Material = ACRYLIC, **new: object) -> Material
     return replace(base, fabrics=records)
 
 
-def certain(base: Material = ACRYLIC) -> Material:
-    """The material without any uncertainty."""
-    records = {f: replace(record, uncertainty=NONE) for f, record in base.fabrics.items()}
-    return replace(base, fabrics=records)
+def certain() -> Material:
+    """Acrylic without any uncertainty."""
+    records = {f: replace(record, uncertainty=NONE) for f, record in ACRYLIC.fabrics.items()}
+    return replace(ACRYLIC, fabrics=records)
 
 
 def scaled(law: ConstitutiveLaw, course: float, wale: float) -> ConstitutiveLaw:
@@ -74,17 +73,15 @@ def _laws_as_they_are() -> Iterator[None]:
         yield
 
 
-def pulled(
-    base: Material, direction: str = "wale", shear: float | None = SHEAR_N_PER_MM
-) -> StripTest:
-    return strip_test(HALVES, base, direction, 0.3, steps=3, shear_modulus=shear)
+def pulled(base: Material, direction: str = "wale") -> StripTest:
+    return strip_test(HALVES, base, direction, 0.3, steps=3, shear_modulus=SHEAR_N_PER_MM)
 
 
-def largest_error(spread: StepSpread, one: Fields, other: Fields) -> float:
-    """Of the standard deviations against half the difference of two tests, over the largest."""
+def largest_error(spread: StepSpread, low: Fields, high: Fields) -> float:
+    """Error of the deviations against half the difference of two tests, over the largest."""
     errors = []
     for name in ("strain_xx", "strain_yy", "utilisation"):
-        half = np.abs(getattr(one, name) - getattr(other, name)) / 2
+        half = np.abs(getattr(low, name) - getattr(high, name)) / 2
         errors.append(np.abs(getattr(spread, f"{name}_sd") - half).max() / half.max())
     return max(errors)
 
@@ -117,7 +114,7 @@ def test_a_scale_of_stress_moves_strains_as_in_a_test_of_the_scaled_law(
 def test_a_measured_poisson_ratio_moves_strains_as_in_a_test_of_the_changed_law(
     model: str, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of rib, whose two couplings differ by a factor of 8; ``published`` uses one of them."""
+    """The two couplings of rib differ by a factor of 8; ``published`` uses one of them."""
     monkeypatch.setattr("knitcore.cloth.flat.strip_uncertainty.model_log_sd", lambda _: 0.0)
     sd = 0.01
     base = changed(Fabric.RIB, certain(), uncertainty=replace(NONE, **{name: sd}))
@@ -159,18 +156,12 @@ def doubled(spread: LawUncertainty) -> LawUncertainty:
         CurveUncertainty(*(2 * v for v in astuple(spread.curve(direction))))
         for direction in Direction
     ]
-    return LawUncertainty(
-        2 * spread.log_modulus_course,
-        2 * spread.log_modulus_wale,
-        2 * spread.poisson_yx,
-        2 * spread.poisson_xy,
-        "twice",
-        *curves,
-        None if spread.log_shear is None else 2 * spread.log_shear,
-    )
+    names = "log_modulus_course", "log_modulus_wale", "poisson_yx", "poisson_xy"
+    log_shear = None if spread.log_shear is None else 2 * spread.log_shear
+    return LawUncertainty(*(2 * getattr(spread, n) for n in names), "twice", *curves, log_shear)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(
     seed=st.integers(0, 2**32 - 1),
     name=st.sampled_from(list(load_library(Laws.PUBLISHED))),
@@ -184,12 +175,8 @@ def test_of_any_chart_twice_the_uncertainty_is_twice_the_interval(
     """The clamps' motion is certain; elsewhere deviations are finite, and linear in the laws'."""
     chart = StitchChart(np.random.default_rng(seed).random((5, 6)) < 0.5)
     base = material(name)
-    double = replace(
-        base,
-        fabrics={
-            f: replace(r, uncertainty=doubled(r.uncertainty)) for f, r in base.fabrics.items()
-        },
-    )
+    records = {f: replace(r, uncertainty=doubled(r.uncertainty)) for f, r in base.fabrics.items()}
+    double = replace(base, fabrics=records)
     test = strip_test(
         chart, base, direction, 0.2, steps=2, clamps=clamps, model=model, shear_modulus=0.02
     )
@@ -268,8 +255,8 @@ def interval_widths(chart: StitchChart, direction: str, strain: float, scale: fl
     width, length = scale * size.width_mm, scale * size.length_mm
     test = strip_test(chart, acrylic, direction, strain, steps=2, width_mm=width, length_mm=length)
     spread = StripSpread(test, acrylic).at(-1)
-    found = [test.stress_n_per_mm[-1], spread.waist_sd, np.nanmean(spread.utilisation_sd)]
-    return np.append(np.log(found), 2 * Z_SCORE * spread.force_log_sd)
+    values = [test.stress_n_per_mm[-1], spread.waist_sd, np.nanmean(spread.utilisation_sd)]
+    return np.append(np.log(values), 2 * Z_SCORE * spread.force_log_sd)
 
 
 @given(
@@ -279,22 +266,21 @@ def interval_widths(chart: StitchChart, direction: str, strain: float, scale: fl
     strain=st.floats(0.03, 0.2),
     change=st.sampled_from(["strain", "gauge", "stitch", "row"]),
 )
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 def test_intervals_change_as_little_as_what_they_are_about(
     cloth: str, side: int, direction: Direction, strain: float, change: str
 ) -> None:
     """3 % more strain or gauge, one stitch or one row more."""
     chart = StitchChart.parse(cloth).resized(side, side)
-    purl = chart.purl.copy()
-    purl[side // 2, side // 2] ^= change == "stitch"
-    one = interval_widths(chart, direction, strain, 1.0)
-    other = interval_widths(
-        StitchChart.parse(cloth).resized(side + 1, side) if change == "row" else StitchChart(purl),
-        direction,
-        strain * (1.03 if change == "strain" else 1.0),
-        1.03 if change == "gauge" else 1.0,
-    )
-    force, *widths = np.abs(other - one)
+    changed = {
+        "row": StitchChart.parse(cloth).resized(side + 1, side),
+        "stitch": flipped(chart, side // 2, side // 2),
+    }
+    before = interval_widths(chart, direction, strain, 1.0)
+    strain *= 1.03 if change == "strain" else 1.0
+    gauge = 1.03 if change == "gauge" else 1.0
+    after = interval_widths(changed.get(change, chart), direction, strain, gauge)
+    force, *widths = np.abs(after - before)
     most = {"strain": 0.1, "gauge": 0.02, "stitch": 31 / side**2, "row": 0.15}[change]
     assert max(widths) < most + force
 

@@ -3,14 +3,10 @@
 import numpy as np
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Fabric
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import Fabric, InputError, StitchChart, material, predict
 from knitcore.cloth.space.bending_constants import bends_of
 from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of, stitch_weights_n, stitched
 from knitcore.cloth.space.stitch_sheet import sheet_of
-from knitcore.materials import material
-from knitcore.prediction.predict import predict
 from knitcore.yarn.library.store import stored_stitch
 
 ACRYLIC = material("acrylic")
@@ -33,8 +29,6 @@ def test_a_pure_fabric_has_the_size_and_bending_of_its_stitches() -> None:
 def test_packaged_repeats_are_bent_from_the_store(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("knitcore.cloth.space.bending_constants.relax", None)
     stored = stored_stitch(StitchChart.parse("PPK"), "acrylic")
-    assert stored is not None
-    assert stored.bending is not None
     bent, cloth = stored.bending.shown, _cloth("PPK")
     assert cloth.rigidity_n_mm == (bent.course.rigidity_n_mm, bent.wale.rigidity_n_mm)
     assert cloth.curvature_per_mm == (bent.course.curvature_per_mm, bent.wale.curvature_per_mm)
@@ -69,7 +63,6 @@ def test_a_large_rectangle_stands_for_several_stitches() -> None:
 def test_weight_is_that_of_the_yarn_in_the_stitches() -> None:
     weights = stitch_weights_n(GARTER.tile(3, 4), ACRYLIC, 0.5)
     loop = ACRYLIC.record(Fabric.GARTER).loop_length_mm
-    assert loop is not None
     assert weights.sum() == pytest.approx(weights.size * loop * 0.5e-6 * 9.80665)
     sheet = sheet_of(GARTER.tile(3, 4), ACRYLIC)
     assert sheet.shared(weights.ravel()).sum() == pytest.approx(weights.sum())
@@ -82,12 +75,12 @@ def test_impossible_yarns_are_refused() -> None:
 
 def test_cloth_of_a_large_repeat_bends_as_the_mean_of_its_quarters() -> None:
     halves = StitchChart.parse("\n".join(["K"] * 20 + ["P"] * 20))
-    found = cloth_of(halves, ACRYLIC, linear_density_g_per_m=0.5)
-    assert found.from_quarters
+    cloth = cloth_of(halves, ACRYLIC, linear_density_g_per_m=0.5)
+    assert cloth.from_quarters
     plain = _cloth("K")
     # all but the quarters at the borders of the halves are stockinette, knits against purls
-    assert found.rigidity_n_mm[0] == pytest.approx(plain.rigidity_n_mm[0], rel=0.1)
-    assert found.curvature_per_mm == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert cloth.rigidity_n_mm[0] == pytest.approx(plain.rigidity_n_mm[0], rel=0.1)
+    assert cloth.curvature_per_mm == pytest.approx((0.0, 0.0), abs=1e-12)
 
 
 def test_stitches_lie_evenly_on_the_rectangles_of_a_sheet() -> None:

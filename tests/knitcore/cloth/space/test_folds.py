@@ -1,13 +1,11 @@
-"""Which stitches fold against each other, how far, and how large they are."""
+"""Stitches that fold against each other: which, how far, and how large they are."""
 
 import numpy as np
 import pytest
 
-from knitcore.chart.fabric import Fabric
+from knitcore import Fabric, StitchChart, material
 from knitcore.chart.phases import continued
-from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.folds import balances, folds_of, opposed, rest_turns, turning
-from knitcore.materials import material
 from knitcore.prediction.neighbourhood import neighbourhood_sizes
 
 ACRYLIC = material("acrylic")
@@ -30,20 +28,20 @@ def test_runs_between_others_are_opposed(row: str, runs: list[int]) -> None:
 
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_pure_fabrics_keep_their_size_and_their_turn(fabric: Fabric) -> None:
-    found = folds_of(StitchChart.of_fabric(fabric, rows=8, columns=8), ACRYLIC, FREE)
+    folds = folds_of(StitchChart.of_fabric(fabric, rows=8, columns=8), ACRYLIC, FREE)
     record = ACRYLIC.record(fabric)
     size = (record.stitch_course_mm, record.stitch_wale_mm)
-    assert np.allclose(found.sizes_mm, size, rtol=1e-3)
-    assert np.all(found.share == 1.0)
+    assert np.allclose(folds.sizes_mm, size, rtol=1e-3)
+    assert np.all(folds.share == 1.0)
 
 
 def test_a_wide_rib_turns_over_to_the_width_of_its_surroundings() -> None:
     """The polygon of its panels spans what the resolver says."""
     chart = StitchChart.parse("KKKKPPPP").tile(16, 4)
-    found = folds_of(chart, ACRYLIC, FREE)
-    turn = found.share[8, 13, 0] * FREE[0]
+    folds = folds_of(chart, ACRYLIC, FREE)
+    turn = folds.share[8, 13, 0] * FREE[0]
     at = turn * (np.arange(4) - 1.5)
-    span = found.sizes_mm[8, 13, 0] * np.cos(at).mean()
+    span = folds.sizes_mm[8, 13, 0] * np.cos(at).mean()
     assert span == pytest.approx(neighbourhood_sizes(chart, ACRYLIC)[8, 13, 0], rel=1e-9)
     assert turn < np.pi / 4
 

@@ -3,13 +3,10 @@
 import numpy as np
 import pytest
 
-from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import CancelledError, Direction, Fabric, StitchChart, material
 from knitcore.cloth.space.hang import HungBy, hang
 from knitcore.cloth.space.surface import corners_of
 from knitcore.garment.shaped import outline_marks
-from knitcore.materials import material
 
 ACRYLIC = material("acrylic")
 GARTER = StitchChart.of_fabric(Fabric.GARTER, rows=24, columns=8)
@@ -17,14 +14,14 @@ GARTER = StitchChart.of_fabric(Fabric.GARTER, rows=24, columns=8)
 
 def test_a_piece_gets_longer_by_its_weight() -> None:
     """By half of what its whole weight would do at the end: w L² / 2 Y of a free strip."""
-    found = hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5)
+    hung = hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5)
     record = ACRYLIC.record(Fabric.GARTER)
     width = 8 * record.stitch_course_mm
-    stress = found.weight_n / width
+    stress = hung.weight_n / width
     free, held = 1.0 / record.law.modulus(Direction.WALE), 1.0 / record.law.stiffness_yyyy
-    assert found.converged
-    assert 0.5 * stress * held <= found.lengthening <= 1.02 * 0.5 * stress * free
-    assert found.depth_mm < 0.1
+    assert hung.converged
+    assert 0.5 * stress * held <= hung.lengthening <= 1.02 * 0.5 * stress * free
+    assert hung.depth_mm < 0.1
 
 
 def test_twice_the_weight_pulls_twice_as_far() -> None:
@@ -42,9 +39,9 @@ def test_held_by_its_corners_the_top_edge_sags() -> None:
 
 
 def test_the_bottom_of_stockinette_rolls_to_the_front_against_its_weight() -> None:
-    found = hang(StitchChart.parse("K").tile(12, 8), ACRYLIC, linear_density_g_per_m=0.5)
-    assert found.converged
-    assert found.corners_mm[0, 4, 2] > 0.5
+    hung = hang(StitchChart.parse("K").tile(12, 8), ACRYLIC, linear_density_g_per_m=0.5)
+    assert hung.converged
+    assert hung.corners_mm[0, 4, 2] > 0.5
 
 
 def test_it_can_be_cancelled() -> None:
@@ -55,12 +52,12 @@ def test_it_can_be_cancelled() -> None:
 def test_a_piece_with_a_hole_hangs_by_its_highest_edge() -> None:
     stitches = outline_marks("..xxxx..\nxxxxxxxx\nxxx..xxx\nxxx..xxx\nxxxxxxxx\n........")
     chart = StitchChart.of_fabric(Fabric.GARTER, rows=6, columns=8)
-    found = hang(chart, ACRYLIC, linear_density_g_per_m=0.5, stitches=stitches)
+    hung = hang(chart, ACRYLIC, linear_density_g_per_m=0.5, stitches=stitches)
     whole = hang(chart, ACRYLIC, linear_density_g_per_m=0.5)
-    assert found.converged
-    assert found.weight_n == pytest.approx(whole.weight_n * stitches.mean(), rel=0.01)
-    held = found.corners_mm[-1, 2:7]
+    assert hung.converged
+    assert hung.weight_n == pytest.approx(whole.weight_n * stitches.mean(), rel=0.01)
+    held = hung.corners_mm[-1, 2:7]
     assert not np.ptp(held[:, 1:], axis=0).any()
     height = ACRYLIC.record(Fabric.GARTER).stitch_wale_mm
-    assert found.drop_mm == pytest.approx(5 * height, rel=0.1)
-    assert np.array_equal(found.used, corners_of(stitches))
+    assert hung.drop_mm == pytest.approx(5 * height, rel=0.1)
+    assert np.array_equal(hung.used, corners_of(stitches))

@@ -3,13 +3,10 @@
 import numpy as np
 import pytest
 
-from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Fabric
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import CancelledError, Fabric, StitchChart, material
 from knitcore.cloth.space.rolled import extruded, start, strip_of
 from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import sheet_of
-from knitcore.materials import material
 
 ACRYLIC = material("acrylic")
 NONE = np.zeros((0, 2), dtype=np.int64)
@@ -52,7 +49,7 @@ def test_what_lies_flat_begins_flat() -> None:
 
 
 def test_a_descent_ends_after_so_many_steps() -> None:
-    """So the long strip of a piece of 3 x 400 stitches does not take longer than the piece."""
+    """The long strip of a piece of 3 x 400 stitches must not take longer than the piece."""
     sheet = sheet_of(StitchChart.parse("K").tile(6, 6), ACRYLIC)
     shape = sheet.flat_mm + shake_mm(sheet.flat_mm.shape)
     ended = settle(sheet, shape, max_steps=8)

@@ -11,19 +11,17 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipe, ellipk
 
-from knitcore.chart.fabric import Fabric
+from knitcore import Fabric, StitchChart, material
+from knitcore.base.arrays import Array
 from knitcore.chart.phases import continued
-from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space import sheet_kernels as kernels
 from knitcore.cloth.space.bending_constants import bends_of, computed
 from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import StitchSheet, sheet_of
 from knitcore.cloth.space.tangent import Tangent
 from knitcore.garment.shaped import outline_marks
-from knitcore.materials import material
 from tests.knitcore.cloth.space.outlines import OUTLINES
 
-Array = NDArray[np.float64]
 MIXED = StitchChart.parse("KKPK\nKPPK\nPPKK\nKPKP\nKKKK")
 ACRYLIC = material("acrylic")
 SHEETS = pytest.mark.parametrize(
@@ -110,7 +108,7 @@ def test_held_corners_have_rows_of_the_unit_matrix() -> None:
 
 
 @SHEETS
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_motion_of_the_whole_costs_nothing(outline: str, seed: int) -> None:
     sheet, x, pairs = _cut(outline, 0.3)

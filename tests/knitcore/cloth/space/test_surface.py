@@ -11,23 +11,23 @@ def test_a_cylinder_is_a_cylinder() -> None:
     corners = np.stack([5.0 * np.sin(angle), up, 5.0 * np.cos(angle)], axis=-1)
     surface = Surface(corners)
     across, rows = np.random.default_rng(0).uniform(0.0, 8.0, (2, 50))
-    found = surface.at(2.5 * across, rows, np.full(50, 0.7))
-    assert np.allclose(np.hypot(found[:, 0], found[:, 2]), 5.7, atol=1e-3)
-    assert np.allclose(found[:, 1], rows, atol=1e-9)
+    points = surface.at(2.5 * across, rows, np.full(50, 0.7))
+    assert np.allclose(np.hypot(points[:, 0], points[:, 2]), 5.7, atol=1e-3)
+    assert np.allclose(points[:, 1], rows, atol=1e-9)
 
 
 def test_beyond_an_edge_the_surface_is_straight() -> None:
     x, y = np.meshgrid(np.arange(4.0), np.arange(3.0))
     surface = Surface(np.stack([2.0 * x, 3.0 * y, 0.0 * x], axis=-1))
-    found = surface.at(np.array([-1.0, 3.5]), np.array([0.5, 2.5]), np.array([0.0, 1.0]))
-    assert np.allclose(found, [[-2.0, 1.5, 0.0], [7.0, 7.5, 1.0]])
+    points = surface.at(np.array([-1.0, 3.5]), np.array([0.5, 2.5]), np.array([0.0, 1.0]))
+    assert np.allclose(points, [[-2.0, 1.5, 0.0], [7.0, 7.5, 1.0]])
 
 
 def test_a_piece_one_stitch_wide_has_a_surface() -> None:
     x, y = np.meshgrid(np.arange(2.0), np.arange(6.0))
     surface = Surface(np.stack([2.0 * x, 3.0 * y, 0.0 * x], axis=-1))
-    found = surface.at(np.array([0.5]), np.array([2.5]), np.array([0.4]))
-    assert np.allclose(found, [[1.0, 7.5, 0.4]])
+    points = surface.at(np.array([0.5]), np.array([2.5]), np.array([0.4]))
+    assert np.allclose(points, [[1.0, 7.5, 0.4]])
 
 
 def test_corners_without_a_stitch_go_on_as_those_beside_them() -> None:

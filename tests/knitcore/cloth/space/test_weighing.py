@@ -6,8 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import InputError, StitchChart, material
 from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of
 from knitcore.cloth.space.weighing import (
     DISC_MM,
@@ -18,7 +17,6 @@ from knitcore.cloth.space.weighing import (
     on_table,
     overhang,
 )
-from knitcore.materials import material
 from knitcore.measure.heavy_elastica import heavy_elastica
 
 WEIGHT, LENGTH = 3e-6, 12.0
@@ -35,28 +33,25 @@ CLOTH = EvenCloth(
 
 @pytest.mark.parametrize("times", [1.0, 2.0, 4.0])
 def test_a_strip_hangs_as_the_heavy_elastica(times: float) -> None:
-    found = overhang(CLOTH, 0, times * LENGTH)
+    strip = overhang(CLOTH, 0, times * LENGTH)
     _, reach, fall = heavy_elastica(times**3)
-    assert found.converged
-    assert found.reach_mm == pytest.approx(times * LENGTH * reach[-1], abs=0.005 * times * LENGTH)
-    assert found.fall_mm == pytest.approx(times * LENGTH * fall[-1], abs=0.005 * times * LENGTH)
+    assert strip.converged
+    assert strip.reach_mm == pytest.approx(times * LENGTH * reach[-1], abs=0.005 * times * LENGTH)
+    assert strip.fall_mm == pytest.approx(times * LENGTH * fall[-1], abs=0.005 * times * LENGTH)
 
 
 def test_two_bending_lengths_fall_by_the_angle_of_the_test() -> None:
-    found = overhang(CLOTH, 0)
-    assert found.overhang_mm == pytest.approx(2 * LENGTH)
-    assert np.degrees(found.angle_rad) == pytest.approx(41.5, abs=0.2)
+    strip = overhang(CLOTH, 0)
+    assert strip.overhang_mm == pytest.approx(2 * LENGTH)
+    assert np.degrees(strip.angle_rad) == pytest.approx(41.5, abs=0.2)
+    rolled = replace(CLOTH, curvature_per_mm=(0.7, -0.4))  # the curl is left out
+    assert overhang(rolled, 0).angle_rad == pytest.approx(strip.angle_rad, rel=1e-6)
 
 
 def test_the_rigidity_that_is_read_is_the_one_that_went_in() -> None:
     """Within the error of Peirce's formula, 2 % of the length."""
-    found = overhang(CLOTH, 1)
-    assert found.rigidity_n_mm == pytest.approx(CLOTH.rigidity_n_mm[1], rel=0.07)
-
-
-def test_the_curl_of_the_fabric_is_left_out() -> None:
-    rolled = replace(CLOTH, curvature_per_mm=(0.7, -0.4))
-    assert overhang(rolled, 0).angle_rad == pytest.approx(overhang(CLOTH, 0).angle_rad, rel=1e-6)
+    strip = overhang(CLOTH, 1)
+    assert strip.rigidity_n_mm == pytest.approx(CLOTH.rigidity_n_mm[1], rel=0.07)
 
 
 @pytest.mark.parametrize(("length", "problem"), [(1e-9, "do not bend"), (61.0, "straight down")])
@@ -99,18 +94,18 @@ def _ring_fall(cloth: EvenCloth) -> float:
 
 def test_a_stiff_plate_falls_as_in_theory() -> None:
     cloth = _isotropic(150.0)
-    found = drape(cloth, across=30, starts=(0,))
-    assert found.converged
-    assert -found.corners_mm[15, -1, 2] == pytest.approx(_ring_fall(cloth), rel=0.1)
-    assert found.coefficient > 0.99
+    plate = drape(cloth, across=30, starts=(0,))
+    assert plate.converged
+    assert -plate.corners_mm[15, -1, 2] == pytest.approx(_ring_fall(cloth), rel=0.1)
+    assert plate.coefficient > 0.99
 
 
 def test_softer_cloth_drapes_more_and_has_more_folds() -> None:
-    found = [drape(_isotropic(length), across=16, starts=(6,)) for length in (15.0, 30.0, 60.0)]
-    assert all(draped.converged for draped in found)
-    assert all(low.coefficient < high.coefficient for low, high in pairwise(found))
-    assert found[0].folds >= 4
-    assert found[-1].folds <= 2
+    drapes = [drape(_isotropic(length), across=16, starts=(6,)) for length in (15.0, 30.0, 60.0)]
+    assert all(draped.converged for draped in drapes)
+    assert all(low.coefficient < high.coefficient for low, high in pairwise(drapes))
+    assert drapes[0].folds >= 4
+    assert drapes[-1].folds <= 2
 
 
 @pytest.mark.slow
@@ -120,15 +115,15 @@ def test_isotropic_cloth_drapes_as_cusick_measured(bending_length_cm: float) -> 
     with a shear angle A of 10°, within 7 of 100."""
     c, angle = bending_length_cm, 10.0
     expected = 35.6 * c - 3.61 * c**2 - 2.59 * angle + 0.0461 * angle**2 + 17.0
-    found = drape(_isotropic(10.0 * c), across=40, starts=(6,))
-    assert found.converged
-    assert 100.0 * found.coefficient == pytest.approx(expected, abs=7.0)
+    draped = drape(_isotropic(10.0 * c), across=40, starts=(6,))
+    assert draped.converged
+    assert 100.0 * draped.coefficient == pytest.approx(expected, abs=7.0)
 
 
 def test_outside_the_draped_piece_there_is_nothing() -> None:
-    found = drape(_isotropic(30.0), across=12, starts=(4,))
-    assert np.isnan(found.corners_mm[0, 0]).all()
-    assert np.isfinite(found.corners_mm[6]).all()
+    draped = drape(_isotropic(30.0), across=12, starts=(4,))
+    assert np.isnan(draped.corners_mm[0, 0]).all()
+    assert np.isfinite(draped.corners_mm[6]).all()
 
 
 @pytest.mark.parametrize(("disc", "across"), [(300.0, 20), (180.0, 200)])
@@ -145,11 +140,11 @@ PIECE, GARTER = _cloth("K"), _cloth("K/P")
 
 
 def test_the_weight_of_the_border_balances_the_moment_of_the_piece() -> None:
-    found = advice(PIECE, GARTER, 0, time_limit_s=0.0)
-    assert 0.5 * GARTER.weight_n_per_mm2 * found.width_mm**2 == pytest.approx(PIECE.moment_n[0])
-    assert (found.stitches - 1) * GARTER.stitch_mm[0] < found.width_mm
+    border = advice(PIECE, GARTER, 0, time_limit_s=0.0)
+    assert 0.5 * GARTER.weight_n_per_mm2 * border.width_mm**2 == pytest.approx(PIECE.moment_n[0])
+    assert (border.stitches - 1) * GARTER.stitch_mm[0] < border.width_mm
     ruled = max(RULE_STITCHES) * GARTER.stitch_mm[0]
-    assert found.rule_share == pytest.approx((ruled / found.width_mm) ** 2)
+    assert border.rule_share == pytest.approx((ruled / border.width_mm) ** 2)
 
 
 def test_a_board_holds_from_that_width_on() -> None:
@@ -158,8 +153,8 @@ def test_a_board_holds_from_that_width_on() -> None:
     width = advice(PIECE, board, 0, time_limit_s=0.0).width_mm
     edges = []
     for share in (0.8, 1.2):
-        sheet, found = on_table(PIECE, board, 0, share * width)
-        line = found.x.reshape(2, sheet.columns + 1, 3)[0]
+        sheet, shape = on_table(PIECE, board, 0, share * width)
+        line = shape.x.reshape(2, sheet.columns + 1, 3)[0]
         edges.append(line[[0, -1], 2].max())
     assert edges[0] > 3.0
     assert edges[1] < 0.1
@@ -167,20 +162,20 @@ def test_a_board_holds_from_that_width_on() -> None:
 
 @pytest.mark.slow
 def test_a_border_that_bends_rises_in_a_ridge_and_rolls_up() -> None:
-    found = advice(PIECE, GARTER, 0)
-    assert not found.holds
-    assert found.ridge_mm > 3.0 * PIECE.thickness_mm
-    assert found.line_mm[0, 1] == pytest.approx(0.0, abs=0.1)  # its own edge stays on the table
+    border = advice(PIECE, GARTER, 0)
+    assert not border.holds
+    assert border.ridge_mm > 3.0 * PIECE.thickness_mm
+    assert border.line_mm[0, 1] == pytest.approx(0.0, abs=0.1)  # its own edge stays on the table
 
 
 def test_what_does_not_curl_needs_no_border() -> None:
-    found = advice(GARTER, GARTER, 1)
-    assert (found.stitches, found.width_mm, found.holds) == (0, 0.0, True)
+    border = advice(GARTER, GARTER, 1)
+    assert (border.stitches, border.width_mm, border.holds) == (0, 0.0, True)
 
 
 def test_a_strip_on_a_table_rests_on_it_with_its_weight() -> None:
-    sheet, found = on_table(GARTER, GARTER, 0, 20.0)
-    depth = -np.minimum(found.x[:, 2], 0.0)
+    sheet, shape = on_table(GARTER, GARTER, 0, 20.0)
+    depth = -np.minimum(shape.x[:, 2], 0.0)
     width = np.ptp(sheet.flat_mm, axis=0)
     weight = GARTER.weight_n_per_mm2 * width[0] * width[1]
     assert sheet.touch_n_per_mm * depth.sum() == pytest.approx(weight, rel=0.01)

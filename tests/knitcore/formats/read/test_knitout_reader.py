@@ -23,17 +23,17 @@ def tucks(carrier: str, width: int, step: int = 1) -> list[str]:
     ]
 
 
-def courses(carrier: str, beds: str, rows: int, *, first: int = 0, step: int = 1) -> Iterator[str]:
-    """Courses on the needles of the beds, ``f`` or ``b`` from left to right; odd ones leftwards."""
-    needles = [f"{bed}{step * (place + 1)}" for place, bed in enumerate(beds)]
+def on(beds: str, step: int = 1) -> list[str]:
+    """Needles of the beds, ``f`` or ``b``, from left to right."""
+    return [f"{bed}{step * (place + 1)}" for place, bed in enumerate(beds)]
+
+
+def courses(carrier: str, needles: str | list[str], rows: int, *, first: int = 0) -> Iterator[str]:
+    """Courses on needles, or on those of some beds; odd ones leftwards."""
+    needles = on(needles) if isinstance(needles, str) else needles
     for row in range(first, first + rows):
         sign, order = ("+", needles) if row % 2 else ("-", needles[::-1])
         yield from (f"knit {sign} {needle} {carrier}" for needle in order)
-
-
-def crossed(beds: str) -> list[str]:
-    """Transfers from the front bed to the back one."""
-    return [f"xfer f{n} b{n}" for n, bed in enumerate(beds, 1) if bed == "b"]
 
 
 def dropped(beds: str) -> list[str]:
@@ -44,8 +44,8 @@ def read(*lines: str, head: Sequence[str] = HEAD) -> KnittedChart:
     return knitted_chart("\n".join([*head, *lines]) + "\n")
 
 
-def stockinette(rows: int = 4, *, width: int = 6, then: Sequence[str] = ()) -> list[str]:
-    return [*tucks("1", width), *courses("1", "f" * width, rows), *then]
+def stockinette(rows: int, width: int = 6) -> list[str]:
+    return [*tucks("1", width), *courses("1", "f" * width, rows)]
 
 
 def test_extensions_headers_and_comments_are_told_and_have_no_effect() -> None:
@@ -61,11 +61,11 @@ def test_extensions_headers_and_comments_are_told_and_have_no_effect() -> None:
     body = [*stockinette(3), "x-roller-advance 100", "outhook 1 ; the end"]
     knitted = read(*body, head=head)
     assert knitted.chart.text == "\n".join(["K" * 6] * 3)
-    told = "\n".join(knitted.notes)
-    assert "machine SWGXYZ" in told
-    assert "X-Loop-Length (line 3)" in told
-    assert "x-stitch-number (1 line from line 7)" in told
-    assert "Width" not in told
+    notes = "\n".join(knitted.notes)
+    assert "machine SWGXYZ" in notes
+    assert "X-Loop-Length (line 3)" in notes
+    assert "x-stitch-number (1 line from line 7)" in notes
+    assert "Width" not in notes
 
 
 @pytest.mark.parametrize("ends", ["\r\n", "\r", "\n"])
@@ -84,9 +84,8 @@ def test_needles_below_zero_and_carriers_of_any_name() -> None:
 
 
 def test_half_gauge() -> None:
-    lines = [*tucks("1", 5, step=2), *courses("1", "fffff", 2, step=2)]
-    lines += ["xfer f4 b4", "xfer f8 b8", *courses("1", "fbfbf", 2, step=2)]
-    knitted = read(*lines)
+    lines = [*tucks("1", 5, step=2), *courses("1", on("fffff", 2), 2)]
+    knitted = read(*lines, "xfer f4 b4", "xfer f8 b8", *courses("1", on("fbfbf", 2), 2))
     assert knitted.chart.text == "KPKPK\nKPKPK\nKKKKK\nKKKKK"
     assert "Every second needle knits" in knitted.notes[0]
 
@@ -101,42 +100,32 @@ def test_stitches_of_the_other_bed_lie_between() -> None:
 
 def test_racked_beds_make_a_wale_of_every_needle() -> None:
     needles = ["f1", "f2", "b2", "b3", "f4", "f5", "b5", "b6"]
-    lines = ["in 1", "rack 0.25"]
-    for row in range(4):
-        sign, order = ("+", needles) if row % 2 else ("-", needles[::-1])
-        lines += [f"knit {sign} {needle} 1" for needle in order]
-    assert read(*lines).chart.text == "\n".join(["KKPPKKPP"] * 3)
+    knitted = read("in 1", "rack 0.25", *courses("1", needles, 4))
+    assert knitted.chart.text == "\n".join(["KKPPKKPP"] * 3)
 
 
 def test_the_start_of_a_rib_on_other_needles_is_left_out() -> None:
     width = 8
     lines = [*tucks("1", width), *courses("1", "f" * width, 1), "rack 0.25"]
-    for row in range(1, 14):
-        needles = [f"{bed}{n}" for n in range(1, width + 1) for bed in "fb"]
-        sign, order = ("+", needles) if row % 2 else ("-", needles[::-1])
-        lines += [f"knit {sign} {needle} 1" for needle in order]
-    knitted = read(*lines)
+    needles = [f"{bed}{n}" for n in range(1, width + 1) for bed in "fb"]
+    knitted = read(*lines, *courses("1", needles, 13, first=1))
     assert knitted.chart.text == "\n".join(["KP" * width] * 12)
     assert any("knitted on other needles before the piece" in note for note in knitted.notes)
 
 
 def test_a_first_course_that_closes_the_cast_on() -> None:
-    lines = [
-        "in 1",
-        *(f"tuck - f{n} 1" for n in (4, 3, 2, 1)),
-        *(f"knit + f{n} 1" for n in (2, 3, 4)),
-    ]
+    lines = ["in 1", *(f"tuck - f{n} 1" for n in (4, 3, 2, 1))]
+    lines += [f"knit + f{n} 1" for n in (2, 3, 4)]
     knitted = read(*lines, *courses("1", "ffff", 3))
     assert knitted.chart.text == "\n".join(["KKKK"] * 3)
     assert "does not reach needle f1" in knitted.notes[0]
 
 
 def test_an_edge_slipped_in_every_second_course_is_left_out() -> None:
-    lines = stockinette(1)
+    lines = tucks("1", 6)
     for row in range(1, 9):
-        sign, order = ("+", range(1, 7)) if row % 2 else ("-", range(6, 0, -1))
-        lines += [f"knit {sign} f{n} 1" for n in order if n < 6 or row % 2]
-    knitted = read(*lines[: len(tucks("1", 6))], *lines[len(tucks("1", 6)) + 6 :])
+        lines += courses("1", "f" * (6 if row % 2 else 5), 1, first=row)
+    knitted = read(*lines)
     assert knitted.chart.text == "\n".join(["K" * 5] * 8)
     assert "slipped" in knitted.notes[0]
 
@@ -146,12 +135,11 @@ RIB = "bfbfbf"
 
 def test_waste_before_a_piece_is_what_it_stands_on() -> None:
     waste = [*tucks("2", 6), *courses("2", "f" * 6, 4), "outhook 2"]
-    knitted = read(*waste, *crossed(RIB), "inhook 1", *courses("1", RIB, 5), *dropped(RIB))
+    crossed = [f"xfer f{n} b{n}" for n, bed in enumerate(RIB, 1) if bed == "b"]
+    knitted = read(*waste, *crossed, "inhook 1", *courses("1", RIB, 5), *dropped(RIB))
     assert knitted.chart.text == "\n".join(["PKPKPK"] * 5)
-    assert (
-        "stands on what carrier 2 knits before it (24 stitches, lines 12 to 35)"
-        in (knitted.notes[0])
-    )
+    note = "stands on what carrier 2 knits before it (24 stitches, lines 12 to 35)"
+    assert note in knitted.notes[0]
 
 
 def test_waste_of_interlock_may_be_larger_than_the_piece() -> None:

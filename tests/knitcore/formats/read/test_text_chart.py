@@ -26,6 +26,7 @@ from knitcore.formats.read.text_chart import read_text_chart
         ("#.#\n.#.", "PKP/KPK", "# as purl"),
         ("01\n10", "KP/PK", "1 as purl"),
         ("ＫＰ\nＰＫ", "KP/PK", ""),
+        ("K-P", "KPP", "- is read as purl, like P"),
         # numbers, borders, tables, legends, titles
         ("2 KPKP 2\n1 PKPK 1", "KPKP/PKPK", "numbers beside the rows"),
         ("2 KPKP\n  PKPK 1\n  4321", "KPKP/PKPK", "line of column numbers"),

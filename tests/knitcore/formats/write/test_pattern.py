@@ -65,8 +65,8 @@ def test_nothing_in_a_pattern_is_smaller_than_7_points_or_off_its_page(
 
 
 def test_the_rows_of_all_parts_together_are_the_chart(pages: tuple[Page, ...]) -> None:
-    found = [label.text for label in labels(pages) if not label.bold]
-    rows = [text for text in found if re.match(r"Rows? \d+(–\d+)?( \(..\))?: ", text)]
+    texts = [label.text for label in labels(pages) if not label.bold]
+    rows = [text for text in texts if re.match(r"Rows? \d+(–\d+)?( \(..\))?: ", text)]
     text = "\n".join([write_rows(CHART).splitlines()[0], *rows, "Bind off."])
     assert read_rows(text) == CHART
 

@@ -114,14 +114,14 @@ def test_written_rows_are_distinguished_from_charts() -> None:
     assert not looks_written("KPKP")
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(piece=pieces(), first_side=st.sampled_from(Side))
 def test_outlines_and_yarns_are_read_back(piece: Piece, first_side: Side) -> None:
     text = write_rows(piece, first_side=first_side)
     assert read_piece_rows(text) == piece.cropped()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(piece=pieces(step=1, yarns=1))
 def test_outlines_in_the_round_are_read_back(piece: Piece) -> None:
     assert read_piece_rows(write_rows(piece, Construction.ROUND)) == piece.cropped()

@@ -1,6 +1,7 @@
 """A yarn that is not in the library: how well left-out yarns are predicted, and what is warned."""
 
 import math
+from dataclasses import asdict, replace
 from itertools import combinations
 from typing import Any
 
@@ -28,13 +29,13 @@ def cotton_loops() -> dict[Fabric, float]:
 def test_left_out_yarns_are_predicted_as_well_as_the_notes_say() -> None:
     """Leave one of eight yarns out: rms factors 2.14 with nothing measured, 1.52 with one
     stockinette swatch, 1.38 with stockinette and rib; 1.3 on the extension under load."""
-    nothing, one, two = left_out(()), left_out(STOCKINETTE), left_out((*STOCKINETTE, Fabric.RIB))
-    assert nothing.modulus_rms_factor == pytest.approx(2.14, abs=0.01)
-    assert one.modulus_rms_factor == pytest.approx(1.52, abs=0.01)
-    assert one.modulus_median_factor == pytest.approx(1.26, abs=0.02)
-    assert one.modulus_within_two > 0.8
-    assert two.modulus_rms_factor == pytest.approx(1.38, abs=0.01)
-    assert one.strain_rms_factor == pytest.approx(1.27, abs=0.02)
+    none, plain, both = left_out(()), left_out(STOCKINETTE), left_out((*STOCKINETTE, Fabric.RIB))
+    assert none.modulus_rms_factor == pytest.approx(2.14, abs=0.01)
+    assert plain.modulus_rms_factor == pytest.approx(1.52, abs=0.01)
+    assert plain.modulus_median_factor == pytest.approx(1.26, abs=0.02)
+    assert plain.modulus_within_two > 0.8
+    assert both.modulus_rms_factor == pytest.approx(1.38, abs=0.01)
+    assert plain.strain_rms_factor == pytest.approx(1.27, abs=0.02)
 
 
 def test_ninety_percent_intervals_cover_85_to_95() -> None:
@@ -42,10 +43,10 @@ def test_ninety_percent_intervals_cover_85_to_95() -> None:
     may have knitted, up to two. Of a single choice there are only 32 to 64 values.
     """
     choices = [c for n in range(3) for c in combinations(Fabric, n)]
-    found = [left_out(measured) for measured in choices]
+    errors = [left_out(measured) for measured in choices]
     for coverage in ("modulus_coverage", "strain_coverage"):
-        shares = [getattr(each, coverage) for each in found]
-        assert 0.85 <= np.average(shares, weights=[each.values for each in found]) <= 0.95
+        shares = [getattr(each, coverage) for each in errors]
+        assert 0.85 <= np.average(shares, weights=[each.values for each in errors]) <= 0.95
         assert min(shares) >= 0.84
 
 
@@ -57,10 +58,10 @@ def test_the_refitted_constants_are_those_of_the_notes() -> None:
 
 def test_the_measured_fabric_keeps_its_law() -> None:
     estimate = estimate_yarn(0.0708, cotton_loops(), [cotton_swatch()])
-    found = estimate.fabrics[Fabric.STOCKINETTE]
-    assert found.measured
-    assert found.law == cotton_swatch().law
-    interval = found.modulus[Direction.WALE]
+    stockinette = estimate.fabrics[Fabric.STOCKINETTE]
+    assert stockinette.measured
+    assert stockinette.law == cotton_swatch().law
+    interval = stockinette.modulus[Direction.WALE]
     assert interval.low == interval.value == interval.high
 
 
@@ -75,30 +76,25 @@ def test_intervals_enclose_their_value_and_narrow_with_a_swatch() -> None:
 
 
 def test_the_extension_is_the_laws() -> None:
-    found = estimate_yarn(0.02, 9.0).fabrics[Fabric.GARTER]
+    garter = estimate_yarn(0.02, 9.0).fabrics[Fabric.GARTER]
     for direction in Direction:
-        strain = strain_at_stress(found.law, direction, 0.1)
-        assert found.strain_at_load[direction].value == pytest.approx(strain)
+        strain = strain_at_stress(garter.law, direction, 0.1)
+        assert garter.strain_at_load[direction].value == pytest.approx(strain)
 
 
 @pytest.mark.parametrize("factor", [0.25, 4.0])
 def test_moduli_scale_with_the_bending_modulus(factor: float) -> None:
-    one, other = estimate_yarn(0.02, 9.0), estimate_yarn(0.02 * factor, 9.0)
+    yarn, stiffer = estimate_yarn(0.02, 9.0), estimate_yarn(0.02 * factor, 9.0)
     for fabric in Fabric:
-        ratio = other.fabrics[fabric].law.modulus_wale / one.fabrics[fabric].law.modulus_wale
+        ratio = stiffer.fabrics[fabric].law.modulus_wale / yarn.fabrics[fabric].law.modulus_wale
         assert ratio == pytest.approx(factor)
 
 
 def test_a_stiffer_swatch_means_a_stiffer_yarn() -> None:
     law = cotton_swatch().law
-    stiff = type(law)(
-        **{
-            name: getattr(law, name) * (2.0 if name.startswith("stiffness") else 1.0)
-            for name in law.__dataclass_fields__
-        }
-    )
+    doubled = {n: 2.0 * value for n, value in asdict(law).items() if n.startswith("stiffness")}
     plain = estimate_yarn(0.0708, cotton_loops(), [cotton_swatch()])
-    stiffer = estimate_yarn(0.0708, cotton_loops(), [cotton_swatch(law=stiff)])
+    stiffer = estimate_yarn(0.0708, cotton_loops(), [cotton_swatch(law=replace(law, **doubled))])
     for fabric in (Fabric.GARTER, Fabric.RIB, Fabric.SEED):
         ratio = (
             stiffer.fabrics[fabric].law.modulus_course / plain.fabrics[fabric].law.modulus_course
@@ -114,20 +110,20 @@ def test_another_setting_is_warned_of() -> None:
     assert any("another tightness" in w for w in other.warnings)
 
 
-def test_other_loops_are_warned_of() -> None:
-    found = estimate_yarn(0.07, cotton_loops(), [cotton_swatch(loop_length_mm=9.8)])
-    assert any("yarn per stitch" in w for w in found.warnings)
-
-
-def test_a_yarn_unlike_the_library_is_warned_of() -> None:
-    assert any("outside the range" in w for w in estimate_yarn(1.0, 5.0).warnings)
-    assert any("No swatch" in w for w in estimate_yarn(0.02, 9.0).warnings)
+def test_other_loops_and_a_yarn_unlike_the_library_are_warned_of() -> None:
+    swatch = cotton_swatch(loop_length_mm=9.8)
+    for estimate, warning in (
+        (estimate_yarn(0.07, cotton_loops(), [swatch]), "yarn per stitch"),
+        (estimate_yarn(1.0, 5.0), "outside the range"),
+        (estimate_yarn(0.02, 9.0), "No swatch"),
+    ):
+        assert any(warning in text for text in estimate.warnings)
 
 
 def test_stitches_get_a_plausible_size() -> None:
     """Cotton's stitch areas, 7 to 12 mm² (table 5)."""
-    found = estimate_yarn(0.0708, cotton_loops())
-    for fabric, estimate in found.fabrics.items():
+    cotton = estimate_yarn(0.0708, cotton_loops())
+    for fabric, estimate in cotton.fabrics.items():
         area = estimate.stitch_course_mm * estimate.stitch_wale_mm
         truth = material("cotton:published").record(fabric)
         assert abs(math.log(area / truth.stitch_course_mm / truth.stitch_wale_mm)) < 0.6

@@ -17,8 +17,8 @@ def swatch(*fabrics: int) -> np.ndarray:
     return mask
 
 
-def made(yarns: int, *, general: float, contrast: float, rest: float, seed: int = 0) -> np.ndarray:
-    random = np.random.default_rng(seed)
+def made(yarns: int, *, general: float, contrast: float, rest: float) -> np.ndarray:
+    random = np.random.default_rng(0)
     mean = random.normal(size=(4, 2))
     sign = np.array([1.0, -1.0])
     return (

@@ -1,5 +1,5 @@
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore.yarn.kernels.potential import CAP, potential, potential_and_derivatives
@@ -12,7 +12,6 @@ def slope_at(distance):
     return potential_and_derivatives(distance, K, P, R, CORE)[1]
 
 
-@settings(deadline=None)
 @given(st.floats(0.02, 0.999))
 def test_slope_and_curvature_are_the_derivatives(zeta):
     distance, step = 2 * CORE + zeta * SHELL, 1e-6 * SHELL * zeta
@@ -46,7 +45,6 @@ def test_inside_the_core_the_potential_is_finite_and_grows():
     assert slope_at(0.9 * edge) == pytest.approx(-200 * 0.1 / edge)
 
 
-@settings(deadline=None)
 @given(st.floats(-0.2, 1.2))
 def test_the_value_alone_is_that_with_derivatives(zeta):
     distance = 2 * CORE + zeta * SHELL

@@ -5,11 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from knitcore import predict
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.materials import load_library, material
+from knitcore import Direction, Fabric, InputError, StitchChart, material, predict
+from knitcore.materials import load_library
 from knitcore.materials.material_files import load_material_file, save_material_file
 from knitcore.prediction.prediction import Source
 from knitcore.yarn.library.characterise import RepeatTask, characterise_repeat
@@ -34,8 +31,8 @@ def table() -> YarnTable:
         fabrics=[Fabric.STOCKINETTE, Fabric.GARTER],
         loop_lengths_mm=[14.0, 5.0, 15.0],
     )
-    (found,) = characterise_yarns([plan], workers=1)
-    return found
+    (made,) = characterise_yarns([plan], workers=1)
+    return made
 
 
 def test_the_json_of_a_repeat_is_reproducible() -> None:
@@ -71,8 +68,6 @@ def test_less_yarn_makes_a_smaller_and_stiffer_stitch(table: YarnTable) -> None:
         assert [row.loop_length_mm for row in (short, tight, loose)] == [5.0, 14.0, 15.0]
         assert "too short" in short.failure
         assert short.law is None
-        assert tight.law is not None
-        assert loose.law is not None
         assert tight.stitches_per_cm2 > loose.stitches_per_cm2  # type: ignore[operator]
         assert tight.law.modulus_course > loose.law.modulus_course
         assert tight.law.modulus_wale > loose.law.modulus_wale
@@ -90,11 +85,10 @@ def test_the_yarn_is_a_material_that_predicts(table: YarnTable, tmp_path) -> Non
     file = tmp_path / "cotton.json"
     save_material_file(made, file)
     read = load_material_file(file)
-    found = predict(StitchChart.of_fabric("garter", 4, 4), read)
-    assert found.provenance is Source.SWEPT
+    prediction = predict(StitchChart.of_fabric("garter", 4, 4), read)
+    assert prediction.provenance is Source.SWEPT
     law = table.of(Fabric.GARTER)[1].law
-    assert law is not None
-    assert found.modulus_n_per_mm(Direction.WALE) == pytest.approx(law.modulus_wale, rel=1e-6)
+    assert prediction.modulus_n_per_mm(Direction.WALE) == pytest.approx(law.modulus_wale, rel=1e-6)
 
 
 def test_a_setting_without_a_law_makes_no_material(table: YarnTable) -> None:

@@ -42,9 +42,11 @@ def test_comments_docstrings_and_layout_do_not_count(package) -> None:
     assert changes(package, "solve.py", text.replace("return 1", "return 2"))
 
 
-def test_imported_modules_and_named_files_count(package) -> None:
+def test_imported_modules_and_named_files_count_and_others_do_not(package) -> None:
     assert changes(package, "yarn.py", 'FILE = "yarns.csv"\nMORE = 1\n')
     assert changes(package, "data/yarns.csv", "2")
+    assert not changes(package, "aside.py", "A = 2\n")
+    assert not changes(package, "data/other.csv", "2")
 
 
 def test_a_module_without_source_is_refused(package) -> None:
@@ -52,13 +54,8 @@ def test_a_module_without_source_is_refused(package) -> None:
         code_version("cloth.gone")
 
 
-def test_other_modules_and_files_do_not_count(package) -> None:
-    assert not changes(package, "aside.py", "A = 2\n")
-    assert not changes(package, "data/other.csv", "2")
-
-
 def test_the_solvers_reach_kernels_law_fit_and_starts() -> None:
-    found = fingerprint.reached(SOLVERS)
+    modules = fingerprint.reached(SOLVERS)
     for name in ("yarn.kernels.rod", "law.least_squares", "yarn.paper.minimise"):
-        assert f"knitcore.{name}" in found
-    assert "knitcore.prediction" not in found
+        assert f"knitcore.{name}" in modules
+    assert "knitcore.prediction" not in modules

@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Fabric
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.materials import load_library, material
+from knitcore import Fabric, StitchChart, material
+from knitcore.materials import load_library
 from knitcore.yarn.library.yarns import phase_shares, yarn_for, yarn_friction
 from knitcore.yarn.model.paper_samples import sample
+from tests.knitcore.refusals import refuses
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))
@@ -49,9 +48,8 @@ def test_a_loop_length_may_stand_in_for_a_missing_one():
     record = replace(lace.record(Fabric.STOCKINETTE), loop_length_mm=None)
     unknown = replace(lace, fabrics={**lace.fabrics, Fabric.STOCKINETTE: record})
     stitch = StitchChart.parse("K")
-    with pytest.raises(InputError, match="--loop-length-mm") as refusal:
+    with refuses("loop_length_mm", "--loop-length-mm"):
         yarn_for(unknown, stitch)
-    assert refusal.value.field == "loop_length_mm"
     known = yarn_for(lace, stitch)
     assert yarn_for(unknown, stitch, known.loop_length_mm) == known
 

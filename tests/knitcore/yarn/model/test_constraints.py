@@ -18,57 +18,59 @@ YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 LENGTH = 11.28
 
 
-def _lengths(found):
+def at_length(text, **options):
+    return relax(StitchChart.parse(text), YARN, LENGTH, **options)
+
+
+def _lengths(repeat):
     """Length of yarn of every stitch of the cell, measured on the curve."""
-    energy = found.energy
-    curve = energy.curve(found.state)
+    energy = repeat.energy
+    curve = energy.curve(repeat.state)
     speed = np.linalg.norm(curve[:, 1], axis=1)
-    per_stitch = speed.reshape(found.cell.stitches, -1).sum(axis=1) / found.cell.grid.samples
-    return per_stitch.reshape(found.cell.rows, found.cell.wales)
+    per_stitch = speed.reshape(repeat.cell.stitches, -1).sum(axis=1) / repeat.cell.grid.samples
+    return per_stitch.reshape(repeat.cell.rows, repeat.cell.wales)
 
 
 def test_prescribed_sizes_are_reached_and_their_forces_balance_the_energy():
-    free = relax(StitchChart.parse("K"), YARN, LENGTH)
-    one = relax(StitchChart.parse("K"), YARN, LENGTH, cell_course_mm=3.2)
-    assert one.cell_course_mm == pytest.approx(3.2, abs=1e-9)
-    assert one.energy_n_mm > free.energy_n_mm
-    assert one.force_n[0] > 0.0
-    assert one.force_n[1] == pytest.approx(0.0, abs=1e-6)
-    both = relax(StitchChart.parse("K"), YARN, LENGTH, cell_course_mm=3.2, cell_wale_mm=1.9)
+    free = at_length("K")
+    wide = at_length("K", cell_course_mm=3.2)
+    assert wide.cell_course_mm == pytest.approx(3.2, abs=1e-9)
+    assert wide.energy_n_mm > free.energy_n_mm
+    assert wide.force_n[0] > 0.0
+    assert wide.force_n[1] == pytest.approx(0.0, abs=1e-6)
+    both = at_length("K", cell_course_mm=3.2, cell_wale_mm=1.9)
     assert (both.cell_course_mm, both.cell_wale_mm) == pytest.approx((3.2, 1.9), abs=1e-9)
-    assert both.energy_n_mm > one.energy_n_mm
+    assert both.energy_n_mm > wide.energy_n_mm
     assert both.force_n[1] < 0.0  # it is pressed together
-    near = relax(StitchChart.parse("K"), YARN, LENGTH, cell_course_mm=3.2, cell_wale_mm=1.902)
+    near = at_length("K", cell_course_mm=3.2, cell_wale_mm=1.902)
     slope = (near.energy_n_mm - both.energy_n_mm) / 0.002
     assert slope == pytest.approx(both.force_n[1], rel=0.02)
 
 
 def test_every_stitch_may_have_a_length_of_its_own():
     lengths = [[11.28, 12.0], [11.5, 11.0]]
-    found = relax(StitchChart.parse("KK\nKP"), YARN, lengths)
-    np.testing.assert_allclose(_lengths(found), lengths, rtol=1e-6)
+    repeat = relax(StitchChart.parse("KK\nKP"), YARN, lengths)
+    np.testing.assert_allclose(_lengths(repeat), lengths, rtol=1e-6)
     # the marks between stitches stay at the lowest points of the feet
-    assert np.abs(found.energy.held @ found.state).max() < 1e-9
-    assert found.converged
+    assert np.abs(repeat.energy.held @ repeat.state).max() < 1e-9
+    assert repeat.converged
 
 
 def test_equal_stitch_lengths_are_one_loop_length():
-    one = relax(StitchChart.parse("KP"), YARN, LENGTH)
+    single = at_length("KP")
     table = relax(StitchChart.parse("KP"), YARN, np.full((1, 2), LENGTH))
-    assert table.energy_n_mm == one.energy_n_mm
-    assert table.cell.stitches == one.cell.stitches
+    assert table.energy_n_mm == single.energy_n_mm
+    assert table.cell.stitches == single.cell.stitches
 
 
 def test_a_fabric_laid_flat_is_wider_and_thinner_than_a_folded_one():
-    folded = relax(StitchChart.parse("KKPP"), YARN, LENGTH)
-    flat = relax(StitchChart.parse("KKPP"), YARN, LENGTH, flat=True)
+    folded = at_length("KKPP")
+    flat = at_length("KKPP", flat=True)
     assert np.ptp(flat.centre_lines[..., 2]) < 0.7 * np.ptp(folded.centre_lines[..., 2])
     assert flat.cell_course_mm > 1.2 * folded.cell_course_mm
     assert flat.energy_n_mm > folded.energy_n_mm  # something presses it
-    stockinette = relax(StitchChart.parse("K"), YARN, LENGTH, flat=True)
-    assert stockinette.energy_n_mm == pytest.approx(
-        relax(StitchChart.parse("K"), YARN, LENGTH).energy_n_mm, rel=1e-6
-    )
+    stockinette = at_length("K", flat=True)
+    assert stockinette.energy_n_mm == pytest.approx(at_length("K").energy_n_mm, rel=1e-6)
 
 
 def test_yarn_does_not_slide_out_of_a_plane():
@@ -99,9 +101,9 @@ def test_like_surroundings_are_those_of_an_exchanged_or_mirrored_chart():
     assert len(np.unique(around.kind)) == 1
     assert around.side.tolist() == [[1.0, 1.0, -1.0, -1.0]]
     assert around.hand[0, 0] == -around.hand[0, 1] != 0.0
-    one = Surroundings.of(plain_cell(StitchChart.parse("KKKKKKKP"), SplineGrid(16, 3)))
-    assert len(np.unique(one.kind)) == 4  # the purl, those beside it, the next ones, the rest
-    assert one.hand[0, 7] == one.hand[0, 3] == 0.0
+    lone = Surroundings.of(plain_cell(StitchChart.parse("KKKKKKKP"), SplineGrid(16, 3)))
+    assert len(np.unique(lone.kind)) == 4  # the purl, those beside it, the next ones, the rest
+    assert lone.hand[0, 7] == lone.hand[0, 3] == 0.0
 
 
 def test_what_stitches_do_alike_is_no_difference_of_posture():

@@ -1,7 +1,7 @@
 from knitcore.yarn.model.conventions import Convention
 
 
-def test_factors_of_the_three_readings():
+def test_factors_and_sources_of_the_three_readings():
     assert {
         c: (c.bending_factor, c.regularisation_factor, c.ordered_pair_factor) for c in Convention
     } == {
@@ -9,11 +9,6 @@ def test_factors_of_the_three_readings():
         Convention.PAPER: (0.5, 0.5, 0.5),
         Convention.AUTHORS_CODE: (1.0, 1.0, 1.0),
     }
-
-
-def test_counting_a_pair_once_takes_twice_the_factor():
+    # a pair that is counted once takes twice the factor
     assert all(c.unordered_pair_factor == 2 * c.ordered_pair_factor for c in Convention)
-
-
-def test_every_convention_names_its_source():
     assert all(c.source.endswith(".") for c in Convention)

@@ -43,8 +43,8 @@ def test_a_circle_has_its_known_bending_and_regularisation(bend, regular, exact)
     points[0, :, 1] = grid.interpolate(radius * np.sin(2 * np.pi * t))
     curve = sample_curve(points, 0.0, 1, grid.basis).reshape(-1, 4, 3)
     law = RodLaw(bend, regular, 0.0, 1.0 / grid.samples)
-    found, _ = rod_energy(curve, law, np.ones(len(curve)))
-    assert found == pytest.approx(exact, rel=1e-6)
+    rod, _ = rod_energy(curve, law, np.ones(len(curve)))
+    assert rod == pytest.approx(exact, rel=1e-6)
 
 
 @pytest.mark.parametrize("wobble", [0.02, 0.05])
@@ -136,8 +136,8 @@ def test_neighbours_are_complete_and_listed_once():
     cell, curve = energy.cell, energy.curve(state)
     reach = 1.9
     pairs, start = energy.pairs(curve, state, reach)
-    found = {tuple(p[:4]) for p in pairs.tolist()}
-    assert len(found) == len(pairs)
+    listed = {tuple(p[:4]) for p in pairs.tolist()}
+    assert len(listed) == len(pairs)
     assert start[-1] == len(pairs)
     position = curve[:, 0].copy()
     samples = len(cell.place)
@@ -145,7 +145,7 @@ def test_neighbours_are_complete_and_listed_once():
     position[:, 1] += state[-1] * np.repeat(np.arange(cell.rows), samples)
     step = np.array([state[-2] * cell.wales, state[-1] * cell.rows, 0.0])
     exclusion = 2.1 * YARN.radius_mm / 11.3
-    wanted = set()
+    expected = set()
     for a in range(-2, 3):
         for b in range(-3, 4):
             vector = position[None] + np.array([a, b, 0]) * step - position[:, None]
@@ -156,8 +156,8 @@ def test_neighbours_are_complete_and_listed_once():
                 if same and along <= exclusion:
                     continue
                 if j > i or (j == i and (a, b) > (0, 0)):
-                    wanted.add((i, j, a, b))
-    assert found == wanted
+                    expected.add((i, j, a, b))
+    assert listed == expected
 
 
 def test_thin_yarn_is_not_stiffened_by_the_constant_of_worsted_yarn():

@@ -1,7 +1,6 @@
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Fabric
+from knitcore import Fabric, InputError
 from knitcore.yarn.model.paper_samples import load_samples, sample
 
 
@@ -19,11 +18,8 @@ def test_swapped_loop_lengths_of_cotton_are_set_right():
     assert "swapped" in length.reason
 
 
-def test_thin_yarn_of_acrylic_garter_is_kept_as_run():
+def test_thin_yarn_is_kept_as_run_and_stiffness_in_newton_per_cubic_millimetre():
     assert sample("acrylic", "garter").yarn.radius_mm == 0.54
-
-
-def test_stiffness_is_in_newton_per_cubic_millimetre():
     assert sample("cotton", "seed").yarn.contact_stiffness_n_per_mm3 == 0.0115
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from knitcore.chart.fabric import Direction
-from tests.knitcore.yarn.study.synthetic import sweep
+from tests.knitcore.results import sweep
 
 
 def test_strains_refer_to_the_force_free_cell():
@@ -21,5 +21,5 @@ def test_strains_refer_to_the_force_free_cell():
 def test_strain_at_which_contact_overtakes_bending(share, strain):
     along = np.array([0.0, 0.2, 0.4])
     stretched = sweep(Direction.COURSE, along, -0.1 * along, along, contact_share=share)
-    found = stretched.contact_overtakes_at_strain
-    assert found == (None if strain is None else pytest.approx(strain))
+    overtakes = stretched.contact_overtakes_at_strain
+    assert overtakes == (None if strain is None else pytest.approx(strain))

@@ -28,8 +28,8 @@ def test_interpolation_passes_through_the_values(antiperiodic):
     sign = -1.0 if antiperiodic else 1.0
     around = np.concatenate([sign * controls[-2:], controls, sign * controls[:3]])
     weights = quintic_basis(np.array([0.0]), 0)[0]
-    found = np.array([weights @ around[c : c + 6] for c in range(12)])
-    np.testing.assert_allclose(found, values, atol=1e-12)
+    passed = np.array([weights @ around[c : c + 6] for c in range(12)])
+    np.testing.assert_allclose(passed, values, atol=1e-12)
 
 
 def test_refining_keeps_a_smooth_curve():

@@ -8,13 +8,7 @@ from hypothesis import strategies as st
 from knitcore.chart.fabric import Fabric
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.paper.bezier_relax import first_shapes
-from knitcore.yarn.paper.bezier_shape import (
-    COUNT,
-    control_points,
-    control_points_and_jacobian,
-    ties,
-    unknown_names,
-)
+from knitcore.yarn.paper.bezier_shape import COUNT, ties, unknown_names
 from knitcore.yarn.paper.bezier_stitch import Stitch
 from knitcore.yarn.paper.elastic import bernstein
 
@@ -22,10 +16,10 @@ FABRICS = list(Fabric)
 ENDS = np.array([0.0, 1.0])
 
 
-def shape(fabric, which=2, loop_length_mm=12.0):
-    """Unknowns of a stitch and its control points; the third shape is a random one."""
+def shape(fabric, loop_length_mm=12.0):
+    """Unknowns and control points of a random stitch, the third of the first shapes."""
     stitch = Stitch(fabric, sample("acrylic", fabric).yarn)
-    unknowns = first_shapes(stitch, loop_length_mm, which + 1)[which]
+    unknowns = first_shapes(stitch, loop_length_mm, 3)[2]
     return unknowns, stitch.controls(unknowns)
 
 
@@ -58,23 +52,7 @@ def test_stitch_is_its_own_mirror_image(fabric):
     assert controls[:7] == pytest.approx(mirrored[1:], abs=1e-12)
 
 
-@pytest.mark.parametrize("fabric", FABRICS)
-def test_jacobian_is_the_derivative(fabric):
-    unknowns, _ = shape(fabric)
-    parameters = ties(fabric) @ unknowns
-    odd = fabric.course_odd, fabric.wale_odd
-    points, jacobian = control_points_and_jacobian(parameters, *odd)
-    for i in range(COUNT):
-        step = np.zeros(COUNT)
-        step[i] = 1e-6
-        above, below = (
-            control_points((parameters + s * step).astype(complex), *odd).real for s in (1, -1)
-        )
-        assert jacobian[i] == pytest.approx((above - below) / 2e-6, abs=1e-7)
-    assert points.shape == (8, 6, 3)
-
-
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(st.floats(0.3, 3.0), st.sampled_from(FABRICS))
 def test_shape_scales_with_the_loop_length(factor, fabric):
     _, controls = shape(fabric, loop_length_mm=10.0)

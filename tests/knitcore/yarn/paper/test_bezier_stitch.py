@@ -11,8 +11,8 @@ from knitcore.yarn.paper.bezier_stitch import Stitch
 from knitcore.yarn.paper.elastic import bernstein, elastic_energy, gauss_tables
 
 
-def case(fabric, convention=Convention.PUBLISHED, yarn_id="acrylic"):
-    known = sample(yarn_id, fabric)
+def case(fabric, convention=Convention.PUBLISHED):
+    known = sample("acrylic", fabric)
     stitch = Stitch(fabric, known.yarn, convention)
     return stitch, first_shapes(stitch, known.loop_length_mm, 3)[2]
 
@@ -21,16 +21,16 @@ def case(fabric, convention=Convention.PUBLISHED, yarn_id="acrylic"):
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_gradients_are_the_derivatives(fabric, convention):
     stitch, unknowns = case(fabric, convention)
-    found = stitch.evaluate(unknowns)
+    energies = stitch.evaluate(unknowns)
     for i in range(stitch.size):
         step = np.zeros(stitch.size)
         step[i] = 1e-6
         above, below = (stitch.evaluate(unknowns + s * step) for s in (1, -1))
         slope = (above.energy_n_mm - below.energy_n_mm) / 2e-6
         lengths = (above.lengths_mm - below.lengths_mm) / 2e-6
-        largest = np.abs(found.gradient).max()
-        assert found.gradient[i] == pytest.approx(slope, rel=1e-4, abs=1e-5 * largest)
-        assert found.length_gradient[:, i] == pytest.approx(lengths, abs=1e-6)
+        largest = np.abs(energies.gradient).max()
+        assert energies.gradient[i] == pytest.approx(slope, rel=1e-4, abs=1e-5 * largest)
+        assert energies.length_gradient[:, i] == pytest.approx(lengths, abs=1e-6)
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))
@@ -60,6 +60,8 @@ def test_contact_agrees_with_the_sum_over_ordered_pairs(fabric):
     points, _, lengths, arclengths = contact.contact_points(controls, *contact.midpoint_tables())
     course, wale = unknowns[-2:]
     images = contact.course_images(fabric)
+    law = yarn.contact_stiffness_n_per_mm3, yarn.contact_exponent
+    law += yarn.radius_mm, yarn.core_radius_mm
     total = 0.0
     for n in range(-3, 4):
         for m in range(-images, images + 1):
@@ -71,14 +73,7 @@ def test_contact_agrees_with_the_sum_over_ordered_pairs(fabric):
                 along = np.abs(arclengths[:, None] - arclengths[None] - m * lengths.sum())
                 near &= along > 2.1 * yarn.radius_mm
             for i, j in np.argwhere(near):
-                value = potential(
-                    apart[i, j],
-                    yarn.contact_stiffness_n_per_mm3,
-                    yarn.contact_exponent,
-                    yarn.radius_mm,
-                    yarn.core_radius_mm,
-                )
-                total += value * lengths[i] * lengths[j]
+                total += potential(apart[i, j], *law) * lengths[i] * lengths[j]
     assert stitch.evaluate(unknowns).contact_n_mm == pytest.approx(total, rel=1e-9)
 
 

@@ -10,10 +10,9 @@ from knitcore.yarn.model.energy import CellEnergy
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.start_shape import start_state
-from knitcore.yarn.solve.growth import Start, grow
-from knitcore.yarn.solve.newton import Options
 from knitcore.yarn.solve.systems import DenseSystem
 from knitcore.yarn.solve.topology import Trajectory
+from tests.knitcore.yarn.relaxed import grown
 
 
 def test_a_saddle_is_left_for_the_minimum_below_it():
@@ -21,18 +20,10 @@ def test_a_saddle_is_left_for_the_minimum_below_it():
     # through a saddle of .19801 N·mm a stitch
     entry = sample("acrylic", "stockinette")
     cell = mirrored_cell(StitchChart.parse("P\nP\nP\nK\nK\nK"), SplineGrid(16, 3))
-    lengths = np.full(cell.rows, entry.loop_length_mm)
-    found = grow(
-        cell,
-        entry.yarn,
-        lengths,
-        Convention.PUBLISHED,
-        Start("usual"),
-        options=Options(tolerance=1e-6),
-    )
-    assert found.converged
-    assert found.stable
-    assert found.terms.energy / cell.stitches == pytest.approx(0.19784, rel=2e-4)
+    minimum = grown(cell, entry.yarn, entry.loop_length_mm, tolerance=1e-6)
+    assert minimum.converged
+    assert minimum.stable
+    assert minimum.terms.energy / cell.stitches == pytest.approx(0.19784, rel=2e-4)
 
 
 def test_a_mended_step_does_not_stretch_the_yarn():

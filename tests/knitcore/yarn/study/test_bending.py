@@ -45,19 +45,19 @@ EXPECTED = {
 
 @pytest.mark.parametrize("fabric", EXPECTED)
 def test_moments_and_rigidities_of_the_four_fabrics(fabric: str) -> None:
-    found = _bending(REPEATS[fabric], fabric)
+    bending = _bending(REPEATS[fabric], fabric)
     moment_x, moment_y, rigidity_x, rigidity_y = EXPECTED[fabric]
-    assert found.course.moment_n == pytest.approx(moment_x, rel=0.01, abs=1e-6)
-    assert found.wale.moment_n == pytest.approx(moment_y, rel=0.01, abs=1e-6)
-    assert found.course.rigidity_n_mm == pytest.approx(rigidity_x, rel=0.03)
-    assert found.wale.rigidity_n_mm == pytest.approx(rigidity_y, rel=0.03)
+    assert bending.course.moment_n == pytest.approx(moment_x, rel=0.01, abs=1e-6)
+    assert bending.wale.moment_n == pytest.approx(moment_y, rel=0.01, abs=1e-6)
+    assert bending.course.rigidity_n_mm == pytest.approx(rigidity_x, rel=0.03)
+    assert bending.wale.rigidity_n_mm == pytest.approx(rigidity_y, rel=0.03)
 
 
 def test_held_rigidities_are_those_of_long_waves_of_the_flat_sheet() -> None:
-    """Waves of the flat fabric, extrapolated to infinite length: .0508 and .0483 N·mm."""
-    found = _bending("K")
-    assert found.course.held_n_mm == pytest.approx(0.0508, rel=0.02)
-    assert found.wale.held_n_mm == pytest.approx(0.0483, rel=0.02)
+    """Waves of the flat fabric, extrapolated to infinite length: 0.0508 and 0.0483 N·mm."""
+    bending = _bending("K")
+    assert bending.course.held_n_mm == pytest.approx(0.0508, rel=0.02)
+    assert bending.wale.held_n_mm == pytest.approx(0.0483, rel=0.02)
 
 
 def test_a_purl_curls_as_a_knit_seen_from_the_back() -> None:
@@ -92,8 +92,8 @@ def test_gradient_of_the_bent_cell_is_the_derivative_of_its_energy(
     for sign in (1.0, -1.0):
         moved = BentCell(cell.energy, at + sign * h * direction, cell.tension)
         values.append(moved.lagrangian(deformation).value)
-    found = (values[0] - values[1]) / (2 * h)
-    assert found == pytest.approx(gradient @ direction, rel=1e-5, abs=1e-4)
+    slope = (values[0] - values[1]) / (2 * h)
+    assert slope == pytest.approx(gradient @ direction, rel=1e-5, abs=1e-4)
 
 
 def test_the_cell_that_is_bent_by_nothing_is_the_flat_cell() -> None:
@@ -115,20 +115,16 @@ def test_linear_response_is_the_second_derivative_of_the_relaxed_energy() -> Non
     rise = relaxed.lagrangian(Deformation(skew=skew)).value
     rise -= cell.lagrangian(Deformation()).value
     shear = _bending("K").shear_modulus_n_per_mm
-    assert shear is not None
     assert rise == pytest.approx(0.5 * shear * cell.area_mm2 * skew**2, rel=0.01)
 
 
 @pytest.mark.parametrize("fabric", ["rib", "seed"])
 def test_coupling_and_twist_are_those_that_bending_along_the_diagonals_has(fabric: str) -> None:
     """D(45°) = (D_x + D_y) / 4 + (D₁ + 2 D₆₆) / 2, the mean over both diagonals."""
-    found = bending_response(without_mirrors(_relaxed(REPEATS[fabric], fabric)).state)
-    assert found.oblique is not None
-    assert found.coupling_n_mm is not None
-    assert found.twist_n_mm is not None
-    diagonal = np.mean([response.rigidity_n_mm for response in found.oblique])
-    straight = found.course.rigidity_n_mm + found.wale.rigidity_n_mm
-    both = found.coupling_n_mm + 2.0 * found.twist_n_mm
+    bending = bending_response(without_mirrors(_relaxed(REPEATS[fabric], fabric)).state)
+    diagonal = np.mean([response.rigidity_n_mm for response in bending.oblique])
+    straight = bending.course.rigidity_n_mm + bending.wale.rigidity_n_mm
+    both = bending.coupling_n_mm + 2.0 * bending.twist_n_mm
     assert diagonal == pytest.approx(0.25 * straight + 0.5 * both, rel=1e-3)
 
 
@@ -142,14 +138,12 @@ def test_a_state_that_is_not_a_minimum_without_mirrors_is_marked() -> None:
 
 
 def test_the_state_that_an_instability_leads_to_is_bent_too() -> None:
-    found = repeat_bending(_relaxed("KP", "rib"))
-    assert found.mirrored is not None
-    assert found.unmirrored is not None
-    assert not found.mirrored.minimum  # it is one in its repeat, but not in two of them
-    assert found.mirrored.shear_modulus_n_per_mm is None
-    assert found.stable is found.unmirrored
-    assert found.unmirrored.minimum
-    assert found.ratios == pytest.approx((0.82, 0.45), abs=0.01)
+    bending = repeat_bending(_relaxed("KP", "rib"))
+    assert not bending.mirrored.minimum  # it is one in its repeat, but not in two of them
+    assert bending.mirrored.shear_modulus_n_per_mm is None
+    assert bending.stable is bending.unmirrored
+    assert bending.unmirrored.minimum
+    assert bending.ratios == pytest.approx((0.82, 0.45), abs=0.01)
 
 
 def test_a_finer_grid_finds_the_same_shape() -> None:
@@ -162,11 +156,11 @@ def test_a_finer_grid_finds_the_same_shape() -> None:
 
 
 def test_a_minimum_has_no_other_state() -> None:
-    found = repeat_bending(_relaxed("K"))
-    assert found.unmirrored is None
-    assert found.ratios is None
-    assert found.stable is found.shown is found.mirrored
-    assert found.mirrored == _bending("K")
+    bending = repeat_bending(_relaxed("K"))
+    assert bending.unmirrored is None
+    assert bending.ratios is None
+    assert bending.stable is bending.shown is bending.mirrored
+    assert bending.mirrored == _bending("K")
 
 
 def test_a_repeat_that_is_held_flat_is_refused() -> None:
@@ -176,6 +170,6 @@ def test_a_repeat_that_is_held_flat_is_refused() -> None:
 
 
 def test_stockinette_curls_as_in_real_fabric() -> None:
-    found = _bending("K")
-    assert found.curl == "the sides roll to the back, top and bottom roll to the front"
+    bending = _bending("K")
+    assert bending.curl == "the sides roll to the back, top and bottom roll to the front"
     assert _bending(REPEATS["garter"], "garter").curl == "lies flat"

@@ -38,8 +38,8 @@ def test_distance_of_two_points_that_are_carried_along(
     delta = np.array(way)
     ends = _carried(np.array([-0.5 * delta, 0.5 * delta]), np.array(heights), curvature)
     expected = float(((ends[1] - ends[0]) ** 2).sum())
-    found = squared_distance(*way, *heights, curvature)[0]
-    assert found == pytest.approx(expected, rel=1e-5, abs=1e-9)
+    squared = squared_distance(*way, *heights, curvature)[0]
+    assert squared == pytest.approx(expected, rel=1e-5, abs=1e-9)
 
 
 @given(curvatures, st.integers(0, 100))
@@ -62,5 +62,5 @@ def test_derivatives_of_a_yarn_that_is_carried_along(
         ]
     )
     expected = weights @ places / h ** np.array([1, 2, 3])[:, None]
-    found = Curved(series[None], curvature).bent[0, 1:]
-    assert found == pytest.approx(expected, abs=2e-3)
+    derivatives = Curved(series[None], curvature).bent[0, 1:]
+    assert derivatives == pytest.approx(expected, abs=2e-3)

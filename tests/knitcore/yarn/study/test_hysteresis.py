@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction
+from knitcore import Direction, InputError
 from knitcore.yarn.study.hysteresis import History, at_rest, hysteresis, pull, rest_sizes
 from tests.knitcore.yarn.solve.test_friction import forces, stockinette, walk
 
@@ -31,9 +30,7 @@ def test_unloading_takes_less_force(loop):
     there, back = loop.legs[2], loop.legs[3]
     known = np.interp(there.strain[2:-1], back.strain[::-1], back.stress_n_per_mm[::-1])
     assert np.all(known < 0.92 * there.stress_n_per_mm[2:-1])
-
-
-def test_the_first_step_back_is_stiffer_than_the_last_one_there(loop):
+    # the first step back is stiffer than the last one there
     assert 1.5 < loop.stiffer_at_turn < 3.0
 
 

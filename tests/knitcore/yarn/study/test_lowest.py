@@ -6,10 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from knitcore import Fabric, InputError, StitchChart
 from knitcore.base.arrays import scattered
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Fabric
-from knitcore.chart.stitch_chart import StitchChart
 from knitcore.yarn.model.cell import free_cell
 from knitcore.yarn.model.energy import CellEnergy
 from knitcore.yarn.model.paper_samples import sample
@@ -30,20 +28,20 @@ def mirrored(yarn, fabric):
 
 def test_stockinette_needs_no_mirrors():
     relaxed = mirrored("acrylic", "stockinette")
-    found = without_mirrors(relaxed)
-    assert found.minimum
-    assert found.state.energy_n_mm == pytest.approx(relaxed.energy_n_mm, rel=1e-3)
-    assert found.state.branch is Branch.FREE
+    free = without_mirrors(relaxed)
+    assert free.minimum
+    assert free.state.energy_n_mm == pytest.approx(relaxed.energy_n_mm, rel=1e-3)
+    assert free.state.branch is Branch.FREE
 
 
 def test_an_instability_is_followed_to_a_lower_minimum():
-    found = without_mirrors(mirrored("cotton", "garter"))
-    assert not found.minimum
-    assert found.lower > 0.005
+    free = without_mirrors(mirrored("cotton", "garter"))
+    assert not free.minimum
+    assert free.lower > 0.005
     # what it leads to has no instability left
-    again = without_mirrors(found.state)
+    again = without_mirrors(free.state)
     assert again.minimum
-    assert again.state.energy_n_mm == pytest.approx(found.state.energy_n_mm, rel=1e-4)
+    assert again.state.energy_n_mm == pytest.approx(free.state.energy_n_mm, rel=1e-4)
 
 
 @pytest.mark.parametrize("text", ["KP", "KKP"])
@@ -51,12 +49,12 @@ def test_where_a_saddle_leads_does_not_hang_on_the_last_digits(text, monkeypatch
     """Nor on how far it is left: the start is shaken by a billionth of the radius."""
     entry = sample("cotton", "rib")
     chart = StitchChart.parse(text)
-    found = relaxed(chart, entry, branch="mirrored")
-    cell = free_cell(chart, found.cell.grid)
-    lengths = np.resize(found.loop_lengths_mm, cell.rows)
-    energy = CellEnergy(cell, found.yarn, lengths, found.convention)
-    state = tiled_state(found.cell, found.state, cell)
-    tension = np.resize(found.tension_n, cell.rows)
+    rest = relaxed(chart, entry, branch="mirrored")
+    cell = free_cell(chart, rest.cell.grid)
+    lengths = np.resize(rest.loop_lengths_mm, cell.rows)
+    energy = CellEnergy(cell, rest.yarn, lengths, rest.convention)
+    state = tiled_state(rest.cell, rest.state, cell)
+    tension = np.resize(rest.tension_n, cell.rows)
     first, _ = followed(energy, state, tension=tension)
     assert first.saddles > 0
     noise = scattered((len(state),), 1e-9 * entry.yarn.radius_mm, seed=3)
@@ -72,8 +70,8 @@ def test_of_states_as_low_the_first_counts_and_those_of_other_sizes_are_told():
         SimpleNamespace(terms=SimpleNamespace(energy=e), state=np.array([0.0, wide, 1.0]))
         for e, wide in ((1.0004, 2.0), (1.0, 2.1), (1.0, 2.0001), (1.2, 3.0))
     ]
-    found, others = lowest_of(states)
-    assert found is states[0]
+    first, others = lowest_of(states)
+    assert first is states[0]
     assert others == [states[1]]
     assert lowest_of(states[::-1])[0] is states[2]
 
@@ -85,9 +83,9 @@ def test_a_shape_that_is_not_known_to_be_a_minimum_is_not_called_one(monkeypatch
     monkeypatch.setattr(
         lowest_module, "without_mirrors", lambda *_, **__: Followed(False, saddle, lower)
     )
-    found = lowest(relaxed)
-    assert found.minimum is False
-    assert (found.mirrored is relaxed) == (lower == 0.1)
+    state = lowest(relaxed)
+    assert state.minimum is False
+    assert (state.mirrored is relaxed) == (lower == 0.1)
 
 
 @pytest.mark.slow

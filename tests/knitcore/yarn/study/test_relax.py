@@ -1,6 +1,6 @@
 """Relaxing repeats: golden values, agreement of cells, topology, refusals."""
 
-from collections import Counter
+import contextlib
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from knitcore.base.errors import (
     UnravelledError,
 )
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.phases import pure_fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import material
 from knitcore.yarn.library.yarns import yarn_for
@@ -21,7 +22,6 @@ from knitcore.yarn.model.cell import mirrored_cell, plain_cell
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import CellEnergy
 from knitcore.yarn.model.paper_samples import load_samples, sample
-from knitcore.yarn.model.relaxed_cell import RelaxedCell
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.tiling import tiled_state
 from knitcore.yarn.model.yarn_model import YarnModel
@@ -29,14 +29,15 @@ from knitcore.yarn.paper.bezier_relax import relax_published
 from knitcore.yarn.paper.bezier_stitch import Stitch
 from knitcore.yarn.paper.certificate import is_clasped
 from knitcore.yarn.solve.clasps import cell_is_knitted
-from knitcore.yarn.solve.growth import Start, grow
-from knitcore.yarn.solve.newton import COURSE, Options, minimise
+from knitcore.yarn.solve.growth import Start
+from knitcore.yarn.solve.newton import COURSE, minimise
 from knitcore.yarn.solve.search import SAME_ENERGY
 from knitcore.yarn.solve.splines import ROUGH_FROM
-from knitcore.yarn.study.relax import Branch, OnSplines, RelaxedRepeat, relax
+from knitcore.yarn.study.relax import Branch, relax
 from knitcore.yarn.study.sweep import sweep
 from knitcore.yarn.study.whole_chart import RelaxedChart
-from tests.knitcore.yarn.relaxed import relaxed
+from tests.knitcore.refusals import refuses
+from tests.knitcore.yarn.relaxed import grown, relaxed
 
 STUDY_YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 
@@ -46,30 +47,25 @@ def test_the_eight_samples_relax_below_the_published_energy(entry):
     """The spline is freer than the paper's ansatz: its energy is lower, by at most 6 %
     (garter acrylic: the published state is another branch, 1 % lower)."""
     chart = StitchChart.of_fabric(entry.fabric, 2, 2)
-    found = relaxed(chart, entry, branch="mirrored")
-    assert found.converged
-    assert 0.94 < found.energy_n_mm / entry.energy_n_mm < 1.012
-    assert found.contact_share == pytest.approx(entry.contact_share, abs=0.02)
-    assert found.yarn_length_mm == pytest.approx(entry.loop_length_mm, rel=1e-6)
-    assert found.min_distance_mm > 2 * entry.yarn.core_radius_mm
-    assert np.abs(found.force_n).max() < 1e-5
-    assert all(s.outcome == "relaxed" for s in found.starts)
+    repeat = relaxed(chart, entry, branch="mirrored")
+    assert repeat.converged
+    assert 0.94 < repeat.energy_n_mm / entry.energy_n_mm < 1.012
+    assert repeat.contact_share == pytest.approx(entry.contact_share, abs=0.02)
+    assert repeat.yarn_length_mm == pytest.approx(entry.loop_length_mm, rel=1e-6)
+    assert repeat.min_distance_mm > 2 * entry.yarn.core_radius_mm
+    assert np.abs(repeat.force_n).max() < 1e-5
+    assert all(s.outcome == "relaxed" for s in repeat.starts)
 
 
 def test_the_authors_sample_is_converged_in_the_grid():
-    """Study: .3957 N·mm at l_x = 2.80 with L = 11.3 (the exact minimum of this grid: .3964)."""
+    """Study: 0.3957 N·mm at l_x = 2.80 with L = 11.3 (the exact minimum of this grid: 0.3964)."""
     energies = []
     for grid in (SplineGrid(20, 4), SplineGrid(32, 6)):
         cell = mirrored_cell(StitchChart.parse("K"), grid)
         energy = CellEnergy(cell, STUDY_YARN, np.array([11.3]), Convention.AUTHORS_CODE)
-        relaxed = grow(
-            cell, STUDY_YARN, np.array([11.3]), Convention.AUTHORS_CODE, Start("usual"),
-            options=Options(),
-        )  # fmt: skip
-        held = minimise(
-            energy, relaxed.state, tension=relaxed.tension, fixed=(COURSE,),
-            target=np.array([2.8, 0.0]),
-        )  # fmt: skip
+        free = grown(cell, STUDY_YARN, 11.3, convention=Convention.AUTHORS_CODE)
+        size = {"fixed": (COURSE,), "target": np.array([2.8, 0.0])}
+        held = minimise(energy, free.state, tension=free.tension, **size)
         assert held.converged
         energies.append(held.terms.energy)
     assert energies[0] == pytest.approx(0.39641, rel=2e-4)
@@ -84,20 +80,19 @@ def test_one_stitch_with_mirrors_is_at_rest_in_the_whole_repeat_too(fabric):
     chart = StitchChart.of_fabric(fabric, 2, 2)
     grid = SplineGrid(12, 4)
     small = mirrored_cell(chart, grid)
-    length = np.array([entry.loop_length_mm])
-    one = grow(
-        small, entry.yarn, length, Convention.PUBLISHED, Start("usual"),
-        options=Options(tolerance=1e-11),
-    )  # fmt: skip
+    single = grown(small, entry.yarn, entry.loop_length_mm, tolerance=1e-11)
     whole = plain_cell(chart, grid)
-    energy = CellEnergy(whole, entry.yarn, np.resize(length, 2), Convention.PUBLISHED)
-    state = tiled_state(small, one.state, whole)
+    lengths = np.full(2, entry.loop_length_mm)
+    energy = CellEnergy(whole, entry.yarn, lengths, Convention.PUBLISHED)
+    state = tiled_state(small, single.state, whole)
     curve = energy.curve(state)
     pairs, start = energy.pairs(curve, state, 2.0 * entry.yarn.radius_mm)
     terms = energy.value(state, curve, pairs)
-    assert terms.energy / whole.stitches == pytest.approx(one.terms.energy, rel=1e-5)
+    assert terms.energy / whole.stitches == pytest.approx(single.terms.energy, rel=1e-5)
     # a tension is per course: twice the stitches, the same tension
-    slope = energy.derivatives(state, curve, pairs, start, np.tile(one.tension, 2), hessian=False)
+    slope = energy.derivatives(
+        state, curve, pairs, start, np.tile(single.tension, 2), hessian=False
+    )
     assert np.abs(slope.gradient).max() < 1e-4
 
 
@@ -106,11 +101,8 @@ def test_the_general_cell_relaxes_to_the_same_stitch_or_a_little_lower():
     energies = []
     for kind, text in ((mirrored_cell, "K"), (plain_cell, "KK\nKK")):
         cell = kind(StitchChart.parse(text), SplineGrid(12, 4))
-        found = grow(
-            cell, entry.yarn, np.full(cell.rows, entry.loop_length_mm), Convention.PUBLISHED,
-            Start("usual"), options=Options(),
-        )  # fmt: skip
-        energies.append(found.terms.energy / cell.stitches)
+        state = grown(cell, entry.yarn, entry.loop_length_mm)
+        energies.append(state.terms.energy / cell.stitches)
     assert energies[1] == pytest.approx(energies[0], rel=1e-4)
     assert energies[1] < energies[0] * (1.0 + 1e-9)
 
@@ -131,32 +123,31 @@ def test_without_a_branch_the_mirrors_are_only_where_it_begins(fabric):
     entry = sample("cotton", fabric)
     repeat = StitchChart.of_fabric(entry.fabric, 2, 2)
     mirrored = relaxed(repeat, entry, branch="mirrored")
-    found = relaxed(repeat, entry)
-    assert found.minimum
-    assert found.branch is Branch.FREE
-    assert found.mirrored is not None
-    assert found.mirrored.energy_n_mm == pytest.approx(mirrored.energy_n_mm, rel=1e-6)
-    assert found.energy_n_mm < 0.995 * mirrored.energy_n_mm
-    assert found.starts == found.mirrored.starts
-    assert len(found.starts) == 2
+    free = relaxed(repeat, entry)
+    assert free.minimum
+    assert free.branch is Branch.FREE
+    assert free.mirrored.energy_n_mm == pytest.approx(mirrored.energy_n_mm, rel=1e-6)
+    assert free.energy_n_mm < 0.995 * mirrored.energy_n_mm
+    assert free.starts == free.mirrored.starts
+    assert len(free.starts) == 2
 
 
 def test_without_a_branch_a_minimum_keeps_its_mirrors():
-    found = relax(StitchChart.parse("K"), STUDY_YARN, 11.28)
-    assert found.minimum
-    assert found.branch is Branch.MIRRORED
-    assert found.mirrored is None
-    held = relax(StitchChart.parse("K"), STUDY_YARN, 11.28, cell_wale_mm=found.cell_wale_mm)
+    free = relax(StitchChart.parse("K"), STUDY_YARN, 11.28)
+    assert free.minimum
+    assert free.branch is Branch.MIRRORED
+    assert free.mirrored is None
+    held = relax(StitchChart.parse("K"), STUDY_YARN, 11.28, cell_wale_mm=free.cell_wale_mm)
     assert held.minimum is None
 
 
 def test_a_large_repeat_has_no_mirrors_unless_asked_for():
     """It is symmetric about a wale, which the mirrored branch would keep."""
     chart = StitchChart.parse("KKPPPKK\nKKKPKKK\nPKKPKKP")
-    found = relaxed(chart, sample("cotton", "stockinette"))
-    assert found.branch is Branch.FREE
-    assert not found.cell.symmetric
-    assert found.converged
+    repeat = relaxed(chart, sample("cotton", "stockinette"))
+    assert repeat.branch is Branch.FREE
+    assert not repeat.cell.symmetric
+    assert repeat.converged
 
 
 def test_the_free_branch_continues_from_the_lowest_mirrored_state():
@@ -170,37 +161,19 @@ def test_the_free_branch_continues_from_the_lowest_mirrored_state():
     assert free.energy_n_mm <= mirrored.energy_n_mm * (1 + 1e-6)
 
 
-def test_swapping_or_mirroring_the_chart_changes_nothing():
-    chart = StitchChart.parse("KKP")
-    grid = SplineGrid(12, 4)
-    energies = [
-        relax(c, STUDY_YARN, 11.28, grid=grid).energy_n_mm
-        for c in (chart, chart.swap(), chart.mirror(), chart.turn_over())
-    ]
-    np.testing.assert_allclose(energies, energies[0], rtol=1e-5)
-
-
 def test_centre_lines_cover_the_repeat_and_go_on():
-    found = relax(StitchChart.parse("KP"), STUDY_YARN, 11.28, branch="mirrored")
-    (line,) = found.centre_lines
+    repeat = relax(StitchChart.parse("KP"), STUDY_YARN, 11.28, branch="mirrored")
+    (line,) = repeat.centre_lines
     step = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    length = step.sum() + np.linalg.norm(line[0] + [2 * found.cell_course_mm, 0, 0] - line[-1])
+    length = step.sum() + np.linalg.norm(line[0] + [2 * repeat.cell_course_mm, 0, 0] - line[-1])
     assert length == pytest.approx(2 * 11.28, rel=5e-3)
     half = len(line) // 2
     np.testing.assert_allclose(line[half:, 2], -line[:half, 2], atol=1e-9)
 
 
-def test_legs_of_a_knit_lie_on_the_face():
-    found = relax(StitchChart.parse("K"), STUDY_YARN, 11.28)
-    (line,) = found.centre_lines
-    quarter = len(line) // 4
-    assert line[quarter, 2] > line[0, 2]
-    assert line[quarter, 2] > line[len(line) // 2, 2]
-
-
 def test_courses_may_have_loop_lengths_of_their_own():
-    found = relax(StitchChart.parse("P\nK"), STUDY_YARN, [11.0, 12.0], grid=SplineGrid(12, 4))
-    lengths = [np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in found.centre_lines]
+    repeat = relax(StitchChart.parse("P\nK"), STUDY_YARN, [11.0, 12.0], grid=SplineGrid(12, 4))
+    lengths = [np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in repeat.centre_lines]
     assert lengths[1] - lengths[0] == pytest.approx(1.0, abs=0.05)
 
 
@@ -223,18 +196,15 @@ TOO_LARGE = StitchChart(np.random.default_rng(0).random((21, 20)) < 0.5).text
         ("chart", {"chart": TOO_LARGE, "flat": True}, "at most 100"),
         ("branch", {"branch": "open"}, "Use published, mirrored, free"),
         ("convention", {"convention": "ours"}, "Use published, paper, authors-code"),
-        ("time_limit_s", {"time_limit_s": 0.0}, "above 0"),
-        ("time_limit_s", {"time_limit_s": -1.0}, "above 0"),
-        ("time_limit_s", {"time_limit_s": float("nan")}, "above 0"),
+        *(("time_limit_s", {"time_limit_s": bad}, "above 0") for bad in (0.0, -1.0, np.nan)),
         ("starts", {"starts": ()}, "at least one"),
     ],
 )
 def test_impossible_input_is_refused_with_a_remedy(field, options, remedy):
-    asked = {"chart": "KKP\nPKK", "loop_length_mm": 11.28} | options
-    chart = StitchChart.parse(asked.pop("chart"))
-    with pytest.raises(InputError, match=remedy) as refusal:
-        relax(chart, STUDY_YARN, asked.pop("loop_length_mm"), **asked)
-    assert refusal.value.field == field
+    given = {"chart": "KKP\nPKK", "loop_length_mm": 11.28} | options
+    chart = StitchChart.parse(given.pop("chart"))
+    with refuses(field, remedy) as refusal:
+        relax(chart, STUDY_YARN, given.pop("loop_length_mm"), **given)
     assert refusal.value.remedy
 
 
@@ -247,6 +217,7 @@ def test_large_cells_also_begin_with_rounds_and_end_other_minima_as_either_start
     direct = relaxed(LARGE, entry, starts=[Start("usual")])
     rounds = relaxed(LARGE, entry)
     assert [start.name for start in rounds.starts] == ["rounds", "usual"]
+    check_knitted(rounds)
     assert rounds.converged
     assert rounds.evaluations > 0
     assert rounds.energy_n_mm < (1.0 + SAME_ENERGY) * direct.energy_n_mm
@@ -256,28 +227,28 @@ def test_the_largest_cells_are_relaxed_in_windows(monkeypatch):
     monkeypatch.setattr(relax_module, "WINDOWS_FROM", 12)
     entry = sample("cotton", "stockinette")
     small = StitchChart(LARGE.purl[:3])
-    found = relaxed(small, entry)
-    assert isinstance(found, RelaxedChart)
-    assert found.branch is Branch.MIRRORED
-    assert found.converged
+    repeat = relaxed(small, entry)
+    assert isinstance(repeat, RelaxedChart)
+    assert repeat.branch is Branch.MIRRORED
+    assert repeat.converged
     direct = relaxed(small, entry, starts=[Start("usual")])
-    assert found.energy_n_mm == pytest.approx(direct.energy_n_mm, rel=0.01)
+    assert repeat.energy_n_mm == pytest.approx(direct.energy_n_mm, rel=0.01)
     with pytest.raises(InputError, match="at most 4 stitches"):
         relaxed(small, entry, time_limit_s=1.0)
 
 
 def test_the_published_branch_relaxes_pure_fabrics_with_one_loop_length_only():
     entry = sample("cotton", "seed")
-    found = relaxed("PK/KP", entry, branch="published")
-    assert found.branch is Branch.PUBLISHED
-    assert found.chart.canonical() == StitchChart.parse("PK/KP").canonical()
-    assert found.energy_n_mm == pytest.approx(entry.energy_n_mm, rel=0.02)
+    repeat = relaxed("PK/KP", entry, branch="published")
+    assert repeat.branch is Branch.PUBLISHED
+    assert repeat.chart.canonical() == StitchChart.parse("PK/KP").canonical()
+    assert repeat.energy_n_mm == pytest.approx(entry.energy_n_mm, rel=0.02)
     with pytest.raises(InputError, match="four pure fabrics"):
         relax(StitchChart.parse("KKP"), STUDY_YARN, 11.28, branch="published")
     for wish in ({"flat": True}, {"grid": SplineGrid()}, {"loop_length_mm": [11.0, 12.0]}):
-        asked = {"loop_length_mm": 11.28} | wish
+        given = {"loop_length_mm": 11.28} | wish
         with pytest.raises(InputError, match="branch"):
-            relax(StitchChart.parse("K/P"), STUDY_YARN, **asked, branch="published")
+            relax(StitchChart.parse("K/P"), STUDY_YARN, **given, branch="published")
 
 
 def test_a_relaxation_can_be_cancelled():
@@ -285,50 +256,20 @@ def test_a_relaxation_can_be_cancelled():
         relax(StitchChart.parse("KKP"), STUDY_YARN, 11.28, cancelled=lambda: True)
 
 
-def test_random_charts_and_starts_relax_or_fail_by_name():
-    """No unravelled state is returned, nothing is nan, and nothing else is raised."""
-    rng = np.random.default_rng(5)
-    relaxed = 0
-    for seed in range(12):
-        rows, columns = rng.integers(1, 3, 2)
-        chart = StitchChart(rng.random((rows, columns)) < 0.5)
-        yarn = YarnModel(
-            10 ** rng.uniform(-3, -0.5), 10 ** rng.uniform(-4, -2), rng.uniform(1.5, 3.5), 0.74,
-            rng.uniform(0.1, 0.36),
-        )  # fmt: skip
-        start = Start("rough", *rng.uniform(0.8, 1.2, 2), noise=rng.uniform(0, 0.1), seed=seed)
-        try:
-            found = relax(
-                chart, yarn, rng.uniform(10.5, 18.0), starts=[start], grid=SplineGrid(12, 4)
-            )
-        except (ConvergenceError, UnravelledError):
-            continue
-        relaxed += 1
-        assert np.isfinite(found.energy_n_mm)
-        assert np.all(np.isfinite(found.centre_lines))
-        assert found.min_distance_mm > 2 * yarn.core_radius_mm
-        assert found.cell_course_mm < 0.9 * found.yarn_length_mm
-    assert relaxed >= 8
-
-
 def test_rough_starts_end_in_the_same_stitch():
     cell = mirrored_cell(StitchChart.parse("K"), SplineGrid(12, 4))
-    energies = [
-        grow(
-            cell, STUDY_YARN, np.array([11.28]), Convention.PUBLISHED, start, options=Options()
-        ).terms.energy
-        for start in (Start("usual"), Start("rough", noise=0.1, seed=3))
-    ]
+    starts = Start("usual"), Start("rough", noise=0.1, seed=3)
+    energies = [grown(cell, STUDY_YARN, 11.28, start).terms.energy for start in starts]
     assert energies[1] == pytest.approx(energies[0], rel=1e-4)
 
 
 def test_centre_lines_of_the_free_branch_show_the_whole_cell():
     """Neighbouring stitches of garter lean differently, so that one wale does not repeat."""
     entry = sample("acrylic", "garter")
-    found = relaxed("P\nK", entry, branch="free", convention="paper")
-    assert found.chart.purl.shape == (2, 2)
-    wide = 2 * found.cell_course_mm
-    for line in found.centre_lines:
+    repeat = relaxed("P\nK", entry, branch="free", convention="paper")
+    assert repeat.chart.purl.shape == (2, 2)
+    wide = 2 * repeat.cell_course_mm
+    for line in repeat.centre_lines:
         gap = np.linalg.norm(line[0] + [wide, 0, 0] - line[-1])
         length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum() + gap
         assert gap < 0.4
@@ -344,9 +285,9 @@ def test_a_size_that_is_not_reached_is_refused_with_one_that_is(size):
 def test_bending_may_press_weak_shells_together():
     """Rib of a stiff yarn: its core has room, though less than a grown one usually has."""
     yarn = YarnModel(0.15887, 4.746e-5, 2.223, 0.4866, 0.0944)
-    found = relax(StitchChart.parse("KP"), yarn, 6.4)
-    assert found.converged
-    assert found.min_distance_mm > 2.0 * yarn.core_radius_mm
+    repeat = relax(StitchChart.parse("KP"), yarn, 6.4)
+    assert repeat.converged
+    assert repeat.min_distance_mm > 2.0 * yarn.core_radius_mm
 
 
 def test_strands_that_nothing_keeps_apart_are_refused_with_a_remedy():
@@ -355,36 +296,29 @@ def test_strands_that_nothing_keeps_apart_are_refused_with_a_remedy():
         relax(StitchChart.parse("KKP"), yarn, 9.583)
 
 
-REPEATS = {
-    "2x2 rib": "KKPP",
-    "basket": "PPKK\nPPKK\nKKPP\nKKPP",
-    "moss": "PK\nPK\nKP\nKP",
-    "3x1 rib": "KKKP",
-}
+REPEATS = ["K", "KP", "P/K", "PK/KP", "KKPP", "PPKK/PPKK/KKPP/KKPP", "PK/PK/KP/KP", "KKKP"]
 
 
-def _sound(found):
-    assert found.converged
-    assert found.min_distance_mm > 2.0 * STUDY_YARN.core_radius_mm
-    assert found.yarn_length_mm == pytest.approx(11.28, rel=1e-5)
-    assert cell_is_knitted(found.cell, found.state)
+def check_knitted(cell, *, length_error=1e-5):
+    """Assert that a relaxed cell is finite, of the right length, knitted, and its cores apart."""
+    sizes = [cell.energy_n_mm, cell.cell_course_mm, cell.cell_wale_mm, cell.contact_share]
+    assert np.isfinite(sizes).all()
+    assert np.isfinite(cell.centre_lines).all()
+    assert cell.yarn_length_mm == pytest.approx(np.mean(cell.loop_lengths_mm), rel=length_error)
+    assert cell.min_distance_mm > 2.0 * cell.yarn.core_radius_mm
+    assert cell_is_knitted(cell.cell, cell.state)
 
 
-@pytest.mark.parametrize("name", list(REPEATS))
+@pytest.mark.parametrize("text", REPEATS)
 @pytest.mark.parametrize("branch", [Branch.MIRRORED, Branch.FREE])
-def test_known_repeats_relax(name, branch):
+def test_known_repeats_relax(text, branch):
     starts = None if branch is Branch.MIRRORED else []  # free: on from the mirrored state
-    found = relax(StitchChart.parse(REPEATS[name]), STUDY_YARN, 11.28, branch=branch, starts=starts)
-    _sound(found)
-    assert len(found.starts) >= (2 if found.cell.stitches <= 9 else 1)
-    if branch is Branch.FREE and name == "2x2 rib":
-        assert any("differs from the mirrored one" in note for note in found.notes)
-
-
-@pytest.mark.parametrize("seed", [1, 2])
-def test_random_repeats_relax(seed):
-    chart = StitchChart(np.random.default_rng(seed).random((4, 4)) < 0.5)
-    _sound(relax(chart, STUDY_YARN, 11.28, starts=[Start("usual")]))
+    repeat = relax(StitchChart.parse(text), STUDY_YARN, 11.28, branch=branch, starts=starts)
+    check_knitted(repeat)
+    assert repeat.converged
+    assert len(repeat.starts) >= (2 if repeat.cell.stitches <= 9 else 1)
+    if branch is Branch.FREE and text == "KKPP":
+        assert any("differs from the mirrored one" in note for note in repeat.notes)
 
 
 def test_two_by_two_rib_is_narrower_and_stretchier_than_one_by_one():
@@ -403,80 +337,46 @@ def test_two_by_two_rib_is_narrower_and_stretchier_than_one_by_one():
     assert strains[1] > 1.1 * strains[0]
 
 
-LARGEST = 3
-"""Most rows and columns of a chart."""
+def drawn_cells(seed):
+    """Relax a chart, a yarn, a loop length, a branch and a rough start that are drawn.
 
-
-def trial(seed: int) -> str:
-    """Outcome of one random relaxation: its kind, or the fault in it.
-
-    A chart, a yarn, a loop length, a branch and rough starts are drawn; every tenth trial also
-    takes a few steps of a stretch. The result must be finite, with the right length of yarn, no
-    overlapping cores and clasps as knitted. Errors of Knitcore's own classes are allowed; others
-    are crashes.
+    Every tenth of them is stretched, too, and gives the cells of its stretch.
     """
     rng = np.random.default_rng(seed)
-    radius = float(10.0 ** rng.uniform(-1.0, 0.7))
-    length = radius * float(rng.uniform(9.0, 40.0))
-    bending = 0.045 * (radius / 0.74) ** 3 * float(10.0 ** rng.uniform(-1.0, 1.0))
-    stiffness = float(10.0 ** rng.uniform(-4.5, -2.0))
-    yarn = YarnModel(
-        bending, stiffness, float(rng.uniform(1.2, 4.0)), radius,
-        radius * float(rng.uniform(0.0, 0.7)),
-    )  # fmt: skip
-    try:
-        if rng.random() < 0.1:
-            fabric = list(Fabric)[rng.integers(4)]
-            published = relax_published(fabric, yarn, length, starts=2)
-            return _judged_published(published, Stitch(fabric, yarn), length)
-        rows, columns = rng.integers(1, LARGEST + 1, 2)
-        chart = StitchChart(rng.random((rows, columns)) < 0.5)
-        start = Start(
-            "random", course=float(rng.uniform(0.7, 1.5)), wale=float(rng.uniform(0.7, 1.5)),
-            noise=float(rng.uniform(0.0, 0.4)), seed=seed,
-        )  # fmt: skip
-        small = rows * columns <= 4
-        branch: OnSplines = "free" if rng.random() < 0.2 and small else "mirrored"
-        starts = [start] if chart.stitches < ROUGH_FROM else None
-        found = relax(chart, yarn, length, branch=branch, starts=starts)
-        outcome = _judged(found)
-        if outcome == "relaxed" and seed % 10 == 0:
-            along = Direction.COURSE if rng.random() < 0.5 else Direction.WALE
-            curve = sweep(found, along, 0.5, points=4)
-            worst = [_judged(cell) for cell in curve.cells if isinstance(cell, RelaxedRepeat)]
-            outcome = next((w for w in worst if w.startswith("WRONG")), outcome)
-        return outcome
-    except KnitcoreError as error:
-        return type(error).__name__
-    except Exception as error:  # the trials look for crashes
-        return f"WRONG: crash, {error!r}"
+    radius = 10.0 ** rng.uniform(-1.0, 0.7)
+    length = radius * rng.uniform(9.0, 40.0)
+    bending = 0.045 * (radius / 0.74) ** 3 * 10.0 ** rng.uniform(-1.0, 1.0)
+    stiffness, exponent = 10.0 ** rng.uniform(-4.5, -2.0), rng.uniform(1.2, 4.0)
+    yarn = YarnModel(bending, stiffness, exponent, radius, radius * rng.uniform(0.0, 0.7))
+    if rng.random() < 0.1:
+        fabric = list(Fabric)[rng.integers(4)]
+        return [relax_published(fabric, yarn, length, starts=2)]
+    rows, columns = rng.integers(1, 4, 2)
+    chart = StitchChart(rng.random((rows, columns)) < 0.5)
+    size = rng.uniform(0.7, 1.5, 2)
+    start = Start("random", *size, noise=rng.uniform(0.0, 0.4), seed=seed)
+    branch = "free" if rng.random() < 0.2 and rows * columns <= 4 else "mirrored"
+    starts = [start] if chart.stitches < ROUGH_FROM else None
+    rest = relax(chart, yarn, length, branch=branch, starts=starts)
+    if seed % 10 or not rest.converged:
+        return [rest]
+    direction = Direction.COURSE if rng.random() < 0.5 else Direction.WALE
+    return [rest, *sweep(rest, direction, 0.5, points=4).cells]
 
 
-def _judged(found: RelaxedRepeat) -> str:
-    numbers = [found.energy_n_mm, found.cell_course_mm, found.cell_wale_mm, found.contact_share]
-    if not np.all(np.isfinite(numbers)) or not np.all(np.isfinite(found.centre_lines)):
-        return "WRONG: not finite"
-    if abs(found.yarn_length_mm / float(np.mean(found.loop_lengths_mm)) - 1.0) > 2e-4:
-        return "WRONG: length"
-    if found.min_distance_mm <= 2.0 * found.yarn.core_radius_mm:
-        return "WRONG: cores overlap"
-    if not cell_is_knitted(found.cell, found.state):
-        return "WRONG: unravelled"
-    return "relaxed" if found.converged else "relaxed, not to the tolerance"
-
-
-def _judged_published(found: RelaxedCell, stitch: Stitch, length: float) -> str:
-    if not np.isfinite(found.energy_n_mm) or not np.all(np.isfinite(found.centre_lines)):
-        return "WRONG: published, not finite"
-    if abs(found.yarn_length_mm / length - 1.0) > 1e-4:
-        return "WRONG: published, length"
-    if not is_clasped(stitch, found.state):
-        return "WRONG: published, unravelled"
-    return "published, relaxed"
-
-
-@pytest.mark.slow
-def test_random_starts_never_return_unravelled_stitches() -> None:
-    outcomes = Counter(trial(seed) for seed in range(5000, 5010))
-    assert not [outcome for outcome in outcomes if outcome.startswith("WRONG")]
-    assert outcomes["relaxed"] >= 2
+def test_random_starts_never_return_unravelled_stitches():
+    """They relax or fail by name: nothing is nan, and nothing else is raised."""
+    converged = 0
+    for seed in range(5000, 5030):
+        with contextlib.suppress(KnitcoreError):
+            for cell in drawn_cells(seed):
+                if cell.branch is Branch.PUBLISHED:
+                    assert np.isfinite(cell.energy_n_mm)
+                    assert np.isfinite(cell.centre_lines).all()
+                    assert cell.yarn_length_mm == pytest.approx(cell.loop_lengths_mm[0], rel=1e-4)
+                    fabric = pure_fabric(cell.chart)
+                    assert is_clasped(Stitch(fabric, cell.yarn), cell.state)
+                else:
+                    check_knitted(cell, length_error=2e-4)
+                    converged += cell.converged
+    assert converged >= 10

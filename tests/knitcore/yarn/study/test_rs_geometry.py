@@ -2,8 +2,7 @@
 
 import pytest
 
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore import Direction, Fabric, InputError
 from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import rs_fabrics
 from knitcore.yarn.model.paper_samples import sample
@@ -22,9 +21,9 @@ def test_the_papers_own_curves_give_its_tables(yarn, fabric):
     """Tables 15 and 16, erratum applied: all 16 slopes, and lengths but for acrylic stockinette."""
     entry = sample(yarn, fabric)
     cell = relax_published(fabric, entry.yarn, entry.loop_length_mm)
-    found = published_segment_geometry(fabric, entry.yarn, cell)
+    segments = published_segment_geometry(fabric, entry.yarn, cell)
     published = rs_fabrics(yarn)[fabric]
-    for direction, segment in found.items():
+    for direction, segment in segments.items():
         table = published.segment(direction).geometry
         assert segment.parity is table.parity
         assert segment.slope == pytest.approx(table.slope, abs=0.1)
@@ -40,14 +39,14 @@ def test_the_papers_own_curves_give_its_tables(yarn, fabric):
 def test_a_spline_has_much_the_same_feet(fabric):
     """It has no explicit crossovers, so that the edges of the regions differ more wale-wise."""
     stitch = relaxed(fabric, sample("acrylic", fabric), branch="mirrored")
-    found = segment_geometry(stitch)
-    assert (found[Direction.COURSE].parity is Parity.ODD) == fabric.course_odd
-    assert (found[Direction.WALE].parity is Parity.ODD) == fabric.wale_odd
+    segments = segment_geometry(stitch)
+    assert (segments[Direction.COURSE].parity is Parity.ODD) == fabric.course_odd
+    assert (segments[Direction.WALE].parity is Parity.ODD) == fabric.wale_odd
     published = rs_fabrics("acrylic")[fabric]
     for direction, far in ((Direction.COURSE, 0.04), (Direction.WALE, 0.25)):
         table = published.segment(direction).geometry
-        assert found[direction].separation_mm == pytest.approx(table.separation_mm, rel=far)
-        assert found[direction].slope == pytest.approx(table.slope, abs=0.3)
+        assert segments[direction].separation_mm == pytest.approx(table.separation_mm, rel=far)
+        assert segments[direction].slope == pytest.approx(table.slope, abs=0.3)
 
 
 def test_entangled_regions_mirror_each_other_about_the_wale_axis():

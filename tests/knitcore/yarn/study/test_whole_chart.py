@@ -6,9 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from knitcore.base.errors import CancelledError, InputError
-from knitcore.chart.fabric import Fabric
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import CancelledError, Fabric, InputError, StitchChart
 from knitcore.yarn.model import energy, neighbours
 from knitcore.yarn.model.cell import plain_cell
 from knitcore.yarn.model.conventions import Convention
@@ -32,10 +30,18 @@ AROUND = np.full((2, ROWS, WALES), 2)
 OTHER = WholeShape(np.zeros((2, 24, 3)), np.ones(2), np.zeros((2, 2)), 0.1)
 BY_COURSE = r"Give one length, or one for every course\.$"
 PURL = np.random.default_rng(3).random((ROWS, WALES)) < 0.3
+Sheet = tuple[CellEnergy, np.ndarray]
+
+
+def part_of(sheet, window, missing_mm=None, *, flat=False):
+    """A window of a sheet, and its unknowns."""
+    whole, state = sheet
+    missing = np.zeros(ROWS) if missing_mm is None else missing_mm
+    return window_energy(whole, whole.cell.controls(state), state[-2:], window, missing, flat=flat)
 
 
 @pytest.fixture(scope="module")
-def sheet() -> tuple[CellEnergy, np.ndarray]:
+def sheet() -> Sheet:
     """A first shape of a chart, with a core that fits into it."""
     cell = plain_cell(StitchChart(PURL), SplineGrid(12, 4))
     lengths = np.full(ROWS, SAMPLE.loop_length_mm)
@@ -72,33 +78,29 @@ def test_a_window_rests_as_far_around_it_as_its_own_strands_reach() -> None:
 def test_pairs_reach_from_row_to_row_and_over_the_edge() -> None:
     # samples 0, 1 of stitch 0; 2, 3 of stitch 1, and so on; two rows of three wales
     pairs = np.array([[0, 6, 0, 0, 1], [1, 5, -1, 0, 1], [8, 2, 0, 2, 1]], np.int32)
-    found = reaches(pairs, 2, (2, 3))
-    assert found[0].tolist() == [[1, 3, 1], [1, 3, 1]]
-    assert found[1].tolist() == [[1, 1, 1], [1, 1, 1]]
+    down, across = reaches(pairs, 2, (2, 3))
+    assert down.tolist() == [[1, 3, 1], [1, 3, 1]]
+    assert across.tolist() == [[1, 1, 1], [1, 1, 1]]
 
 
-def test_a_window_lists_those_pairs_of_the_sheet_of_which_one_moves(
-    sheet: tuple[CellEnergy, np.ndarray],
-) -> None:
+def test_a_window_lists_those_pairs_of_the_sheet_of_which_one_moves(sheet: Sheet) -> None:
     whole, state = sheet
-    controls, sizes = whole.cell.controls(state), state[-2:]
     reach = 2.0 * whole.yarn.radius_mm
     every, _ = whole.pairs(whole.curve(state), state, reach)
     count = whole.cell.grid.samples * WALES
     for rows, wales in windows(AROUND, 3, (7, 2))[:4]:
-        part, own = window_energy(whole, controls, sizes, (rows, wales), np.zeros(ROWS), flat=False)
+        part, own = part_of(sheet, (rows, wales))
         pairs, start = part.pairs(part.curve(own), own, reach)
         samples = each(wales.stitches, whole.cell.grid.samples)
         names = (rows.stitches[:, None] * count + samples).ravel()
-        found = {tuple(sorted(pair)) for pair in names[pairs[:, :2]].tolist()}
+        listed = {tuple(sorted(pair)) for pair in names[pairs[:, :2]].tolist()}
         moving = set(names[part.moving].tolist())
-        wanted = {tuple(sorted(p)) for p in every[:, :2].tolist() if moving.intersection(p)}
-        assert found == wanted
+        assert listed == {tuple(sorted(p)) for p in every[:, :2].tolist() if moving.intersection(p)}
         assert np.array_equal(np.diff(start), np.bincount(pairs[:, 0], minlength=len(names)))
 
 
 def test_pairs_found_in_two_threads_are_those_found_in_one(
-    sheet: tuple[CellEnergy, np.ndarray], monkeypatch: pytest.MonkeyPatch
+    sheet: Sheet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole, state = sheet
     curve, reach, tension = whole.curve(state), 2.0 * whole.yarn.radius_mm, np.zeros(ROWS)
@@ -121,30 +123,23 @@ def test_windows_that_move_side_by_side_do_not_touch() -> None:
     assert touch(covering[-1], covering[0])  # over the edge
 
 
-def test_a_window_has_the_slopes_of_the_sheet(sheet: tuple[CellEnergy, np.ndarray]) -> None:
+def test_a_window_has_the_slopes_of_the_sheet(sheet: Sheet) -> None:
     whole, state = sheet
     tension = np.linspace(-1e-3, 2e-3, ROWS)
     gradient = _slope(whole, state, tension)[:-2].reshape(ROWS, -1, 3)
-    controls, sizes = whole.cell.controls(state), state[-2:]
-    for window in windows(AROUND, 3, (7, 2))[:4]:
-        rows, wales = window
-        part, own = window_energy(whole, controls, sizes, window, np.zeros(ROWS), flat=False)
-        found = _slope(part, own, tension[rows.own])[:-2]
+    for rows, wales in windows(AROUND, 3, (7, 2))[:4]:
+        part, own = part_of(sheet, (rows, wales))
+        slopes = _slope(part, own, tension[rows.own])[:-2]
         places = (wales.stitches[:, None] * 12 + np.arange(12)).ravel()
-        wanted = gradient[np.ix_(rows.stitches, places)][part.cell.free].ravel()
-        assert np.allclose(found, wanted, rtol=1e-9, atol=1e-12)
+        expected = gradient[np.ix_(rows.stitches, places)][part.cell.free].ravel()
+        assert np.allclose(slopes, expected, rtol=1e-9, atol=1e-12)
 
 
-def test_the_slopes_of_a_window_are_those_of_its_energy(
-    sheet: tuple[CellEnergy, np.ndarray],
-) -> None:
-    whole, state = sheet
-    window = windows(AROUND, 3, (0, 0))[0]
-    controls = whole.cell.controls(state)
-    part, own = window_energy(whole, controls, state[-2:], window, np.zeros(ROWS), flat=True)
+def test_the_slopes_of_a_window_are_those_of_its_energy(sheet: Sheet) -> None:
+    part, own = part_of(sheet, windows(AROUND, 3, (0, 0))[0], flat=True)
     pulls = np.linspace(0.5e-3, 1e-3, part.constraints)
     curve = part.curve(own)
-    pairs, _ = part.pairs(curve, own, 2.5 * whole.yarn.radius_mm)
+    pairs, _ = part.pairs(curve, own, 2.5 * part.yarn.radius_mm)
     direction = np.append(np.random.default_rng(1).standard_normal(len(own) - 2), (0.0, 0.0))
 
     def merit(step: float) -> float:
@@ -156,17 +151,13 @@ def test_the_slopes_of_a_window_are_those_of_its_energy(
     assert along == pytest.approx(float(_slope(part, own, pulls) @ direction), rel=1e-5)
 
 
-def test_the_lengths_of_windows_add_up_to_those_of_the_courses(
-    sheet: tuple[CellEnergy, np.ndarray],
-) -> None:
+def test_the_lengths_of_windows_add_up_to_those_of_the_courses(sheet: Sheet) -> None:
     whole, state = sheet
     missing = np.linspace(0.0, 0.1, ROWS)
     lengths = row_lengths(whole.cell, whole.curve(state))
     gained = np.zeros(ROWS)
     for window in windows(AROUND, 3, (0, 0)):
-        part, own = window_energy(
-            whole, whole.cell.controls(state), state[-2:], window, missing, flat=False
-        )
+        part, own = part_of(sheet, window, missing)
         gained[window[0].own] -= part.excess(own, part.curve(own))
     assert np.allclose(gained, WALES * missing)
     assert lengths.shape == (ROWS,)
@@ -228,21 +219,20 @@ def test_a_whole_chart_can_be_cancelled() -> None:
 
 def test_a_whole_chart_of_a_repeat_has_no_mirrors() -> None:
     entry = sample("cotton", "rib")
-    one = relaxed("KP", entry)
+    repeat = relaxed("KP", entry)
     chart = StitchChart.parse("KPKP\nKPKP\nKPKP\nKPKP")
     whole = relax_whole(chart, entry.yarn, entry.loop_length_mm)
-    assert one.mirrored is not None
-    assert whole.energy_n_mm < 0.95 * one.mirrored.energy_n_mm
-    assert whole.energy_n_mm == pytest.approx(one.energy_n_mm, rel=2e-3)
+    assert whole.energy_n_mm < 0.95 * repeat.mirrored.energy_n_mm
+    assert whole.energy_n_mm == pytest.approx(repeat.energy_n_mm, rel=2e-3)
     # with an odd number of rows, pairs of them cannot repeat
     odd = relax_whole(chart.resized(5, 4), entry.yarn, entry.loop_length_mm)
-    assert one.energy_n_mm < odd.energy_n_mm < 0.95 * one.mirrored.energy_n_mm
+    assert repeat.energy_n_mm < odd.energy_n_mm < 0.95 * repeat.mirrored.energy_n_mm
 
 
 @pytest.mark.slow
 def test_a_whole_chart_of_stockinette_relaxes_like_one_stitch_and_can_be_resumed() -> None:
     chart = StitchChart(np.zeros((10, 13), bool))
-    one = relax(StitchChart.parse("K"), SAMPLE.yarn, SAMPLE.loop_length_mm)
+    repeat = relax(StitchChart.parse("K"), SAMPLE.yarn, SAMPLE.loop_length_mm)
     sheets: list[WholeShape] = []
     shares: list[float] = []
     whole = relax_whole(
@@ -251,9 +241,9 @@ def test_a_whole_chart_of_stockinette_relaxes_like_one_stitch_and_can_be_resumed
     )  # fmt: skip
     assert whole.converged
     assert whole.branch is Branch.FREE
-    assert whole.energy_n_mm == pytest.approx(one.energy_n_mm, rel=2e-3)
-    assert whole.cell_course_mm == pytest.approx(one.cell_course_mm, rel=5e-3)
-    assert whole.cell_wale_mm == pytest.approx(one.cell_wale_mm, rel=5e-3)
+    assert whole.energy_n_mm == pytest.approx(repeat.energy_n_mm, rel=2e-3)
+    assert whole.cell_course_mm == pytest.approx(repeat.cell_course_mm, rel=5e-3)
+    assert whole.cell_wale_mm == pytest.approx(repeat.cell_wale_mm, rel=5e-3)
     assert "Forces of up to" in whole.notes[0]
     assert 0.0 <= whole.may_fall == whole.rounds * abs(whole.energy_change)
     assert abs(whole.energy_change) <= 1e-3

@@ -5,13 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from knitcore.base.errors import CancelledError, ConvergenceError, InputError
-from knitcore.chart.fabric import Fabric
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore import CancelledError, ConvergenceError, Fabric, InputError
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.study import yarn_tube as tube
 from knitcore.yarn.study.bending import bending_response
-from knitcore.yarn.study.relax import RelaxedRepeat, relax
+from knitcore.yarn.study.relax import RelaxedRepeat
 from knitcore.yarn.study.yarn_tube import in_the_round
 from tests.knitcore.yarn.relaxed import relaxed
 
@@ -25,13 +23,13 @@ def stockinette() -> RelaxedRepeat:
 def test_a_wide_tube_follows_the_linear_response(
     stockinette: RelaxedRepeat, face_outside: bool
 ) -> None:
-    found = in_the_round(stockinette, 2000, face_outside=face_outside)
-    curvature = (1.0 if face_outside else -1.0) * 2.0 / found.diameter_mm
+    wide = in_the_round(stockinette, 2000, face_outside=face_outside)
+    curvature = (1.0 if face_outside else -1.0) * 2.0 / wide.diameter_mm
     response = bending_response(stockinette).course
-    higher = found.cell_wale_mm / found.flat_wale_mm - 1.0
+    higher = wide.cell_wale_mm / wide.flat_wale_mm - 1.0
     assert higher / curvature == pytest.approx(response.strain_across_mm, rel=5e-3)
-    area = found.flat_course_mm * found.flat_wale_mm
-    moment = (found.energy_n_mm - found.flat_energy_n_mm) / area / curvature
+    area = wide.flat_course_mm * wide.flat_wale_mm
+    moment = (wide.energy_n_mm - wide.flat_energy_n_mm) / area / curvature
     assert moment == pytest.approx(response.moment_n, rel=5e-3)
 
 
@@ -42,35 +40,29 @@ def test_stockinette_curls_the_way_of_its_tube(stockinette: RelaxedRepeat) -> No
     assert outside.diameter_mm == pytest.approx(60 * outside.cell_course_mm / np.pi)
 
 
-def test_a_step_that_fails_is_halved() -> None:
-    tubes = [
-        in_the_round(relaxed(text, sample("cotton", Fabric.RIB), branch="mirrored"), 24)
-        for text in ("KP", "PK")
-    ]
-    one, other = ((t.cell_course_mm, t.cell_wale_mm, t.energy_n_mm) for t in tubes)
-    np.testing.assert_allclose(one, other, rtol=1e-5)
-
-
-@pytest.mark.slow
-def test_a_shifted_repeat_makes_the_same_tube() -> None:
-    entry = sample("acrylic", Fabric.RIB)
-    length = 1.03 * entry.loop_length_mm
-    tubes = [
-        in_the_round(relax(StitchChart.parse(t), entry.yarn, length, branch="mirrored"), 36)
-        for t in ("KKP", "PKK")
-    ]
-    one, other = ((t.cell_course_mm, t.cell_wale_mm, t.energy_n_mm) for t in tubes)
-    np.testing.assert_allclose(one, other, rtol=1e-4)
+@pytest.mark.parametrize(
+    ("yarn", "texts", "longer", "wales", "error"),
+    [
+        ("cotton", ("KP", "PK"), 1.0, 24, 1e-5),  # a step fails and is halved
+        pytest.param("acrylic", ("KKP", "PKK"), 1.03, 36, 1e-4, marks=pytest.mark.slow),
+    ],
+)
+def test_a_shifted_repeat_makes_the_same_tube(yarn, texts, longer, wales, error) -> None:
+    entry = sample(yarn, Fabric.RIB)
+    entry = replace(entry, loop_length_mm=longer * entry.loop_length_mm)
+    tubes = [in_the_round(relaxed(text, entry, branch="mirrored"), wales) for text in texts]
+    sizes = [(tube.cell_course_mm, tube.cell_wale_mm, tube.energy_n_mm) for tube in tubes]
+    np.testing.assert_allclose(*sizes, rtol=error)
 
 
 def test_a_tube_without_an_equilibrium_says_where_its_shape_gives_way(
     stockinette: RelaxedRepeat, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = tube._turned
+    turned = tube._turned
     monkeypatch.setattr(
         tube,
         "_turned",
-        lambda begin, turn, cancelled: None if turn > 0.1 else found(begin, turn, cancelled),
+        lambda begin, turn, *rest: None if turn > 0.1 else turned(begin, turn, *rest),
     )
     with pytest.raises(ConvergenceError, match="of fewer than 64 wales"):
         in_the_round(stockinette, 32)

@@ -1,0 +1,373 @@
+"""Tables of tensile testers: names and units of columns, specimens one below or beside the other.
+
+Testers write what they measured as text (commas, semicolons or tabs; decimal points or commas; a
+line ``sep=;``; UTF-8, UTF-16 or Windows' letters) or as a workbook with a sheet for each specimen.
+Lines about the test come first, such as ``Width;25 mm``; then a line of names, often a line of
+units, and the readings. Either line starts a new specimen when it comes again; so does a quantity
+that comes again in the line of names.
+"""
+
+import csv
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
+from knitcore.measure.workbooks import MAX_COLUMNS, MAX_ROWS, is_workbook, read_workbook
+
+QUANTITIES = {
+    "strain_across": r"strain_across|(transverse|lateral|width(wise)?) strain|dehnung quer"
+    r"|querdehnung|strain (2|trans\w*|lat\w*)",
+    "strain_along": r"strain_along|((tensile|axial|longitudinal|nominal|engineering) )?strain( 1)?"
+    r"|(längs|standard)?dehnung( längs)?|strain (axial|longitudinal)",
+    "extension_mm": r"((tensile|compressive) )?(extension|displacement)( mm)?|elongation"
+    r"|cross ?head( (travel|position|displacement|separation))?|stroke|position"
+    r"|(standard|traversen)?weg|verlängerung",
+    "force_n": r"force_n|(standard ?)?(force|kraft)|(tensile )?load( cell)?|(standard)?last",
+    "width_mm": r"((specimen|sample|clamped|initial) )?(width|breite)|width_mm|proben?breite|b0",
+    "length_mm": r"((initial|original) )?(gauge length|grip separation|clamp distance)|length_mm"
+    r"|((specimen|sample) )?length|einspannlänge|messlänge|(grip|clamp)(ing)? length|l0",
+    "across_mm": r"across_mm",
+    "run": r"run|specimen( (no\.?|number|id))?|sample( (no\.?|number))?|probe(n?nummer)?",
+    "time": r"time|zeit|prüfzeit|test time",
+}
+"""Titles of testers' columns, in English and German, by the names that we use."""
+UNITS = {
+    "force": {
+        "n": 1.0, "kn": 1e3, "mn": 1e-3, "cn": 1e-2, "g": 9.80665e-3, "gf": 9.80665e-3,
+        "kg": 9.80665, "kgf": 9.80665, "lbf": 4.4482216, "lb": 4.4482216, "dan": 10.0,
+    },
+    "length": {
+        "mm": 1.0, "cm": 10.0, "m": 1000.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "in": 25.4,
+        "inch": 25.4, '"': 25.4,
+    },
+    "strain": {"%": 0.01, "percent": 0.01, "-": 1.0, "1": 1.0, "mm/mm": 1.0, "m/m": 1.0},
+}  # fmt: skip
+"""Size of each unit in N, in mm and as a fraction."""
+MAX_UNIT = 7
+"""Letters of the longest unit, ``percent``."""
+MIN_READINGS = 5
+"""Rows of numbers from which on they count as the readings of a specimen."""
+_UNIT = re.compile(
+    r"\s*[(\[]\s*([^)\]]*?)\s*[)\]]\s*$|[\s_](%|percent|cn|mn|kn|kgf|gf|lbf|cm|in)$", re.IGNORECASE
+)
+_DECIMAL_COMMA = re.compile(r"[+-]?(\d{1,3}(\.\d{3})+|\d+),\d*(e[+-]?\d+)?", re.IGNORECASE)
+
+_STRETCHES = {"strain_along", "extension_mm"}
+
+Rows = list[list[str]]
+
+
+@dataclass(frozen=True, eq=False)
+class Specimen:
+    """Readings of one specimen.
+
+    Attributes
+    ----------
+    name : as the file has it, or its place in the file.
+    columns : by our names (:data:`QUANTITIES`), (readings,) in mm, N and as fractions.
+    constants : such as ``width_mm``, from lines above the readings.
+    labels : of the rows, where a column says to which run they belong.
+    """
+
+    name: str
+    columns: dict[str, Array]
+    constants: dict[str, float] = field(default_factory=dict)
+    labels: tuple[str, ...] = ()
+
+
+def read_specimens(
+    path: Path, called: Mapping[str, str] | None = None
+) -> tuple[list[Specimen], list[str]]:
+    """The specimens of a tester's file, and notes about how it was read.
+
+    Parameters
+    ----------
+    path : text or workbook.
+    called : what the file calls our columns where their names say too little, such as
+        ``{"force_n": "Channel 2 (N)"}``; a title that the file has not is not used.
+
+    Raises
+    ------
+    InputError
+        If no line names a force and a strain or an extension, or a reading is not a number.
+    """
+    notes: list[str] = []
+    specimens: list[Specimen] = []
+    titles = {_plain(name): ours for ours, name in (called or {}).items()}
+    unknown = sorted(set(called or {}) - set(QUANTITIES))
+    if unknown:
+        remedy = f"Use {', '.join(QUANTITIES)}."
+        raise InputError("columns", f"{unknown[0]!r} is none of our columns.", remedy)
+    heads: list[str] = []
+    for sheet, rows in _sheets(path, notes):
+        specimens += _specimens(path.name, sheet, rows, titles, notes)
+        heads = heads or _above_numbers(rows)
+    if not specimens:
+        has = f" (it has {', '.join(heads[:8])})" if heads else ""
+        raise InputError(
+            path.name, f"has no column strain_along or extension_mm beside one force_n{has}.",
+            "Name the columns in a line above their numbers, or say which column is which.",
+        )  # fmt: skip
+    return specimens, list(dict.fromkeys(notes))
+
+
+# -- rows of texts ---------------------------------------------------------------------------------
+
+
+def _sheets(path: Path, notes: list[str]) -> Iterator[tuple[str, Rows]]:
+    if is_workbook(path):
+        for sheet, cells in read_workbook(path).items():
+            yield sheet, [[str(cell).strip() for cell in row] for row in cells]
+        return
+    text = _decoded(path, notes)
+    lines = text.splitlines()
+    if len(lines) > MAX_ROWS:
+        raise InputError(path.name, f"has more than {MAX_ROWS:,} rows.", "Thin the points out.")
+    separator = ""
+    if lines and (named := re.fullmatch(r'"?sep=(.)"?', lines[0].strip(), re.IGNORECASE)):
+        separator, lines[0] = named.group(1), ""
+    separator = separator or _separator(lines)
+    rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
+    if max(map(len, rows), default=0) > MAX_COLUMNS:
+        raise InputError(path.name, f"has more than {MAX_COLUMNS} columns.", "Give the test only.")
+    stripped = [[cell.strip() for cell in row] for row in rows]
+    if separator != "," and any(_DECIMAL_COMMA.fullmatch(c) for row in stripped for c in row):
+        notes.append(f"{path.name}: commas are read as decimal commas.")
+        stripped = [[_with_point(cell) for cell in row] for row in stripped]
+    yield "", stripped
+
+
+def _decoded(path: Path, notes: list[str]) -> str:
+    data = path.read_bytes()
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return data.decode("utf-16", "replace")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", "replace")
+        notes.append(f"{path.name} is not in UTF-8; its letters are read as Windows' (cp1252).")
+    if "\0" in text:
+        raise InputError(path.name, "is not text.", "Give a CSV, TXT or XLSX file.")
+    return text
+
+
+def _separator(lines: list[str]) -> str:
+    """The character that most lines have most often, outside decimal commas."""
+    some = [line for line in lines[:400] if line.strip()]
+
+    def columns(separator: str) -> tuple[int, int]:
+        counts = [line.count(separator) for line in some]
+        usual = int(np.median(counts)) if counts else 0
+        return sum(count >= max(usual, 1) for count in counts), usual
+
+    return max(("\t", ";", ","), key=columns)
+
+
+def _with_point(cell: str) -> str:
+    return cell.replace(".", "").replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell
+
+
+# -- specimens -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A column of readings: our name, its place, and what one of its unit is."""
+
+    name: str
+    place: int
+    unit: str | None
+
+
+def _specimens(
+    file: str, sheet: str, rows: Rows, called: Mapping[str, str], notes: list[str]
+) -> Iterator[Specimen]:
+    """Specimens of a sheet, in the order of their readings."""
+    constants: dict[str, float] = {}
+    title = sheet
+    row = 0
+    while row < len(rows):
+        groups = _heads(rows[row], called)
+        if not groups:
+            title, constants = _about(rows[row], title, constants)
+            row += 1
+            continue
+        first = row + 1
+        if first < len(rows) and _is_units(rows[first]):
+            groups = [[_with_unit(c, rows[first]) for c in group] for group in groups]
+            first += 1
+        end = first
+        while end < len(rows) and _is_reading(rows[end], groups):
+            end += 1
+        readings = [(at, rows[at]) for at in range(first, end) if any(rows[at])]
+        if len(readings) >= MIN_READINGS:
+            _tell_unread(file, rows[row], groups, notes)
+            for place, group in enumerate(groups):
+                name = title or "readings"
+                name = f"{name} {place + 1}" if len(groups) > 1 else name
+                yield _specimen(f"{file}, {name}", group, readings, constants)
+            title = sheet
+        row = max(end, first)
+
+
+def _above_numbers(rows: Rows) -> list[str]:
+    """Cells of the line above the first rows of numbers, or above their units."""
+    numeric = [sum(_number(cell) is not None for cell in row) >= 2 for row in rows]
+    for at in range(1, len(rows) - MIN_READINGS + 1):
+        if all(numeric[at : at + MIN_READINGS]):
+            above = rows[at - 2] if at > 1 and _is_units(rows[at - 1]) else rows[at - 1]
+            return [cell for cell in above if cell]
+    return []
+
+
+def _heads(row: list[str], called: Mapping[str, str]) -> list[list[_Column]]:
+    """Columns of a line of names, by specimens side by side; none if it is another line."""
+    groups: list[list[_Column]] = [[]]
+    for place, cell in enumerate(row):
+        name = _quantity(cell, called)
+        if name is None:
+            continue
+        if any(column.name == name for column in groups[-1]):
+            groups.append([])
+        groups[-1].append(_Column(name, place, _unit(cell)))
+    shared = [column for column in groups[0] if column.name in _STRETCHES]
+    alone = [group for group in groups if not _STRETCHES & {column.name for column in group}]
+    for group in alone:  # one column of strain for the forces of several specimens
+        group.extend(shared)
+    return [group for group in groups if _usable(group)]
+
+
+def _usable(group: list[_Column]) -> bool:
+    names = {column.name for column in group}
+    return "force_n" in names and bool(names & _STRETCHES)
+
+
+def _quantity(cell: str, called: Mapping[str, str]) -> str | None:
+    if (name := called.get(_plain(cell))) is not None:
+        return name
+    plain = _plain(_UNIT.sub("", cell))
+    name = next((q for q, pattern in QUANTITIES.items() if re.fullmatch(pattern, plain)), None)
+    is_share = (_unit(cell) or "").lower() in UNITS["strain"]
+    return "strain_along" if name == "extension_mm" and is_share else name
+
+
+def _plain(cell: str) -> str:
+    return re.sub(r"[\s.:]+", " ", cell).strip().lower()
+
+
+def _unit(cell: str) -> str | None:
+    """The unit in brackets or behind a name; what else stands in brackets is a remark."""
+    match = _UNIT.search(cell)
+    unit = "" if match is None else (match.group(1) or match.group(2) or "").strip()
+    return unit if unit and len(unit) <= MAX_UNIT else None
+
+
+def _is_units(row: list[str]) -> bool:
+    known = {unit for units in UNITS.values() for unit in units} | {"s", "sec", "min"}
+    cells = [cell.strip("()[] ").lower() for cell in row if cell]
+    named = sum(cell in known for cell in cells)
+    return 2 * named > len(cells) and not any(_number(cell) is not None for cell in cells)
+
+
+def _with_unit(column: _Column, units: list[str]) -> _Column:
+    unit = units[column.place].strip("()[] ") if column.place < len(units) else ""
+    share = column.name == "extension_mm" and unit.lower() in ("%", "percent", "mm/mm", "m/m")
+    return _Column("strain_along" if share else column.name, column.place, unit or column.unit)
+
+
+def _is_reading(row: list[str], groups: list[list[_Column]]) -> bool:
+    """Tell whether a row goes on with the readings: it is empty, or holds a number for a column."""
+    if not any(row):
+        return True
+    cells = [row[c.place] for group in groups for c in group if c.place < len(row)]
+    return any(_number(cell) is not None for cell in cells)
+
+
+def _number(cell: str) -> float | None:
+    try:
+        value = float(cell)
+    except ValueError:
+        return None
+    return value if np.isfinite(value) else None
+
+
+def _about(row: list[str], title: str, constants: dict[str, float]) -> tuple[str, dict[str, float]]:
+    """Title and constants of the specimens below a line: its name, width or length."""
+    cells = [cell for cell in row if cell]
+    if not cells:
+        return title, constants
+    name = _quantity(cells[0], {})
+    if name in ("width_mm", "length_mm") and len(cells) > 1:
+        value, _, behind = cells[1].partition(" ")
+        number = _number(_with_point(value))
+        unit = behind or (cells[2] if len(cells) > 2 else "") or _unit(cells[0]) or "mm"
+        if number is not None:
+            scale = _scale(name, unit, cells[0])
+            return title, {**constants, name: number * scale}
+    if len(cells) <= 2 and re.match(r"(specimen|sample|probe|prüfling|test|run)\b", cells[0], re.I):
+        return " ".join(cells), constants
+    return title, constants
+
+
+def _scale(name: str, unit: str, where: str) -> float:
+    kind = {"force_n": "force", "strain_along": "strain", "strain_across": "strain"}.get(name)
+    units = UNITS[kind or "length"]
+    scale = units.get(unit.strip("()[] ").lower())
+    if scale is None:
+        remedy = f"Give it in {', '.join(units)}."
+        raise InputError(where, f"is in {unit!r}, which is not known.", remedy)
+    return scale
+
+
+def _specimen(
+    name: str,
+    group: list[_Column],
+    readings: list[tuple[int, list[str]]],
+    constants: dict[str, float],
+) -> Specimen:
+    columns = {}
+    labels: tuple[str, ...] = ()
+    inside = [
+        (at, row) for at, row in readings if any(c.place < len(row) and row[c.place] for c in group)
+    ]
+    for column in group:
+        texts = [row[column.place] if column.place < len(row) else "" for _, row in inside]
+        if column.name == "run":
+            labels = tuple(texts)
+        elif column.name != "time":
+            scale = 1.0 if column.unit is None else _scale(column.name, column.unit, name)
+            columns[column.name] = scale * _readings(f"{name}, column {column.name}", texts, inside)
+    return Specimen(name, columns, constants, labels)
+
+
+def _readings(where: str, texts: list[str], rows: list[tuple[int, list[str]]]) -> Array:
+    try:
+        values = np.array(texts, dtype=float)
+    except ValueError:
+        values = np.array([np.nan if (v := _number(text)) is None else v for text in texts])
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        at = int(bad[0])
+        raise InputError(
+            where, f"row {rows[at][0] + 1} holds {texts[at]!r}, which is not a number"
+            f" ({bad.size} such rows).", "Remove the row or give a number.",
+        )  # fmt: skip
+    return values
+
+
+def _tell_unread(
+    file: str, heads: list[str], groups: Iterable[list[_Column]], notes: list[str]
+) -> None:
+    used = {column.place for group in groups for column in group}
+    unread = [
+        cell
+        for place, cell in enumerate(heads)
+        if cell and place not in used and _quantity(cell, {}) is None
+    ]
+    if unread:
+        notes.append(f"{file}: not used: {', '.join(unread[:8])}.")

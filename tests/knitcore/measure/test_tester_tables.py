@@ -1,0 +1,163 @@
+"""Tables as testers write them, made here in each of their forms."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import openpyxl
+import pytest
+
+from knitcore import Direction, InputError
+from knitcore.fit.pull_fit import Reduction
+from knitcore.fit.strip_fit import fit_tests
+from knitcore.measure.stretch_tables import TableReading
+from knitcore.measure.stretch_test import StretchTest
+from knitcore.measure.uniaxial_files import read_stretch_test
+from tests.knitcore.measure.synthetic import LAW, csv_pair, write_csv
+
+LENGTH_MM, WIDTH_MM = 100.0, 70.0
+STRAIN = np.linspace(0.0, 0.6, 80)
+FORCE = 14 * STRAIN + 30 * STRAIN**3
+
+
+def comma(value: float) -> str:
+    return f"{value:.5f}".replace(".", ",")
+
+
+def german() -> bytes:
+    """Semicolons, decimal commas, lines about the test, a line of units, Windows' letters."""
+    lines = ["sep=;", "Prüfer;Öz", f"Probenbreite;{comma(WIDTH_MM)} mm", "Einspannlänge;10;cm", ""]
+    lines += ["Prüfzeit;Standardweg;Standardkraft;Temperatur", "s;mm;N;°C"]
+    lines += [
+        f"0,1;{comma(LENGTH_MM * e)};{comma(f)};20" for e, f in zip(STRAIN, FORCE, strict=True)
+    ]
+    return "\r\n".join(lines).encode("cp1252")
+
+
+def specimens_below_each_other() -> bytes:
+    """Quoted cells, strain in per cent, kN, two specimens, a mark of UTF-8 first."""
+    lines = [f'"Width","{WIDTH_MM}","mm"', f'"Gauge length","{LENGTH_MM}","mm"']
+    for number in (1, 2):
+        lines += ["", f'"Specimen {number}"', '"Time","Load","Tensile strain (Displacement)"']
+        lines += ['"(s)","(kN)","(%)"']
+        lines += [
+            f'"0","{f / 1000:.7f}","{100 * e:.4f}"' for e, f in zip(STRAIN, FORCE, strict=True)
+        ]
+    return "\n".join(lines).encode("utf-8-sig")
+
+
+def cycles() -> bytes:
+    """Tabs, UTF-16, and three cycles of one specimen, of which the first conditions it."""
+    up_and_down = [STRAIN, STRAIN[-2::-1], STRAIN[1:], STRAIN[-2::-1], STRAIN[1:]]
+    strain = np.concatenate(up_and_down)
+    force = np.interp(strain, STRAIN, FORCE)
+    force[: len(STRAIN)] *= 1.5
+    lines = [f"Width\t{WIDTH_MM}\tmm", f"Grip separation\t{LENGTH_MM}\tmm", ""]
+    lines += ["Crosshead\tForce\tTime", "cm\tcN\tsec"]
+    lines += [f"{10 * e:.6f}\t{100 * f:.4f}\t1" for e, f in zip(strain, force, strict=True)]
+    return "\r\n".join(lines).encode("utf-16")
+
+
+def side_by_side() -> bytes:
+    """Two specimens beside each other under one line of names."""
+    lines = [f"Width;{WIDTH_MM}", "Specimen 1;;Specimen 2;", "Strain;Force;Strain;Force", "%;N;%;N"]
+    lines += [
+        f"{100 * e:.4f};{f:.4f};{100 * e:.4f};{f:.4f}" for e, f in zip(STRAIN, FORCE, strict=True)
+    ]
+    return "\n".join(lines).encode()
+
+
+def read(path: Path, content: bytes, **more: object) -> StretchTest:
+    path.write_bytes(content)
+    return read_stretch_test(path, reading=TableReading(**more))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("content", "runs"),
+    [(german, 1), (specimens_below_each_other, 2), (cycles, 2), (side_by_side, 2)],
+)
+def test_forms_of_testers_give_the_same_pull(
+    tmp_path: Path, content: Callable[[], bytes], runs: int
+) -> None:
+    test = read(tmp_path / "test.csv", content())
+    assert len(test.runs) == runs
+    for run in test.runs:
+        stress = np.interp([0.1, 0.3, 0.5], run.strain_along, run.stress)
+        expected = np.interp([0.1, 0.3, 0.5], STRAIN, FORCE / WIDTH_MM)
+        assert stress == pytest.approx(expected, rel=2e-3)
+    if content is not side_by_side:
+        assert test.length_mm == pytest.approx(LENGTH_MM)
+    assert any("no strain across" in note for note in test.notes)
+    if content is cycles:
+        assert any("of 3 pulls the first conditions" in note for note in test.notes)
+    if content is german:
+        assert any("not used: Temperatur" in note for note in test.notes)
+
+
+def test_a_workbook_with_a_sheet_for_each_specimen(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for number in (1, 2, 3):
+        sheet = book.create_sheet(f"Specimen {number}")
+        sheet.append(["Specimen width", WIDTH_MM])
+        sheet.append(["Extension (mm)", "Force (cN)"])
+        for strain, force in zip(STRAIN, FORCE, strict=True):
+            sheet.append([LENGTH_MM * strain, 100 * force])
+        sheet.append([LENGTH_MM * 0.61, 3.0])  # torn
+    book.save(tmp_path / "test.xlsx")
+    test = read_stretch_test(
+        tmp_path / "test.xlsx", reading=TableReading(length_mm=LENGTH_MM)
+    )  # fmt: skip
+    assert len(test.runs) == 3
+    assert test.peak_stress == pytest.approx(FORCE[-1] / WIDTH_MM, rel=0.05)
+    with pytest.raises(InputError, match="no length at rest"):
+        read_stretch_test(tmp_path / "test.xlsx")
+
+
+def channels(name: str = "Ch 1 (mm),Ch 2 (N)") -> bytes:
+    rows = [f"{LENGTH_MM * e:.4f},{f:.4f}" for e, f in zip(STRAIN, FORCE, strict=True)]
+    return "\n".join([name, *rows]).encode()
+
+
+def test_columns_that_say_too_little_can_be_named(tmp_path: Path) -> None:
+    called = {"extension_mm": "Ch 1 (mm)", "force_n": "Ch 2 (N)"}
+    size = {"width_mm": WIDTH_MM, "length_mm": LENGTH_MM}
+    test = read(tmp_path / "test.csv", channels(), columns=called, **size)
+    assert test.largest_strain == pytest.approx(0.6)
+    with pytest.raises(InputError, match=r"it has Ch 1 \(mm\), Ch 2 \(N\)"):
+        read(tmp_path / "test.csv", channels(), **size)
+    with pytest.raises(InputError, match="none of our columns"):
+        read(tmp_path / "test.csv", channels(), columns={"kraft": "Ch 2 (N)"})
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (channels("Extension (mm),Load (stone)"), "'stone', which is not known"),
+        (channels("Extension (mm),Load (N)"), "does not say how wide"),
+        (channels("a,b"), "it has a, b"),
+        (channels("Extension (mm),Load (N)").replace(b"\n7.5949,", b"\n7.5949,x"), "row 12 holds"),
+        (b"\x00\x01" * 50, "is not text"),
+        (b"Extension,Load" + b"," * 20_000, "more than 200 columns"),
+    ],
+)
+def test_what_cannot_be_read_is_said(tmp_path: Path, content: bytes, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        read(tmp_path / "test.csv", content)
+
+
+def test_a_law_is_fitted_without_a_strain_across_and_says_that_it_is_less_certain(
+    tmp_path: Path,
+) -> None:
+    measured = [*csv_pair(tmp_path)]
+    own = write_csv(tmp_path / "own.csv", Direction.COURSE, runs=1).read_text().splitlines()
+    rows = [line.split(",") for line in own[1:]]
+    lines = ["Strain;Force;Width", "-;N;mm", *(f"{r[1]};{r[3]};{r[4]}" for r in rows)]
+    (tmp_path / "tester.csv").write_text("\n".join(lines))
+    fit = fit_tests(tmp_path / "tester.csv", measured[1])
+    assert fit.law.modulus_course == pytest.approx(LAW.modulus_course, rel=0.1)
+    errors = fit_tests(*measured).standard_errors
+    assert fit.standard_errors["poisson_yx"] > 2 * errors["poisson_yx"]
+    assert set(fit.waist_rms or {}) == {Direction.WALE}
+    with pytest.raises(InputError, match="no strain across"):
+        fit_tests(tmp_path / "tester.csv", measured[1], reduction=Reduction.UNIFORM)
