@@ -319,13 +319,15 @@ class _Reader:
         if len(self._tokens) == 1 and self._tokens[0][0] in ("k", "p"):
             return (Part(parts[0].unit, 0),)
         elastic = [index for index, part in enumerate(parts) if part.leave is not None]
-        if len(elastic) == 1:
-            part = parts[elastic[0]]
-            after = sum(taken(other.unit) for other in parts[elastic[0] + 1 :])
-            if part.leave == _THE_REST:
-                parts[elastic[0]] = replace(part, leave=after)
-            elif after != part.leave:
-                problem = f"{after} stitches follow the repeat, but it says {part.leave}."
+        for index in elastic:
+            part = parts[index]
+            after = sum(taken(other.unit) for other in parts[index + 1 :])
+            if part.leave == _THE_REST and index == elastic[-1]:
+                parts[index] = replace(part, leave=after)
+            elif part.leave == _THE_REST or (len(elastic) == 1 and after != part.leave):
+                problem = (
+                    f"{after} stitches follow the repeat, but it says {max(part.leave or 0, 0)}."
+                )
                 raise self._line.wrong(problem, 'Make "to last N sts" agree with what follows.')
         return tuple(parts)
 

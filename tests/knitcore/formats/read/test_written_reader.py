@@ -51,6 +51,7 @@ from knitcore.formats.read.written_reader import looks_written, read_noted_rows
         ("CO 8\nRow 1: *k1, p1; rep from * 4 times", "PKPKPKPK"),
         ("CO 8\nRow 1: *k1, p1; rep from * 4 times in all", "PKPKPKPK"),
         ("CO 5\nRow 1: *k1, p1; rep from *, end k1", "KPKPK"),
+        ("CO 9\nRow 1: K to last 5 sts, *p1, k1; rep from *, end p1", "PKPKPKKKK"),
         ("CO 4\nRow 1: k1, p1 to end", "PKPK"),
         ("CO 4\nRow 1: *k1, p1*; rep *-* to end. (4)", "PKPK"),
         ("CO4 (multiple of 2)\nRow 1: *k1, p1, rep from *. 4 sts", "PKPK"),
