@@ -31,7 +31,7 @@ from ..requests.base import UNIT
 from ..requests.charts import IS_REPEAT
 from ..requests.faults import OF_VALUES, problem_in_words, remedy_in_words
 from ..requests.uploads import UploadedFile
-from .options import chart_file, is_fabric, resolve_chart, tell
+from .options import chart_file, is_fabric, resolve_chart, show_notes
 
 FILE = click.Path(path_type=Path)
 MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."
@@ -184,7 +184,7 @@ def _chart_input(model: type[BaseModel]) -> Input:
                     from ..operations.files.imports import design_in  # a repeat needs no readers
 
                     design, notes = design_in(file)
-                    tell(notes)
+                    show_notes(notes)
                     known = ((n, part) for n, part in design if n in model.model_fields)
                     return {name: part for name, part in known if part is not None}
         chart = resolve_chart(text, size, is_repeat=is_repeat)

@@ -27,7 +27,15 @@ STITCHES = frozenset("KkPp|•–-")
 """Signs of stitches in a repeat in one line, as in a chart file."""
 SEPARATORS = frozenset("/, ")
 STANDARD_INPUT = "-"
-_KINDS = {b"\x89PNG": ".png", b"{": ".json", b";!knitout": ".k", b"\xef\xbb\xbf;!": ".k"}
+_KINDS = {
+    b"\x89PNG": ".png",
+    b"\xff\xd8\xff": ".jpg",
+    b"GIF8": ".gif",
+    b"{": ".json",
+    b"\xef\xbb\xbf{": ".json",
+    b";!knitout": ".k",
+    b"\xef\xbb\xbf;!": ".k",
+}
 """First bytes of files, and the names that their readers expect; all others are texts."""
 
 
@@ -141,7 +149,7 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
             if size is not None:
                 raise InputError("size", "does not go with a file.", "Leave --size out.")
             chart_in_file, notes = read_noted_chart(file)
-            tell(notes)
+            show_notes(notes)
             return chart_in_file
     named = _chart_of_name(chart)
     if named is None and not _is_one_line(chart):
@@ -159,7 +167,7 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     return cloth if named is None else cloth.repeat()
 
 
-def tell(notes: Iterable[str]) -> None:
+def show_notes(notes: Iterable[str]) -> None:
     """Print the notes of a file's reader, beside the result, which may be piped on."""
     for note in notes:
         click.echo(f"note: {note}", err=True)

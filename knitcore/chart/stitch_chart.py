@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +23,9 @@ _CANONICAL = str.maketrans(
     | dict.fromkeys(PURL_SYMBOLS, "P")
     | dict.fromkeys(" \t,", None)
 )
+_APART = re.compile(r"\S(?:[ \t,]+\S)*")
+_SPACE = re.compile(r"[ \t]")
+_EMPTY_CELL = re.compile(r"^,|,\s*,|\t\s*\t")
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,22 +73,26 @@ class StitchChart:
         K, k or ``|`` is a knit; P, p, ``•``, ``–`` or ``-`` is a purl. Blanks and commas between
         stitches, blank lines around the chart and lines that begin with ``#`` are passed over. A
         ``/`` also ends a line, as in :attr:`key`.
+        :func:`knitcore.formats.read.text_chart.read_text_chart` reads other signs, and blanks.
 
         Raises
         ------
         InputError
-            Unknown symbols and ragged rows are named with their line and column.
+            Unknown symbols, ragged rows, and blanks that may be knits are named with their line
+            and column.
         """
         rows: list[str] = []
+        drawn: list[tuple[int, str]] = []
         first_line = 0
         lines = (
             (number, part)
             for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1)
             if not line.lstrip().startswith("#")
-            for part in line.split("/")
+            for part in ([line] if "/" not in line else map(str.strip, line.split("/")))
         )
         for number, line in lines:
             row = line.strip().translate(_CANONICAL)
+            drawn.append((number, line.rstrip()))
             if not row:
                 continue
             if row.count("K") + row.count("P") < len(row):
@@ -102,6 +111,7 @@ class StitchChart:
             check_chart_size(len(rows), len(row))
         if not rows:
             raise InputError("chart", "the chart has no stitches.", "Give at least one row of K/P.")
+        _check_blanks(drawn, purls_only=all(set(row) == {"P"} for row in rows))
         symbols = np.frombuffer("".join(rows).encode("ascii"), dtype=np.uint8)
         return cls(symbols.reshape(len(rows), -1)[::-1] == ord("P"))
 
@@ -246,6 +256,42 @@ class StitchChart:
         size = f"{self.columns} columns × {self.rows} rows, the face side"
         cut = f"; the lower left {most} × {most}" if max(self.purl.shape) > most else ""
         return showing.captioned(showing.stitches(self.purl), size + cut)
+
+
+def _check_blanks(lines: list[tuple[int, str]], *, purls_only: bool) -> None:
+    """Refuse a blank that may be a knit, as it is in printed charts, rather than a space."""
+    blank = next(_doubtful_blanks(lines, purls_only=purls_only), None)
+    if blank is not None:
+        problem = f"line {blank[0]}, column {blank[1]} is blank: a knit, or only space."
+        remedy = "Write every stitch as K or P; the import of a file reads blank squares as knits."
+        raise InputError("chart", problem, remedy)
+
+
+def _doubtful_blanks(
+    lines: list[tuple[int, str]], *, purls_only: bool
+) -> Iterator[tuple[int, int]]:
+    """Line and column of blanks that may be knits.
+
+    Blanks are only space if they stand between all stitches of a line, or in the same columns of
+    all other lines. Where purls are signs and no knit is written, they are not.
+    """
+    texts = [(number, line.strip()) for number, line in lines if line.strip()]
+    for number, text in texts:
+        if (cell := _EMPTY_CELL.search(text)) is not None:
+            yield number, cell.end()
+    if purls_only:
+        indents = [(len(line) - len(line.lstrip()), n) for n, line in lines if line.strip()]
+        if min(indents)[0] < max(indents)[0]:
+            yield max(indents)[1], 1
+    signs = purls_only and not all(set(text) <= set("Pp ,\t") for _, text in texts)
+    if signs:
+        drawn = {number for number, _ in texts}
+        yield from ((n, 1) for n, _ in lines if min(drawn) < n < max(drawn) and n not in drawn)
+    mixed = texts if signs else [text for text in texts if not _APART.fullmatch(text[1])]
+    spaces = [(number, {m.start() for m in _SPACE.finditer(text)}) for number, text in mixed]
+    common = set.intersection(*(gaps for _, gaps in spaces)) if spaces and not signs else set()
+    for number, gaps in spaces:
+        yield from ((number, at + 1) for at in sorted(gaps - common)[:1])
 
 
 def check_stitches(stitches: int, most: int, what: str = "it", instead: str = "") -> None:

@@ -5,15 +5,16 @@ from typing import Any
 
 from pydantic import Field, RootModel
 
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.fabric import Fabric
+from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
-from knitcore.formats.read.chart_files import read_chart, read_noted_piece
+from knitcore.formats.read.chart_files import Aspect, PictureScale, read_chart, read_noted_piece
 
 from ...context import Context
 from ...requests.base import NoRequest, RequestModel, ResultModel
-from ...requests.charts import ChartLines, RepeatText
+from ...requests.charts import ChartLines, MaterialName, RepeatText
 from ...requests.uploads import UploadedFile, stored
 from ..registry import Command, Operation
 
@@ -22,8 +23,22 @@ class ImportRequest(RequestModel):
     """A file of any kind that holds a chart."""
 
     file: UploadedFile = Field(
-        description="`.txt` (K/P lines, written rows, KnitSpeak), `.ks`, `.png`, `.json` (design) "
-        "or `.k` (knitout)."
+        description="`.txt` (a chart of letters or signs, written rows, KnitSpeak), `.ks`, a "
+        "picture (`.png`, `.jpg` …), `.json` (design) or `.k` (knitout)."
+    )
+    columns: int | None = Field(
+        None, ge=1, le=MAX_STITCHES_PER_SIDE, description="Width that a picture is scaled to."
+    )
+    rows: int | None = Field(
+        None, ge=1, le=MAX_STITCHES_PER_SIDE, description="Height that a picture is scaled to."
+    )
+    aspect: Aspect = Field(
+        Aspect.KEEP,
+        description="How a picture's rows follow from its columns: stitches counted as squares, or "
+        "as high as they are knitted, or freely.",
+    )
+    material: MaterialName = Field(
+        "acrylic", description="Its stockinette gives the stitches their size for `as-knitted`."
     )
 
 
@@ -48,16 +63,15 @@ class ImportResult(FoundDesign):
 
 
 def import_(request: ImportRequest, context: Context) -> ImportResult:
-    """K/P text, written rows, PNG, knitout and the project file.
+    """Charts of letters or signs, written rows, KnitSpeak, pictures, knitout, the project file.
 
     Raises
     ------
     InputError
         If it holds no chart.
     """
-    del context
     with stored([request.file]) as (path,):
-        design, notes = design_in(path)
+        design, notes = design_in(path, _scale(request, context))
     chart = StitchChart.parse(design.chart)
     return ImportResult(
         **dict(design),
@@ -68,7 +82,19 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
     )
 
 
-def design_in(path: Path) -> tuple[FoundDesign, tuple[str, ...]]:
+def _scale(request: ImportRequest, context: Context) -> PictureScale | None:
+    """The size that is asked of a picture, if any is."""
+    is_knitted = request.aspect is Aspect.AS_KNITTED
+    if request.columns is None and request.rows is None and not is_knitted:
+        return None
+    ratio = None
+    if is_knitted:
+        record = context.material(request.material).record(Fabric.STOCKINETTE)
+        ratio = record.stitch_wale_mm / record.stitch_course_mm
+    return PictureScale(request.columns, request.rows, request.aspect, ratio)
+
+
+def design_in(path: Path, scale: PictureScale | None = None) -> tuple[FoundDesign, tuple[str, ...]]:
     """The parts of a design that a file holds, and the notes of its reader.
 
     Raises
@@ -78,8 +104,13 @@ def design_in(path: Path) -> tuple[FoundDesign, tuple[str, ...]]:
     """
     if path.suffix.lower() == ".json":
         return FoundDesign.of(read_design(path), chart=read_chart(path).text), ()
-    content = read_noted_piece(path)
-    return FoundDesign.of(layout_of(content.piece), chart=content.piece.chart.text), content.notes
+    content = read_noted_piece(path, scale)
+    piece, notes = content.piece, content.notes
+    if not piece.is_plain:
+        outline = "" if piece.is_rectangle else "an outline, and "
+        yarns = ", ".join(yarn.name for yarn in piece.yarns)
+        notes = (*notes, f"Beside the chart it holds {outline}the yarns: {yarns}.")
+    return FoundDesign.of(layout_of(piece), chart=piece.chart.text), notes
 
 
 class DesignSchema(RootModel[dict[str, Any]]):
@@ -100,7 +131,7 @@ IMPORT = Operation(
     heavy=True,
     command=Command(
         lambda r: [r.chart],
-        more="It holds K/P text, written rows, KnitSpeak, PNG, knitout or a design.",
+        more="It holds K/P text, written rows, KnitSpeak, a picture, knitout or a design.",
     ),
 )
 DESIGN_SCHEMA = Operation(

@@ -40,7 +40,7 @@ export function create(_, context) {
     "import-dialog",
     "Import a chart",
     remark(
-      "Lines of K and P (or | and •), the top row first, as seen from the face; or written rows, KnitSpeak or knitout. A text, a picture or a project file can also be dropped anywhere on the page.",
+      "Lines of K and P (or | and •; blank squares are knits), the top row first, as seen from the face; or written rows, KnitSpeak or knitout. A text, a picture or a project file can also be dropped anywhere on the page.",
     ),
     text,
     problem,

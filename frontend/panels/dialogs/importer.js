@@ -7,15 +7,14 @@
  */
 
 import { action } from "../../actions/registry.js";
-import { ApiError, api, refusal } from "../../api.js";
+import { ApiError, refusal } from "../../api.js";
 import { DesignError, readDesign } from "../../design/design.js";
-import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
 
 const MAX_FILE_BYTES = 12_000_000;
 
 /**
  * @param {ActionContext} context
- * @param {string} text K/P lines, a project file, written rows, KnitSpeak or knitout
+ * @param {string} text a drawn chart, a project file, written rows, KnitSpeak or knitout
  * @param {string} [name] of the file
  * @returns {Promise<Problem | null>} what is wrong, or null if the chart is now this one
  */
@@ -24,24 +23,8 @@ export async function importText(context, text, name = "Pasted.txt") {
     const yarn = await importYarn(context, text);
     return yarn === undefined ? importProject(context, text) : yarn;
   }
-  const { isKnitting, importKnitting } = await import("./knitreader.js");
-  if (isKnitting(name, text)) return importKnitting(context, name, text);
-  const { studio } = context;
-  try {
-    const { rows, columns, text: chart } = await api.run("charts/parse", { text });
-    if (!isChartText(chart)) {
-      return refusal(
-        `${columns} stitches × ${rows} rows is more than this page paints.`,
-        `Use at most ${MAX_SIDE} × ${MAX_SIDE}; the command line takes more.`,
-      );
-    }
-    studio.document.replace(Grid.fromText(chart), "Import");
-    studio.tell(`Imported ${columns} stitches × ${rows} rows. Undo brings the old chart back.`);
-    return null;
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    return { ...error.problem, title: "This chart cannot be imported" };
-  }
+  const { importRead } = await import("./knitreader.js");
+  return importRead(context, name, text);
 }
 
 /**
@@ -97,6 +80,12 @@ export async function importFile(context, file) {
     return refusal(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB.`, "Files have at most 12 MB.");
   }
   if (!file.size) return refusal(`${file.name} is empty.`, "Choose a text, a PNG or a project file.");
+  if (file.type === "image/png") {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    if (new TextDecoder("latin1").decode(bytes.subarray(0, 4096)).includes("knitcore-yarns")) {
+      return (await import("./knitreader.js")).importRead(context, file.name, bytes);
+    }
+  }
   if (file.type.startsWith("image/")) {
     const { importPicture } = await import("./picture.js");
     return importPicture(context, file);

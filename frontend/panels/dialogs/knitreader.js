@@ -1,16 +1,17 @@
 /**
- * Files of instructions: written rows, KnitSpeak and knitout. The service reads them, with their outline
- * and yarns, and they are opened as a design of their own.
+ * Charts that the service reads: drawn with letters or signs, written rows, KnitSpeak, knitout, and
+ * pictures of this program. Instructions, outlines and yarns are opened as a design of their own.
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Problem} from "../../types.js"
  */
 
-import { ApiError, api } from "../../api.js";
+import { ApiError, api, refusal } from "../../api.js";
 import { base64 } from "../../grid/bits.js";
 import { readDesign } from "../../design/design.js";
+import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
 
-const WRITTEN = /^\s*(cast on|rows?|rounds?|rnds?)\s+\d/i;
+const WRITTEN = /^\s*(cast on|co|rows?|rounds?|rnds?|r)[\s:]*\d/im;
 
 /** @param {string} text which may begin with a byte order mark */
 const isKnitout = (text) => /^\ufeff?\s*;!knitout/.test(text);
@@ -21,39 +22,49 @@ const isKnitout = (text) => /^\ufeff?\s*;!knitout/.test(text);
  * @param {string} name of the file
  * @param {string} text
  */
-export const isKnitting = (name, text) => /\.(k|ks|knitout)$/i.test(name) || isKnitout(text) || WRITTEN.test(text);
+const isKnitting = (name, text) => /\.(k|ks|knitout)$/i.test(name) || isKnitout(text) || WRITTEN.test(text);
 
 /**
  * @param {ActionContext} context
  * @param {string} name
- * @param {string} text
+ * @param {string | Uint8Array} content a text, or the bytes of a picture
  * @returns {Promise<Problem | null>}
  */
-export async function importKnitting({ studio, keeper }, name, text) {
-  const content = base64(new TextEncoder().encode(text));
-  const suffixed = isKnitout(text) && !/\.(k|knitout)$/i.test(name) ? `${name}.k` : name;
+export async function importRead({ studio, keeper }, name, content) {
+  const text = typeof content === "string" ? content : null;
+  const bytes = typeof content === "string" ? new TextEncoder().encode(content) : content;
+  const suffixed = text && isKnitout(text) && !/\.(k|knitout)$/i.test(name) ? `${name}.k` : name;
   try {
-    const imported = await api.run("import", { file: { name: suffixed, content } });
+    const imported = await api.run("import", { file: { name: suffixed, content: base64(bytes) } });
+    const { rows, columns, chart, outline, regions, notes } = imported;
+    const size = `${columns} stitches × ${rows} rows`;
+    if (!isChartText(chart)) {
+      return refusal(
+        `${size} is more than this page paints.`,
+        `Use at most ${MAX_SIDE} × ${MAX_SIDE}; the command line takes more.`,
+      );
+    }
+    if (text && !isKnitting(name, text) && !outline && !regions?.length) {
+      studio.document.replace(Grid.fromText(chart), "Import");
+      studio.tell([`Imported ${size}.`, ...notes, "Undo brings the old chart back."].join(" "));
+      return null;
+    }
     const design = readDesign({
       format: "knitcore-design",
       version: 2,
       name: name.replace(/\.\w+$/, "") || "Imported",
       material: studio.materialId.value,
-      chart: imported.chart,
-      outline: imported.outline,
-      regions: imported.regions,
+      chart,
+      outline,
+      regions,
     });
     keeper.openNew(design);
     studio.tell(
-      [
-        `Opened ${imported.columns} stitches × ${imported.rows} rows from ${name}.`,
-        ...imported.notes,
-        "The design before it is still among your designs.",
-      ].join(" "),
+      [`Opened ${size} from ${name}.`, ...notes, "The design before it is still among your designs."].join(" "),
     );
     return null;
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    return { ...error.problem, title: "This file cannot be read" };
+    return { ...error.problem, title: "This chart cannot be imported" };
   }
 }

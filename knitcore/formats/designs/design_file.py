@@ -77,7 +77,7 @@ def read_design(file: Path) -> DesignFile:
         If it is not JSON, not a design, or of a version that this program does not know.
     """
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        content = json.loads(file.read_bytes())  # in any UTF, with or without its mark
     except (ValueError, RecursionError) as error:
         raise InputError(
             "chart", f"{file.name} is not valid JSON ({error}).", "Export the design again."

@@ -1,17 +1,20 @@
 """Reading a chart from a file of any kind that holds one."""
 
+import codecs
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import read_design
-from knitcore.formats.read.knitspeak import looks_knitspeak, read_knitspeak
-from knitcore.formats.read.written_reader import looks_written, read_piece_rows
+from knitcore.formats.read.text_chart import read_text_chart
+from knitcore.formats.read.written_reader import looks_written, read_noted_rows
 from knitcore.garment.piece import Piece
 
 MAX_FILE_BYTES = 16_000_000
+_PICTURES = (".png", ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp")
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,35 @@ class PieceInFile:
     def chart(self) -> StitchChart:
         """The face grid."""
         return self.piece.chart
+
+
+class Aspect(StrEnum):
+    """How the height of a scaled picture follows from its width.
+
+    ``keep`` counts stitches as squares, ``as-knitted`` as wide and high as they are knitted;
+    ``free`` takes rows and columns as they are given.
+    """
+
+    KEEP = "keep"
+    AS_KNITTED = "as-knitted"
+    FREE = "free"
+
+
+@dataclass(frozen=True)
+class PictureScale:
+    """The size of the chart that a picture becomes.
+
+    Attributes
+    ----------
+    columns, rows : stitches; of the two, one may follow from the other. None: as in the picture.
+    aspect : how it follows.
+    stitch_ratio : height over width of a knitted stitch, for ``as-knitted``.
+    """
+
+    columns: int | None = None
+    rows: int | None = None
+    aspect: Aspect = Aspect.KEEP
+    stitch_ratio: float | None = None
 
 
 def read_chart(path: str | Path) -> StitchChart:
@@ -57,13 +89,15 @@ def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
     return content.chart, content.notes
 
 
-def read_noted_piece(path: str | Path) -> PieceInFile:
+def read_noted_piece(path: str | Path, scale: PictureScale | None = None) -> PieceInFile:
     """The chart in a file, with its outline and its yarns, and the notes of the reader.
 
     Parameters
     ----------
-    path : ``.txt`` (K/P lines, written rows or KnitSpeak), ``.ks`` (KnitSpeak), ``.png`` (one
-        pixel a stitch), ``.json`` (a design) or ``.k`` / ``.knitout`` (a knitout program).
+    path : ``.txt`` (a chart of letters or signs, written rows or KnitSpeak), ``.ks`` (KnitSpeak), a
+        picture such as ``.png`` (one pixel a stitch, or a drawn grid), ``.json`` (a design) or
+        ``.k`` / ``.knitout`` (a knitout program).
+    scale : the size of the chart that a picture becomes; nothing to other files.
 
     Raises
     ------
@@ -71,15 +105,18 @@ def read_noted_piece(path: str | Path) -> PieceInFile:
         If the file is missing, too large, of another kind, or its content does not match its name.
     """
     file = _checked(Path(path))
-    content = _READERS[file.suffix.lower()](file)
-    return content if isinstance(content, PieceInFile) else PieceInFile(content)
+    if file.suffix.lower() in _PICTURES:
+        from knitcore.formats.read.picture import read_picture  # needs Pillow
+
+        return PieceInFile(*read_picture(file, scale))
+    return _READERS[file.suffix.lower()](file)
 
 
 def _checked(file: Path) -> Path:
     if not file.is_file():
         what = "is a folder, not a file" if file.is_dir() else "does not exist"
         raise InputError("chart", f"{file} {what}.", "Check the name and the folder.")
-    if file.suffix.lower() not in _READERS:
+    if file.suffix.lower() not in (*_READERS, *_PICTURES):
         raise InputError(
             "chart",
             f"{file.name} is not of a kind that holds a chart.",
@@ -93,41 +130,60 @@ def _checked(file: Path) -> Path:
     return file
 
 
-def _read_text(file: Path) -> Piece | PieceInFile:
-    text = _text(file)
-    if text.lstrip("\ufeff").startswith(";!knitout"):
+def _read_text(file: Path) -> PieceInFile:
+    text, notes = _text(file)
+    if text.startswith(";!knitout"):
         return _read_knitout(file)
-    if looks_knitspeak(text):
-        return Piece.plain(read_knitspeak(text))
-    return read_piece_rows(text) if looks_written(text) else Piece.plain(StitchChart.parse(text))
+    if text.lstrip().startswith("{"):
+        return _read_design(file)
+    if looks_written(text):
+        piece, said = read_noted_rows(text)
+        return PieceInFile(piece, (*notes, *said))
+    chart, said = read_text_chart(text)
+    return PieceInFile(Piece.plain(chart), (*notes, *said))
+
+
+def _read_rows(file: Path) -> PieceInFile:
+    text, notes = _text(file)
+    piece, said = read_noted_rows(text)
+    return PieceInFile(piece, (*notes, *said))
+
+
+def _read_design(file: Path) -> PieceInFile:
+    return PieceInFile(read_design(file).to_piece())
 
 
 def _read_knitout(file: Path) -> PieceInFile:
     from knitcore.formats.read.knitout_reader import knitted_chart
 
-    return knitted_chart(_text(file))
+    text, notes = _text(file)
+    knitted = knitted_chart(text)
+    return PieceInFile(knitted.piece, (*notes, *knitted.notes))
 
 
-def _text(file: Path) -> str:
+def _text(file: Path) -> tuple[str, tuple[str, ...]]:
+    """The text of a file without a byte order mark, and a note if it is not in UTF-8."""
+    content = file.read_bytes()
+    is_utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        return file.read_text(encoding="utf-8")
+        text = content.decode("utf-16" if is_utf_16 else "utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(
-            "chart", f"{file.name} is not UTF-8 text.", "Save it as plain text."
-        ) from None
+        try:
+            text = content.decode("cp1252")
+        except UnicodeDecodeError:
+            text = "\0"
+        if is_utf_16 or any(sign < " " and not sign.isspace() for sign in text):
+            raise InputError(
+                "chart", f"{file.name} is not UTF-8 text.", "Save it as plain text."
+            ) from None
+        return text, ("The text is not in UTF-8: it is read as Windows-1252.",)
+    return text, ()
 
 
-def _picture(file: Path) -> Piece:
-    from knitcore.formats.read.png import read_png_piece  # needs Pillow, which texts do not
-
-    return read_png_piece(file)
-
-
-_READERS: dict[str, Callable[[Path], Piece | PieceInFile]] = {
+_READERS: dict[str, Callable[[Path], PieceInFile]] = {
     ".txt": _read_text,
-    ".ks": lambda file: Piece.plain(read_knitspeak(_text(file))),
-    ".png": _picture,
-    ".json": lambda file: read_design(file).to_piece(),
+    ".ks": _read_rows,
+    ".json": _read_design,
     ".k": _read_knitout,
     ".knitout": _read_knitout,
 }

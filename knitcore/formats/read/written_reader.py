@@ -1,37 +1,37 @@
-"""Reading written rows: a strict dialect without ambiguity.
+"""Reading written rows: those of this library, KnitSpeak, and patterns as others write them.
 
-See :mod:`knitcore.formats.write.written_pattern` for an example. Every row names its number; rows
-follow each other without gaps. ``K3``, ``p2``, ``knit`` and ``purl`` (to the end of the row),
-brackets with ``twice`` or ``N times``, and one ``*…; rep from *`` with ``to end`` or ``to last N
-sts`` are known, and at the edges decreases, ``m1``, casting on and binding off.
+:mod:`knitcore.formats.read.written_lines` tells the lines apart and
+:mod:`knitcore.formats.read.written_words` reads the words of a row; here the rows are put in order
+and worked. The number of stitches is that cast on, or else the smallest for which all rows come
+out. See :mod:`knitcore.formats.write.written_pattern` and :mod:`knitcore.formats.write.knitspeak`
+for examples.
 """
 
-import re
+from collections.abc import Iterable, Iterator
+
+import numpy as np
 
 from knitcore.base.errors import InputError
 from knitcore.chart.row_sides import Construction, Side, side_of_row
-from knitcore.chart.stitch_chart import StitchChart, check_chart_size
-from knitcore.formats.read.written_words import Line, Work, lines_of, read_row
+from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
+from knitcore.formats.read.written_lines import (
+    Pattern,
+    RepeatLine,
+    RowLine,
+    again,
+    looks_written,
+    read_lines,
+    row_of,
+)
+from knitcore.formats.read.written_words import Line, RowWords, Work, is_ambiguous, read_row
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, yarn_name
 from knitcore.garment.worked_piece import PieceRow, piece_from_rows
 
-_CAST_ON = re.compile(r"cast on (\d{1,4}) sts?( and join in the round)?\.(.*)", re.IGNORECASE)
-_WRONG_FIRST = re.compile(r"row 1 is a wrong-side row", re.IGNORECASE)
-_ROW = re.compile(
-    r"(rows?|rnds?|rounds?) (\d{1,4})(?:\s*[-–]\s*(\d{1,4}))?\s*(?:\((RS|WS)\))?\s*:\s*(.*)",
-    re.IGNORECASE,
-)
-_REPEAT = re.compile(
-    r"repeat (?:rows?|rnds?|rounds?) (\d{1,4})(?:\s*[-–]\s*(\d{1,4}))?", re.IGNORECASE
-)
-_END = re.compile(r"bind off.*", re.IGNORECASE)
-_YARN = re.compile(r"yarn ([A-Z]{1,2}): (.*) \((#[0-9a-f]{6})\)", re.IGNORECASE)
+__all__ = ["looks_written", "read_noted_rows", "read_piece_rows", "read_rows"]
 
-
-def looks_written(text: str) -> bool:
-    """Say whether a text is meant as written rows rather than as lines of K and P."""
-    first = next(lines_of(text), None)
-    return first is not None and first.text.lower().startswith(("cast on", "row", "rnd", "round"))
+_EVERY = {"even": 0, "odd": 1}
+MAX_SHOWN = 3
+"""Remarks that a note quotes."""
 
 
 def read_rows(text: str) -> StitchChart:
@@ -48,6 +48,9 @@ def read_rows(text: str) -> StitchChart:
     KKK
     PPP
     PPK
+    >>> print(read_rows("Rows 1 and 2: [k1, p1] twice."))
+    PKPK
+    PKPK
     """
     piece = read_piece_rows(text)
     if not piece.is_rectangle:
@@ -63,53 +66,63 @@ def read_piece_rows(text: str) -> Piece:
     InputError
         As :func:`read_rows`.
     """
-    lines = list(lines_of(text))
-    cast_on = _CAST_ON.fullmatch(lines[0].text) if lines else None
-    if cast_on is None:
-        problem = "the first line does not say how many stitches are cast on."
-        remedy = 'Begin with "Cast on 20 sts." (add "and join in the round" for rounds).'
-        raise InputError("rows", problem, remedy)
-    stitches = int(cast_on[1])
-    check_chart_size(1, stitches)
-    construction = Construction.ROUND if cast_on[2] else Construction.FLAT
-    wrong_first = _WRONG_FIRST.search(cast_on[3]) is not None
-    reader = _Reader(stitches, construction, Side.WS if wrong_first else Side.RS)
-    for line in lines[1:]:
-        if _END.fullmatch(line.text):
-            break
-        yarn = _YARN.fullmatch(line.text)
-        if yarn is not None:
-            reader.add_yarn(line, yarn[1].upper(), PieceYarn(yarn[2], yarn[3].lower()))
-        else:
-            reader.read(line)
-    return reader.piece()
+    return read_noted_rows(text)[0]
+
+
+def read_noted_rows(text: str) -> tuple[Piece, tuple[str, ...]]:
+    """The piece of written instructions, and notes on what was left out or taken as one of several.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_rows`.
+    """
+    pattern = read_lines(text)
+    is_open = any(isinstance(row, RowLine) and is_ambiguous(row.body) for row in pattern.rows)
+    try:
+        piece, notes = _Reader(pattern, often_more=True).read()
+        said = "once and then as often as it says"
+    except InputError as error:
+        if not is_open:
+            raise
+        try:
+            piece, notes = _Reader(pattern, often_more=False).read()
+        except InputError:
+            raise error from None
+        said = "as often as it says in all"
+    if is_open:
+        notes.append(f'"Repeat from * … times" is worked {said}.')
+    return piece, tuple(notes)
 
 
 class _Reader:
-    def __init__(self, stitches: int, construction: Construction, first_side: Side) -> None:
-        self._needle = stitches
-        self._construction = construction
-        self._first_side = first_side
+    """Puts the rows in order and works them."""
+
+    def __init__(self, pattern: Pattern, *, often_more: bool) -> None:
+        self._pattern, self._often_more = pattern, often_more
         self._yarns: list[PieceYarn] = []
-        self._rows: list[Work] = []
+        self._rows: dict[int, RowWords | int] = {}
+        """Words of each row, or the number of the earlier row that it repeats."""
+        self._notes: list[str] = []
 
-    def piece(self) -> Piece:
-        if not self._rows:
-            raise InputError("rows", "there are no rows.", 'Write rows such as "Row 1: Knit."')
-        rows = [
-            PieceRow(
-                self._side(index),
-                work.first,
-                work.last,
-                tuple(stitch.purl for stitch in work.stitches),
-                tuple(stitch.yarn for stitch in work.stitches),
-            )
-            for index, work in enumerate(self._rows)
-        ]
-        return piece_from_rows(rows, self._yarns or [MAIN_YARN])
+    def read(self) -> tuple[Piece, list[str]]:
+        for line, name, yarn, colour in self._pattern.yarns:
+            self._add_yarn(line, name, PieceYarn(yarn, colour))
+        self._construction = self._find_construction()
+        numbered = list(self._numbered())
+        self._first_side = self._find_first_side(numbered)
+        for row, numbers in numbered:
+            if isinstance(row, RepeatLine):
+                self._repeat(row.line, row.first, row.last, numbers)
+            elif numbers:
+                self._add(row, numbers)
+        self._fill_in([row for row, _ in numbered if isinstance(row, RowLine) and row.every])
+        words = self._in_order()
+        piece = self._piece(words, self._cast_on(words))
+        return piece, [*self._notes, *self._remarks()]
 
-    def add_yarn(self, line: Line, name: str, yarn: PieceYarn) -> None:
-        if name != yarn_name(len(self._yarns)) or self._rows or yarn in self._yarns:
+    def _add_yarn(self, line: Line, name: str, yarn: PieceYarn) -> None:
+        if name != yarn_name(len(self._yarns)) or yarn in self._yarns:
             raise line.wrong(
                 f"yarn {name} cannot be named here.",
                 f"Name the yarns before row 1, in order; the next is {yarn_name(len(self._yarns))}"
@@ -117,51 +130,181 @@ class _Reader:
             )
         self._yarns.append(yarn)
 
-    def read(self, line: Line) -> None:
-        match = _ROW.fullmatch(line.text)
-        if match is None:
-            raise line.wrong(
-                f"{line.text[:60]!r} is not a row.", 'Write "Row 1 (RS): …" or "Rows 3-8: …".'
+    def _find_construction(self) -> Construction:
+        """Flat or in the round: what the cast-on says, or else what the rows are called."""
+        is_round = self._pattern.is_round
+        for row in self._pattern.rows:
+            if isinstance(row, RepeatLine) or row.is_round is None:
+                continue
+            if is_round is not None and is_round != row.is_round:
+                remedy = 'Write "Rnd" after "join in the round", and "Row" in flat knitting.'
+                raise row.line.wrong("rows and rounds are mixed.", remedy)
+            is_round = row.is_round
+        return Construction.ROUND if is_round else Construction.FLAT
+
+    def _numbered(self) -> Iterator[tuple[RowLine | RepeatLine, tuple[int, ...]]]:
+        """Every line with the numbers of its rows; a row without one comes next."""
+        last = 0
+        for row in self._pattern.rows:
+            if isinstance(row, RepeatLine):
+                count = (row.last - row.first + 1) * row.times
+                numbers = tuple(range(last + 1, last + 1 + max(count, 0)))
+            else:
+                numbers = row.numbers or (() if row.every else (last + 1,))
+            last = max(last, *numbers) if numbers else last
+            check_chart_size(max(last, 1), 1)
+            yield row, numbers
+
+    def _find_first_side(
+        self, numbered: Iterable[tuple[RowLine | RepeatLine, tuple[int, ...]]]
+    ) -> Side:
+        stated = {
+            row.side if number % 2 else row.side.other
+            for row, numbers in numbered
+            for number in numbers
+            if isinstance(row, RowLine) and row.side is not None
+        }
+        if self._pattern.first_side is not None:
+            stated.add(self._pattern.first_side)
+        every = {row.every for row, _ in numbered if isinstance(row, RowLine)}
+        is_round = self._construction is Construction.ROUND
+        if len(stated) > 1 or (is_round and (Side.WS in stated or "ws" in every)):
+            raise InputError(
+                "rows",
+                "right-side and wrong-side rows do not alternate.",
+                "Correct RS and WS; rounds have no wrong side.",
             )
-        name, first, last, side, body = match.groups()
-        start, stop = int(first), int(last or first)
-        self._check_name(line, name)
-        if start != len(self._rows) + 1 or stop < start:
-            problem = f"it is for row {start}, but row {len(self._rows) + 1} comes next."
-            raise line.wrong(problem, "Number the rows from 1 without gaps.")
-        check_chart_size(stop, self._needle)
-        if side is not None and Side(side.upper()) is not self._side(start - 1):
-            remedy = "Correct the side, or say in the first line on which side row 1 is."
-            raise line.wrong(f"row {start} is a {self._side(start - 1)} row.", remedy)
-        repeat = _REPEAT.fullmatch(body.rstrip("."))
-        if repeat is not None:
-            self._repeat(line, int(repeat[1]), int(repeat[2] or repeat[1]), stop - start + 1)
-        else:
-            work = read_row(line, body, self._needle, len(self._yarns))
-            for _ in range(stop - start + 1):
-                self._add(line, work)
+        return stated.pop() if stated else Side.RS
 
-    def _add(self, line: Line, work: Work) -> None:
-        if self._needle + work.first + work.last != len(work.stitches):
-            problem = f"it does not fit the {self._needle} stitches on the needle."
-            raise line.wrong(problem, "Write out rows with another count.")
-        self._rows.append(work)
-        self._needle = len(work.stitches)
+    def _side(self, number: int) -> Side:
+        return side_of_row(number - 1, self._construction, self._first_side)
 
-    def _check_name(self, line: Line, name: str) -> None:
-        is_round = name.lower().startswith(("rnd", "round"))
-        if is_round != (self._construction is Construction.ROUND):
-            remedy = 'Write "Rnd" after "join in the round", and "Row" in flat knitting.'
-            raise line.wrong("rows and rounds are mixed.", remedy)
+    def _add(self, row: RowLine, numbers: tuple[int, ...]) -> None:
+        line = Line(row.line.number, row.line.text, row_of(numbers))
+        if row.only is not None:
+            numbers = tuple(number for number in numbers if self._side(number) is row.only)
+        repeat = again(row.body)
+        if repeat is not None and not repeat[2]:
+            self._repeat(line, repeat[0], repeat[1], numbers)
+            return
+        words = self._words(row, line)
+        for number in numbers:
+            self._put(line, number, words)
 
-    def _repeat(self, line: Line, first: int, last: int, count: int) -> None:
-        if not 1 <= first <= last <= len(self._rows):
+    def _words(self, row: RowLine, line: Line) -> RowWords:
+        words = read_row(line, row.body, len(self._yarns), again=self._often_more)
+        return words.repeated() if row.is_ordinal else words
+
+    def _repeat(self, line: Line, first: int, last: int, numbers: tuple[int, ...]) -> None:
+        if not 1 <= first <= last < min(numbers, default=1):
             raise line.wrong(
                 f"rows {first}-{last} are not all written before it.", "Repeat earlier rows."
             )
-        unit = self._rows[first - 1 : last]
-        for index in range(count):
-            self._add(line, unit[index % len(unit)])
+        for index, number in enumerate(numbers):
+            self._put(line, number, first + index % (last - first + 1))
 
-    def _side(self, index: int) -> Side:
-        return side_of_row(index, self._construction, self._first_side)
+    def _put(self, line: Line, number: int, words: RowWords | int) -> None:
+        if number in self._rows:
+            raise line.wrong(f"row {number} is given twice.", "Write each row once.")
+        self._rows[number] = words
+
+    def _fill_in(self, lines: list[RowLine]) -> None:
+        """Rows that are given as "all even rows"; one of them may follow the last row."""
+        if not lines:
+            return
+        last = max(self._rows, default=0)
+        if not last:
+            last = 1 if all(self._belongs(row, 1) for row in lines) else 2
+        elif last % 2 and any(self._belongs(row, last + 1) for row in lines):
+            last += 1
+        check_chart_size(last, 1)
+        for row in lines:
+            words = self._words(row, row.line)
+            for number in range(1, last + 1):
+                if number not in self._rows and self._belongs(row, number):
+                    self._rows[number] = words
+        self._notes.append(
+            f'Rows given as "all … rows" are read up to row {last}, where the pattern begins again.'
+        )
+
+    def _belongs(self, row: RowLine, number: int) -> bool:
+        """Say whether a row is one of those that a line tells besides its numbers."""
+        if row.every == "other":
+            return number % 2 == row.numbers[-1] % 2
+        if row.every in _EVERY:
+            return number % 2 == _EVERY[row.every]
+        return self._side(number).lower() in (row.every or "")
+
+    def _in_order(self) -> list[RowWords]:
+        count = max(self._rows, default=1)
+        missing = next((i for i in range(1, count + 1) if i not in self._rows), None)
+        if missing is not None:
+            first = f": {self._pattern.remarks[0][:60]!r} is none" if self._pattern.remarks else ""
+            name = f"row {missing} is missing" if self._rows else f"there are no rows{first}"
+            raise InputError(
+                "rows", f"{name}.", 'Number the rows from 1 without gaps: "Row 1: Knit."'
+            )
+        words: list[RowWords] = []
+        for number in range(1, count + 1):
+            row = self._rows[number]
+            words.append(words[row - 1] if isinstance(row, int) else row)
+        return words
+
+    def _cast_on(self, words: list[RowWords]) -> int:
+        """The stitches that are cast on: as it is said, or as few as fit all rows."""
+        count = self._pattern.cast_on
+        if count is not None:
+            check_chart_size(1, count)
+            return count
+        counts = np.arange(1, MAX_STITCHES_PER_SIDE + 1)
+        multiple, plus = self._pattern.multiple or (1, 0)
+        fits = (counts % max(multiple, 1) == plus % max(multiple, 1)) & (counts > plus)
+        gain = 0
+        for row, number in zip(words, range(1, len(words) + 1), strict=True):
+            before = fits
+            fits = fits & row.fits(counts + gain)
+            if not fits.any():
+                problem = f"no number of stitches fits row {number} and those before it"
+                if before.sum() == 1 and number > 1:
+                    needle = int(counts[before][0]) + gain
+                    row.work(needle)
+                raise row.line.wrong(f"{problem}.", "Correct it, or say what is cast on.")
+            gain += row.gain
+        count = int(counts[fits][0])
+        plural = "stitch is" if count == 1 else "stitches are"
+        self._notes.append(
+            f"No cast-on is given: {count} {plural} the fewest with which all rows come out."
+        )
+        return count
+
+    def _piece(self, words: list[RowWords], needle: int) -> Piece:
+        rows = []
+        known: dict[tuple[int, int], Work] = {}
+        for number, row in enumerate(words, start=1):
+            key = id(row), needle
+            if key not in known:
+                known[key] = row.work(needle)
+            work = known[key]
+            if number == 1 and (work.first or work.last):
+                self._notes.append(
+                    f"Row 1 makes {len(work.stitches)} of the {needle} stitches cast on: the chart "
+                    "begins with row 1."
+                )
+                work = Work(0, 0, work.stitches)
+            needle = len(work.stitches)
+            purls = tuple(stitch.purl for stitch in work.stitches)
+            yarns = tuple(stitch.yarn for stitch in work.stitches)
+            rows.append(PieceRow(self._side(number), work.first, work.last, purls, yarns))
+        end = self._pattern.bound_off
+        if end is not None and end[1] not in (None, needle):
+            problem = f"it binds off {end[1]} stitches, but {needle} are on the needle."
+            raise end[0].wrong(problem, "Correct it.")
+        return piece_from_rows(rows, self._yarns or [MAIN_YARN])
+
+    def _remarks(self) -> Iterator[str]:
+        if self._pattern.remarks:
+            shown = "; ".join(repr(r[:60]) for r in self._pattern.remarks[:MAX_SHOWN])
+            more = len(self._pattern.remarks) - MAX_SHOWN
+            yield f"Left out as remarks: {shown}{f' and {more} more' if more > 0 else ''}."
+        for said in self._pattern.open_repeats:
+            yield f"Read once: {said[:80]!r} gives no number of times."

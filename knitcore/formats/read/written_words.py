@@ -1,25 +1,42 @@
-"""The words of one written row: stitches, brackets, repeats, yarns, and shaping at the edges."""
+"""The words of one written row: stitches, brackets, repeats, yarns, and shaping at the edges.
+
+Read are ``k3``, ``k 3``, ``knit 3 sts``, ``knit to last 2 sts``, ``[k1, p1] 4 times`` (also
+``x 4``, ``twice``, ``to end``; in any bracket, nested), ``*k2, p2; rep from * to last 2 sts, k2``
+and ``*k2, p2* 3 times``; at the edges decreases, ``m1``, casting on and binding off.
+"""
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
+import numpy as np
+
+from knitcore.base.arrays import Indices, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, check_chart_size
 from knitcore.garment.piece import yarn_name
 
 MAX_CHARACTERS = 20_000
 """Most characters in a row's words; the widest row without any repeat takes a quarter of it."""
-_COUNT = re.compile(r"\((\d{1,4}) sts?\)$", re.IGNORECASE)
-_STITCHES = re.compile(r"([kp])(\d{1,4})", re.IGNORECASE)
-_BRACKET = re.compile(r"\(([^()]*)\) (?:(twice)|(\d{1,4}) times)", re.IGNORECASE)
-_STAR = re.compile(
-    r"(.*?)\*([^*;]*); rep from \* (?:to (end)|to last (?:(\d{1,4}) sts|st))(?:, (.*))?",
-    re.IGNORECASE,
+MAX_DEPTH = 20
+"""Most brackets inside each other."""
+NUMBER_WORDS = {
+    word: number
+    for number, word in enumerate(
+        ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=1
+    )
+}
+_COUNT = re.compile(
+    r"(?:[.(\[–—=-]\s*(\d{1,4}) (?:sts?|stitch(?:es)?)\s*[)\]]?|\((\d{1,4})\))[ .]*$", re.IGNORECASE
 )
-_WITH = re.compile(r"(?:^|, )with ([A-Z]{1,2}) ", re.IGNORECASE)
-_SHAPED = re.compile(r"(ssk|ssp|k2tog|p2tog|k3tog|p3tog|m1p?)(?![\w])", re.IGNORECASE)
-_GAIN = re.compile(r"(cast on|bind off) (\d{1,4}) sts?, ", re.IGNORECASE)
+_TOKEN = re.compile(r"\*+|[\[\](){},;.:]|\d+(?![\w/])|[^\s*\[\](){},;.:]+")
+_STITCH = re.compile(r"([kp])(\d{0,5})|(knit|purl)s?", re.IGNORECASE)
+_SHAPED = ("ssk", "ssp", "k2tog", "p2tog", "k3tog", "p3tog", "m1", "m1p")
+_TIMES = re.compile(r"(?:[x×](\d{1,5})|(\d{1,5})[x×])", re.IGNORECASE)
+_SIZES = re.compile(r"\(\s*\d+(?:[\s,;/]+\d+)*\s*\)")
+_BRACKETS = {"[": "]", "(": ")", "{": "}"}
+_GAIN = re.compile(
+    r"(cast on|co|bind off|bo|cast off) (\d{1,4})(?: sts?| stitch(?:es)?)?, ", re.IGNORECASE
+)
 _GAIN_AT_END = re.compile(
     r"with a separate strand cast on (\d{1,4}) sts? at the end, ", re.IGNORECASE
 )
@@ -28,26 +45,34 @@ _LOSS_AT_END = re.compile(
 )
 _USES = {"": 1, "m1": 0, "m1p": 0, "k3tog": 3, "p3tog": 3}
 """Stitches of the row below that a stitch takes; all others are decreases of two."""
+_NAMES = (
+    (r"yo.*|yf.*|yrn|yon|o", "a yarn over"),
+    (r".*tbl|[kp]1?b\d?|kb.", "a twisted stitch"),
+    (r"[kp]\d?tog.*|ss+[kp].*|skp.*|sk2p.*|sl.*(psso|p2sso).*|cdd.*|.*\bdec", "a decrease"),
+    (r"m1.*|m|[kp]fb.*|kf&b|inc.*|.*\binc", "an increase"),
+    (r"sl.*|s\d", "a slipped stitch"),
+    (r"\d+/\d+.*|[ct]\d+.*|[lr][ctp]+\d*.*|.*cable.*", "a cable or a crossing"),
+    (r"mb|.*bobble.*", "a bobble"),
+    (r"bo\b.*|co\b.*|bind.*|cast.*", "casting on or binding off within a row"),
+    (r"w&t|wrap.*|turn.*", "a short row"),
+    (r"tuck.*|.*below|br.*", "a tuck"),
+    (r"dip.*|drop.*", "a dropped or dipped stitch"),
+)
+"""Names of stitches that are neither knits nor purls, and their kinds."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """A line of instructions and its number."""
+    """A line of instructions, its number, and the row that it is about."""
 
     number: int
     text: str
+    row: str = ""
 
     def wrong(self, problem: str, remedy: str) -> InputError:
         """An error that names the line."""
-        return InputError("rows", f"line {self.number}: {problem}", remedy)
-
-
-def lines_of(text: str) -> Iterator[Line]:
-    """Lines with single blanks between their words, without empty ones and comments."""
-    for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1):
-        words = " ".join(line.split())
-        if words and not words.startswith("#"):
-            yield Line(number, words)
+        row = f", {self.row}" if self.row else ""
+        return InputError("rows", f"line {self.number}{row}: {problem}", remedy)
 
 
 @dataclass(frozen=True)
@@ -66,7 +91,7 @@ class WrittenStitch:
 
 @dataclass(frozen=True)
 class Work:
-    """Words of a row, independent of its place."""
+    """A row as it is worked: stitches gained where it begins and ends, and all its stitches."""
 
     first: int
     last: int
@@ -81,49 +106,107 @@ def taken(stitches: Stitches) -> int:
     return sum(stitch.uses for stitch in stitches)
 
 
-def read_row(line: Line, body: str, needle: int, yarns: int) -> Work:
-    """The words of a row, with ``needle`` stitches on the needle and ``yarns`` yarns.
+@dataclass(frozen=True)
+class Part:
+    """Stitches that are worked once or, with ``leave``, until so many of the row below are left."""
 
-    Raises
-    ------
-    InputError
-        Naming the line and the problem.
+    unit: Stitches
+    leave: int | None = None
+
+
+@dataclass(frozen=True)
+class RowWords:
+    """A row in words, which may fit several numbers of stitches.
+
+    Attributes
+    ----------
+    first, last : stitches cast on (or, negative, bound off) before and after.
+    parts : what is worked, in order.
+    count : the number of stitches that the row says it has in the end.
     """
-    if len(body) > MAX_CHARACTERS:
-        raise line.wrong(f"it has {len(body)} characters.", "Split it, or write it with repeats.")
-    count = _COUNT.search(body)
-    words = (body[: count.start()] if count else body).strip().rstrip(".").strip()
-    first, last, words = _edges(line, words, needle)
-    worked = needle + first + last
-    if worked < 1:
-        raise line.wrong("it leaves no stitch.", "Bind off fewer.")
-    stitches = _yarn_words(line, words, worked, yarns)
-    if taken(stitches) != worked:
-        raise line.wrong(
-            f"it works {taken(stitches)} stitches, but {worked} are on the needle.",
-            "Correct the row, or cast on, bind off, increase or decrease at its edges.",
-        )
-    first, last = _shaped(line, stitches, first, last)
-    if count is not None and int(count[1]) != len(stitches):
-        raise line.wrong(
-            f"it says {count[1]} sts, but {len(stitches)} are on the needle.", "Correct the count."
-        )
-    return Work(first, last, stitches)
 
+    line: Line
+    first: int
+    last: int
+    parts: tuple[Part, ...]
+    count: int | None = None
 
-def _edges(line: Line, words: str, needle: int) -> tuple[int, int, str]:
-    """Stitches cast on and bound off at both ends, and the rest of the words."""
-    first = last = 0
-    gain = _GAIN.match(words)
-    if gain is not None:
-        first = int(gain[2]) * (1 if gain[1].lower() == "cast on" else -1)
-        words = words[gain.end() :]
-    if (at_end := _GAIN_AT_END.match(words)) is not None:
-        last, words = int(at_end[1]), words[at_end.end() :]
-    if (loss := _LOSS_AT_END.search(words)) is not None:
-        last, words = last - int(loss[1]), words[: loss.start()]
-    check_chart_size(1, max(needle + max(first, 0) + max(last, 0), 1))
-    return first, last, words
+    @property
+    def is_fixed(self) -> bool:
+        """True if it fits one number of stitches only."""
+        return all(part.leave is None for part in self.parts)
+
+    @property
+    def gain(self) -> int:
+        """Stitches that it adds to those on the needle."""
+        return self.first + self.last + sum(len(p.unit) - taken(p.unit) for p in self.parts)
+
+    def repeated(self) -> "RowWords":
+        """The row as a repeat that fills the needle, unless it already has one."""
+        if not self.is_fixed or any(s.form for part in self.parts for s in part.unit):
+            return self
+        unit = sum((part.unit for part in self.parts), ())
+        return RowWords(self.line, self.first, self.last, (Part(unit, 0),), self.count)
+
+    def fits(self, needles: Indices) -> Mask:
+        """For each number of stitches on the needle, whether the row comes out."""
+        room = needles + self.first + self.last
+        used = np.zeros_like(room)
+        fits = room >= 1
+        for part in self.parts:
+            size = taken(part.unit)
+            if part.leave is None:
+                used = used + size
+                continue
+            free = room - used - part.leave
+            fits = fits & (free >= size) & (free % max(size, 1) == 0)
+            used = room - part.leave
+        if self.count is not None:
+            fits = fits & (needles + self.gain == self.count)
+        return np.asarray(fits & (used == room))
+
+    def work(self, needle: int) -> Work:
+        """Work it with ``needle`` stitches on the needle.
+
+        Raises
+        ------
+        InputError
+            Naming the line and the problem.
+        """
+        check_chart_size(1, max(needle + max(self.first, 0) + max(self.last, 0), 1))
+        room = needle + self.first + self.last
+        if room < 1:
+            raise self.line.wrong("it leaves no stitch.", "Bind off fewer.")
+        stitches = self._stitches(room)
+        if taken(stitches) != room:
+            raise self.line.wrong(
+                f"it works {taken(stitches)} stitches, but {room} are on the needle.",
+                "Correct the row, or cast on, bind off, increase or decrease at its edges.",
+            )
+        first, last = _shaped(self.line, stitches, self.first, self.last)
+        if self.count is not None and self.count != len(stitches):
+            raise self.line.wrong(
+                f"it says {self.count} sts, but {len(stitches)} are on the needle.",
+                "Correct the count.",
+            )
+        return Work(first, last, stitches)
+
+    def _stitches(self, room: int) -> Stitches:
+        stitches: Stitches = ()
+        for part in self.parts:
+            if part.leave is None:
+                stitches += part.unit
+                continue
+            free = room - taken(stitches) - part.leave
+            if free < len(part.unit) or free % len(part.unit):
+                fixed = taken(stitches) + part.leave - self.first - self.last
+                raise self.line.wrong(
+                    f"the {len(part.unit)} stitches that are repeated do not fit {max(free, 0)} "
+                    "stitches exactly.",
+                    f"Cast on a multiple of {len(part.unit)} plus {fixed} stitches.",
+                )
+            stitches += part.unit * (free // len(part.unit))
+        return stitches
 
 
 def _shaped(line: Line, stitches: Stitches, first: int, last: int) -> tuple[int, int]:
@@ -146,82 +229,377 @@ def _shaped(line: Line, stitches: Stitches, first: int, last: int) -> tuple[int,
     return first, last
 
 
-def _yarn_words(line: Line, words: str, worked: int, yarns: int) -> Stitches:
-    if yarns < 2:
-        return _words(line, words, worked)
-    names = list(_WITH.finditer(words))
-    if not names or names[0].start() != 0:
-        raise line.wrong("it does not say with which yarn it begins.", 'Write "with A …".')
-    stitches: Stitches = ()
-    known = [yarn_name(index) for index in range(yarns)]
-    for place, name in enumerate(names):
-        if name[1].upper() not in known:
-            raise line.wrong(f"there is no yarn {name[1]}.", f"Use {', '.join(known)}.")
-        stop = names[place + 1].start() if place + 1 < len(names) else len(words)
-        part, room = words[name.end() : stop], worked - taken(stitches)
-        read = _words(line, part, room) if len(names) == 1 else _items(line, part, room)
-        yarn = known.index(name[1].upper())
-        stitches += tuple(WrittenStitch(s.purl, s.form, yarn) for s in read)
-    return stitches
+def read_row(line: Line, body: str, yarns: int = 1, *, again: bool = True) -> RowWords:
+    """The words of a row.
+
+    Parameters
+    ----------
+    body : the words, without what stands before the colon.
+    yarns : number of yarns; of several each stretch names its own.
+    again : whether ``repeat from * 3 times`` works the stitches four times, or three.
+
+    Raises
+    ------
+    InputError
+        Naming the line, the stitch and the problem.
+    """
+    if len(body) > MAX_CHARACTERS:
+        raise line.wrong(f"it has {len(body)} characters.", "Split it, or write it with repeats.")
+    count = _COUNT.search(body)
+    words = (body[: count.start()] if count else body).strip().rstrip(".").strip()
+    if _SIZES.search(words):
+        raise line.wrong("it is written for several sizes.", "Keep the numbers of one size.")
+    first, last, words = _edges(words)
+    parts = _Reader(line, words, yarns, again=again).parts()
+    stated = int(count[1] or count[2]) if count else None
+    return RowWords(line, first, last, parts, stated)
 
 
-def _words(line: Line, words: str, worked: int) -> Stitches:
-    star = _STAR.fullmatch(words)
-    if star is None:
-        return _items(line, words, worked)
-    before, unit, end, last, after = star.groups()
-    head = _items(line, before.rstrip(", "), worked) if before.strip(", ") else ()
-    body = _items(line, unit, worked)
-    tail = _items(line, after, worked) if after else ()
-    stated = 0 if end else int(last or 1)
-    if taken(tail) != stated:
-        problem = f"{taken(tail)} stitches follow the repeat, but it says {stated}."
-        raise line.wrong(problem, 'Make "to last N sts" agree with what follows.')
-    room = worked - taken(head) - taken(tail)
-    if any(stitch.form for stitch in body) or room < len(body) or room % len(body):
-        raise line.wrong(
-            f"the {len(body)} stitches after * do not fit {room} stitches exactly.",
-            f"Cast on a multiple of {len(body)} plus {taken(head) + taken(tail)} stitches.",
-        )
-    return head + body * (room // len(body)) + tail
+def is_ambiguous(body: str) -> bool:
+    """Say whether a row repeats "from * 3 times", which may mean once and then three times."""
+    return _OFTEN.search(body) is not None
 
 
-def _items(line: Line, words: str, worked: int) -> Stitches:
-    """Stitches and brackets, separated by commas."""
-    stitches: Stitches = ()
-    rest = words.strip()
-    while rest:
-        bracket, run, shaped = (p.match(rest) for p in (_BRACKET, _STITCHES, _SHAPED))
-        if rest.lower() in ("knit", "purl"):
-            added = (WrittenStitch(rest.lower() == "purl"),) * (worked - taken(stitches))
-            used = len(rest)
-        elif bracket is not None:
-            inside = _items(line, bracket[1], worked)
-            times = 2 if bracket[2] else int(bracket[3])
-            # More than a row can hold is refused below without being written out.
-            added = inside * min(times, MAX_STITCHES_PER_SIDE + 1)
-            used = bracket.end()
-        elif shaped is not None:
-            form = shaped[1].lower()
-            purl = form in ("ssp", "p2tog", "p3tog", "m1p")
-            added, used = (WrittenStitch(purl, form),), shaped.end()
-        elif run is not None:
-            added, used = (WrittenStitch(run[1].lower() == "p"),) * int(run[2]), run.end()
+_OFTEN = re.compile(
+    r"rep\w* (?:from )?\*+(?: to \*+|-\*+)? (?:(?:to end )?(?:\d+|\w+) times?|twice|[x×]\s?\d+)"
+    r"(?! more| in all| in total| altogether| total)",
+    re.IGNORECASE,
+)
+
+
+def _edges(words: str) -> tuple[int, int, str]:
+    """Stitches cast on and bound off at both ends, and the rest of the words."""
+    first = last = 0
+    gain = _GAIN.match(words)
+    if gain is not None:
+        first = int(gain[2]) * (1 if gain[1].lower() in ("cast on", "co") else -1)
+        words = words[gain.end() :]
+    if (at_end := _GAIN_AT_END.match(words)) is not None:
+        last, words = int(at_end[1]), words[at_end.end() :]
+    if (loss := _LOSS_AT_END.search(words)) is not None:
+        last, words = last - int(loss[1]), words[: loss.start()]
+    return first, last, words
+
+
+_THE_REST = -1
+"""Stitches left by a repeat that is said to end with what follows."""
+
+
+@dataclass
+class _Frame:
+    """The words inside an open bracket or after a star."""
+
+    mark: str = ""
+    parts: list[Part] = field(default_factory=list)
+    size: int = 0
+
+
+class _Reader:
+    """Reads the words from left to right; open brackets and stars are on a stack."""
+
+    def __init__(self, line: Line, words: str, yarns: int, *, again: bool) -> None:
+        self._line, self._words, self._yarns, self._again = line, words, yarns, again
+        self._tokens = [(m[0].lower(), m.start()) for m in _TOKEN.finditer(words)]
+        self._next = 0
+        self._yarn = None if yarns > 1 else 0
+        self._stack = [_Frame()]
+
+    def parts(self) -> tuple[Part, ...]:
+        while self._next < len(self._tokens):
+            self._step()
+        if len(self._stack) > 1:
+            mark = self._stack[-1].mark
+            problem = "a repeat has no end." if mark == "*" else "a bracket is not closed."
+            raise self._line.wrong(
+                problem, 'Write "[k1, p1] twice" or "*k1, p1; rep from * to end".'
+            )
+        parts = self._stack[0].parts
+        if not parts:
+            raise self._line.wrong("a part of it is empty.", "Write stitches, such as k3.")
+        if len(self._tokens) == 1 and self._tokens[0][0] in ("k", "p"):
+            return (Part(parts[0].unit, 0),)
+        elastic = [index for index, part in enumerate(parts) if part.leave is not None]
+        for index in elastic:
+            part = parts[index]
+            after = sum(taken(other.unit) for other in parts[index + 1 :])
+            if part.leave == _THE_REST and index == elastic[-1]:
+                parts[index] = replace(part, leave=after)
+            elif part.leave == _THE_REST or (len(elastic) == 1 and after != part.leave):
+                problem = (
+                    f"{after} stitches follow the repeat, but it says {max(part.leave or 0, 0)}."
+                )
+                raise self._line.wrong(problem, 'Make "to last N sts" agree with what follows.')
+        return tuple(parts)
+
+    def _step(self) -> None:
+        word = self._take()
+        if word in (",", ";", ".", ":", "and", "then"):
+            return
+        if word in _BRACKETS:
+            self._open(word)
+        elif word in _BRACKETS.values():
+            self._close(word)
+        elif word.startswith("*"):
+            if self._stack[-1].mark == "*":
+                self._end_star(is_from=False)
+            else:
+                self._open("*")
+        elif word in ("rep", "repeat"):
+            self._repeat()
+        elif word in ("end", "ending", "ends") and self._is_repeated():
+            self._skip("with")
+            self._stack[-1].parts[-1] = replace(self._stack[-1].parts[-1], leave=_THE_REST)
+        elif word == "with" and self._yarns > 1:
+            self._change_yarn()
+        elif _STITCH.fullmatch(word):
+            self._stitch(word)
+        elif word in _SHAPED:
+            purl = word in ("ssp", "p2tog", "p3tog", "m1p")
+            self._add(Part((WrittenStitch(purl, word, self._named_yarn()),)))
         else:
-            problem = f"{rest[:30]!r} cannot be read."
-            raise line.wrong(problem, 'Write k3, p2, (k1, p1) 3 times, or "*…; rep from * to end".')
-        stitches += added
-        if len(stitches) > MAX_STITCHES_PER_SIDE:
-            raise line.wrong("it has too many stitches.", f"Use {worked}.")
-        rest = _after_comma(line, rest[used:])
-    if not stitches:
-        raise line.wrong("a part of it is empty.", "Write stitches, such as k3.")
-    return stitches
+            raise self._unknown(self._next - 1)
 
+    def _is_repeated(self) -> bool:
+        """Say whether the last words repeat to the end."""
+        parts = self._stack[-1].parts
+        return len(self._stack) == 1 and bool(parts) and parts[-1].leave == 0
 
-def _after_comma(line: Line, rest: str) -> str:
-    if rest and not re.match(r", ?\S", rest):
-        raise line.wrong(
-            f"{rest[:30]!r} follows a stitch without a comma.", "Separate stitches by commas."
+    def _take(self) -> str:
+        self._next += 1
+        return self._tokens[self._next - 1][0]
+
+    def _peek(self, ahead: int = 0) -> str:
+        place = self._next + ahead
+        return self._tokens[place][0] if place < len(self._tokens) else ""
+
+    def _skip(self, *words: str) -> bool:
+        """Pass over a token if it is one of these."""
+        if self._peek() in words and self._peek():
+            self._next += 1
+            return True
+        return False
+
+    def _add(self, part: Part) -> None:
+        frame = self._stack[-1]
+        if part.leave is not None and frame.mark:
+            raise self._line.wrong(
+                'a repeat "to end" stands inside another repeat.',
+                "Write the inner one with a number.",
+            )
+        frame.parts.append(part)
+        frame.size += len(part.unit)
+        if frame.size > MAX_STITCHES_PER_SIDE:
+            remedy = f"Use at most {MAX_STITCHES_PER_SIDE}."
+            raise self._line.wrong("it has too many stitches.", remedy)
+
+    def _open(self, mark: str) -> None:
+        if len(self._stack) > MAX_DEPTH:
+            raise self._line.wrong(
+                "too many brackets stand inside each other.", "Write it plainly."
+            )
+        self._stack.append(_Frame(mark))
+
+    def _close(self, token: str) -> None:
+        frame = self._stack[-1]
+        if _BRACKETS.get(frame.mark) != token:
+            raise self._line.wrong(f"{token!r} closes nothing.", 'Write "[k1, p1] twice".')
+        self._stack.pop()
+        if self._peek() == "," and self._peek(1) in ("rep", "repeat"):
+            self._next += 1
+        self._skip("rep", "repeat", "work")
+        leave, times, more = self._tail()
+        if leave is None and times is None:
+            problem = "it does not say how often the brackets are worked."
+            raise self._line.wrong(problem, 'Write "[k1, p1] twice" or "[k1, p1] to end".')
+        self._add_unit(frame, leave, None if times is None else times + max(more, 0))
+
+    def _repeat(self) -> None:
+        """Go on after "rep": to the end of a star, to a star, or back to the beginning."""
+        if self._stack[-1].mark == "*":
+            self._skip("from")
+            if not self._skip("*", "**", "***"):
+                raise self._line.wrong('"repeat" names no star.', 'Write "rep from * to end".')
+            self._end_star(is_from=True)
+        elif self._peek().startswith("*") or self._peek() in _BRACKETS:
+            return
+        else:
+            self._repeat_all()
+
+    def _repeat_all(self) -> None:
+        """Repeat all words before, as in "k1, p1 to end"."""
+        frame = self._stack.pop()
+        if self._stack or not frame.parts or not all(p.leave is None for p in frame.parts):
+            raise self._line.wrong('"repeat" names no star.', 'Write "*k1, p1; rep from * to end".')
+        self._stack.append(_Frame())
+        leave, times, more = self._tail()
+        self._add_unit(frame, leave or 0, None if times is None else times + max(more, 0))
+
+    def _end_star(self, *, is_from: bool) -> None:
+        """Read on after "*k2, p2; rep from *", or "*k2, p2*" which may name the stars again."""
+        frame = self._stack.pop()
+        if not is_from and self._peek() in (",", ";") and self._peek(1) in ("rep", "repeat"):
+            self._next += 1
+        if not is_from and self._skip("rep", "repeat", "work"):
+            self._skip("from", "between")
+            is_from = self._peek().startswith("*")
+        if is_from:
+            self._skip("*", "**")
+            if self._peek() in ("to", "and", "-", "–") and self._peek(1).startswith("*"):
+                self._next += 2
+            self._skip("s")
+        leave, times, more = self._tail()
+        if times is not None:
+            times += max(more, 0) + int(self._again and is_from and more == 0)
+        self._add_unit(frame, (leave or 0) if times is None else None, times)
+
+    def _add_unit(self, frame: _Frame, leave: int | None, times: int | None) -> None:
+        if any(part.leave is not None for part in frame.parts):
+            raise self._line.wrong('a repeat "to end" is repeated.', "Write it with a number.")
+        unit = sum((part.unit for part in frame.parts), ())
+        if not unit:
+            raise self._line.wrong("a part of it is empty.", "Write stitches, such as k3.")
+        if times is None:
+            if any(stitch.form for stitch in unit):
+                remedy = "Increase and decrease at the edges only."
+                raise self._line.wrong("a repeat increases or decreases.", remedy)
+            self._add(Part(unit, leave))
+        elif times < 1:
+            raise self._line.wrong("a part of it is worked 0 times.", "Leave it out.")
+        else:
+            # More than a row can hold is refused without being written out.
+            self._add(Part(unit * min(times, MAX_STITCHES_PER_SIDE + 1)))
+
+    def _tail(self) -> tuple[int | None, int | None, int]:
+        """How far or how often a repeat goes: stitches left, times, and 1 for "more".
+
+        A number of times that is said to be "in all" has -1 for "more".
+        """
+        token = self._peek()
+        if token in ("across", "around", "throughout", "even"):
+            self._next += 1
+            self._skip("the")
+            self._skip("row", "round", "rnd")
+            return 0, None, 0
+        if token in ("to", "until", "till", "til"):
+            self._next += 1
+            return self._to_end(), None, 0
+        times = {"once": 1, "twice": 2, "thrice": 3, **NUMBER_WORDS}.get(token)
+        match = _TIMES.fullmatch(token)
+        if times is None and token.isdigit():
+            times = int(token)
+        elif times is None and match is not None:
+            times = int(match[1] or match[2])
+        elif token in ("x", "×") and self._peek(1).isdigit():
+            times = int(self._peek(1))
+            self._next += 1
+        if times is None:
+            return None, None, 0
+        self._next += 1
+        more = int(self._skip("more", "additional", "further"))
+        self._skip("times", "time", "x", "×")
+        more = max(more, int(self._skip("more")))
+        if self._skip("in"):
+            self._skip("all", "total")
+            more = -1
+        elif self._skip("altogether", "total"):
+            more = -1
+        return None, times, more
+
+    def _to_end(self) -> int:
+        """Stitches that "to end", "to last 2 sts" or "until 2 sts remain" leave."""
+        self._skip("the")
+        if self._skip("end"):
+            if self._skip("of"):
+                self._skip("the")
+                self._skip("row", "round", "rnd", "needle")
+            return 0
+        self._skip("last")
+        token = self._peek()
+        if token in ("st", "stitch"):
+            number = 1
+        elif token.isdigit() or token in NUMBER_WORDS:
+            self._next += 1
+            number = NUMBER_WORDS.get(token) or int(token)
+        else:
+            raise self._line.wrong(
+                f'"to {token}" cannot be read.', 'Write "to end" or "to last 2 sts".'
+            )
+        self._skip("st", "sts", "stitch", "stitches")
+        self._skip("remain", "remains", "rem", "left", "remaining")
+        return number
+
+    def _change_yarn(self) -> None:
+        known = [yarn_name(index) for index in range(self._yarns)]
+        name = self._take().upper() if self._peek() else ""
+        if name not in known:
+            raise self._line.wrong(f"there is no yarn {name}.", f"Use {', '.join(known)}.")
+        self._yarn = known.index(name)
+
+    def _named_yarn(self) -> int:
+        if self._yarn is None:
+            raise self._line.wrong(
+                "it does not say with which yarn it begins.", 'Write "with A …".'
+            )
+        return self._yarn
+
+    def _stitch(self, token: str) -> None:
+        purl, number = token.startswith("p"), token[1:]
+        stitch = (WrittenStitch(purl, "", self._named_yarn()),)
+        is_word = not number.isdigit() and len(token) > 1
+        start = self._next - 1
+        count = int(number) if number.isdigit() else None
+        if count is None and (self._peek().isdigit() or self._peek() in NUMBER_WORDS):
+            word = self._take()
+            count = NUMBER_WORDS.get(word) or int(word)
+        if count is not None:
+            self._skip("st", "sts", "stitch", "stitches")
+            if self._peek() in ("to", "until", "till", "til", "across", "around") and count:
+                self._add(Part(stitch * min(count, MAX_STITCHES_PER_SIDE + 1)))
+                self._repeat_all()
+                return
+        elif self._peek() in ("all", "every", "each"):
+            self._next += 1
+            self._skip("st", "sts", "stitch", "stitches")
+            self._skip("across", "around")
+            self._add(Part(stitch, 0))
+            return
+        elif self._peek() in ("to", "until", "till", "til", "across", "around", "even"):
+            self._add(Part(stitch, self._tail()[0]))
+            return
+        if not self._goes_on():
+            raise self._unknown(start)
+        if count == 0:
+            raise self._line.wrong(f"{token!r} is no stitch.", "Leave it out.")
+        if count is None and is_word:
+            self._add(Part(stitch, 0))
+        else:
+            self._add(Part(stitch * min(count or 1, MAX_STITCHES_PER_SIDE + 1)))
+
+    def _goes_on(self) -> bool:
+        """Say whether the next token belongs to something else than the stitch before it."""
+        token = self._peek()
+        return (
+            not token
+            or not token[0].isalnum()
+            or token in ("and", "then", "rep", "repeat", "with", *_SHAPED)
+            or _STITCH.fullmatch(token) is not None
         )
-    return rest.lstrip(", ")
+
+    def _unknown(self, place: int) -> InputError:
+        """Refuse what begins at a token, by row, stitch and name."""
+        start = self._tokens[place][1]
+        name = re.split(r"[,;*\[\](){}]|\.(?:\s|$)", self._words[start:], maxsplit=1)[0].strip()
+        name = name[:40] or self._tokens[place][0]
+        kind = next((kind for names, kind in _NAMES if re.fullmatch(names, name.lower())), "")
+        is_counted = all(part.leave is None for part in self._stack[0].parts)
+        stitch = sum(frame.size for frame in self._stack) + 1
+        where = f"stitch {stitch}, " if is_counted else ""
+        if re.fullmatch(r"[kp]{2,}", name, re.IGNORECASE):
+            remedy = 'Separate stitches by commas; a line of a chart stands without "Row".'
+        else:
+            remedy = (
+                "Write k3, p2, [k1, p1] 3 times or *k1, p1; rep from * to end: charts hold knits "
+                "and purls only."
+            )
+        what = f", {kind}," if kind else ""
+        return self._line.wrong(f"{where}{name!r}{what} is not a knit or a purl.", remedy)

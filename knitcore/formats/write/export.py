@@ -19,13 +19,13 @@ from knitcore.formats.designs.layout import (
     region_cells,
 )
 from knitcore.formats.read.knitout_reader import verified
-from knitcore.formats.read.knitspeak import write_knitspeak
-from knitcore.formats.read.png import write_png
 from knitcore.formats.write.chart_drawing import chart_pdf, chart_svg
 from knitcore.formats.write.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
 from knitcore.formats.write.drawn_page import Page, to_long_svg, to_pdf
 from knitcore.formats.write.knitout import Finish
+from knitcore.formats.write.knitspeak import write_knitspeak
 from knitcore.formats.write.pattern import pattern_pages
+from knitcore.formats.write.png import write_png
 from knitcore.formats.write.report import design_report
 from knitcore.formats.write.stitch_values import write_csv, write_vtu
 from knitcore.formats.write.written_pattern import write_rows

@@ -1,15 +1,18 @@
 """Export and import over REST and on the command line."""
 
 import base64
+import io
 import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from PIL import Image
 
 from knitcore.formats.write.export import FORMATS, ExportKind
-from tests.app.command_line import run
+from tests.app.command_line import printed, refused, run
 from tests.app.rest import post, upload
 
 CHART = "KPKK\nPPKP\nKKPP"
@@ -99,6 +102,62 @@ def test_an_import_tells_what_a_knitout_program_leaves_out(
     machine, extension = imported["notes"]
     assert "SWGXYZ" in machine
     assert "x-speed-number (1 line from line 3)" in extension
+
+
+def _picture(suffix: str) -> bytes:
+    """Return a chart of 4 x 3 stitches, each 10 pixels wide and 20 high."""
+    tones = np.array([[255, 0, 255, 255], [0, 0, 255, 0], [255, 255, 0, 0]])
+    image = Image.fromarray(np.kron(tones, np.ones((20, 10))).astype(np.uint8))
+    buffer = io.BytesIO()
+    image.save(buffer, format=suffix)
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "options", "chart", "note"),
+    [
+        ("a.txt", b"- -\n -", {}, "PKP\nKPK", "blank squares are read as knits"),
+        ("a.txt", b"\xef\xbb\xbfCO 2\nR1: k 1, p1 (so)", {}, "PK", "Left out as remarks"),
+        ("a.txt", b"\x95|\n|\x95", {}, "PK\nKP", "Windows-1252"),
+        ("a.txt", "KP\nPK".encode("utf-16"), {}, "KP\nPK", ""),
+        ("a.ks", b"1st row k, p.", {}, "PK", "2 stitches are the fewest"),
+        ("a.png", _picture("PNG"), {}, CHART, "A grid of 4 x 3 cells is seen"),
+        ("a.jpg", _picture("JPEG"), {"columns": 4, "rows": 3}, CHART, "0.50 times"),
+        ("a.png", _picture("PNG"), {"columns": 4, "aspect": "as-knitted"}, None, "as knitted"),
+    ],
+)
+def test_readers_tell_what_they_chose_everywhere(
+    name: str,
+    content: bytes,
+    options: dict[str, str | int],
+    chart: str | None,
+    note: str,
+    client: TestClient,
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    upload = {"file": {"name": name, "content": base64.b64encode(content).decode()}, **options}
+    answer = post(client, "import", upload)
+    given = [part for key, value in options.items() for part in (f"--{key}", str(value))]
+    assert run("import", str(path), *given) == answer
+    assert chart is None or answer["chart"] == chart
+    assert note in " ".join(answer["notes"])
+    if not options:
+        written = printed("export", str(path), "--to", "text", "-o", str(tmp_path / "out.txt"))
+        assert note in written.stderr
+
+
+def test_a_design_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
+    design = tmp_path / "d.json"
+    document = {"format": "knitcore-design", "version": 2, "chart": CHART}
+    design.write_text(json.dumps(document), encoding="utf-8-sig")
+    assert run("import", str(design))["chart"] == CHART
+
+
+@pytest.mark.parametrize(("name", "says"), [("none.png", "does not exist"), (".", "is a folder")])
+def test_a_missing_file_is_reported(name: str, says: str, tmp_path: Path) -> None:
+    assert says in refused("import", str(tmp_path / name))
 
 
 def test_the_schema_is_published(client: TestClient) -> None:

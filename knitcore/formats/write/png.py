@@ -2,21 +2,18 @@
 
 A piece with an outline or with yarns of its own is a picture with a palette, its "no stitch"
 transparent and its yarns light where they knit and dark where they purl; the names of the yarns are
-in the file. Any other picture is read by its brightness.
+in the file. :mod:`knitcore.formats.read.picture` reads them back, and any other picture.
 """
 
 import io
 import json
-from pathlib import Path
 
 import numpy as np
-from PIL import Image, PngImagePlugin, UnidentifiedImageError
+from PIL import Image, PngImagePlugin
 
-from knitcore.base.arrays import Indices
 from knitcore.base.errors import InputError
-from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
-from knitcore.garment.piece import Piece, PieceYarn
-from knitcore.garment.shaped import ShapedChart
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.garment.piece import Piece
 
 TEXT_KEY = "knitcore-yarns"
 MAX_YARNS = 127
@@ -69,47 +66,3 @@ def _shade(colour: str, *, knit: bool) -> tuple[int, int, int]:
         rgb *= _DARK / bright
     red, green, blue = (int(channel) for channel in rgb.round())
     return red, green, blue
-
-
-def read_png_piece(file: Path) -> Piece:
-    """The chart of a picture: dark pixels are purls, light or transparent ones knits.
-
-    It has an outline and yarns if :func:`write_png` wrote them.
-
-    Raises
-    ------
-    InputError
-        If it is not a PNG, or too large.
-    """
-    try:
-        with Image.open(file, formats=["PNG"]) as image:
-            check_chart_size(image.height, image.width)  # before any pixel is decoded
-            said = image.info.get(TEXT_KEY) if image.mode == "P" else None
-            if isinstance(said, str):
-                return _piece(np.asarray(image)[::-1].astype(np.intp), said, file.name)
-            flat = Image.new("RGBA", image.size, "white")
-            flat.alpha_composite(image.convert("RGBA"))
-            return Piece.plain(StitchChart(np.asarray(flat.convert("L"))[::-1] < 128))
-    except Image.DecompressionBombError:
-        problem = f"{file.name} has more pixels than any chart has stitches."
-        remedy = f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns."
-        raise InputError("chart", problem, remedy) from None
-    except InputError:
-        raise
-    except (UnidentifiedImageError, OSError, SyntaxError, ValueError):
-        raise InputError(
-            "chart", f"{file.name} is not a readable PNG.", "Export it again as PNG."
-        ) from None
-
-
-def _piece(index: Indices, said: str, name: str) -> Piece:
-    damaged = InputError("chart", f"{name} is damaged.", "Export it again as PNG.")
-    try:
-        yarns = tuple(PieceYarn(str(yarn), str(colour)) for yarn, colour in json.loads(said))
-    except (ValueError, TypeError):
-        raise damaged from None
-    if index.max() > 2 * len(yarns):
-        raise damaged
-    stitch = index > 0
-    purl = stitch & (index % 2 == 0)
-    return Piece(ShapedChart(StitchChart(purl), stitch), yarns, np.maximum(index - 1, 0) // 2)

@@ -5,15 +5,16 @@ from hypothesis import given
 
 from knitcore import InputError, StitchChart
 from knitcore.chart.row_sides import Construction, Side
-from knitcore.formats.read.knitspeak import looks_knitspeak, read_knitspeak, write_knitspeak
+from knitcore.formats.read.written_reader import looks_written, read_rows
+from knitcore.formats.write.knitspeak import write_knitspeak
 from tests.knitcore.charts import WAYS_TO_WORK, stitch_charts
 
 
 @given(chart=stitch_charts(), way=WAYS_TO_WORK)
 def test_written_text_is_read_back(chart: StitchChart, way: tuple[Construction, Side]) -> None:
     text = write_knitspeak(chart, way[0], first_side=way[1])
-    assert looks_knitspeak(text)
-    assert read_knitspeak(text) == chart
+    assert looks_written(text)
+    assert read_rows(text) == chart
 
 
 def test_garter_and_stockinette_are_written_as_knitters_do() -> None:
@@ -41,16 +42,19 @@ def test_garter_and_stockinette_are_written_as_knitters_do() -> None:
     ],
 )
 def test_patterns_of_other_hands(text: str, chart: str) -> None:
-    assert read_knitspeak(text) == StitchChart.parse(chart)
+    assert read_rows(text) == StitchChart.parse(chart)
 
 
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("Row 1: k1, yo, k2tog.", "'yo, k2tog' is not a knit or a purl"),
+        ("Row 1: k1, yo, k2tog.", "row 1: stitch 2, 'yo', a yarn over, is not a knit or a purl"),
         ("Row 2: k1.", "row 1 is missing"),
         ("Row 1: k1.\nRow 1: p1.", "is given twice"),
-        ("Row 1: k3.\nRow 2: *k2, repeat from *.", "row 2 does not fit 3 stitches"),
+        (
+            "Row 1: k3.\nRow 2: *k2, repeat from *.",
+            "row 2: the 2 stitches that are repeated do not fit 3",
+        ),
         ("Row 1 (RS): k1.\nRow 2 (RS): k1.", "do not alternate"),
         ("Row 1: k1.\nRound 2: k1.", "mixed"),
         ("Row 1: [k1.", "not closed"),
@@ -64,4 +68,4 @@ def test_patterns_of_other_hands(text: str, chart: str) -> None:
 )
 def test_mistakes_are_named(text: str, says: str) -> None:
     with pytest.raises(InputError, match=says):
-        read_knitspeak(text)
+        read_rows(text)

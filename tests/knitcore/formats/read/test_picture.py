@@ -1,0 +1,142 @@
+"""Pictures of every kind become charts."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from knitcore import InputError, StitchChart
+from knitcore.formats.read.chart_files import Aspect, PictureScale
+from knitcore.formats.read.picture import read_picture
+from knitcore.formats.write.png import write_png
+from knitcore.garment.piece import Piece, PieceYarn
+from knitcore.garment.shaped import ShapedChart
+
+PURL = np.random.default_rng(1).random((12, 16)) < 0.4
+
+
+def toned(purl: object, knit: object, kind: object = np.uint8) -> Image.Image:
+    """The chart in two tones or colours."""
+    tones = np.where(PURL[..., None], purl, knit).astype(kind)  # type: ignore[call-overload]
+    return Image.fromarray(tones[..., 0] if tones.shape[-1] == 1 else tones)
+
+
+def drawn() -> Image.Image:
+    """The chart with cells of 20 pixels and lines between them."""
+    tones = np.kron(np.where(PURL, 60, 220), np.ones((20, 20))).astype(np.uint8)
+    tones[::20] = tones[:, ::20] = 0
+    return Image.fromarray(tones)
+
+
+def read(image: Image.Image, file: Path, scale: PictureScale | None = None) -> tuple[Piece, str]:
+    """The piece of a picture after it was saved, and its notes."""
+    image.save(file)
+    piece, notes = read_picture(file, scale)
+    return piece, " ".join(notes)
+
+
+@pytest.mark.parametrize(
+    ("image", "suffix", "note"),
+    [
+        (toned(0, 255), "png", ""),
+        (toned(0, 255).convert("1"), "png", ""),
+        (toned(0, 255).convert("RGB").quantize(4), "png", ""),
+        (toned(0, 255), "bmp", ""),
+        (toned(20, 230), "webp", ""),
+        (toned(1000, 1200, np.uint16), "png", "#050505 is read as knit, the darker #040404"),
+        (toned(0, 2_000_000, np.int32), "tif", ""),
+        (toned(0.1, 0.9, np.float32), "tif", ""),
+        (toned((255, 182, 193), (255, 255, 255)), "png", "#ffffff is read as knit"),
+        (toned(5, 40), "png", "the darker #050505 as purl"),
+        (toned((200, 30, 30), (30, 130, 40)), "png", "the darker #c81e1e as purl"),
+        (toned((0, 0, 0, 255), (0, 0, 0, 0)), "png", "Transparent pixels are read as knits"),
+        (drawn(), "png", "A grid of 16 x 12 cells is seen"),
+        (drawn(), "jpg", "A grid of 16 x 12 cells is seen"),
+    ],
+)
+def test_two_tones_or_colours_part_knits_from_purls(
+    image: Image.Image, suffix: str, note: str, tmp_path: Path
+) -> None:
+    piece, notes = read(image, tmp_path / f"chart.{suffix}")
+    assert np.array_equal(piece.chart.purl[::-1], PURL)
+    assert notes == "" if not note else note in notes
+
+
+def test_a_turned_photo_is_turned_back(tmp_path: Path) -> None:
+    image = toned(0, 255)
+    exif = image.getexif()
+    exif[274] = 6
+    image.save(tmp_path / "chart.png", exif=exif)
+    piece, _ = read_picture(tmp_path / "chart.png")
+    assert np.array_equal(piece.chart.purl[::-1], np.rot90(PURL, -1))
+
+
+@pytest.mark.parametrize(("tone", "kind"), [(240, "knits"), (20, "purls")])
+def test_one_colour_is_told_even_with_noise(tone: int, kind: str, tmp_path: Path) -> None:
+    noise = np.random.default_rng(0).normal(tone, 4, (30, 30))
+    piece, notes = read(Image.fromarray(noise.clip(0, 255).astype(np.uint8)), tmp_path / "a.png")
+    assert f"one colour, so all stitches are {kind}" in notes
+    assert piece.chart.purl.all() == (kind == "purls")
+
+
+@pytest.mark.parametrize(
+    ("scale", "size", "note"),
+    [
+        (PictureScale(columns=32), (32, 24), "24 rows keep"),
+        (PictureScale(rows=6), (8, 6), "8 columns keep"),
+        (PictureScale(16, None, Aspect.AS_KNITTED, 0.75), (16, 16), "0.75 times as high as wide"),
+        (PictureScale(None, None, Aspect.AS_KNITTED, 0.75), (16, 16), "A grid"),
+        (PictureScale(16, 24), (16, 24), "stretch the picture 2.00 times"),
+        (PictureScale(16, 24, Aspect.FREE), (16, 24), ""),
+    ],
+)
+def test_proportions_are_kept(
+    scale: PictureScale, size: tuple[int, int], note: str, tmp_path: Path
+) -> None:
+    piece, notes = read(drawn(), tmp_path / "chart.png", scale)
+    assert (piece.chart.columns, piece.chart.rows) == size
+    assert note in notes
+
+
+@pytest.mark.parametrize(
+    ("scale", "says"),
+    [
+        (PictureScale(columns=16, aspect=Aspect.FREE), "needed for a free aspect"),
+        (PictureScale(columns=16, aspect=Aspect.AS_KNITTED), "not known"),
+    ],
+)
+def test_a_size_that_does_not_follow_is_refused(
+    scale: PictureScale, says: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=says):
+        read(drawn(), tmp_path / "chart.png", scale)
+
+
+def test_a_large_picture_without_a_grid_needs_a_width(tmp_path: Path) -> None:
+    noise = np.random.default_rng(0).integers(0, 255, (1200, 1100)).astype(np.uint8)
+    with pytest.raises(InputError, match="no grid is seen"):
+        read(Image.fromarray(noise), tmp_path / "chart.png")
+
+
+def test_a_picture_of_this_library_keeps_outline_and_yarns(tmp_path: Path) -> None:
+    shaped = ShapedChart.parse("KPKK\nPPKP", ".xx.\nxxxx")
+    yarns = PieceYarn("cream", "#efe9dd"), PieceYarn("navy", "#1f3b70")
+    piece = Piece(shaped, yarns, np.array([[0, 0, 1, 1], [0, 0, 1, 0]]))
+    file = tmp_path / "own.png"
+    file.write_bytes(write_png(piece))
+    assert read_picture(file) == (piece, ())
+    assert "yarns are lost: it is scaled" in read_picture(file, PictureScale(columns=8))[1][0]
+    with Image.open(file) as image:
+        saved = image.convert("RGBA")
+    saved.save(file)
+    _, notes = read_picture(file)
+    assert "an outline is not taken" in " ".join(notes)
+
+
+def test_blocks_of_a_small_chart_of_this_library_are_not_taken_for_a_grid(tmp_path: Path) -> None:
+    basket = StitchChart.parse("KP\nPK")
+    big = StitchChart(np.kron(basket.purl, np.ones((10, 10))).astype(bool))
+    file = tmp_path / "own.png"
+    file.write_bytes(write_png(big))
+    assert read_picture(file)[0].chart == big
