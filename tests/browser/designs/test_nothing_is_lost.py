@@ -32,7 +32,7 @@ def test_bad_text_is_explained_and_changes_nothing(flat_studio: Page) -> None:
     problem = flat_studio.locator("#import-problem")
     expect(problem).to_be_visible()
     expect(problem).to_contain_text("stitch 4 is 'X'")
-    expect(problem).to_contain_text("Write every stitch as K or P.")
+    expect(problem).to_contain_text("Write every stitch as K or P")
     assert kept_chart(flat_studio) == painted
 
     flat_studio.fill("#import-text", "KPK\nPKP")

@@ -137,8 +137,8 @@ def test_readers_tell_what_they_chose_everywhere(
 ) -> None:
     path = tmp_path / name
     path.write_bytes(content)
-    upload = {"file": {"name": name, "content": base64.b64encode(content).decode()}, **options}
-    answer = post(client, "import", upload)
+    sent = {"file": {"name": name, "content": base64.b64encode(content).decode()}, **options}
+    answer = post(client, "import", sent)
     given = [part for key, value in options.items() for part in (f"--{key}", str(value))]
     assert run("import", str(path), *given) == answer
     assert chart is None or answer["chart"] == chart
