@@ -19,13 +19,14 @@ def test_answers_are_the_same_under_other_instruction_sets(tmp_path):
     sets = [name for name in playable() if name in ("haswell", "nehalem", "skylake-avx512")]
     if len(sets) < 2:
         pytest.skip("this processor has one instruction set only")
-    asked = ["--short", "--sets", ",".join(sets), "--folder", str(tmp_path)]
-    found = subprocess.run(
-        [sys.executable, "-m", "scripts.any_machine", *asked], cwd=ROOT, env=os.environ.copy(),
+    options = ["--short", "--sets", ",".join(sets), "--folder", str(tmp_path)]
+    comparison = subprocess.run(
+        [sys.executable, "-m", "scripts.any_machine", *options], cwd=ROOT, env=os.environ.copy(),
         capture_output=True, text=True, check=False,
     )  # fmt: skip
-    assert found.returncode == 0, found.stdout + found.stderr
-    assert f"{len(SHORT)} answers under {len(sets)} instruction sets, 0 beyond" in found.stdout
+    assert comparison.returncode == 0, comparison.stdout + comparison.stderr
+    said = f"{len(SHORT)} answers under {len(sets)} instruction sets, 0 beyond"
+    assert said in comparison.stdout
 
 
 def test_the_short_form_asks_what_the_long_one_asks():
@@ -33,9 +34,9 @@ def test_the_short_form_asks_what_the_long_one_asks():
 
 
 def test_energies_and_sizes_are_held_to_more_digits():
-    one = {"energy_n_mm": 1.0, "cell_course_mm": 2.0, "moment_n": 1.0, "seconds": 3.0}
+    first = {"energy_n_mm": 1.0, "cell_course_mm": 2.0, "moment_n": 1.0, "seconds": 3.0}
     other = {"energy_n_mm": 1.0 + 2e-6, "cell_course_mm": 2.0, "moment_n": 1.00005, "seconds": 9.0}
-    sizes, others, worst = difference(one, other)
+    sizes, others, worst = difference(first, other)
     assert sizes == pytest.approx(2e-6, rel=1e-3)
     assert others == pytest.approx(5e-5, rel=1e-3)
     assert worst == ".energy_n_mm"
@@ -78,7 +79,7 @@ LINEAR = {
 
 
 def _uses_blas(path: Path) -> bool:
-    """Whether a file has a product of matrices, or a function of a library's linear algebra; the
+    """Return whether a file has a product of matrices, or a function of a library's linear algebra; the
     lengths of many vectors are sums."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
@@ -99,17 +100,17 @@ def _uses_blas(path: Path) -> bool:
 
 def test_shapes_are_found_without_blas():
     """Its sums differ between processors, and a shape that leaves a saddle hangs on them."""
-    found = {
+    modules = {
         str(path.relative_to(ROOT / "knitcore"))
         for path in SAME_EVERYWHERE
         if _uses_blas(path) and "paper" not in path.parts
     }
-    assert found == LINEAR.keys()
+    assert modules == LINEAR.keys()
 
 
 def test_shapes_are_found_without_pythons_sum():
     """It rounds otherwise from Python 3.12 on."""
-    found = {
+    modules = {
         str(path.relative_to(ROOT / "knitcore"))
         for path in SAME_EVERYWHERE
         if any(
@@ -117,4 +118,4 @@ def test_shapes_are_found_without_pythons_sum():
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         )
     }
-    assert found == SUMMED.keys()
+    assert modules == SUMMED.keys()

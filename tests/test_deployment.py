@@ -101,8 +101,8 @@ def _instructions() -> list[tuple[str, str]]:
     """Instructions of the Dockerfile with their arguments, continued lines joined."""
     text = re.sub(r"^#.*\n", "", DOCKERFILE, flags=re.MULTILINE)
     lines = re.sub(r"\s*\\\n\s*", " ", text).splitlines()
-    found = [line.partition(" ") for line in lines if line.strip()]
-    return [(name, rest) for name, _, rest in found]
+    pairs = [line.partition(" ") for line in lines if line.strip()]
+    return [(name, rest) for name, _, rest in pairs]
 
 
 def _all(name: str) -> list[str]:
@@ -191,11 +191,11 @@ def test_the_script_checks_the_files_where_no_engine_answers(tmp_path: Path) -> 
     python.write_text('#!/bin/sh\necho "$@"\n')
     python.chmod(0o755)
     environment = os.environ | {"ENGINE": "false", "PYTHON": str(python)}
-    told = subprocess.run(
+    check = subprocess.run(
         [ROOT / "scripts/image"], env=environment, capture_output=True, text=True, check=True
     )
-    assert "No container engine answers" in told.stdout
-    assert "tests/test_deployment.py" in told.stdout
+    assert "No container engine answers" in check.stdout
+    assert "tests/test_deployment.py" in check.stdout
 
 
 def test_images_are_pinned_by_digest_and_not_published_without(tmp_path: Path) -> None:

@@ -91,12 +91,12 @@ PROGRAM = re.compile(r"`(make [a-z-]+|python -m (?:scripts|studies)[\w.]*)")
 WRITTEN = {"docs/evidence.md": "studies.evidence"}
 """Pages that a program writes, and names."""
 UNTRACED = 2
-"""So many numbers of a section may stand without a maker."""
+"""Largest number of numbers in a section without a maker."""
 
 
 def _sections(text: str) -> list[str]:
     """Split a page at its headings, which comments in code are not."""
-    starts = [found.start() for found in SECTION.finditer(text) if found[0].startswith("#")]
+    starts = [head.start() for head in SECTION.finditer(text) if head[0].startswith("#")]
     return [text[begin:end] for begin, end in pairwise([0, *starts, len(text)])]
 
 
@@ -143,7 +143,7 @@ def _tests_of(path: Path) -> set[str]:
 
 
 def _makes(maker: str, section: str) -> bool:
-    """Whether a maker exists, and, if it is a constant, is the number that a section prints."""
+    """Return whether a maker exists, and, if it is a constant, is the number that a section prints."""
     path, _, name = maker.partition("::")
     if re.fullmatch(r"paper (?:Fig\.|Note|Table) \w+", maker):
         return True
@@ -179,8 +179,8 @@ def test_numbers_of_the_evidence_are_its_numbers(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=_id)
 def test_links_between_pages_lead_somewhere(page: Path) -> None:
     targets = re.findall(r"\]\(((?!https?:|mailto:|#)[^)#\s]+)", page.read_text())
-    found = [(page.parent / target).resolve() for target in targets]
-    assert not [to for to in found if not to.exists() and not {to, *to.parents} & {*MADE}]
+    places = [(page.parent / target).resolve() for target in targets]
+    assert not [to for to in places if not to.exists() and not {to, *to.parents} & {*MADE}]
 
 
 @pytest.mark.parametrize("page", [*PAGES, *MORE_PAGES], ids=_id)

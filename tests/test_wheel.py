@@ -22,7 +22,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800)]
 
 
 def run(*command: str | Path, cwd: Path) -> str:
-    """What a command prints; it finds nothing of this checkout."""
+    """Return what a command prints; it finds nothing of this checkout."""
     bare = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     done = subprocess.run(
         command, cwd=cwd, env=bare, capture_output=True, text=True, timeout=600, check=False
@@ -126,11 +126,11 @@ def test_the_client_installs_alone(installed: Callable[..., Path], tmp_path: Pat
         "import knitcore_client as k, importlib.util as u;"
         "print(k.__version__, u.find_spec('numpy'), u.find_spec('knitcore'))"
     )
-    told = run(programs / "python", "-c", script, cwd=tmp_path)
-    assert told.split() == [VERSION, "None", "None"]
+    printed = run(programs / "python", "-c", script, cwd=tmp_path)
+    assert printed.split() == [VERSION, "None", "None"]
 
 
 def test_it_runs_without_being_installed(wheels: Path, tmp_path: Path) -> None:
     [wheel] = wheels.glob(f"knitcore-{VERSION}-*.whl")
-    told = run(UV, "tool", "run", "--from", wheel, "knitcore", *PREDICT, cwd=tmp_path)
-    assert json.loads(told)["rows"]
+    printed = run(UV, "tool", "run", "--from", wheel, "knitcore", *PREDICT, cwd=tmp_path)
+    assert json.loads(printed)["rows"]

@@ -40,9 +40,6 @@ PAGE_PARAMETER = re.compile(rf"@param \{{.*?\}} \[?({'|'.join(sorted(VAGUE))})\b
 PAGE_PROSE = re.compile(r"/\*.*?\*/|(?<![:\\])//[^\n]*|\"(?:[^\"\\\n]|\\.)*\"", re.DOTALL)
 """Comments and strings of the page's code."""
 
-TESTS = ("tests/app/", "tests/client/", "tests/scripts/")
-"""Folders in which the rules hold for tests too; elsewhere for their helpers only."""
-
 ALLOWED: dict[str, dict[str, int]] = {"names": {"app/operations": 1}}
 """Faults that each folder may still have, by rule."""
 
@@ -60,10 +57,9 @@ class Fault(NamedTuple):
 def faults() -> tuple[Fault, ...]:
     """All faults in code and prose."""
     every: list[Fault] = []
-    for top in ("knitcore", "app", "scripts", "tests"):
+    for top in ("knitcore", "app", "scripts", "studies", "tests"):
         for file in sorted((ROOT / top).rglob("*.py")):
-            if not file.name.startswith("test_") or f"{file.relative_to(ROOT)}".startswith(TESTS):
-                every += faults_of_code(file)
+            every += faults_of_code(file)
     for file in page_files():
         lines = vague_page_names(file.read_text(encoding="utf-8"))
         every += (fault("names", file, line, name) for line, name in lines)

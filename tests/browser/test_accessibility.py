@@ -41,24 +41,24 @@ PANELS: dict[str, Callable[[Page], None]] = {
 
 @pytest.mark.slow
 def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page) -> None:
-    page, found = flat_studio, []
+    page, faults = flat_studio, []
     for theme in THEMES:
         page.emulate_media(color_scheme=theme)
-        found += [f"{theme} page: {wrong}" for wrong in violations(page)]
+        faults += [f"{theme} page: {wrong}" for wrong in violations(page)]
         page.click("#tab-limb")
         expect(page.locator(".limb-pressure")).to_contain_text("mmHg")
-        found += [f"{theme} limb: {wrong}" for wrong in violations(page, "#inspector")]
+        faults += [f"{theme} limb: {wrong}" for wrong in violations(page, "#inspector")]
         page.click("#tab-drape")
-        found += [f"{theme} drape: {wrong}" for wrong in violations(page, "#inspector")]
+        faults += [f"{theme} drape: {wrong}" for wrong in violations(page, "#inspector")]
         page.click("#tab-curve")
         expect(page.locator("#plot-curve .main-svg").first).to_be_visible()
         page.click("#provenance")  # with the field for one's own gauge
-        found += [f"{theme} source: {wrong}" for wrong in violations(page, "#inspector")]
+        faults += [f"{theme} source: {wrong}" for wrong in violations(page, "#inspector")]
         page.click("#provenance")
         page.focus("#chart")
         for name in MENUS:
             page.click(f"#{name}-button")
-            found += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}-menu")]
+            faults += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}-menu")]
             page.keyboard.press("Escape")
         for name, open_panel in PANELS.items():
             open_panel(page)
@@ -66,41 +66,41 @@ def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page)
             expect(page.locator(f"#{name} .busy, #{name}.busy")).to_have_count(
                 0
             )  # greyed till known
-            found += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}")]
+            faults += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}")]
             page.locator(f"#{name} header").get_by_label("Close").click()
             expect(page.locator(f"#{name}")).to_be_hidden()
-    assert not found, "\n".join(found)
+    assert not faults, "\n".join(faults)
 
 
 @pytest.mark.slow
 def test_nothing_serious_is_wrong_where_targets_and_pictures_are_given(flat_studio: Page) -> None:
-    page, found = flat_studio, []
+    page, faults = flat_studio, []
     picture = io.BytesIO()
     Image.effect_mandelbrot((60, 40), (-2, -1, 1, 1), 20).save(picture, "PNG")
     for theme in THEMES:
         page.emulate_media(color_scheme=theme)
         page.keyboard.press("Shift+F")
         expect(page.locator("#inverse-find-content")).to_be_visible()
-        found += [f"{theme} find: {wrong}" for wrong in violations(page, "#inverse")]
+        faults += [f"{theme} find: {wrong}" for wrong in violations(page, "#inverse")]
         page.click("#inverse-close")
         page.keyboard.press("Shift+W")
         for way in ("outline", "stiffness"):
             page.click(f"#fill-{way}")
-            found += [f"{theme} {way}: {wrong}" for wrong in violations(page, "#panel-fill")]
+            faults += [f"{theme} {way}: {wrong}" for wrong in violations(page, "#panel-fill")]
         page.keyboard.press("Escape")
         page.click("#stretch-more")
-        found += [f"{theme} options: {wrong}" for wrong in violations(page, "#stretch-options")]
+        faults += [f"{theme} options: {wrong}" for wrong in violations(page, "#stretch-options")]
         page.keyboard.press("Escape")
         drop(page, "purls.png", "image/png", picture.getvalue())
         expect(page.locator("#picture-dialog")).to_be_visible()
-        found += [f"{theme} picture: {wrong}" for wrong in violations(page, "#picture-dialog")]
+        faults += [f"{theme} picture: {wrong}" for wrong in violations(page, "#picture-dialog")]
         page.keyboard.press("Escape")
-    assert not found, "\n".join(found)
+    assert not faults, "\n".join(faults)
 
 
 @pytest.mark.slow
 def test_nothing_serious_is_wrong_in_any_stop_of_the_tour(flat_studio: Page) -> None:
-    page, found = flat_studio, []
+    page, faults = flat_studio, []
     for theme in THEMES:
         page.emulate_media(color_scheme=theme)
         page.click("#designs-button")
@@ -109,11 +109,11 @@ def test_nothing_serious_is_wrong_in_any_stop_of_the_tour(flat_studio: Page) -> 
         stops = 0
         while page.locator("#tour").is_visible():
             title = page.locator("#tour-title").inner_text()
-            found += [f"{theme} {title}: {wrong}" for wrong in violations(page)]
+            faults += [f"{theme} {title}: {wrong}" for wrong in violations(page)]
             page.keyboard.press("ArrowRight")
             stops += 1
         assert stops >= 8
-    assert not found, "\n".join(found)
+    assert not faults, "\n".join(faults)
 
 
 def test_a_chart_is_painted_with_keys_alone(flat_studio: Page) -> None:

@@ -88,11 +88,11 @@ def firefox(tmp_path: Path) -> Iterator[Firefox]:
     )
     assert process.stderr is not None
     with process.stderr:
-        found = None
-        while found is None and (line := process.stderr.readline()):
-            found = re.search(r"BiDi listening on (ws://\S+)", line)
-        assert found, "Firefox printed no address"
-        with connect(f"{found.group(1)}/session", max_size=None, open_timeout=60) as socket:
+        address = None
+        while address is None and (line := process.stderr.readline()):
+            address = re.search(r"BiDi listening on (ws://\S+)", line)
+        assert address, "Firefox printed no address"
+        with connect(f"{address.group(1)}/session", max_size=None, open_timeout=60) as socket:
             yield Firefox(socket)
         process.terminate()
         process.wait(TIMEOUT_MS / 1000)

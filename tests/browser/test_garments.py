@@ -105,7 +105,7 @@ def test_formats_of_extensions_are_offered(flat_studio: Page) -> None:
     page.keyboard.press("Control+E")
     expect(page.get_by_role("group", name="From extensions")).to_contain_text("knit-house 1.0")
     page.get_by_label("punchcard").check()
-    with page.expect_request("**/api/v1/export") as asked:
+    with page.expect_request("**/api/v1/export") as request:
         page.locator("#export-make").click()
-    assert asked.value.post_data_json["to"] == "punchcard"
+    assert request.value.post_data_json["to"] == "punchcard"
     expect(page.locator("#export-dialog .dialog-status")).to_contain_text("is not a format")

@@ -87,10 +87,10 @@ def test_a_part_is_made_softer_tried_on_the_chart_and_taken_back(flat_studio: Pa
 
 
 def test_a_wish_waits_for_the_numbers_it_goes_by(flat_studio: Page) -> None:
-    asked: list[Route] = []
+    held: list[Route] = []
 
     def hold(route: Route) -> None:
-        asked.append(route)
+        held.append(route)
 
     flat_studio.route("**/api/v1/predict", hold)
     flat_studio.keyboard.press("Shift+W")
@@ -98,7 +98,7 @@ def test_a_wish_waits_for_the_numbers_it_goes_by(flat_studio: Page) -> None:
     flat_studio.select_option("#part-0-like", "much softer")
     expect(flat_studio.locator("#part-0-course-now")).to_have_text("–")
     expect(flat_studio.locator("#part-0-like")).to_have_value("much softer")
-    for route in asked:
+    for route in held:
         route.continue_()
     modulus = material("acrylic").law(Fabric.STOCKINETTE).modulus_course
     expect(flat_studio.locator("#part-0-course")).to_have_value(f"{0.4 * modulus:.3g}")
