@@ -79,7 +79,7 @@ LINEAR = {
 
 
 def _uses_blas(path: Path) -> bool:
-    """Return whether a file has a product of matrices, or a function of a library's linear algebra; the
+    """Return whether a file has a product of matrices, or calls a library's linear algebra; the
     lengths of many vectors are sums."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):

@@ -143,7 +143,7 @@ def _tests_of(path: Path) -> set[str]:
 
 
 def _makes(maker: str, section: str) -> bool:
-    """Return whether a maker exists, and, if it is a constant, is the number that a section prints."""
+    """Return whether a maker exists and, if it is a constant, is the number in the section."""
     path, _, name = maker.partition("::")
     if re.fullmatch(r"paper (?:Fig\.|Note|Table) \w+", maker):
         return True

@@ -43,7 +43,7 @@ class Firefox:
         self.command("browsingContext.navigate", context=self.tab, url=url, wait="complete")
 
     def value(self, expression: str) -> Any:
-        """What a script of the page gives, once it is there."""
+        """Return what a script of the page gives, once it is there."""
         answer = self.command(
             "script.evaluate",
             expression=expression,

@@ -18,7 +18,7 @@ ROUNDING_PX = 0.5
 
 
 def inside(page: Page, part: str, whole: str) -> bool:
-    """Whether a part lies within another on the screen, horizontally and vertically."""
+    """Return whether a part lies within another on the screen, horizontally and vertically."""
     inner, outer = page.locator(part).bounding_box(), page.locator(whole).bounding_box()
     assert inner
     assert outer

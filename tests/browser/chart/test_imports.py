@@ -54,7 +54,7 @@ def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
 
 def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> None:
     before = kept_design(flat_studio)
-    told = flat_studio.locator("#messages")
+    messages = flat_studio.locator("#messages")
     old = {"format": "knitcore-design", "version": 2, "name": "Old", "material": "cotton"}
     for name, kind, content, message in (
         ("broken.png", "image/png", b"\x89PNG nonsense", "not a picture"),
@@ -67,7 +67,7 @@ def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> No
         ("ragged.json", "", json.dumps(old | {"chart": "KP\nK"}).encode(), "rows of K and P"),
     ):
         drop(flat_studio, name, kind, content)
-        expect(told).to_contain_text(message)
+        expect(messages).to_contain_text(message)
     assert kept_design(flat_studio) == before
 
 

@@ -22,16 +22,16 @@ def test_every_tool_paints_and_all_is_undone(flat_studio: Page) -> None:
         "rectangle": [(2, 6), (4, 8)],
         "ellipse": [(6, 7), (8, 9)],
     }
-    wanted: set[tuple[int, int]] = set()
+    drawn: set[tuple[int, int]] = set()
     for tool, cells in painted:
         flat_studio.click(f"#tool-{tool}")
         chart.drag(*paths[tool])
         after = purls(kept_chart(flat_studio))
         if tool == "ellipse":  # its corners may be left out
-            assert wanted < after <= wanted | cells
+            assert drawn < after <= drawn | cells
         else:
-            assert after == wanted | cells, tool
-        wanted = after
+            assert after == drawn | cells, tool
+        drawn = after
     flat_studio.click("#tool-stamp")
     chart.click(10, 12)
     flat_studio.click("#tool-fill")

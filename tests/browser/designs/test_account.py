@@ -35,7 +35,7 @@ def test_the_user_is_named_and_signs_out(visitor: Page, lab: tuple[str, str]) ->
     url, token = lab
     page = visitor
     flat(page).goto(url)
-    found = [f"sign-in: {wrong}" for wrong in violations(page)]
+    faults = [f"sign-in: {wrong}" for wrong in violations(page)]
     page.get_by_label("Token").fill(token)
     page.get_by_role("button", name="Sign in").click()
     account = page.get_by_role("button", name="Account: ada")
@@ -44,18 +44,18 @@ def test_the_user_is_named_and_signs_out(visitor: Page, lab: tuple[str, str]) ->
         account.click()
         expect(page.locator("#sessions")).to_contain_text("This browser")
         expect(page.get_by_role("row", name="Designs, with")).to_contain_text("5,000")
-        found += [f"{theme}: {wrong}" for wrong in violations(page, "#account-dialog")]
+        faults += [f"{theme}: {wrong}" for wrong in violations(page, "#account-dialog")]
         page.keyboard.press("Escape")
     page.route("**/api/v1/session", lambda route: route.fulfill(status=429, json=TOO_MANY))
     account.click()
-    told = page.locator("#account-dialog .dialog-status")
-    expect(told).to_contain_text(TOO_MANY["detail"])
-    expect(told).to_contain_text(TOO_MANY["remedy"])
+    status = page.locator("#account-dialog .dialog-status")
+    expect(status).to_contain_text(TOO_MANY["detail"])
+    expect(status).to_contain_text(TOO_MANY["remedy"])
     page.unroute("**/api/v1/session")
-    told.get_by_role("button", name="Try again").click()
+    status.get_by_role("button", name="Try again").click()
     expect(page.locator("#sessions")).to_contain_text("This browser")
     page.locator("#sign-out").click()
     expect(page.get_by_label("Token")).to_be_visible()
     assert page.evaluate("localStorage['knitcore.design']") is None
     assert page.context.cookies() == []
-    assert not found, "\n".join(found)
+    assert not faults, "\n".join(faults)

@@ -123,7 +123,7 @@ def test_an_own_yarn_is_added_measured_and_changed(flat_studio: Page) -> None:
 
     def as_if_others_added(route: Route) -> None:
         answer = route.fetch()
-        theirs = [one | {"added_by_you": False} for one in answer.json()["materials"]]
+        theirs = [yarn | {"added_by_you": False} for yarn in answer.json()["materials"]]
         route.fulfill(response=answer, json={"materials": theirs})
 
     page.route("**/api/v1/materials", as_if_others_added)

@@ -17,7 +17,7 @@ AGREE = """async () => {
     const answer = await fetch(`/api/v1/designs/${remote.id}`);
     return (await answer.json()).document.chart === chart;
 }"""
-"""Whether the browser and the service have the same chart."""
+"""Return whether the browser and the service have the same chart."""
 LINK = re.compile(r"#shared/[\w-]{20,}$")
 
 
