@@ -105,7 +105,7 @@ class KernelModel:
         from scipy.linalg import solve_triangular
 
         cross = covariance(self.settings, charts, self.samples)
-        reduced = solve_triangular(self.factor, cross.T, lower=True)
+        reduced = solve_triangular(self.factor, cross.T, lower=True, check_finite=False)
         prior = self._prior_variance(charts)
         variance = prior - np.einsum("nm,nm->m", reduced, reduced) + self.settings.noise
         return cross @ self.weights, variance
