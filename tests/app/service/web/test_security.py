@@ -82,12 +82,10 @@ def test_a_link_with_a_token_leads_nowhere_else(guarded: TestClient) -> None:
     guarded.cookies.clear()
 
 
-FORGED = URLSafeTimedSerializer("guessed", salt="knitcore session").dumps(["environment", ""])
-
-
-@pytest.mark.parametrize("cookie", ["nonsense", "W10.x.y", "", '"', FORGED])
-def test_a_forged_session_opens_nothing(guarded: TestClient, cookie: str) -> None:
-    headers = {"Cookie": f"knitcore_session={cookie}"}
+@pytest.mark.parametrize("cookie", ["nonsense", "W10.x.y", "", '"', None])
+def test_a_forged_session_opens_nothing(guarded: TestClient, cookie: str | None) -> None:
+    guessed = URLSafeTimedSerializer("guessed", salt="knitcore session").dumps(["environment", ""])
+    headers = {"Cookie": f"knitcore_session={guessed if cookie is None else cookie}"}
     assert guarded.get("/api/v1/patterns", headers=headers).status_code == 401
 
 
