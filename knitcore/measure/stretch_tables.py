@@ -111,9 +111,9 @@ def _of_specimens(path: Path, reading: TableReading) -> StretchTest:
     sound = sound_runs([plausible(run, notes) for run in runs], notes)
     lengths = {_constant(s, "length_mm", reading.length_mm) for s in specimens}
     length = lengths.pop() if len(lengths) == 1 else None
-    return StretchTest(
-        path.name, "", tuple(sound), tuple(widths[run.name] for run in sound), tuple(notes), length
-    )  # fmt: skip
+    across = _constant(specimens[0], "across_mm", None)
+    sizes = tuple(widths[run.name] for run in sound)
+    return StretchTest(path.name, "", tuple(sound), sizes, tuple(notes), length, across)
 
 
 def _constant(specimen: Specimen, name: str, given: float | None) -> float | None:

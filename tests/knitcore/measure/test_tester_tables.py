@@ -114,6 +114,19 @@ def test_a_workbook_with_a_sheet_for_each_specimen(tmp_path: Path) -> None:
         read_stretch_test(tmp_path / "test.xlsx")
 
 
+def test_our_own_columns_may_stand_between_semicolons(tmp_path: Path) -> None:
+    head = "run;strain_along;strain_across;force_n;width_mm;length_mm;across_mm"
+    rows = [
+        f"{run};{comma(e)};{comma(-0.3 * e)};{comma(f)};70;100;50"
+        for run in ("1", "2")
+        for e, f in zip(STRAIN, FORCE, strict=True)
+    ]
+    test = read(tmp_path / "own.csv", "\n".join([head, *rows]).encode())
+    assert [run.length for run in test.runs] == [len(STRAIN)] * 2
+    assert (test.width_mm, test.length_mm, test.across_mm) == ((70.0, 70.0), 100.0, 50.0)
+    assert test.runs[1].strain_across[-1] == pytest.approx(-0.18)
+
+
 def channels(name: str = "Ch 1 (mm),Ch 2 (N)") -> bytes:
     rows = [f"{LENGTH_MM * e:.4f},{f:.4f}" for e, f in zip(STRAIN, FORCE, strict=True)]
     return "\n".join([name, *rows]).encode()
