@@ -79,8 +79,9 @@ test-slow: $(VENV)/.installed-tests $(VENV)/.compiled page ## Run the tests that
 	scripts/ensure-browsers chromium firefox-esr
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
-ten-runs: ## Run the default suite ten times, two at a time, in fresh clones; log in build
-	scripts/ten-runs
+ten-runs: ## Run both suites ten times, two at a time, in fresh clones; logs in build
+	scripts/ten-runs 10 build/ten-runs.log test
+	scripts/ten-runs 10 build/ten-slow-runs.log test-slow
 
 any-machine: $(VENV)/.installed-tests ## Compare answers under several instruction sets of this machine; OPTIONS="--short"
 	$(BIN)/python -m scripts.any_machine $(OPTIONS)
