@@ -231,7 +231,8 @@ export class Keeper {
   async #send() {
     clearTimeout(this.#sendTimer);
     if (this.#sending) await this.#sending;
-    if (this.#change === this.#sentChange || this.state.value.kind === "shared") return;
+    // In a conflict the choice comes first.
+    if (this.#change === this.#sentChange || ["shared", "conflict"].includes(this.state.value.kind)) return;
     this.#sending = this.#deliver().finally(() => (this.#sending = null));
     await this.#sending;
   }

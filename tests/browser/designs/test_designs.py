@@ -99,9 +99,13 @@ def test_what_cannot_be_merged_is_a_choice_that_loses_nothing(flat_studio: Page)
     flat_studio.unroute(SERVICE)
     expect(flat_studio.locator("#conflict-dialog")).to_be_visible()
     expect(flat_studio.locator("#conflict-dialog")).to_contain_text("name")
+    sent: list[str] = []
+    flat_studio.on("request", lambda request: sent.append(request.method))
+    flat_studio.evaluate("dispatchEvent(new Event('pagehide'))")  # would send what is unsent
     for theme in THEMES:
         flat_studio.emulate_media(color_scheme=theme)
         assert not violations(flat_studio), theme
+    assert not set(sent) - {"GET"}, "something was sent before the choice"
     flat_studio.click("#conflict-both")
     expect(flat_studio.locator(".design-name")).to_have_value("Mine (mine)")
     saved(flat_studio)
