@@ -7,6 +7,7 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction
+from knitcore.design.atlas import Atlas
 from knitcore.materials.law_uncertainty import Interval
 
 OFF = 0.10
@@ -19,6 +20,7 @@ class Patch:
 
     Attributes
     ----------
+    part : name of the part that it fills; empty if the targets are a map.
     repeat : its key.
     stitches : number of its stitches.
     row, column : of its first stitch, from 0 at the bottom left.
@@ -31,6 +33,7 @@ class Patch:
         the patch's edge.
     """
 
+    part: str
     repeat: str
     stitches: int
     row: int
@@ -59,13 +62,18 @@ def unreached(regions: Sequence[Patch], targets: Array, off: Array, have: Array)
     reported = set()
     for region, target, away in zip(regions, targets, off, strict=True):
         for axis, direction in enumerate(Direction):
-            alike = region.repeat, float(target[axis]), axis
+            alike = region.part, region.repeat, float(target[axis]), axis
             if abs(away[axis]) > OFF and alike not in reported:
                 reported.add(alike)
+                where = (
+                    f"“{region.part}”"
+                    if region.part
+                    else f"The patch of {region.stitches} stitches that begins in row "
+                    f"{region.row + 1}, column {region.column + 1}"
+                )
                 said.append(
-                    f"The patch of {region.stitches} stitches that begins in row {region.row + 1}, "
-                    f"column {region.column + 1} is {_compared(away[axis])} {direction}-wise than "
-                    f"wanted. {region.repeat} comes nearest. {_reach(target, direction, have)}"
+                    f"{where} is {_compared(away[axis])} {direction}-wise than wanted. "
+                    f"{region.repeat} comes nearest. {_reach(target, direction, have)}"
                 )
     if len(regions) == 1:
         only = regions[0]
@@ -81,6 +89,32 @@ def unreached(regions: Sequence[Patch], targets: Array, off: Array, have: Array)
                 "wanted."
             )
     return said
+
+
+def left_alone(name: str, target: Array, now: Array, atlas: Atlas) -> str:
+    """Say why a part stays as it is, and what comes nearest.
+
+    Parameters
+    ----------
+    name : of the part.
+    target, now : (2,) logarithms of its moduli; a target is NaN where any value will do.
+    atlas : the repeats that were tried.
+    """
+    off = np.nan_to_num(np.expm1(now - target))
+    if (np.abs(off) <= OFF).all():
+        return f"“{name}” is as wanted already, and stays as it is."
+    differs = " and ".join(
+        f"{_compared(away)} {direction}-wise"
+        for away, direction in zip(off, Direction, strict=True)
+        if abs(away) > OFF
+    )
+    nearest = int(np.nansum((atlas.log_moduli - target) ** 2, axis=1).argmin())
+    course, wale = np.exp(atlas.log_moduli[nearest])
+    return (
+        f"“{name}” stays as it is, {differs} than wanted: no repeat comes nearer in one direction "
+        f"without going away in the other. The nearest, {atlas.keys[nearest]}, has {course:.3g} "
+        f"N/mm course-wise and {wale:.3g} N/mm wale-wise."
+    )
 
 
 def _compared(away: float) -> str:

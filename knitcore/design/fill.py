@@ -5,8 +5,9 @@ other map is filled by patches (:mod:`knitcore.design.region_patches`): every re
 with the nearest effective moduli, from an atlas or a mixture of two of its repeats
 (:mod:`knitcore.design.mixtures`). Patches are fitted to their neighbours
 (:mod:`knitcore.design.patch_placing`), measured in the finite swatch
-(:mod:`knitcore.design.patch_check`), and chosen again where one misses its target there. The same
-seed gives the same chart.
+(:mod:`knitcore.design.patch_check`), and chosen again where one misses its target there. Parts with
+a target each (:mod:`knitcore.design.part_targets`) are patches by themselves; a part that cannot be
+brought nearer to its target stays as it is. The same seed gives the same chart.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,19 +18,23 @@ import numpy as np
 from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, InputError, SearchProgress
+from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat.grid import check_cloth
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import entry_of, predict_repeat
-from knitcore.design.explain import OFF, Patch, unreached
+from knitcore.design.explain import OFF, Patch, left_alone, unreached
 from knitcore.design.mixtures import Mixer
+from knitcore.design.part_targets import PartAnswer, PartsNow, PartTarget, target_parts
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patch_placing import placed
 from knitcore.design.readback import EXACT, deviation, nearest_chart
-from knitcore.design.region_patches import best_labels, connected, smooth, unevenness
+from knitcore.design.region_patches import EVENNESS, best_labels, connected, smooth, unevenness
+from knitcore.garment.shaped import largest_rectangle
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Interval
 from knitcore.mechanics.local_moduli import LocalModuli, local_moduli, stitch_table
+from knitcore.prediction.predict import predict
 
 CLOSE = 0.03
 """A repeat of the atlas nearer than this (in logarithms) is taken as it is."""
@@ -40,6 +45,8 @@ MIN_MIXED = 48
 MAX_CHECKED = 20_000
 """Stitches of the largest chart that is pulled in the finite swatch."""
 _CHECKS = 3
+_TRIED = 8
+"""Repeats that are tried in the size of a part."""
 _NEARLY = 0.25
 """Largest rms deviation (in logarithms) of a map that is nearly a chart's own."""
 _AS_GOOD = 1.25
@@ -63,6 +70,7 @@ class FilledField:
         direction. Patches are judged by their effective moduli in the swatch (a single patch by
         those in a large cloth, because free edges are not part of it), a chart that was read back
         by its local moduli.
+    parts : what each part has now, beside what it had.
     messages : on targets that were not met.
     """
 
@@ -71,6 +79,7 @@ class FilledField:
     regions: tuple[Patch, ...]
     local: LocalModuli
     off_share: float
+    parts: tuple[PartAnswer, ...]
     messages: tuple[str, ...]
 
 
@@ -80,7 +89,7 @@ def fill_field(
     material: Material,
     atlas: Atlas,
     *,
-    parts: Indices | None = None,
+    parts: Sequence[PartTarget] = (),
     kept: StitchChart | None = None,
     stitch: Mask | None = None,
     smallest_patch: int = 4,
@@ -98,17 +107,19 @@ def fill_field(
         there is no target.
     material : one yarn for the whole chart.
     atlas : of that material.
-    parts : (rows, columns) numbers from 0 of the parts that were given one by one
-        (:func:`knitcore.design.part_targets.target_parts`); a part narrower than a patch is one.
+    parts : the targets that the maps were made of, if they were given part by part
+        (:func:`knitcore.design.part_targets.target_maps`). Each part has a repeat of its own.
     kept : a chart whose stitches without a target stay as they are; the others are fitted to them
-        and judged among them. Without it all stitches are filled.
+        and judged among them. A part that cannot be brought nearer to its target stays, too.
+        Without such a chart all stitches are filled.
     stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere there is no target
         and no neighbour. All by default.
     smallest_patch : smallest side of a patch in stitches, where its part is not smaller.
     scattered : single stitches may be turned where that comes nearer; otherwise every patch is a
         repeat of the atlas, or stripes of two.
     seed : of the order in which stitches are tried.
-    check : pull the chart in the finite swatch, and choose again where the result differs.
+    check : pull the chart in the finite swatch, and choose again where the result differs. Parts
+        are judged by what is predicted for them, as they were before.
     progress : called with the share done.
     cancelled : asked between steps.
 
@@ -134,11 +145,9 @@ def fill_field(
                 "target", "there is no target inside the outline.", "Paint a target there."
             )
     atlas.check_material(material)
-    if parts is None:
-        parts = np.zeros(target.shape[1:], dtype=np.intp)
     watch = SearchProgress(progress, cancelled)
     fill = _Fill(target, parts, kept, stitch, material, atlas, scattered, seed, watch)
-    return fill.run(smallest_patch, check=check and target[0].size <= MAX_CHECKED)
+    return fill.run(smallest_patch, check=check and not parts and target[0].size <= MAX_CHECKED)
 
 
 @dataclass(frozen=True)
@@ -165,7 +174,7 @@ class _Fill:
     def __init__(
         self,
         target: Array,
-        parts: Indices,
+        parts: Sequence[PartTarget],
         kept: StitchChart | None,
         stitch: Mask | None,
         material: Material,
@@ -176,7 +185,8 @@ class _Fill:
     ) -> None:
         inside = np.ones(target.shape[1:], dtype=bool) if stitch is None else stitch
         self._target_map = np.where(inside, target, np.nan)
-        self._parts, self._scattered = parts, scattered
+        self._parts = PartsNow(parts, inside, kept, material)
+        self._scattered = scattered
         self._material, self._atlas, self._stitch = material, atlas, inside
         no_target = np.isnan(self._target_map).all(axis=0)
         self._fixed = ~inside if kept is None else no_target
@@ -186,32 +196,23 @@ class _Fill:
         self._seed, self._progress = seed, progress
         self._table = stitch_table(material)
         self._mixer: Mixer | None = None
+        self._known_cuts: dict[tuple[StitchChart, int, int], Array] = {}
 
     def run(self, smallest_patch: int, *, check: bool) -> FilledField:
         self._progress.look(0.01)
-        own = self._beside_kept(nearest_chart(self._target_map, self._table))
-        exact = float(np.nanmax(np.abs(deviation(own, self._target_map, self._table))))
-        if exact <= EXACT:
-            return self._read_back(own, "The map is exactly that of a chart, which was read back.")
-        uneven = unevenness(self._atlas, self._table)
-        chosen, cost = best_labels(self._atlas, uneven, *self._target_map)
-        labels = smooth(cost, smallest_patch, self._parts)
-        effective = self._atlas.log_moduli[chosen[labels]].transpose(2, 0, 1)
-        patches = connected(np.where(self._fixed, len(chosen), labels))
-        count = len(np.unique(patches[~self._fixed]))
-        patches[self._fixed] = count  # labels are in order, so these were last
-        first = np.unique(patches, return_index=True)[1][:count]
-        medians = _spread(self._targets(patches, count), patches)
-        rough = self._rms(deviation(own, self._target_map, self._table))
-        uneven_map = self._rms(medians - self._target_map)
-        if rough <= min(
-            _NEARLY,
-            _AS_GOOD * self._rms(effective - self._target_map),
-            _AS_GOOD * uneven_map + EXACT,
-        ):
-            return self._read_back(own, "The map is nearly that of a chart, which was read back.")
-        choices = [self._of_atlas(int(entry)) for entry in chosen[labels.ravel()[first]]]
-        choices = self._mixed(patches, choices)
+        if self._parts.targets:
+            patches, choices = self._by_parts()
+        else:
+            own = self._beside_kept(nearest_chart(self._target_map, self._table))
+            off = deviation(own, self._target_map, self._table)
+            if float(np.nanmax(np.abs(off))) <= EXACT:
+                return self._read_back(own, "exactly")
+            patches, choices, even_off = self._by_map(smallest_patch)
+            if self._rms(off) <= min(_NEARLY, even_off):
+                return self._read_back(own, "nearly")
+        plain, choices = choices, self._mixed(patches, choices)
+        farther = [k for k, choice in enumerate(choices) if not self._brings(patches == k, choice)]
+        patches, choices, plain = self._left_as_they_are(farther, patches, choices, plain)
         best = self._trial(patches, choices, 0.45, check=check)
         for turn in range(1, _CHECKS if check else 1):
             again = self._chosen_again(patches, best)
@@ -221,7 +222,105 @@ class _Fill:
             if trial.score >= best.score:
                 break
             best = trial
+        patches, best = self._without_worse(patches, best, plain)
         return self._filled(patches, best, check=check)
+
+    def _by_map(self, smallest_patch: int) -> tuple[Indices, list[_Choice], float]:
+        """Patches of a map with their repeats, and how far a chart read back may be off."""
+        uneven = unevenness(self._atlas, self._table)
+        chosen, cost = best_labels(self._atlas, uneven, *self._target_map)
+        labels = smooth(cost, smallest_patch)
+        patches, first = self._patches(labels)
+        medians = _spread(self._targets(patches, len(first)), patches)
+        effective = self._atlas.log_moduli[chosen[labels]].transpose(2, 0, 1)
+        even_off = min(
+            _AS_GOOD * self._rms(effective - self._target_map),
+            _AS_GOOD * self._rms(medians - self._target_map) + EXACT,
+        )
+        return patches, [self._of_atlas(int(e)) for e in chosen[labels.ravel()[first]]], even_off
+
+    def _by_parts(self) -> tuple[Indices, list[_Choice]]:
+        """A patch for each connected part, with the repeat that suits it best."""
+        numbers = target_parts(self._parts.targets, *self._stitch.shape)
+        price = EVENNESS * unevenness(self._atlas, self._table)
+        patches, first = self._patches(numbers)
+        chosen = {
+            number: self._nearest_entry((numbers == number) & self._stitch, price)
+            for number in dict.fromkeys(numbers.ravel()[first].tolist())
+        }
+        return patches, [chosen[number] for number in numbers.ravel()[first].tolist()]
+
+    def _nearest_entry(self, cells: Mask, price: Array) -> _Choice:
+        """The repeat that is nearest to the target in a part of this size, where it is cut off.
+
+        Tried are those nearest in a large cloth. Those that bring all targets nearer come first.
+        """
+        row, column = np.argwhere(cells)[0]
+        target = self._target_map[:, row, column]
+        cost = np.nansum((self._atlas.log_moduli - target) ** 2, axis=1) + price
+        allowed = self._may_hold(cells, self._atlas.log_moduli)
+        order = np.argsort(cost.round(6), kind="stable")
+        tried = list(dict.fromkeys([*order[allowed[order]][:_TRIED], *order[:_TRIED]]))
+        rows, columns = (part.stop - part.start for part in largest_rectangle(cells))
+        by_place = []
+        for entry in tried:
+            log_moduli = self._cut(self._atlas.chart(entry), rows, columns)
+            off = float(np.nansum((log_moduli - target) ** 2) + price[entry])
+            by_place.append((not self._may_hold(cells, log_moduli), round(off, 6)))
+        return self._of_atlas(int(tried[by_place.index(min(by_place))]))
+
+    def _cut(self, repeat: StitchChart, rows: int, columns: int) -> Array:
+        """(2,) logarithms of the moduli of a repeat in a patch of this size, where it is cut."""
+        key = repeat, rows, columns
+        if key not in self._known_cuts:
+            cut = predict(repeat.resized(rows, columns), self._material)
+            moduli = [cut.modulus_n_per_mm(direction) for direction in Direction]
+            self._known_cuts[key] = np.log(moduli)
+        return self._known_cuts[key]
+
+    def _patches(self, labels: Indices) -> tuple[Indices, Indices]:
+        """Connected patches of one label, fixed stitches last; and the first stitch of each."""
+        last = int(labels.max()) + 1
+        patches = connected(np.where(self._fixed, last, labels))
+        count = len(np.unique(patches[~self._fixed]))
+        patches[self._fixed] = count  # labels are in order, so these were last
+        return patches, np.unique(patches, return_index=True)[1][:count]
+
+    def _without_worse(
+        self, patches: Indices, trial: _Trial, plain: list[_Choice]
+    ) -> tuple[Indices, _Trial]:
+        """Give back the parts that came no nearer to their targets, and fit the others again.
+
+        A part that came no nearer with a mixture first gets its plain repeat.
+        """
+        while trial.choices:
+            after = self._parts.log_moduli(trial.chart)
+            worse = np.zeros_like(self._fixed)
+            for part, cells in enumerate(self._parts.cells):
+                if not self._parts.nearer(part, after[part]):
+                    worse |= cells & ~self._fixed
+            farther = [k for k in range(len(trial.choices)) if worse[patches == k].any()]
+            if not farther:
+                break
+            choices = list(trial.choices)
+            again = [k for k in farther if choices[k] is not plain[k]]
+            for k in again:
+                choices[k] = plain[k]
+            if not again:
+                patches, choices, plain = self._left_as_they_are(farther, patches, choices, plain)
+            trial = self._trial(patches, choices, 0.8, check=False)
+        return patches, trial
+
+    def _left_as_they_are(
+        self, left: list[int], patches: Indices, *choices: list[_Choice]
+    ) -> tuple[Indices, list[_Choice], list[_Choice]]:
+        """Fix the stitches of some patches, and number the others again."""
+        self._fixed = self._fixed | np.isin(patches, left)
+        staying = [k for k in range(len(choices[0])) if k not in left]
+        number = np.full(len(choices[0]) + 1, len(staying))
+        number[staying] = np.arange(len(staying))
+        first, second = ([each[k] for k in staying] for each in choices)
+        return number[patches], first, second
 
     def _of_atlas(self, entry: int) -> _Choice:
         return _Choice(self._atlas.chart(entry), self._atlas.log_moduli[entry])
@@ -229,7 +328,8 @@ class _Fill:
     def _mixed(self, patches: Indices, choices: list[_Choice]) -> list[_Choice]:
         """Mixtures, where they come nearer than repeats of the atlas."""
         targets = self._targets(patches, len(choices))
-        off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - targets)).max(axis=1)
+        off = np.nan_to_num(np.abs(_moduli_of(choices) - targets)).max(axis=1)
+        off[[not self._brings(patches == k, choice) for k, choice in enumerate(choices)]] = np.inf
         sizes = np.bincount(patches.ravel())
         large = [k for k in np.argsort(-sizes[: len(choices)]) if sizes[k] >= MIN_MIXED]
         poor = [k for k in large if off[k] > CLOSE][:MAX_MIXED]
@@ -241,7 +341,9 @@ class _Fill:
             key = (*np.nan_to_num(targets[patch].round(3)).tolist(), rows, columns)
             if key not in known:
                 known[key] = self._mixture(targets[patch], rows, columns, off[patch])
-            improved[patch] = known[key] or choices[patch]
+            mixture = known[key]
+            if mixture is not None and self._brings(patches == patch, mixture):
+                improved[patch] = mixture
         return improved
 
     def _mixture(self, target: Array, rows: int, columns: int, off: float) -> _Choice | None:
@@ -273,9 +375,25 @@ class _Fill:
         changed = any(a is not b for a, b in zip(improved, last.choices, strict=True))
         return improved if changed else None
 
+    def _brings(self, cells: Mask, choice: _Choice) -> bool:
+        """Tell whether a repeat brings the parts of a patch of this size nearer."""
+        if not self._parts.targets:
+            return True
+        rows, columns = (part.stop - part.start for part in largest_rectangle(cells))
+        return bool(self._may_hold(cells, self._cut(choice.repeat, rows, columns)))
+
+    def _may_hold(self, cells: Mask, log_moduli: Array) -> Mask:
+        """Tell which moduli (..., 2) bring all parts of a patch nearer to their targets."""
+        allowed = np.ones(log_moduli.shape[:-1], dtype=bool)
+        for part in self._parts.of(*np.argwhere(cells)[0]):
+            allowed &= self._parts.nearer(part, log_moduli)
+        return allowed
+
     def _trial(
         self, patches: Indices, choices: list[_Choice], start: float, *, check: bool
     ) -> _Trial:
+        if not choices:
+            return _Trial(self._kept, (), np.zeros((0, 2)), 0.0)
         repeats = [choice.repeat for choice in choices]
         chart = placed(
             patches,
@@ -316,7 +434,7 @@ class _Fill:
     def _rms(self, off: Array) -> float:
         return float(np.sqrt(np.nanmean(off**2)))
 
-    def _read_back(self, chart: StitchChart, message: str) -> FilledField:
+    def _read_back(self, chart: StitchChart, how: str) -> FilledField:
         self._progress.look(1.0)
         off = deviation(chart, self._target_map, self._table)
         return FilledField(
@@ -325,33 +443,48 @@ class _Fill:
             (),
             local_moduli(chart, self._material),
             self._off_share(off),
-            (message,),
+            (),
+            (f"The map is {how} that of a chart, which was read back.",),
         )
 
     def _filled(self, patches: Indices, trial: _Trial, *, check: bool) -> FilledField:
-        moduli = np.stack([choice.log_moduli for choice in trial.choices])
+        moduli = _moduli_of(trial.choices)
         targets = self._targets(patches, len(trial.choices))
         off, there = np.expm1(moduli - targets), np.full(moduli.shape, np.nan)
         if check:
             there = np.expm1(moduli + trial.factors - targets)
         judged = self._judged(trial.choices, trial.factors)
+        predicted = self._parts.log_moduli(trial.chart)
         regions = []
         for patch, choice in enumerate(trial.choices):
             cells = patches == patch
             row, column = np.argwhere(cells)[0].tolist()
-            repeat = choice.repeat.key, int(cells.sum()), row, column
+            name = ""
+            for part in self._parts.of(row, column):
+                name, judged[patch] = self._parts.targets[part].name, predicted[part]
+            repeat = name, choice.repeat.key, int(cells.sum()), row, column
             course, wale = off[patch].tolist()
             swatch_course, swatch_wale = there[patch].tolist()
             deviations = course, wale, swatch_course, swatch_wale
             regions.append(Patch(*repeat, *deviations, *self._moduli(choice, judged[patch])))
+        have = self._atlas.log_moduli
+        messages = unreached(regions, targets, np.expm1(judged - targets), have)
+        now = _spread(judged, patches)
+        repainted = np.array([(c & ~self._fixed).any() for c in self._parts.cells], dtype=bool)
+        for part in np.flatnonzero(~repainted).tolist():
+            name, target = self._parts.targets[part].name, self._parts.log_target[part]
+            messages.append(left_alone(name, target, self._parts.log_now[part], self._atlas))
+            left = self._parts.cells[part] & self._fixed
+            now[:, left] = self._parts.log_now[part][:, None]
         self._progress.look(1.0)
         return FilledField(
             trial.chart,
             patches,
             tuple(regions),
             local_moduli(trial.chart, self._material),
-            self._off_share(_spread(judged, patches) - self._target_map),
-            tuple(unreached(regions, targets, np.expm1(judged - targets), self._atlas.log_moduli)),
+            self._off_share(now - self._target_map),
+            self._parts.answers(predicted, repainted),
+            tuple(messages),
         )
 
     def _moduli(self, choice: _Choice, judged: Array) -> tuple[float, Interval, float, Interval]:
@@ -387,8 +520,13 @@ class _Fill:
 
     def _judged(self, choices: Sequence[_Choice], factors: Array) -> Array:
         """(patches, 2) logarithms of moduli in the swatch; of a lone patch, in a large cloth."""
-        moduli = np.stack([choice.log_moduli for choice in choices])
+        moduli = _moduli_of(choices)
         return moduli if self._is_alone(choices) else moduli + factors
+
+
+def _moduli_of(choices: Sequence[_Choice]) -> Array:
+    """(choices, 2) logarithms of their moduli."""
+    return np.array([choice.log_moduli for choice in choices]).reshape(-1, 2)
 
 
 def _spread(values: Array, patches: Indices) -> Array:

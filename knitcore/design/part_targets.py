@@ -1,16 +1,25 @@
-"""Targets for parts of a chart, as maps of moduli."""
+"""Targets for parts of a chart: as maps of moduli, and beside what the parts do now."""
+
+from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.errors import InputError
-from knitcore.chart.stitch_chart import check_chart_size
+from knitcore.chart.fabric import Direction
+from knitcore.chart.stitch_chart import StitchChart, check_chart_size
+from knitcore.design.explain import OFF
+from knitcore.garment.shaped import largest_rectangle
+from knitcore.materials import Material
+from knitcore.prediction.predict import predict
 
-Parts = Indices
+_WORTH = 0.9
+"""A part is repainted if at most this share of its distance from the target remains."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +63,7 @@ def target_maps(targets: Sequence[PartTarget], rows: int, columns: int) -> tuple
     return maps[0], maps[1]
 
 
-def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Parts:
+def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Indices:
     """(rows, columns) numbers from 0, equal where the same targets apply.
 
     Raises
@@ -68,6 +77,114 @@ def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Part
         numbers = np.unique(2 * parts + _cells(target, rows, columns), return_inverse=True)[1]
         parts = numbers.reshape(rows, columns)
     return parts
+
+
+@dataclass(frozen=True)
+class PartAnswer:
+    """Moduli of a part in a filled chart, beside those that it had.
+
+    Attributes
+    ----------
+    name : of the target.
+    stitches : number of its stitches.
+    repainted : False for a part that stays as it was, because no repeat came nearer.
+    course_before_n_per_mm, wale_before_n_per_mm : moduli of the part in the chart as it was,
+        predicted for the largest rectangle inside; NaN without such a chart.
+    course_n_per_mm, wale_n_per_mm : the same in the filled chart.
+    """
+
+    name: str
+    stitches: int
+    repainted: bool
+    course_before_n_per_mm: float
+    wale_before_n_per_mm: float
+    course_n_per_mm: float
+    wale_n_per_mm: float
+
+
+@dataclass(frozen=True, eq=False)
+class PartsNow:
+    """Parts of a chart with their targets, and what they do before they are filled.
+
+    A part may only be given stitches that are nearer to its target: over both directions, and in
+    neither of them farther, unless within :data:`~knitcore.design.explain.OFF`. So a part that
+    should be softer never becomes stiffer.
+
+    Parameters
+    ----------
+    targets : of the parts.
+    stitch : bool (rows, columns), where there are stitches.
+    kept : the chart as it is; None if nothing of it is to be kept.
+    material : of the chart.
+    """
+
+    targets: Sequence[PartTarget]
+    stitch: Mask
+    kept: StitchChart | None
+    material: Material
+
+    @cached_property
+    def cells(self) -> tuple[Mask, ...]:
+        """Stitches (rows, columns) of each part, inside the piece."""
+        return tuple(_cells(t, *self.stitch.shape) & self.stitch for t in self.targets)
+
+    def of(self, row: int, column: int) -> list[int]:
+        """The parts that a stitch belongs to."""
+        return [part for part, cells in enumerate(self.cells) if cells[row, column]]
+
+    @cached_property
+    def log_target(self) -> Array:
+        """(parts, 2) logarithms of the target moduli; NaN where any value will do."""
+        wished = [(t.course_n_per_mm, t.wale_n_per_mm) for t in self.targets]
+        logarithms: Array = np.log(np.array(wished, dtype=float))
+        return logarithms
+
+    @cached_property
+    def log_now(self) -> Array:
+        """(parts, 2) logarithms of the moduli of the chart as it is; NaN without it."""
+        if self.kept is None:
+            return np.full(self.log_target.shape, np.nan)
+        return self.log_moduli(self.kept)
+
+    def log_moduli(self, chart: StitchChart) -> Array:
+        """(parts, 2) logarithms of the moduli of a chart's parts, by their largest rectangles."""
+        moduli = np.full((len(self.cells), 2), np.nan)
+        for part, cells in enumerate(self.cells):
+            if cells.any():
+                inside = StitchChart(chart.purl[largest_rectangle(cells)])
+                answer = predict(inside, self.material)
+                moduli[part] = [answer.modulus_n_per_mm(direction) for direction in Direction]
+        logarithms: Array = np.log(moduli)
+        return logarithms
+
+    def nearer(self, part: int, log_moduli: Array) -> Mask:
+        """Tell which moduli (..., 2), as logarithms, are nearer to the target than those now."""
+        target = self.log_target[part]
+        before = np.nan_to_num(np.abs(self.log_now[part] - target), nan=0.0)
+        after = np.nan_to_num(np.abs(log_moduli - target), nan=0.0)
+        if self.kept is None:
+            return np.ones(after.shape[:-1], dtype=bool)
+        limit = np.maximum(before, np.log1p(OFF))
+        nearer: Mask = (after <= limit).all(axis=-1) & (
+            np.hypot(*np.moveaxis(after, -1, 0)) < _WORTH * np.hypot(*before)
+        )
+        return nearer
+
+    def answers(self, log_moduli: Array, repainted: Mask) -> tuple[PartAnswer, ...]:
+        """Compare each part of a filled chart with what it was.
+
+        Parameters
+        ----------
+        log_moduli : (parts, 2) logarithms of its moduli (:meth:`log_moduli`).
+        repainted : (parts,) which of them are filled.
+        """
+        before, after = np.exp(self.log_now).tolist(), np.exp(log_moduli).tolist()
+        return tuple(
+            PartAnswer(target.name, int(cells.sum()), bool(is_new), *then, *now)
+            for target, cells, is_new, then, now in zip(
+                self.targets, self.cells, repainted, before, after, strict=True
+            )
+        )
 
 
 def _cells(target: PartTarget, rows: int, columns: int) -> Mask:

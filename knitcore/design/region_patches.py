@@ -12,7 +12,7 @@ MAX_LABELS = 48
 """Most repeats in one chart."""
 _BIN = 0.02
 """Targets that differ by less than this (in logarithms) are looked up together."""
-_EVENNESS = 0.002
+EVENNESS = 0.002
 """Weight of unevenness: it counts at most as much as an error of 4.5 % in one modulus."""
 _SWEEPS = 6
 
@@ -45,7 +45,7 @@ def best_labels(
     -------
     indices into the atlas (labels,), and (labels, rows, columns) squared deviations.
     """
-    have, price = atlas.log_moduli.T, _EVENNESS * uneven
+    have, price = atlas.log_moduli.T, EVENNESS * uneven
     binned = np.stack([np.round(log_course / _BIN), np.round(log_wale / _BIN)]).reshape(2, -1)
     kinds, counts = np.unique(np.nan_to_num(binned, nan=1e9), axis=1, return_counts=True)
     kinds = np.where(kinds == 1e9, np.nan, kinds) * _BIN
@@ -60,12 +60,11 @@ def best_labels(
     return chosen, cost + price[chosen, None, None]
 
 
-def smooth(cost: Array, smallest: int, parts: Indices) -> Indices:
+def smooth(cost: Array, smallest: int) -> Indices:
     """Labels (rows, columns) of low cost in patches of at least smallest x smallest stitches.
 
     Starts from the cheapest label of every stitch, lets neighbours agree where that costs little,
-    and gives patches that are too small to their cheapest neighbour in the same part. A part that
-    is itself smaller is one patch: its repeat is cut off at its edge.
+    and gives patches that are too small to their cheapest neighbour.
     """
     labels: Indices = cost.argmin(axis=0)
     if len(cost) == 1:
@@ -78,7 +77,7 @@ def smooth(cost: Array, smallest: int, parts: Indices) -> Indices:
         if np.array_equal(updated, labels):
             break
         labels = updated
-    return _absorb(labels, cost, smallest, connected(parts))
+    return _absorb(labels, cost, smallest)
 
 
 def connected(labels: Indices) -> Indices:
@@ -98,23 +97,20 @@ def _neighbours_like(labels: Indices, label: int) -> Indices:
     return total
 
 
-def _absorb(labels: Indices, cost: Array, smallest: int, parts: Indices) -> Indices:
+def _absorb(labels: Indices, cost: Array, smallest: int) -> Indices:
     """Give patches that are too small to the neighbour that suits them best, smallest first."""
     labels = labels.copy()
-    least = np.minimum(smallest, _sides(parts))
-    areas = np.bincount(parts.ravel())
+    least = np.minimum(smallest, labels.shape)
     while True:
-        patches = connected(labels + len(cost) * parts)
+        patches = connected(labels)
         sizes = np.bincount(patches.ravel())
-        part = parts.ravel()[np.unique(patches, return_index=True)[1]]
-        sides = _sides(patches)
-        too_small = (sizes < least[part].prod(axis=1)) | (sides < least[part]).any(axis=1)
-        small = np.flatnonzero(too_small & (sizes < areas[part])).tolist()
+        too_small = (sizes < least.prod()) | (_sides(patches) < least).any(axis=1)
+        small = np.flatnonzero(too_small & (sizes < labels.size)).tolist()
         if not small:
             return labels
         index = min(small, key=lambda i: (sizes[i], i))
         cells = patches == index
-        beside = ndimage.binary_dilation(cells) & ~cells & (parts == parts[cells][0])
+        beside = ndimage.binary_dilation(cells) & ~cells
         choices = np.unique(labels[beside])
         labels[cells] = choices[np.argmin(cost[choices][:, cells].sum(axis=1))]
 

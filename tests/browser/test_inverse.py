@@ -76,6 +76,7 @@ def test_a_part_is_made_softer_tried_on_the_chart_and_taken_back(flat_studio: Pa
     flat_studio.fill("#part-0-wale", f"{rib.modulus_wale:.4f}")
     flat_studio.click("#fill-run")
     expect(flat_studio.locator("#fill-answer")).to_contain_text("as wanted: 100 % of it")
+    expect(flat_studio.locator("#fill-parts")).to_contain_text(f"rows {modulus:.3f} →")
     assert {line[:2] for line in kept_chart(flat_studio).split("\n")} <= {"KP", "PK"}
     expect(flat_studio.locator("#parts")).to_contain_text("as wanted")
     assert float(now.inner_text()) == pytest.approx(rib.modulus_course, rel=0.1)

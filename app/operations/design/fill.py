@@ -14,7 +14,7 @@ from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
-from knitcore.design.part_targets import Parts, PartTarget, target_maps, target_parts
+from knitcore.design.part_targets import PartTarget, target_maps
 from knitcore.design.shape import fill_shape
 from knitcore.formats.read.stitch_maps import read_wanted_moduli
 from knitcore.garment.shaped import outline_marks
@@ -35,7 +35,7 @@ from ...requests.fabrics import LawsRequest
 from ...service.results.atlases import Extent
 from ..registry import Command, Operation
 
-Maps = tuple[NDArray[np.float64], NDArray[np.float64], Parts | None]
+Maps = tuple[NDArray[np.float64], NDArray[np.float64], tuple[PartTarget, ...]]
 
 MAPS = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
 MAX_STITCHES = 40_000
@@ -111,13 +111,15 @@ class FillRequest(LawsRequest):
     seed: Seed = 0
     check: bool = Field(
         True,
-        description="Pull the chart in the finite swatch; choose again where the result differs.",
+        description="Pull the chart of a map in the finite swatch; choose again where the result "
+        "differs. Parts are judged by what is predicted for them.",
     )
 
 
 class PatchResult(ResultModel):
     """A region of one repeat."""
 
+    part: str = Field(description="Name of the wish that it fills; empty if maps were given.")
     repeat: RepeatText
     stitches: int
     row: Row = Field(description="Row of its first stitch, counted from 0 at the bottom.")
@@ -131,13 +133,30 @@ class PatchResult(ResultModel):
     )
     swatch_wale: Known
     modulus_course_n_per_mm: float = Field(
-        description="Modulus of the patch, in the finite swatch if it was pulled there."
+        description="Modulus of the patch, in the finite swatch if it was pulled there; of its "
+        "part, if parts were given."
     )
     modulus_course_interval_n_per_mm: Ends = Field(
         description="90 % interval; includes that of a large cloth of the repeat."
     )
     modulus_wale_n_per_mm: float
     modulus_wale_interval_n_per_mm: Ends
+
+
+class PartResult(ResultModel):
+    """Moduli of a part, beside those that it had."""
+
+    name: str
+    stitches: int
+    repainted: bool = Field(
+        description="False for a part that stays as it was, because no repeat came nearer."
+    )
+    course_before_n_per_mm: Known = Field(
+        description="Modulus of the largest rectangle inside, as the chart was; null without one."
+    )
+    wale_before_n_per_mm: Known
+    course_n_per_mm: Known = Field(description="The same in the filled chart.")
+    wale_n_per_mm: Known
 
 
 class FillResult(IntervalResult):
@@ -151,6 +170,7 @@ class FillResult(IntervalResult):
         description="Share of the stitches with a target that miss it by more than 10 %."
     )
     patches: list[PatchResult]
+    parts: list[PartResult] = Field(description="One for each wish; none if maps were given.")
     messages: list[str]
 
 
@@ -246,15 +266,15 @@ def _wanted(request: FillRequest) -> Maps:
     maps = {name: getattr(request, name) for name in MAPS}
     if request.wishes is None:
         course, wale = (_array(rows, name) for name, rows in maps.items())
-        return course, wale, None
+        return course, wale, ()
     if any(rows is not None for rows in maps.values()):
         raise InputError(
             "wishes", "are given together with maps.", "Give maps or wishes, not both."
         )
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
-    targets = [wish.target() for wish in request.wishes]
-    return *request.pass_to(target_maps, targets), request.pass_to(target_parts, targets)
+    targets = tuple(wish.target() for wish in request.wishes)
+    return *request.pass_to(target_maps, targets), targets
 
 
 def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float64]:
@@ -281,7 +301,7 @@ def _fill_command(
     atlas: Path | None,
     out: Path | None,
 ) -> FillResult:
-    targets = *read_wanted_moduli(target), None
+    targets = *read_wanted_moduli(target), ()
     if kept is not None:
         request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
     table = context.atlas(request.material, request.repeats, atlas)

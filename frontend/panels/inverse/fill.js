@@ -292,9 +292,11 @@ export function fromStiffness(studio) {
       if (size === sizeNow()) put((at) => before[at], "Take the fill back");
       void fill();
     });
+    const changed = fillResult.parts.some(({ repainted }) => repainted);
     answer.replaceChildren(
-      verdict(fillResult.off_share <= 0.05, inWords(fillResult.off_share)),
-      h("div", { class: "inverse-buttons" }, keep, back, other),
+      verdict(fillResult.off_share <= 0.05, inWords(fillResult)),
+      partList(fillResult, targeted),
+      h("div", { class: "inverse-buttons" }, changed && keep, changed && back, other),
       h(
         "details",
         {},
@@ -303,7 +305,7 @@ export function fromStiffness(studio) {
         ...fillResult.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
       ),
     );
-    keep.focus();
+    (changed ? keep : other).focus();
   };
 
   selection.listen(
@@ -340,11 +342,40 @@ export function fromStiffness(studio) {
   return { element, opened: measureAll };
 }
 
-/** @param {number} off share that misses its target */
-function inWords(off) {
+/** @param {FillResult} fillResult */
+function inWords({ off_share: off, parts }) {
+  const left = parts.filter(({ repainted }) => !repainted).map(({ name }) => name);
   if (off <= 0.05) return `On the chart now, as wanted: ${percent(1 - off)} of it is within 10 %.`;
+  if (left.length === parts.length) return "The chart stays as it is: nothing in this yarn comes nearer.";
   const share = off >= 1 ? "none" : percent(1 - off);
-  return `On the chart now, the nearest that was found: ${share} of it is within 10 % of what was wanted.`;
+  const stays = left.length ? ` ${left.join(", ")} ${left.length > 1 ? "stay as they are" : "stays as it is"}.` : "";
+  return `On the chart now, the nearest that was found: ${share} of it is within 10 % of what was wanted.${stays}`;
+}
+
+/** What each part has now, beside what it had and what was wanted. @param {FillResult} fillResult @param {Part[]} targeted */
+function partList({ parts }, targeted) {
+  return h(
+    "ul",
+    { class: "plain-list stack gap-6 small", id: "fill-parts" },
+    ...parts.map((part, i) =>
+      h(
+        "li",
+        {},
+        h("strong", {}, part.name),
+        !part.repainted && h("span", { class: "muted" }, " stays as it is"),
+        ...AXES.map(({ axis, label }) => {
+          const [before, now, target] = [part[`${axis}_before_n_per_mm`], part[`${axis}_n_per_mm`], targeted[i][axis]];
+          const change = part.repainted ? `${figure(before)} → ${figure(now)}` : figure(now);
+          return h(
+            "div",
+            { class: "figures" },
+            `${label} ${change} `,
+            target !== null && now !== null && h("span", { class: "muted" }, against(now, target)),
+          );
+        }),
+      ),
+    ),
+  );
 }
 
 /** @param {Stiffness} now @param {number} times @returns {Stiffness} */
@@ -364,7 +395,7 @@ const inKnitting = (message) =>
   message
     .replaceAll("course-wise", "along rows")
     .replaceAll("wale-wise", "along columns")
-    .replace(/[KP/]+(?= comes nearest)/, nameOf);
+    .replace(/[KP/]+(?= comes nearest)|(?<=The nearest, )[KP/]+/, nameOf);
 
 /** @param {FillResult} fillResult @param {Part[]} targeted */
 function patchList({ patches, columns }, targeted) {

@@ -7,10 +7,12 @@ from hypothesis import given
 from knitcore import CancelledError, Direction, Fabric, InputError, StitchChart, material
 from knitcore.design.atlas_build import predict_repeat
 from knitcore.design.fill import FilledField, fill_field
-from knitcore.design.part_targets import PartTarget, target_maps, target_parts
+from knitcore.design.part_targets import PartTarget, target_maps
 from knitcore.design.patch_check import finite_size
 from knitcore.design.region_patches import connected
+from knitcore.garment.shaped import largest_rectangle
 from knitcore.mechanics.local_moduli import LocalModuli, local_moduli
+from knitcore.prediction.predict import predict
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.design.atlases import REPEATS, acrylic_atlas
 
@@ -182,9 +184,8 @@ def test_a_part_narrower_than_a_patch_is_filled(columns: int) -> None:
     runs = tuple((row, 0, columns) for row in range(12))
     cuff = PartTarget("cuff", runs, garter.modulus_course, garter.modulus_wale)
     course, wale = target_maps([cuff], 12, 10)
-    parts = target_parts([cuff], 12, 10)
     knit = StitchChart.of_fabric(Fabric.STOCKINETTE, 12, 10)
-    field = filled(course, wale, parts=parts, kept=knit)
+    field = filled(course, wale, parts=[cuff], kept=knit)
     (region,) = field.regions
     assert region.stitches == 12 * columns
     assert region.repeat == "P/K"
@@ -193,6 +194,82 @@ def test_a_part_narrower_than_a_patch_is_filled(columns: int) -> None:
     large, interval = garter.modulus_course, region.modulus_course_interval_n_per_mm
     assert interval.low <= min(large, region.modulus_course_n_per_mm)
     assert interval.high >= max(large, region.modulus_course_n_per_mm)
+
+
+def runs_of(cells: np.ndarray) -> tuple[tuple[int, int, int], ...]:
+    """The stitches of a part, one by one."""
+    return tuple((row, column, 1) for row, column in np.argwhere(cells).tolist())
+
+
+def moduli_of(chart: StitchChart, cells: np.ndarray) -> np.ndarray:
+    """Predicted moduli of the largest rectangle in a part, course and wale."""
+    inside = predict(StitchChart(chart.purl[largest_rectangle(cells)]), ACRYLIC)
+    return np.array([inside.modulus_n_per_mm(direction) for direction in Direction])
+
+
+def refilled(kept: StitchChart, wishes: dict[str, tuple[np.ndarray, float]]) -> FilledField:
+    """Fill parts that should be stiffer or softer by a factor, each as it is now."""
+    targets = [
+        PartTarget(name, runs_of(cells), *(factor * moduli_of(kept, cells)).tolist())
+        for name, (cells, factor) in wishes.items()
+    ]
+    maps = target_maps(targets, *kept.purl.shape)
+    return filled(*maps, parts=targets, kept=kept, scattered=False, check=False)
+
+
+def check_no_part_is_farther(seed: int) -> None:
+    """Fill two to four parts of any shape in a chart of fabrics; not all have a target."""
+    rng = np.random.default_rng(seed)
+    kept = hidden_chart(seed, side=int(rng.integers(12, 20)), patches=3, least=4)
+    middles = rng.uniform(0, kept.rows, (rng.integers(2, 5), 1, 1, 2))
+    places = np.stack(np.indices(kept.purl.shape), axis=-1)
+    nearest = ((places - middles) ** 2).sum(axis=-1).argmin(axis=0)
+    wishes = {
+        f"part {number}": (nearest == number, float(rng.choice([0.4, 1 / 1.3, 1.3, 2.5])))
+        for number in np.unique(nearest).tolist()
+        if number == nearest[0, 0] or rng.random() < 0.8
+    }
+    field = refilled(kept, wishes)
+    for part in field.parts:
+        cells, factor = wishes[part.name]
+        before, after = moduli_of(kept, cells), moduli_of(field.chart, cells)
+        assert [part.course_before_n_per_mm, part.wale_before_n_per_mm] == pytest.approx(before)
+        assert [part.course_n_per_mm, part.wale_n_per_mm] == pytest.approx(after)
+        left = np.hypot(*np.log(after / (factor * before)))
+        assert left <= np.hypot(*np.log([factor, factor])) + 1e-9
+        assert (np.sign(np.log(after / before)) * np.sign(np.log(factor)) >= 0).all()
+        changed = (field.chart.purl != kept.purl)[cells].any()
+        assert part.repainted or not changed
+        assert part.repainted or any(part.name in message for message in field.messages)
+    outside = ~np.logical_or.reduce([cells for cells, _ in wishes.values()])
+    assert np.array_equal(field.chart.purl[outside], kept.purl[outside])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_part_is_farther_from_its_target_than_before(seed: int) -> None:
+    """And what should be softer is nowhere stiffer."""
+    check_no_part_is_farther(seed)
+
+
+@pytest.mark.slow
+def test_no_part_is_farther_from_its_target_in_200_charts() -> None:
+    for seed in range(100, 300):
+        check_no_part_is_farther(seed)
+
+
+def test_each_part_has_its_own_repeat() -> None:
+    """Also where parts touch, and one of them is reached only if the other stays."""
+    knit = StitchChart.of_fabric(Fabric.STOCKINETTE, 16, 16)
+    left = np.indices((16, 16))[1] < 8
+    field = refilled(knit, {"soft": (left, 0.4), "stiff": (~left, 2.5)})
+    soft, stiff = field.parts
+    assert soft.repainted
+    assert soft.course_n_per_mm < 0.6 * soft.course_before_n_per_mm
+    assert not stiff.repainted
+    assert not field.chart.purl[:, 8:].any()
+    assert "“stiff” stays as it is, 2.5 times softer" in field.messages[-1]
+    assert {region.part for region in field.regions} == {"soft"}
+    assert field.off_share >= 0.5
 
 
 def test_stitches_without_a_target_are_not_constrained() -> None:
