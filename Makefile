@@ -77,7 +77,7 @@ test: $(VENV)/.installed-tests frontend/node_modules/.installed ## Run the defau
 
 test-slow: $(VENV)/.installed-tests $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
 	scripts/ensure-browsers chromium firefox-esr
-	$(BIN)/pytest -n 2 --dist loadgroup -m slow
+	$(BIN)/pytest -n 2 --dist loadgroup -m slow --durations 12
 
 ten-runs: ## Run both suites ten times, two at a time, in fresh clones; logs in build
 	scripts/ten-runs 10 build/ten-runs.log test

@@ -100,7 +100,7 @@ def test_what_cannot_be_merged_is_a_choice_that_loses_nothing(flat_studio: Page)
     expect(flat_studio.locator("#conflict-dialog")).to_be_visible()
     expect(flat_studio.locator("#conflict-dialog")).to_contain_text("name")
     sent: list[str] = []
-    flat_studio.on("request", lambda request: sent.append(request.method))
+    flat_studio.on("request", lambda r: "/designs" in r.url and sent.append(r.method))
     flat_studio.evaluate("dispatchEvent(new Event('pagehide'))")  # would send what is unsent
     for theme in THEMES:
         flat_studio.emulate_media(color_scheme=theme)
