@@ -252,8 +252,8 @@ def test_no_part_is_farther_from_its_target_than_before(seed: int) -> None:
 
 
 @pytest.mark.slow
-def test_no_part_is_farther_from_its_target_in_200_charts() -> None:
-    for seed in range(100, 300):
+def test_no_part_is_farther_from_its_target_in_many_charts() -> None:
+    for seed in range(100, 130):
         check_no_part_is_farther(seed)
 
 
