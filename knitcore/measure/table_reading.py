@@ -1,4 +1,4 @@
-"""What a user says of a table beyond the file, and what is doubtful about a test."""
+"""Readings of a table beyond what the file says, and doubts about a test."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -227,7 +227,7 @@ def _names_line(rows: Rows) -> tuple[list[str], list[str], int]:
 
 @dataclass(frozen=True)
 class TableHeads:
-    """What stands above and in the first rows of a table.
+    """The line above the numbers of a table, and its first rows.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What tables of stretch tests say, and what is doubtful about them, before a law is fitted."""
+"""Tables of stretch tests as a fit would read them, and the doubts about them."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -69,7 +69,7 @@ class PullResult(ResultModel):
 
 
 class TableResult(ResultModel):
-    """What a file says."""
+    """The content of a file."""
 
     name: str
     is_own: bool = Field(description="Whether its columns have our names, or it is HDF5.")
@@ -86,7 +86,7 @@ class TableResult(ResultModel):
 
 
 class TablesResult(ResultModel):
-    """What the files say."""
+    """The content of both files."""
 
     tests: dict[Direction, TableResult]
     doubts: list[DoubtResult] = Field([], description="About both together.")
@@ -152,7 +152,7 @@ def _read(path: Path, reading: TableReading) -> tuple[TableResult, StretchTest |
 
 
 def _missing(known: set[str]) -> list[str]:
-    """What nobody has said yet, of all that a law needs."""
+    """List what nobody has said yet, of all that a law needs."""
     missing = [] if {"strain_along", "extension_mm"} & known else ["strain_along"]
     missing += [name for name in ("force_n", "width_mm") if name not in known]
     from_extension = "extension_mm" in known and "strain_along" not in known

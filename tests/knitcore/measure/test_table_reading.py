@@ -1,4 +1,4 @@
-"""What users say of tables, and sizes that may be in another unit."""
+"""Readings of tables that users give, and sizes that may be in another unit."""
 
 import pytest
 
