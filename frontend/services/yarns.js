@@ -2,10 +2,11 @@
  * Yarns of one's own: kept at the service from a file, or made of what was measured.
  *
  * @import {Studio} from "../state/studio.js"
- * @import {EstimateRequest, EstimateResult, Fabric, FabricDocument, FitResult, MaterialDocument, MaterialSummary, YarnDocument} from "../types.js"
+ * @import {Direction, EstimateRequest, EstimateResult, Fabric, FabricDocument, FitResult, MaterialDocument, MaterialSummary, TableTemplate, YarnDocument} from "../types.js"
  *
  * @typedef {{stitches: number, rows: number}} Gauge per 10 cm
- * @typedef {Gauge & {course: File, wale: File}} Tests of a fabric: pulled along rows and columns
+ * @typedef {Gauge & {course: File, wale: File, templates?: Record<Direction, TableTemplate>}} Tests of a fabric:
+ *   pulled along rows and columns, and how their tables are read
  */
 
 import { api, call } from "../api.js";
@@ -63,12 +64,17 @@ export const isYarnFile = (value) =>
   typeof value === "object" && value !== null && "format" in value && value.format === "knitcore-material";
 
 /** What a service asks for of two tests of a fabric. @param {Tests} tests */
-export async function fitRequest({ course, wale }) {
-  return { test_course: await uploaded(course), test_wale: await uploaded(wale) };
+export async function fitRequest({ course, wale, templates }) {
+  return {
+    test_course: await uploaded(course),
+    test_wale: await uploaded(wale),
+    template_course: templates?.course,
+    template_wale: templates?.wale,
+  };
 }
 
-/** @param {File} file */
-async function uploaded(file) {
+/** A file as requests hold it. @param {File} file */
+export async function uploaded(file) {
   return { name: file.name, content: base64(new Uint8Array(await file.arrayBuffer())) };
 }
 

@@ -89,6 +89,8 @@ export class Studio {
     /** Who is signed in with this browser, if anybody is. */
     this.user = new Signal(/** @type {string | null} */ (null));
     this.message = new Signal(/** @type {Message | null} */ (null));
+    /** A table that was dropped on the page, for the panel of yarns. */
+    this.droppedTest = /** @type {File | null} */ (null);
 
     this.overlay.listen(({ id }) => {
       // A stretch is gone after a reload, so its overlays are not remembered.

@@ -14,7 +14,7 @@ unknown the ends are left free to narrow, so that the strip strains evenly.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -33,8 +33,8 @@ from knitcore.law.least_squares import fit_direction
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials.law_uncertainty import LawUncertainty
 from knitcore.measure.plausibility import check_units
-from knitcore.measure.stretch_tables import TableReading
 from knitcore.measure.stretch_test import StretchTest, check_pair
+from knitcore.measure.table_reading import TableReading
 from knitcore.measure.uniaxial_files import read_stretch_test
 
 ROUGH_CELLS = 6
@@ -105,6 +105,8 @@ def fit_tests(
     length_course_mm: float | None = None,
     length_wale_mm: float | None = None,
     columns: Mapping[str, str] | None = None,
+    template_course: TableReading | None = None,
+    template_wale: TableReading | None = None,
     cancelled: Cancelled | None = None,
 ) -> LawFit:
     """Fit a law to two files (see :mod:`knitcore.measure.uniaxial_files` for their layout).
@@ -117,6 +119,7 @@ def fit_tests(
     width_course_mm, width_wale_mm : clamped widths, in place of those in the files.
     length_course_mm, length_wale_mm : distances of the clamps at rest, in place of those there.
     columns : what a table calls our columns, such as ``{"force_n": "Channel 2 (N)"}``.
+    template_course, template_wale : how each table is read, where the others say nothing.
     cancelled : called between simulated tests.
 
     Raises
@@ -126,20 +129,17 @@ def fit_tests(
     CancelledError
         If ``cancelled`` returned True.
     """
-    widths = (width_course_mm, width_wale_mm)
-    lengths = (length_course_mm, length_wale_mm)
+    given = (
+        (course, width_course_mm, length_course_mm, template_course),
+        (wale, width_wale_mm, length_wale_mm, template_wale),
+    )
     tests = [
         read_stretch_test(
             path, marks=reduction.marks, file_format=file_format,
-            reading=TableReading(width, length, columns or {}),
+            reading=TableReading(width, length, columns or {}).over(template or TableReading()),
         )
-        for path, width, length in zip((course, wale), widths, lengths, strict=True)
+        for path, width, length, template in given
     ]  # fmt: skip
-    tests = [t if w is None else t.with_width(w) for t, w in zip(tests, widths, strict=True)]
-    tests = [
-        t if length is None else replace(t, length_mm=length)
-        for t, length in zip(tests, lengths, strict=True)
-    ]
     if reduction is Reduction.RECOMMENDED:
         return fit_simulated(tests[0], tests[1], cancelled=cancelled)
     return fit_law(tests[0], tests[1], reduction=reduction)

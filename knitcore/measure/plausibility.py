@@ -1,17 +1,26 @@
 """Check stretch tests for slack, strains not zeroed, and units or signs that cannot be right.
 
 A strain that begins late is corrected and told, where the readings leave no doubt. What cannot be
-corrected with certainty is refused if it is impossible for knitted fabric, and told if it is rare.
+corrected with certainty is refused if it is impossible for knitted fabric, and told if it is rare;
+either way as a doubt with the readings that it may have.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from knitcore.base.arrays import Array
-from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.measure.stretch_test import StretchRun, StretchTest
+from knitcore.measure.table_reading import (
+    Doubt,
+    DoubtError,
+    OtherReading,
+    TableReading,
+    doubt_of_width,
+)
+from knitcore.measure.tester_tables import UNITS
 
 STIFF_N_PER_MM = (0.002, 2.0)
 """Force per width over strain, half-way up a pull, that knitted fabric usually has: from lace to a
@@ -20,8 +29,6 @@ IMPOSSIBLE = 5.0
 APART = 40.0
 """Ratio of the stiffness of the two directions beyond which one of them is in another unit; ribs
 reach about 20."""
-NARROW_MM = 20.0
-"""A strip narrower than this is rare; a width of 7 may be 7 cm."""
 ZERO_STRAIN = 0.005
 """Strain of the first reading from which on a pull was not zeroed."""
 AT_REST = 0.02
@@ -36,14 +43,22 @@ _CLEARER = 3.0
 """How many times smaller the squared misfit must be with slack than without."""
 
 
-def plausible(run: StretchRun, notes: list[str]) -> StretchRun:
+def plausible(
+    run: StretchRun, reading: TableReading, notes: list[str], doubts: list[Doubt]
+) -> StretchRun:
     """A pull whose strain begins where its force does; what was corrected is noted.
 
     With a slack s the strip is longer at rest, so that strains become (e - s) / (1 + s).
 
+    Parameters
+    ----------
+    run : as it stands in the file.
+    reading : says whether slack is left out.
+    notes, doubts : what is added to.
+
     Raises
     ------
-    InputError
+    DoubtError
         If the strain looks like a stretch ratio, or the fabric widens.
     """
     _check_ratio(run)
@@ -60,6 +75,13 @@ def plausible(run: StretchRun, notes: list[str]) -> StretchRun:
         notes.append(f"{run.name}: strains are counted from the first reading, {first:.3f}.")
     start = slack(run)
     if start > 0:
+        doubts.append(_slack_doubt(run, start))
+    if start > 0 and reading.keeps_slack:
+        notes.append(
+            f"{run.name}: the force begins to rise at a strain of {start:.3f}; strains are counted"
+            " from the first reading all the same."
+        )
+    elif start > 0:
         run = _from(run.only(run.strain_along >= start), start)
         notes.append(
             f"{run.name}: the force begins to rise at a strain of {start:.3f}; the slack before is"
@@ -71,6 +93,13 @@ def plausible(run: StretchRun, notes: list[str]) -> StretchRun:
             " zeroed. Strains count from there."
         )
     return run
+
+
+def _slack_doubt(run: StretchRun, start: float) -> Doubt:
+    left_out = OtherReading("it hung slack: count strains from there", {"keeps_slack": False})
+    kept = OtherReading("it unfolds: count from the first reading", {"keeps_slack": True})
+    problem = f"The force begins to rise at a strain of {start:.3f}."
+    return Doubt(run.name, problem, "", (left_out, kept), is_open=False)
 
 
 def slack(run: StretchRun) -> float:
@@ -118,16 +147,24 @@ def _check_ratio(run: StretchRun) -> None:
     if abs(along - 1) < 0.05 and (not np.isfinite(across) or abs(across - 1) < 0.05):
         problem = f"begins at {along:.3g}, so it looks like a stretch ratio, length over length."
         remedy = "Subtract 1: strain is change of length over length at rest."
-        raise InputError(f"{run.name}, strain_along", problem, remedy)
+        top = float(run.strain_along.max())
+        ratio = dict.fromkeys(("strain_along", "strain_across"), "ratio")
+        words = f"stretch ratio: {top:.3g} is a strain of {top - 1:.3g}"
+        answer = OtherReading(words, {"units": ratio})
+        raise DoubtError.of(f"{run.name}, strain_along", problem, remedy, answer)
 
 
 def _check_waist(run: StretchRun) -> None:
     top = int(np.argmax(run.strain_along))
     across, along = float(run.strain_across[top]), float(run.strain_along[top])
     if across > WIDENS * along:
-        problem = f"says that the fabric is {across:.0%} wider at a strain of {along:.2f}."
-        remedy = "Fabric that is pulled narrows: give narrowing as a negative strain."
-        raise InputError(f"{run.name}, column strain_across", problem, remedy)
+        raise DoubtError.of(
+            f"{run.name}, column strain_across",
+            f"says that the fabric is {across:.0%} wider at a strain of {along:.2f}.",
+            "Fabric that is pulled narrows: give narrowing as a negative strain.",
+            OtherReading(f"it narrows by {across:.0%}", {"narrowing_is_positive": True}),
+            OtherReading("leave the strain across out", {"columns": {"strain_across": ""}}),
+        )
 
 
 def check_units(course: StretchTest, wale: StretchTest) -> list[str]:
@@ -135,39 +172,112 @@ def check_units(course: StretchTest, wale: StretchTest) -> list[str]:
 
     Raises
     ------
-    InputError
-        If they are impossible, so that a unit must be wrong.
+    DoubtError
+        If they are impossible, or fit another unit only.
     """
-    tests = {Direction.COURSE: course, Direction.WALE: wale}
-    stiffness = {d: _stiffness(test) for d, test in tests.items()}
-    low, high = STIFF_N_PER_MM
     notes = []
-    for direction, value in stiffness.items():
-        test, other = tests[direction], stiffness[direction.other]
-        outside = max(value / high, low / value)
-        apart = max(value / other, other / value)
-        how = f"carries {value:.3g} N/mm per strain"
-        guess = _guess(test, tests[direction.other])
-        if outside > IMPOSSIBLE or (outside > 1 and apart > APART):
-            remedy = f"Give the force in newton and the width in mm.{guess}"
-            raise InputError(
-                f"{test.source}, force over width", f"{how}; knitted fabric carries {low:g} to"
-                f" {high:g}.", remedy,
-            )  # fmt: skip
-        if outside > 1 or (apart > APART and value > other):
-            notes.append(
-                f"{test.source} {how}, which is rare for knitted fabric (the other direction"
-                f" carries {other:.3g}): check that force is in newton and width in mm.{guess}"
-            )
+    for doubts in unit_doubts(course, wale).values():
+        for doubt in doubts:
+            if doubt.is_open:
+                raise DoubtError.about(doubt)
+            notes.append(doubt.note)
     return notes
 
 
-def _guess(test: StretchTest, other: StretchTest) -> str:
-    width, beside = test.width_mm[0], other.width_mm[0]
-    for factor, unit in ((10, "cm"), (1000, "m"), (25.4, "inches")):
-        if abs(width * factor / beside - 1) < 0.02:
-            return f" A width of {width:g} beside {beside:g} looks like {unit}."
-    return f" A width of {width:g} may be in cm." if width < NARROW_MM else ""
+def unit_doubts(course: StretchTest, wale: StretchTest) -> dict[Direction, list[Doubt]]:
+    """Doubts about the units of each test, from the other one and from what fabric carries.
+
+    What the user has stated is not doubted.
+    """
+    tests = {Direction.COURSE: course, Direction.WALE: wale}
+    doubts: dict[Direction, list[Doubt]] = {}
+    for direction, test in tests.items():
+        sizes = [_size_doubt(test, tests[direction.other], name) for name in _SIZES]
+        known = [doubt for doubt in sizes if doubt is not None]
+        doubts[direction] = known or [*_stiffness_doubts(test, tests[direction.other])]
+    return doubts
+
+
+_SIZES = ("width_mm", "length_mm")
+_FORCES = ("cN", "g", "mN", "kN", "kg")
+
+
+def _size_doubt(test: StretchTest, other: StretchTest, name: str) -> Doubt | None:
+    """The doubt about a width or a length that agrees with the other test's in another unit."""
+    of, beside = ((t.width_mm[0] if name == "width_mm" else t.length_mm) for t in (test, other))
+    if of is None or beside is None or name in test.sure:
+        return None
+    return doubt_of_width(test.source, of, beside_mm=(beside,), name=name)
+
+
+def _stiffness_doubts(test: StretchTest, other: StretchTest) -> Iterator[Doubt]:
+    if "force_n" in test.sure:
+        return
+    value, beside = _stiffness(test), _stiffness(other)
+    low, high = STIFF_N_PER_MM
+    outside, apart = max(value / high, low / value), max(value / beside, beside / value)
+    is_impossible = outside > IMPOSSIBLE or (outside > 1 and apart > APART)
+    if not is_impossible and not (outside > 1 or (apart > APART and value > beside)):
+        return
+    answers = [
+        (
+            value * UNITS["force"][unit.lower()],
+            OtherReading(f"{unit}", {"units": {"force_n": unit}}),
+        )
+        for unit in _FORCES
+    ]
+    width = None if "width_mm" in test.sure else doubt_of_width(test.source, test.width_mm[0])
+    for reading in width.readings[:-1] if width else ():
+        scale = test.width_mm[0] / reading.changes["width_mm"]
+        answers.append((value * scale, replace(reading, words=f"width in {reading.words}")))
+    fitting = [
+        (round(abs(np.log10(v / beside))), reading)
+        for v, reading in answers
+        if low <= v <= high and max(v / beside, beside / v) < min(apart, APART)
+    ]
+    likely = [reading for _, reading in sorted(fitting, key=lambda pair: pair[0])[:3]]
+    stands = OtherReading("N, as it stands", {"units": {"force_n": "N"}})
+    guess = f" It may be in {' or '.join(r.words for r in likely)}." if likely else ""
+    if is_impossible:
+        problem = (
+            f"carries {value:.3g} N/mm per strain; knitted fabric carries {low:g} to {high:g}."
+        )
+    else:
+        problem = (
+            f"carries {value:.3g} N/mm per strain, which is rare for knitted fabric (the other "
+            f"direction carries {beside:.3g})."
+        )
+    yield Doubt(
+        f"{test.source}, force over width", problem,
+        f"Give the force in newton and the width in mm.{guess}",
+        (*likely, stands), is_open=is_impossible,
+    )  # fmt: skip
+
+
+_SOFTER = {
+    Fabric.STOCKINETTE: Direction.COURSE,
+    Fabric.RIB: Direction.COURSE,
+    Fabric.GARTER: Direction.WALE,
+}
+"""The direction in which a fabric gives way more in all yarns that were measured."""
+_CLEARLY = 2.0
+
+
+def order_doubt(course: StretchTest, wale: StretchTest, fabric: Fabric) -> Doubt | None:
+    """The doubt whether the tests of a fabric are exchanged: the wrong one is clearly softer."""
+    stiffness = {Direction.COURSE: _stiffness(course), Direction.WALE: _stiffness(wale)}
+    softer = _SOFTER.get(fabric)
+    if softer is None or stiffness[softer] < _CLEARLY * stiffness[softer.other]:
+        return None
+    words = {Direction.COURSE: "rows", Direction.WALE: "columns"}
+    return Doubt(
+        f"{course.source} and {wale.source}",
+        f"say that this {fabric} is {stiffness[softer] / stiffness[softer.other]:.1f} times stiffer"
+        f" along its {words[softer]}; of other yarns it is softer there.",
+        "Are the two files exchanged?",
+        (OtherReading("exchange them", exchanges=True), OtherReading("they stand as they are")),
+        is_open=False,
+    )
 
 
 def _stiffness(test: StretchTest) -> float:

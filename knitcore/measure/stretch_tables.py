@@ -11,8 +11,7 @@ unloading. A tester sees no narrowing: the strain across is then not a number.
 """
 
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +27,9 @@ from knitcore.measure.stretch_test import (
     misread_forces,
     until_unloaded,
 )
+from knitcore.measure.table_reading import Doubt, DoubtError, TableReading, doubt_of_width
 from knitcore.measure.tables import numbers, read_table, rows_by_label
-from knitcore.measure.tester_tables import Specimen, read_specimens
+from knitcore.measure.tester_tables import Specimen, in_unit, read_specimens
 from knitcore.measure.workbooks import is_workbook, read_workbook
 
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
@@ -38,23 +38,11 @@ TABLE_LENGTHS = {"length_mm": "the clamps", "across_mm": "the points tracked acr
 MAX_TABLE_BYTES = 64 * 2**20
 WIDER_THAN_CLAMPED = 1.2
 """Tracked points farther apart than this share of the clamped width mean a misread width."""
+FAR = 3.0
+"""Strain beyond which a length at rest may be in another unit."""
+MIN_WIDTH_MM = 5.0
 TURNS = 0.2
 """Part of the largest strain by which a strain must fall to begin another pull."""
-
-
-@dataclass(frozen=True)
-class TableReading:
-    """Sizes and names of columns that a tester's file leaves out.
-
-    Attributes
-    ----------
-    width_mm, length_mm : clamped width, and distance of the clamps, at rest.
-    columns : what the file calls our columns, such as ``{"force_n": "Channel 2 (N)"}``.
-    """
-
-    width_mm: float | None = None
-    length_mm: float | None = None
-    columns: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_stretch_table(path: Path, reading: TableReading | None = None) -> StretchTest:
@@ -67,10 +55,11 @@ def read_stretch_table(path: Path, reading: TableReading | None = None) -> Stret
     """
     if path.stat().st_size > MAX_TABLE_BYTES:
         raise InputError(path.name, "is larger than 64 MB.", "Thin the points out.")
-    return _read_table(path) if _is_own(path) else _of_specimens(path, reading or TableReading())
+    reading = reading or TableReading()
+    return _read_table(path, reading) if is_own_table(path) else _of_specimens(path, reading)
 
 
-def _is_own(path: Path) -> bool:
+def is_own_table(path: Path) -> bool:
     """Tell whether the first line has names of our own columns, between commas."""
     if is_workbook(path):
         names = [str(name) for name in next(iter(read_workbook(path).values()), [[]])[0]]
@@ -86,7 +75,8 @@ def _is_own(path: Path) -> bool:
 
 
 def _of_specimens(path: Path, reading: TableReading) -> StretchTest:
-    specimens, notes = read_specimens(path, reading.columns)
+    specimens, notes = read_specimens(path, reading)
+    doubts: list[Doubt] = []
     runs: list[StretchRun] = []
     widths: dict[str, float] = {}
     for specimen in specimens:
@@ -94,7 +84,9 @@ def _of_specimens(path: Path, reading: TableReading) -> StretchTest:
         if width is None:
             remedy = "Give the clamped width at rest in mm."
             raise InputError(specimen.name, "does not say how wide the specimen is.", remedy)
-        pulls = [*_pulls(specimen, width, reading.length_mm, notes)]
+        if "width_mm" not in reading.sure:
+            _check_width(specimen.name, width)
+        pulls = [*_pulls(specimen, width, reading, notes)]
         if len(pulls) > 1 and not specimen.labels:
             notes.append(
                 f"{specimen.name}: of {len(pulls)} pulls the first conditions the specimen and is"
@@ -108,12 +100,31 @@ def _of_specimens(path: Path, reading: TableReading) -> StretchTest:
             f"{path.name} has no strain across the pull, so Poisson's ratio is that of knitted"
             " fabric in general, and less certain."
         )
-    sound = sound_runs([plausible(run, notes) for run in runs], notes)
+    sound = sound_runs([plausible(run, reading, notes, doubts) for run in runs], notes)
     lengths = {_constant(s, "length_mm", reading.length_mm) for s in specimens}
     length = lengths.pop() if len(lengths) == 1 else None
     across = _constant(specimens[0], "across_mm", None)
     sizes = tuple(widths[run.name] for run in sound)
-    return StretchTest(path.name, "", tuple(sound), sizes, tuple(notes), length, across)
+    return StretchTest(
+        path.name, "", tuple(sound), sizes, tuple(notes), length, across,
+        tuple(doubts[:1]), reading.sure,
+    )  # fmt: skip
+
+
+def _check_width(name: str, width_mm: float) -> None:
+    """Refuse a width that no clamp holds.
+
+    Raises
+    ------
+    DoubtError
+        With the units that it may be in.
+    """
+    if width_mm < MIN_WIDTH_MM:
+        doubt = doubt_of_width(name, width_mm)
+        problem = f"{width_mm:g} is below {MIN_WIDTH_MM:g} mm, so it may be in cm or m."
+        remedy = "Give the clamped width at rest in mm."
+        answers = doubt.readings[:-1] if doubt else ()
+        raise DoubtError.of(f"{name}, width_mm", problem, remedy, *answers)
 
 
 def _constant(specimen: Specimen, name: str, given: float | None) -> float | None:
@@ -125,24 +136,28 @@ def _constant(specimen: Specimen, name: str, given: float | None) -> float | Non
 
 
 def _pulls(
-    specimen: Specimen, width_mm: float, length_mm: float | None, notes: list[str]
+    specimen: Specimen, width_mm: float, reading: TableReading, notes: list[str]
 ) -> Iterator[StretchRun]:
     """Pulls of a specimen: its runs, or the parts in which the strain grows."""
     columns = specimen.columns
     along = columns.get("strain_along")
     if along is None:
-        length = _constant(specimen, "length_mm", length_mm)
+        length = _constant(specimen, "length_mm", reading.length_mm)
         if length is None:
             remedy = (
                 "Give length_mm, the distance of the clamps at rest: strain is extension/length."
             )
             raise InputError(specimen.name, "has an extension, but no length at rest.", remedy)
         along = columns["extension_mm"] / length
+        doubt = doubt_of_width(specimen.name, length, name="length_mm")
+        if along.max() > FAR and "length_mm" not in reading.sure and doubt is not None:
+            raise DoubtError.about(doubt)
     force = columns["force_n"]
     if force.max(initial=0.0) < -force.min(initial=0.0):
         force = -force
         notes.append(f"{specimen.name}: forces are negative, and are read as tension.")
     across = columns.get("strain_across", np.full(len(along), np.nan))
+    across = -across if reading.narrowing_is_positive else across
     labels = np.array(specimen.labels)
     named = [(f"run {label}", np.flatnonzero(labels == label)) for label in dict.fromkeys(labels)]
     parts = named or [(f"pull {n + 1}", rows) for n, rows in enumerate(_growing(along))]
@@ -190,19 +205,31 @@ def sound_runs(runs: list[StretchRun], notes: list[str]) -> list[StretchRun]:
 # -- our own table ---------------------------------------------------------------------------------
 
 
-def _read_table(path: Path) -> StretchTest:
+def _read_table(path: Path, reading: TableReading) -> StretchTest:
     table = read_table(path, ", ".join(CSV_COLUMNS))
     table.columns = [_column_name(str(c)) for c in table.columns]
     table = table[~(table.isna() | (table == "")).all(axis=1)]
     _check_header(path.name, list(table.columns))
     given = [*CSV_COLUMNS, *(name for name in TABLE_LENGTHS if name in table)]
-    values = {name: numbers(f"{path.name}, column {name}", table[name]) for name in given}
+    values = {
+        name: in_unit(numbers(where, table[name]), name, reading.units.get(name), where)
+        for name in given
+        for where in [f"{path.name}, column {name}"]
+    }
     if len(table) == 0:
         raise InputError(path.name, "has no rows.", "Give one row per point.")
+    for name in ("width_mm", "length_mm"):
+        if (size := getattr(reading, name)) is not None:
+            values[name] = np.full(len(table), size)
+    if reading.columns.get("strain_across") == "":
+        values["strain_across"] = np.full(len(table), np.nan)
+    elif reading.narrowing_is_positive:
+        values["strain_across"] = -values["strain_across"]
     labelled = rows_by_label(table, "run", "").items()
     runs_and_widths = [_run(path.name, label, rows, values) for label, rows in labelled]
     notes: list[str] = []
-    runs = tuple(plausible(run, notes) for run, _ in runs_and_widths)
+    doubts: list[Doubt] = []
+    runs = tuple(plausible(run, reading, notes, doubts) for run, _ in runs_and_widths)
     widths = tuple(width for _, width in runs_and_widths)
     lengths = {
         column: _length(path.name, column, values[column])
@@ -214,7 +241,9 @@ def _read_table(path: Path) -> StretchTest:
         problem = f"{across:g} mm is more than the clamped width."
         remedy = "Give the distance, in mm at rest, of the points that you track across."
         raise InputError(f"{path.name}, column across_mm", problem, remedy)
-    return StretchTest(path.name, "", runs, widths, tuple(notes), clamps, across)
+    return StretchTest(
+        path.name, "", runs, widths, tuple(notes), clamps, across, tuple(doubts[:1]), reading.sure
+    )
 
 
 def _length(name: str, column: str, length: Array) -> float:
@@ -250,11 +279,7 @@ def _run(
 ) -> tuple[StretchRun, float]:
     title = f"{name}, run {label}" if label else name
     width = values["width_mm"][rows]
-    if width.min() < 5:
-        row = int(rows[np.argmin(width)])
-        problem = f"{width.min():g} in row {row + 2} is below 5 mm, so it may be in cm or m."
-        remedy = "Give the clamped width at rest in mm."
-        raise InputError(f"{title}, column width_mm", problem, remedy)
+    _check_width(f"{title}, row {int(rows[np.argmin(width)]) + 2}", float(width.min()))
     if np.ptp(width) > 0.01 * width[0]:
         row = int(rows[np.argmax(np.abs(width - width[0]) > 0.01 * width[0])])
         problem = f"changes from {width[0]:g} to {values['width_mm'][row]:g} mm in row {row + 2}."

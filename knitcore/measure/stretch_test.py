@@ -12,6 +12,7 @@ from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
+from knitcore.measure.table_reading import Doubt, DoubtError, OtherReading
 
 MIN_POINTS = 20
 """Fewest points of a pull; with fewer, a linear part looks like a stiffening one."""
@@ -85,6 +86,8 @@ class StretchTest:
     notes : readings left out and why, in sentences.
     across_mm : distance at rest of the points between which the strain across is read; None for
         the edges.
+    doubts : about a reading that was made in one of several ways.
+    sure : names of the quantities whose size the user has stated.
     """
 
     source: str
@@ -94,6 +97,8 @@ class StretchTest:
     notes: tuple[str, ...] = field(default=())
     length_mm: float | None = None
     across_mm: float | None = None
+    doubts: tuple[Doubt, ...] = ()
+    sure: frozenset[str] = frozenset()
 
     @property
     def peak_stress(self) -> float:
@@ -142,7 +147,8 @@ class StretchTest:
             replace(run, stress=run.stress * (old / width_mm))
             for run, old in zip(self.runs, self.width_mm, strict=True)
         )
-        return replace(self, runs=runs, width_mm=(width_mm,) * len(runs))
+        sure = self.sure | {"width_mm"}
+        return replace(self, runs=runs, width_mm=(width_mm,) * len(runs), sure=sure)
 
 
 def misread_forces(force: Array) -> Mask:
@@ -212,7 +218,9 @@ def _check_percent(run: StretchRun, first_row: int) -> None:
             worst = int(np.argmax(np.where(wrong, np.abs(values), 0.0)))
             problem = f"{values[worst]:.4g} in row {worst + first_row} {how}"
             remedy = f"Divide the strains by 100: {example}."
-            raise InputError(f"{run.name}, {name}", problem, remedy)
+            units = dict.fromkeys(("strain_along", "strain_across"), "%")
+            percent = OtherReading(f"per cent: {values[worst] / 100:.3g}", {"units": units})
+            raise DoubtError.of(f"{run.name}, {name}", problem, remedy, percent)
 
 
 def _check_stress(run: StretchRun, first_row: int) -> None:
@@ -261,11 +269,12 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
     for direction, test in zip(Direction, (course, wale), strict=True):
         said = stated[direction]
         if said is not None and said is not direction:
-            raise InputError(
+            raise DoubtError.of(
                 f"test_{direction}",
                 f"{test.source} states that it was pulled {said}-wise.",
                 "Give the test pulled along the rows (x) first and the one along the columns (y)"
                 " second.",
+                OtherReading("exchange the two files", exchanges=True),
             )
     samples = [
         " ".join(w for w in test.description.split() if w not in ("X", "Y", "New")).lower()

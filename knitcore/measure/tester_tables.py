@@ -17,6 +17,7 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.measure.table_reading import TableReading
 from knitcore.measure.workbooks import MAX_COLUMNS, MAX_ROWS, is_workbook, read_workbook
 
 QUANTITIES = {
@@ -48,6 +49,8 @@ UNITS = {
     "strain": {"%": 0.01, "percent": 0.01, "-": 1.0, "1": 1.0, "mm/mm": 1.0, "m/m": 1.0},
 }  # fmt: skip
 """Size of each unit in N, in mm and as a fraction."""
+RATIO = "ratio"
+"""Unit of a strain that is given as length over length at rest."""
 MAX_UNIT = 7
 """Letters of the longest unit, ``percent``."""
 MIN_READINGS = 5
@@ -80,16 +83,14 @@ class Specimen:
     labels: tuple[str, ...] = ()
 
 
-def read_specimens(
-    path: Path, called: Mapping[str, str] | None = None
-) -> tuple[list[Specimen], list[str]]:
+def read_specimens(path: Path, reading: TableReading) -> tuple[list[Specimen], list[str]]:
     """The specimens of a tester's file, and notes about how it was read.
 
     Parameters
     ----------
     path : text or workbook.
-    called : what the file calls our columns where their names say too little, such as
-        ``{"force_n": "Channel 2 (N)"}``; a title that the file has not is not used.
+    reading : columns and units where the file says too little; a title that the file has not is
+        not used.
 
     Raises
     ------
@@ -98,15 +99,14 @@ def read_specimens(
     """
     notes: list[str] = []
     specimens: list[Specimen] = []
-    titles = {_plain(name): ours for ours, name in (called or {}).items()}
-    unknown = sorted(set(called or {}) - set(QUANTITIES))
+    unknown = sorted({*reading.columns, *reading.units} - set(QUANTITIES))
     if unknown:
         remedy = f"Use {', '.join(QUANTITIES)}."
         raise InputError("columns", f"{unknown[0]!r} is none of our columns.", remedy)
     heads: list[str] = []
     for sheet, rows in _sheets(path, notes):
-        specimens += _specimens(path.name, sheet, rows, titles, notes)
-        heads = heads or _above_numbers(rows)
+        specimens += _specimens(path.name, sheet, rows, reading, notes)
+        heads = heads or [cell for cell in _names_line(rows)[0] if cell]
     if not specimens:
         has = f" (it has {', '.join(heads[:8])})" if heads else ""
         raise InputError(
@@ -185,14 +185,14 @@ class _Column:
 
 
 def _specimens(
-    file: str, sheet: str, rows: Rows, called: Mapping[str, str], notes: list[str]
+    file: str, sheet: str, rows: Rows, reading: TableReading, notes: list[str]
 ) -> Iterator[Specimen]:
     """Specimens of a sheet, in the order of their readings."""
     constants: dict[str, float] = {}
     title = sheet
     row = 0
     while row < len(rows):
-        groups = _heads(rows[row], called)
+        groups = _heads(rows[row], reading.columns)
         if not groups:
             title, constants = _about(rows[row], title, constants)
             row += 1
@@ -206,35 +206,101 @@ def _specimens(
             end += 1
         readings = [(at, rows[at]) for at in range(first, end) if any(rows[at])]
         if len(readings) >= MIN_READINGS:
-            _tell_unread(file, rows[row], groups, notes)
+            _tell_unread(file, rows[row], groups, reading.columns, notes)
             for place, group in enumerate(groups):
                 name = title or "readings"
                 name = f"{name} {place + 1}" if len(groups) > 1 else name
-                yield _specimen(f"{file}, {name}", group, readings, constants)
+                yield _specimen(f"{file}, {name}", group, readings, constants, reading.units)
             title = sheet
         row = max(end, first)
 
 
-def _above_numbers(rows: Rows) -> list[str]:
-    """Cells of the line above the first rows of numbers, or above their units."""
+def _names_line(rows: Rows) -> tuple[list[str], list[str], int]:
+    """The line above the first rows of numbers, that of their units, and the first row's place."""
     numeric = [sum(_number(cell) is not None for cell in row) >= 2 for row in rows]
     for at in range(1, len(rows) - MIN_READINGS + 1):
         if all(numeric[at : at + MIN_READINGS]):
-            above = rows[at - 2] if at > 1 and _is_units(rows[at - 1]) else rows[at - 1]
-            return [cell for cell in above if cell]
-    return []
+            has_units = at > 1 and _is_units(rows[at - 1])
+            return rows[at - 2 if has_units else at - 1], rows[at - 1] if has_units else [], at
+    return [], [], 0
+
+
+@dataclass(frozen=True)
+class TableHeads:
+    """The line above the numbers of a table, and its first rows.
+
+    Attributes
+    ----------
+    titles, units, quantities : of each column; "" where there is none. Quantities are by our names.
+    rows : the first readings as they stand.
+    constants : such as ``width_mm``, from the lines above.
+    """
+
+    titles: tuple[str, ...]
+    units: tuple[str, ...]
+    quantities: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    constants: Mapping[str, float]
+
+
+def table_heads(path: Path, reading: TableReading, *, most: int = 4) -> TableHeads | None:
+    """Heads and first rows of a table; None if no line stands above its numbers.
+
+    Raises
+    ------
+    InputError
+        If the file is not text, or too large.
+    """
+    for _, rows in _sheets(path, []):
+        titles, units, first = _names_line(rows)
+        if not titles:
+            continue
+        constants: dict[str, float] = {}
+        for row in rows[: rows.index(titles)]:
+            _, constants = _about(row, "", constants)
+        width = max(map(len, (titles, *rows[first : first + most])))
+        named = {c.place: _with_unit(c, units) for c in _named(titles, reading.columns)}
+        columns = [named.get(place) for place in range(width)]
+        return TableHeads(
+            tuple(_padded(titles, width)),
+            tuple("" if c is None else reading.units.get(c.name, c.unit or "") for c in columns),
+            tuple("" if c is None else c.name for c in columns),
+            tuple(tuple(_padded(row, width)) for row in rows[first : first + most]),
+            constants,
+        )
+    return None
+
+
+def _padded(row: list[str], width: int) -> list[str]:
+    return [*row, *[""] * (width - len(row))]
+
+
+def _named(row: list[str], called: Mapping[str, str]) -> list[_Column]:
+    """Columns of a line of names; where a user says what one is called, no other is taken for it.
+
+    Strain and extension say the same: one that is called so replaces the other, too.
+    """
+    titles = {_plain(title): ours for ours, title in called.items() if title}
+    here = {titles[plain] for cell in row if (plain := _plain(cell)) in titles}
+    taken = here | {ours for ours, title in called.items() if not title}
+    taken |= _STRETCHES if here & _STRETCHES else set()
+    columns = []
+    for place, cell in enumerate(row):
+        name = titles.get(_plain(cell))
+        if name is None and (name := _quantity(cell)) in taken:
+            continue
+        if name is not None:
+            columns.append(_Column(name, place, _unit(cell)))
+    return columns
 
 
 def _heads(row: list[str], called: Mapping[str, str]) -> list[list[_Column]]:
     """Columns of a line of names, by specimens side by side; none if it is another line."""
     groups: list[list[_Column]] = [[]]
-    for place, cell in enumerate(row):
-        name = _quantity(cell, called)
-        if name is None:
-            continue
-        if any(column.name == name for column in groups[-1]):
+    for column in _named(row, called):
+        if any(other.name == column.name for other in groups[-1]):
             groups.append([])
-        groups[-1].append(_Column(name, place, _unit(cell)))
+        groups[-1].append(column)
     shared = [column for column in groups[0] if column.name in _STRETCHES]
     alone = [group for group in groups if not _STRETCHES & {column.name for column in group}]
     for group in alone:  # one column of strain for the forces of several specimens
@@ -247,9 +313,7 @@ def _usable(group: list[_Column]) -> bool:
     return "force_n" in names and bool(names & _STRETCHES)
 
 
-def _quantity(cell: str, called: Mapping[str, str]) -> str | None:
-    if (name := called.get(_plain(cell))) is not None:
-        return name
+def _quantity(cell: str) -> str | None:
     plain = _plain(_UNIT.sub("", cell))
     name = next((q for q, pattern in QUANTITIES.items() if re.fullmatch(pattern, plain)), None)
     is_share = (_unit(cell) or "").lower() in UNITS["strain"]
@@ -301,7 +365,7 @@ def _about(row: list[str], title: str, constants: dict[str, float]) -> tuple[str
     cells = [cell for cell in row if cell]
     if not cells:
         return title, constants
-    name = _quantity(cells[0], {})
+    name = _quantity(cells[0])
     if name in ("width_mm", "length_mm") and len(cells) > 1:
         value, _, behind = cells[1].partition(" ")
         number = _number(_with_point(value))
@@ -312,6 +376,19 @@ def _about(row: list[str], title: str, constants: dict[str, float]) -> tuple[str
     if len(cells) <= 2 and re.match(r"(specimen|sample|probe|prüfling|test|run)\b", cells[0], re.I):
         return " ".join(cells), constants
     return title, constants
+
+
+def in_unit(values: Array, name: str, unit: str | None, where: str) -> Array:
+    """Readings of one of our columns in mm, N or as fractions.
+
+    Raises
+    ------
+    InputError
+        If the unit is not known.
+    """
+    if unit == RATIO and name.startswith("strain"):
+        return values - 1.0
+    return values if unit is None else _scale(name, unit, where) * values
 
 
 def _scale(name: str, unit: str, where: str) -> float:
@@ -329,6 +406,7 @@ def _specimen(
     group: list[_Column],
     readings: list[tuple[int, list[str]]],
     constants: dict[str, float],
+    units: Mapping[str, str],
 ) -> Specimen:
     columns = {}
     labels: tuple[str, ...] = ()
@@ -340,8 +418,9 @@ def _specimen(
         if column.name == "run":
             labels = tuple(texts)
         elif column.name != "time":
-            scale = 1.0 if column.unit is None else _scale(column.name, column.unit, name)
-            columns[column.name] = scale * _readings(f"{name}, column {column.name}", texts, inside)
+            values = _readings(f"{name}, column {column.name}", texts, inside)
+            unit = units.get(column.name, column.unit)
+            columns[column.name] = in_unit(values, column.name, unit, name)
     return Specimen(name, columns, constants, labels)
 
 
@@ -361,13 +440,17 @@ def _readings(where: str, texts: list[str], rows: list[tuple[int, list[str]]]) -
 
 
 def _tell_unread(
-    file: str, heads: list[str], groups: Iterable[list[_Column]], notes: list[str]
+    file: str,
+    heads: list[str],
+    groups: Iterable[list[_Column]],
+    called: Mapping[str, str],
+    notes: list[str],
 ) -> None:
     used = {column.place for group in groups for column in group}
     unread = [
         cell
         for place, cell in enumerate(heads)
-        if cell and place not in used and _quantity(cell, {}) is None
+        if cell and place not in used and (_quantity(cell) is None or _quantity(cell) in called)
     ]
     if unread:
         notes.append(f"{file}: not used: {', '.join(unread[:8])}.")

@@ -11,7 +11,7 @@ Tables are in :mod:`knitcore.measure.stretch_tables`.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -20,13 +20,9 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.measure.stretch_tables import (
-    WIDER_THAN_CLAMPED,
-    TableReading,
-    read_stretch_table,
-    sound_runs,
-)
+from knitcore.measure.stretch_tables import WIDER_THAN_CLAMPED, read_stretch_table, sound_runs
 from knitcore.measure.stretch_test import MIN_POINTS, StretchRun, StretchTest, misread_forces
+from knitcore.measure.table_reading import TableReading
 
 CLAMP_MM = 35.5
 MAX_PIXEL = 1e6
@@ -66,7 +62,7 @@ def read_stretch_test(
     path : HDF5, CSV or workbook.
     marks : for HDF5, which points give the strain along the pull.
     file_format : ``"h5"``, ``"csv"`` (any table) or None.
-    reading : for tables, what a file does not say.
+    reading : what the user says in place of the file; for HDF5, the width and the length.
 
     Raises
     ------
@@ -88,9 +84,13 @@ def read_stretch_test(
         )
     if file_format == "csv" and actual == "h5":
         raise InputError(path.name, "is an HDF5 file, not a CSV.", "Use the format h5.")
-    if actual == "h5":
-        return _read_hdf5(path, marks)
-    return read_stretch_table(path, reading)
+    if actual != "h5":
+        return read_stretch_table(path, reading)
+    test = _read_hdf5(path, marks)
+    if reading is None:
+        return test
+    test = test if reading.width_mm is None else test.with_width(reading.width_mm)
+    return test if reading.length_mm is None else replace(test, length_mm=reading.length_mm)
 
 
 # -- HDF5 ----------------------------------------------------------------------------------------

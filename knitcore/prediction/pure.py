@@ -7,10 +7,8 @@ from knitcore.materials import FabricRecord, Interval, Material, Origin
 from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.prediction import Along, Prediction, Source
 
-CURL = (
-    "Stockinette curls: its sides roll to the back, its top and bottom edges to the face. The "
-    "moduli are those of a sheet held flat."
-)
+CURLS = "Stockinette curls: its sides roll to the back, its top and bottom edges to the face."
+CURL = f"{CURLS} The moduli are those of a sheet held flat."
 
 SIZE_LOG_SD = 0.08
 """Standard deviation of the logarithm of a pure fabric's size: one aspect ratio is used for all

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 import click
 import numpy as np
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
@@ -13,14 +13,15 @@ from knitcore.fit.pull_fit import LawFit, Reduction, Residuals
 from knitcore.fit.strip_fit import fit_tests
 from knitcore.formats.read.law_files import LawFile, save_law
 from knitcore.materials.material_document import CurveDocument
-from knitcore.measure.stretch_tables import TableReading
+from knitcore.measure.table_reading import TableReading
 from knitcore.measure.uniaxial_files import read_stretch_test
 
 from ...cli.options import out_option, write_table
 from ...context import Context
-from ...requests.base import Floats, RequestModel, ResultModel
+from ...requests.base import Floats, RequestModel, ResultModel, first_fault
 from ...requests.fabrics import ElasticConstants, LawConstants, LawResult, law_fields
 from ...requests.faults import CheckedBy
+from ...requests.tables import TableTemplate, Title, reading_of
 from ...requests.uploads import UploadedFile, example_file, stored
 from ..registry import Command, Operation
 
@@ -65,12 +66,16 @@ class FitRequest(RequestModel):
     length_wale_mm: float | None = Field(
         None, ge=5, le=10_000, description="Distance of the clamps at rest, wale-wise test."
     )
-    columns: dict[str, Annotated[str, Field(max_length=200)]] | None = Field(
+    columns: dict[str, Title] | None = Field(
         None,
         max_length=10,
         description="What a tester's table calls our columns: strain_along or extension_mm, "
         'strain_across, force_n, width_mm; such as {"force_n": "Channel 2 (N)"}.',
     )
+    template_course: TableTemplate | None = Field(
+        None, description="How the course-wise table is read; the fields above come first."
+    )
+    template_wale: TableTemplate | None = Field(None, description="The same of the other table.")
     residuals: bool = Field(False, description="Return residuals at each point too.")
 
 
@@ -127,7 +132,13 @@ def fit(request: FitRequest, context: Context) -> FitResult:
 def _fit(request: FitRequest, context: Context) -> LawFit:
     with stored([request.test_course, request.test_wale]) as (course, wale):
         return request.pass_to(
-            fit_tests, course, wale, file_format=request.format, cancelled=context.cancelled
+            fit_tests,
+            course,
+            wale,
+            file_format=request.format,
+            template_course=reading_of(request.template_course),
+            template_wale=reading_of(request.template_wale),
+            cancelled=context.cancelled,
         )
 
 
@@ -160,13 +171,36 @@ def _points(residuals: Residuals) -> ResidualPoints:
     metavar="NAME=TITLE",
     help="What a tester's table calls one of our columns, such as 'force_n=Channel 2 (N)'.",
 )
-def _columns(column: tuple[str, ...]) -> dict[str, Any]:
+@click.option(
+    "--template",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="How the tables are read: FILE.json of the page; a second one is for the second test.",
+)
+def _columns(column: tuple[str, ...], template: tuple[Path, ...]) -> dict[str, Any]:
     pairs = [text.partition("=") for text in column]
     for (_, sign, _), text in zip(pairs, column, strict=True):
         if not sign:
             remedy = "Write our name and the table's: force_n=Load."
             raise InputError("column", f"{text!r} does not say which column is which.", remedy)
-    return {"columns": {name.strip(): title.strip() for name, _, title in pairs} or None}
+    if len(template) > len(Direction):
+        raise InputError("template", "There are more than two.", "Give one, or one for each test.")
+    documents = [_template(path) for path in template]
+    both = documents * 2 if len(documents) == 1 else documents
+    return {
+        "columns": {name.strip(): title.strip() for name, _, title in pairs} or None,
+        **dict(zip(("template_course", "template_wale"), both, strict=False)),
+    }
+
+
+def _template(path: Path) -> TableTemplate:
+    try:
+        return TableTemplate.model_validate_json(path.read_bytes())
+    except OSError:
+        raise InputError("template", f"{path} cannot be read.", "Check its name.") from None
+    except ValidationError as error:
+        remedy = "Save it on the page, or write columns, units, width_mm and length_mm as JSON."
+        raise InputError("template", f"{path.name}: {first_fault(error)}.", remedy) from None
 
 
 @out_option("--residuals", help="Write points and fit to FILE.csv.")
@@ -213,7 +247,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         more="Each is an HDF5, CSV or XLSX file.",
-        names={"residuals": None, "columns": None},
+        names=dict.fromkeys(("residuals", "columns", "template_course", "template_wale")),
         run=_command,
         fields=_columns,
     ),

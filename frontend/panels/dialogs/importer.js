@@ -11,6 +11,8 @@ import { ApiError, refusal } from "../../api.js";
 import { DesignError, readDesign } from "../../design/design.js";
 
 const MAX_FILE_BYTES = 12_000_000;
+/** Files of stretch tests, from which yarns are made. */
+const TABLE = /\.(csv|tsv|xlsx?|h5|hdf5)$/i;
 
 /**
  * @param {ActionContext} context
@@ -79,6 +81,11 @@ export async function importFile(context, file) {
   if (file.size > MAX_FILE_BYTES) {
     return refusal(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB.`, "Files have at most 12 MB.");
   }
+  if (TABLE.test(file.name)) {
+    context.studio.droppedTest = file;
+    context.open("yarns");
+    return null;
+  }
   if (!file.size) return refusal(`${file.name} is empty.`, "Choose a text, a PNG or a project file.");
   if (file.type === "image/png") {
     const bytes = new Uint8Array(await file.arrayBuffer());
@@ -132,8 +139,9 @@ export function listenToImports(context, isTyping) {
     if (!event.relatedTarget) delete root.dataset.dropping;
   });
   window.addEventListener("drop", (event) => {
-    event.preventDefault();
     delete root.dataset.dropping;
+    if (event.target instanceof HTMLInputElement && event.target.type === "file") return; // takes it itself
+    event.preventDefault();
     const file = event.dataTransfer?.files[0];
     const text = event.dataTransfer?.getData("text/plain");
     if (file) void report(importFile(context, file));

@@ -66,7 +66,33 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
       ? { columns: bitmap.width, rows: bitmap.height }
       : { columns: guess, rows: Math.min(MAX_SIDE, Math.max(1, Math.round((guess * height) / width / stitch))) });
 
+  /** Rows of a column that keep the picture's proportions: of squares, or of stitches as they are knitted. */
+  const proportion = () => height / width / (knitted.checked ? stitch : 1);
+  /** The other side follows the one that was typed. @param {"columns" | "rows"} typed */
+  const follow = (typed) => {
+    const { columns, rows } = size;
+    const [from, to] = typed === "columns" ? [columns, rows] : [rows, columns];
+    const ratio = typed === "columns" ? proportion() : 1 / proportion();
+    const other = Math.round(from.valueAsNumber * ratio);
+    if (locked.checked && from.valueAsNumber >= 1) to.value = String(Math.min(MAX_SIDE, Math.max(1, other)));
+    show();
+  };
+  const locked = h("input", {
+    type: "checkbox",
+    id: "picture-locked",
+    checked: true,
+    onchange: () => follow("columns"),
+  });
+  const knitted = h("input", {
+    type: "checkbox",
+    id: "picture-knitted",
+    checked: !detected && !each,
+    onchange: () => follow("columns"),
+  });
   const size = sizeFields("picture", MAX_SIDE, () => show());
+  for (const side of /** @type {const} */ (["columns", "rows"])) {
+    size[side].addEventListener("input", () => follow(side));
+  }
   size.show(cells);
   const threshold = h("input", {
     type: "range",
@@ -80,6 +106,12 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
   const share = h("output", { class: "figures muted", for: "picture-threshold" });
   const inverted = h("input", { type: "checkbox", id: "picture-inverted", onchange: () => show() });
   const preview = h("canvas", { class: "picture-preview", id: "picture-preview", role: "img" });
+  const asKnitted = h("canvas", { class: "picture-preview", id: "picture-as-knitted", role: "img" });
+  /** The chart in squares, and as it is knitted in this yarn. */
+  const views = [
+    { canvas: preview, high: 1, words: "The chart in squares" },
+    { canvas: asKnitted, high: stitch, words: "As it is knitted" },
+  ];
   const source = h("canvas", { class: "picture-preview", role: "img", "aria-label": `The picture ${name}` });
   /** @param {(grid: Grid) => string} use says where the old chart is */
   const take = (use) => {
@@ -133,7 +165,9 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
     if (!grid) return;
     const purls = grid.purl.reduce((sum, p) => sum + p, 0);
     share.textContent = `${Math.round((100 * purls) / grid.purl.length)} % purl`;
-    preview.ariaLabel = `The chart that it becomes: ${grid.columns} stitches × ${grid.rows} rows, ${share.textContent}`;
+    for (const { canvas, words } of views) {
+      canvas.ariaLabel = `${words}: ${grid.columns} stitches × ${grid.rows} rows, ${share.textContent}`;
+    }
     const palette = readPalette();
     const [knit, purl] = [pixel(palette.knit), pixel(palette.dark ? [216, 206, 194] : [92, 80, 68])];
     const image = new ImageData(grid.columns, grid.rows);
@@ -144,15 +178,17 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
     }
     const small = new OffscreenCanvas(grid.columns, grid.rows);
     /** @type {OffscreenCanvasRenderingContext2D} */ (small.getContext("2d")).putImageData(image, 0, 0);
-    fit(preview, grid.columns, grid.rows * stitch, (context, wide, high) => {
-      context.imageSmoothingEnabled = wide < grid.columns;
-      context.drawImage(small, 0, 0, wide, high);
-      const [cellWide, cellHigh] = [wide / grid.columns, high / grid.rows];
-      if (cellWide < 6) return;
-      context.fillStyle = palette.dark ? "rgb(0 0 0 / 0.4)" : "rgb(60 45 30 / 0.2)";
-      for (let c = 1; c < grid.columns; c++) context.fillRect(Math.round(c * cellWide), 0, 1, high);
-      for (let r = 1; r < grid.rows; r++) context.fillRect(0, Math.round(r * cellHigh), wide, 1);
-    });
+    for (const { canvas, high: tall } of views) {
+      fit(canvas, grid.columns, grid.rows * tall, (context, wide, high) => {
+        context.imageSmoothingEnabled = wide < grid.columns;
+        context.drawImage(small, 0, 0, wide, high);
+        const [cellWide, cellHigh] = [wide / grid.columns, high / grid.rows];
+        if (cellWide < 6) return;
+        context.fillStyle = palette.dark ? "rgb(0 0 0 / 0.4)" : "rgb(60 45 30 / 0.2)";
+        for (let c = 1; c < grid.columns; c++) context.fillRect(Math.round(c * cellWide), 0, 1, high);
+        for (let r = 1; r < grid.rows; r++) context.fillRect(0, Math.round(r * cellHigh), wide, 1);
+      });
+    }
   };
 
   const element = dialog(
@@ -167,7 +203,13 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
         source,
         h("figcaption", { class: "muted ellipsis small" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`),
       ),
-      h("figure", {}, preview, h("figcaption", { class: "muted small" }, "The chart, as seen from the face")),
+      h("figure", {}, preview, h("figcaption", { class: "muted small" }, "The chart in squares, from the face")),
+      h(
+        "figure",
+        {},
+        asKnitted,
+        h("figcaption", { class: "muted small" }, `As knitted: a stitch is ${stitch.toFixed(2)} times as high as wide`),
+      ),
     ),
     h(
       "div",
@@ -179,6 +221,12 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
         each && sizeButton("picture-each", "A pixel a stitch", { columns: bitmap.width, rows: bitmap.height }),
         detected && sizeButton("picture-found", `Grid found: ${detected.columns} × ${detected.rows}`, detected),
       ),
+    ),
+    h(
+      "div",
+      { class: "picture-tone line wrap gap-12" },
+      h("label", { class: "check" }, locked, "Keep the proportions"),
+      h("label", { class: "check" }, knitted, "as it is knitted in this yarn"),
     ),
     size.problem,
     h(
@@ -216,7 +264,7 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
  * @param {(context: CanvasRenderingContext2D, width: number, height: number) => void} draw
  */
 function fit(canvas, width, height, draw) {
-  const scale = Math.min(300 / width, 240 / height);
+  const scale = Math.min(260 / width, 220 / height);
   canvas.style.width = `${Math.max(1, width * scale)}px`;
   canvas.style.height = `${Math.max(1, height * scale)}px`;
   canvas.width = Math.max(1, Math.round(2 * width * scale));

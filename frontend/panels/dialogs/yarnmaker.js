@@ -20,10 +20,11 @@ import {
   yarnOf,
 } from "../../services/yarns.js";
 import { textButton } from "../../widgets/buttons.js";
-import { labelled, numberField } from "../../widgets/fields.js";
+import { labelled, numberField, sameWords, selectField } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
 import { table, tableRow } from "../../widgets/table.js";
 import { attempt } from "../../widgets/problem.js";
+import { testReader } from "./testreader.js";
 
 const ESTIMATED = "estimated from the library's yarns";
 const TABLES = ".csv,.xlsx,.xls";
@@ -168,10 +169,38 @@ export function yarnMaker(studio, made) {
   };
 
   const title = h("h3", {}, "Make a yarn");
+  const dropped = h("div", { class: "test-question open", id: "yarn-dropped", hidden: true });
+  /** Ask which test a table is that was dropped on the page. @param {File} file */
+  const offer = (file) => {
+    const fabric = selectField({ id: "yarn-dropped-fabric", "aria-label": "Fabric of the test" }, sameWords(FABRICS));
+    const along = selectField(
+      { id: "yarn-dropped-along", "aria-label": "Pulled along" },
+      { course: "its rows", wale: "its columns" },
+    );
+    const use = () => {
+      const row = rows.find((each) => each.fabric === fabric.value);
+      const picker = row?.pickers[along.value === "wale" ? "wale" : "course"];
+      if (!picker) return;
+      const data = new DataTransfer();
+      data.items.add(file);
+      picker.files = data.files;
+      picker.dispatchEvent(new Event("change"));
+      dropped.hidden = true;
+    };
+    dropped.replaceChildren(
+      h("span", {}, `${file.name} is a stretch test of`),
+      fabric,
+      h("span", {}, "pulled along"),
+      along,
+      textButton("check", "Use it", use, { id: "yarn-dropped-use" }),
+    );
+    dropped.hidden = false;
+  };
   const element = h(
     "section",
     { class: "yarn-maker", id: "yarn-maker", hidden: true, "aria-label": "Make a yarn" },
     title,
+    dropped,
     labelled("Name", name),
     h("h4", {}, "1. The yarn"),
     h(
@@ -225,6 +254,7 @@ export function yarnMaker(studio, made) {
         h("tbody", {}, ...rows.map((row) => row.element)),
       ),
     ),
+    ...rows.map((row) => row.reader.element),
     run.element,
     status,
     h(
@@ -236,6 +266,7 @@ export function yarnMaker(studio, made) {
 
   return {
     element,
+    offer,
     /** Show the form, for a new yarn or with what is known of one. @param {MaterialDocument | null} yarn */
     open(yarn) {
       base = yarn;
@@ -268,6 +299,7 @@ function fabricRow(fabric) {
   const stitches = figure(`yarn-${fabric}-stitches`, { "aria-label": `Stitches of ${fabric} per 10 cm` });
   const rows = figure(`yarn-${fabric}-rows`, { "aria-label": `Rows of ${fabric} per 10 cm` });
   const known = h("span", { class: "muted" });
+  const reader = testReader(fabric, { course, wale });
   const gauge = () => {
     const given = { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber };
     return given.stitches > 0 && given.rows > 0 ? given : null;
@@ -275,7 +307,8 @@ function fabricRow(fabric) {
   /** @returns {Tests | null} null until all is given */
   const tests = () => {
     const [along, across, size] = [course.files?.[0], wale.files?.[0], gauge()];
-    return along && across && size ? { course: along, wale: across, ...size } : null;
+    const { templates } = reader;
+    return along && across && size ? { course: along, wale: across, templates, ...size } : null;
   };
   /** What is missing, in words; empty if it is all or nothing. */
   const incomplete = () => {
@@ -283,17 +316,18 @@ function fabricRow(fabric) {
     const numbers = [stitches, rows].filter((field) => field.value).length;
     if (files === 1) return "A fabric needs two tests: along its rows and along its columns.";
     if (numbers === 1) return "Give both its stitches and its rows per 10 cm.";
-    return files && !numbers ? "Its tests need its gauge, too." : "";
+    return files && !numbers ? "Its tests need its gauge, too." : reader.open();
   };
   /** @param {MaterialDocument["fabrics"][Fabric] | null} record */
   const show = (record) => {
     course.value = wale.value = "";
+    reader.clear();
     stitches.value = record ? perTenCm(record.stitch_course_mm) : "";
     rows.value = record ? perTenCm(record.stitch_wale_mm) : "";
     known.textContent = record ? ` ${record.origin === "estimated" ? "estimated" : "tested"}` : "";
   };
   const element = tableRow(h("span", {}, fabric, known), stitches, rows, course, wale);
-  return { fabric, gauge, tests, incomplete, show, element };
+  return { fabric, gauge, tests, incomplete, show, element, reader, pickers: { course, wale } };
 }
 
 /** @param {string} id @param {Record<string, unknown>} more */

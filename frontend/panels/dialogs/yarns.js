@@ -113,8 +113,13 @@ export function create(studio) {
   studio.materials.watch(show);
   return () => {
     status.replaceChildren();
-    maker.element.hidden = true;
-    element.showModal();
+    const { droppedTest } = studio;
+    studio.droppedTest = null;
+    if (!droppedTest) maker.element.hidden = true;
+    if (!element.open) element.showModal();
+    if (!droppedTest) return;
+    if (maker.element.hidden) maker.open(null);
+    maker.offer(droppedTest);
   };
 }
 

@@ -51,7 +51,7 @@ def _notes(plan: GarmentPlan) -> Iterator[str]:
     gauges = []
     for fabric in dict.fromkeys(plan.fabrics):
         stitches, rows = plan.gauges[fabric].counts()
-        gauges.append(f"{fabric} {stitches:.1f} sts x {rows:.1f} rows")
+        gauges.append(f"{fabric} {stitches:.0f} sts × {rows:.0f} rows")
     yield f"Gauge per 10 cm: {', '.join(gauges)}."
     yield f"Yarn: {plan.yarn.length_m:.0f} m, without cast-on, tails and swatch."
     yield f"To close: {plan.closing}."

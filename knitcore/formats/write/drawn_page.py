@@ -6,14 +6,19 @@ Lengths in mm; the origin is the top left corner, y points down.
 import base64
 import io
 import re
+import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 MM_PER_POINT = 25.4 / 72.0
 CONDENSED = 0.87
-"""Width of the letters of a PDF over their font's: Vera's are wider than those of an SVG."""
+"""Width of the letters of a PDF over their font's, which are wider than those of an SVG."""
+REGULAR, BOLD = "DejaVuSans", "DejaVuSans-Bold"
+"""Latin, Greek and Cyrillic letters with all their accents, fractions, arrows and signs."""
+_FONTS = Path(__file__).parent / "fonts"
 
 
 @dataclass(frozen=True)
@@ -164,7 +169,7 @@ def to_pdf(pages: Iterable[Page], title: str) -> bytes:
     from reportlab.pdfgen.canvas import Canvas
 
     buffer = io.BytesIO()
-    canvas = Canvas(buffer, invariant=1, pageCompression=1, initialFontName=_embedded("Vera"))
+    canvas = Canvas(buffer, invariant=1, pageCompression=1, initialFontName=_embedded(REGULAR))
     canvas.setTitle(title)
     for page in pages:
         canvas.setPageSize((page.width / MM_PER_POINT, page.height / MM_PER_POINT))
@@ -208,7 +213,7 @@ def _pdf(canvas: object, shape: Shape, top: float) -> None:
                 path.circle(x, top - y, shape.radius)
             canvas.drawPath(path, fill=1, stroke=0)
         case Label():
-            font = _embedded("VeraBd" if shape.bold else "Vera")
+            font = _embedded(BOLD if shape.bold else REGULAR)
             width = CONDENSED * canvas.stringWidth(shape.text, font, shape.size)
             before = {"start": 0.0, "middle": width / 2, "end": width}[shape.anchor]
             line = canvas.beginText(shape.x - before, top - shape.y)
@@ -223,14 +228,28 @@ def _pdf(canvas: object, shape: Shape, top: float) -> None:
             canvas.drawImage(photo, shape.x, bottom, shape.width, shape.height, mask="auto")
 
 
+def letters_lacking(texts: Iterable[str]) -> str:
+    """Letters that a PDF shows as empty boxes, or in the wrong order as it writes to the right."""
+    from reportlab.pdfbase import pdfmetrics
+
+    known = pdfmetrics.getFont(_embedded(REGULAR)).face.charToGlyph
+    letters = dict.fromkeys(letter for text in texts for letter in text if letter.isprintable())
+    leftward = ("R", "AL")
+    return "".join(
+        letter
+        for letter in letters
+        if ord(letter) not in known or unicodedata.bidirectional(letter) in leftward
+    )
+
+
 @lru_cache
 def _embedded(font: str) -> str:
-    """Register a font of reportlab to be embedded in the file, and return its name.
+    """Register a font, of which the letters in use are embedded in the file; return its name.
 
-    Printers ask for embedded fonts; Bitstream's licence allows it.
+    Printers ask for embedded fonts; the licence of DejaVu allows it.
     """
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont
 
-    pdfmetrics.registerFont(TTFont(font, f"{font}.ttf"))
+    pdfmetrics.registerFont(TTFont(font, str(_FONTS / f"{font}.ttf")))
     return font

@@ -21,7 +21,7 @@ from knitcore.formats.designs.layout import (
 from knitcore.formats.read.knitout_reader import verified
 from knitcore.formats.write.chart_drawing import chart_pdf, chart_svg
 from knitcore.formats.write.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
-from knitcore.formats.write.drawn_page import Page, to_long_svg, to_pdf
+from knitcore.formats.write.drawn_page import Page, letters_lacking, to_long_svg, to_pdf
 from knitcore.formats.write.knitout import Finish
 from knitcore.formats.write.knitspeak import write_knitspeak
 from knitcore.formats.write.pattern import pattern_pages
@@ -181,6 +181,15 @@ def export_chart(
     notes = exporter.notes
     if not exporter.holds_yarns and len(piece.yarns) > 1:
         notes = (*notes, f"{kind} has no colours: the yarns are left out.")
+    if exporter.media_type == _PDF[1]:
+        names = [
+            *(region.name for region in options.layout.regions),
+            *(y.name for y in piece.yarns),
+        ]
+        texts = [options.name, options.note, material.name, *names]
+        if lacking := letters_lacking(texts):
+            remedy = "write them in Latin, Greek or Cyrillic letters, or export SVG"
+            notes = (*notes, f"The PDF cannot show these letters well: {lacking[:40]} ({remedy}).")
     content = content.encode() if isinstance(content, str) else bytes(content)
     return ExportedFile(kind, content, exporter.suffix, exporter.media_type, notes)
 

@@ -36,6 +36,7 @@ from knitcore.garment.piece import Piece, yarn_name
 from knitcore.materials import Interval, Material
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Along, Prediction, Source
+from knitcore.prediction.pure import CURL, CURLS
 
 TITLE_MM, HEADING_MM, BODY_MM = 9.0, 5.0, 3.2
 LINE = 1.45
@@ -64,10 +65,12 @@ _ABBREVIATIONS = {
     "k3tog": "knit three stitches together",
     "p2tog": "purl two stitches together",
     "p3tog": "purl three stitches together",
-    "ssk": "slip two stitches as if to knit, one at a time, and knit them together",
-    "ssp": "slip two stitches as if to knit, put them back, and purl them together",
-    "m1": "make one: lift the strand between two stitches and knit it twisted",
-    "m1p": "make one: lift the strand between two stitches and purl it twisted",
+    "ssk": "slip two stitches as if to knit, one at a time, put them back and knit them together "
+    "through the back loops",
+    "ssp": "slip two stitches as if to knit, one at a time, put them back and purl them together "
+    "through the back loops",
+    "m1": "make one: lift the strand between two stitches and knit it through the back loop",
+    "m1p": "make one: lift the strand between two stitches and purl it through the back loop",
 }
 
 _RESTS_ON: dict[Source | None, str] = {
@@ -319,7 +322,7 @@ def _gauge(flow: _Flow, facts: _Facts) -> None:
     of = "of the whole cloth at rest."
     if facts.prediction is None:
         of = "at rest, the mean of all parts; each has its own below."
-    flow.text(f"{100 / width:.1f} stitches and {100 / height:.1f} rows to 10 cm {of}")
+    flow.text(f"{100 / width:.0f} stitches and {100 / height:.0f} rows to 10 cm {of}")
     places = (0.0, 62.0, 124.0)
     flow.row(("", "along the rows", "along the columns"), places, bold=True)
     size = facts.size
@@ -360,7 +363,7 @@ def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
         where = f"rows {rows.min() + 1}–{rows.max() + 1}, sts {first}–{last}"
         across = width * cells.sum(axis=1).max() / 10
         up = height * cells.sum(axis=0).max() / 10
-        gauge = f"{100 / width:.1f} sts, {100 / height:.1f} rows"
+        gauge = f"{100 / width:.0f} sts, {100 / height:.0f} rows"
         cells_told = (_short(region.name), where, gauge, f"{across:.1f} × {up:.1f} cm")
         flow.row(cells_told, places, colour=region.colour)
     flow.text(
@@ -432,10 +435,10 @@ def _evidence(flow: _Flow, facts: _Facts) -> None:
     flow.heading("Where the numbers come from")
     prediction = facts.prediction
     source = None if prediction is None else prediction.provenance
-    notes = () if prediction is None else prediction.notes
+    curls = prediction is not None and CURL in prediction.notes
     for sentence in (
         _RESTS_ON[source],
-        *notes,
+        *([CURLS] if curls else []),
         "The report of this design has all numbers, their intervals and methods.",
         "Knit a swatch. If its gauge differs from this pattern's, trust the swatch.",
     ):

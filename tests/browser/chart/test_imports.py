@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 
 import numpy as np
 import pytest
@@ -44,7 +45,17 @@ def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
 
     drop(flat_studio, "small.png", "image/png", picture(CELLS, 1))
     expect(flat_studio.locator("#picture-rows")).to_have_value("3")
+    flat_studio.fill("#picture-columns", "10")
+    expect(flat_studio.locator("#picture-rows")).to_have_value("6")  # proportions are kept
+    flat_studio.check("#picture-knitted")
+    knitted = int(flat_studio.input_value("#picture-rows"))
+    assert knitted > 6  # a stitch is wider than high
+    expect(flat_studio.locator("#picture-as-knitted")).to_have_attribute(
+        "aria-label", re.compile(f"As it is knitted: 10 stitches × {knitted} rows")
+    )
+    flat_studio.uncheck("#picture-locked")
     flat_studio.fill("#picture-columns", "4")
+    expect(flat_studio.locator("#picture-rows")).to_have_value(str(knitted))
     flat_studio.click("#picture-replace")
     expect(dialog).to_have_count(0)
     assert kept_chart(flat_studio) != TEXT
@@ -97,3 +108,10 @@ def test_project_files_open(flat_studio: Page) -> None:
     expect(flat_studio.locator(".design-name")).to_have_value("New cuff")
     design = kept_design(flat_studio)
     assert (design["outline"], design["regions"]) == ("xxx.\nxxxx", [region])
+
+
+def test_notes_of_the_reader_are_shown(flat_studio: Page) -> None:
+    drop(flat_studio, "blank.txt", "text/plain", b"P P P \n P P P\nP P P \n P P P\n")
+    messages = flat_studio.locator("#messages")
+    expect(messages).to_contain_text("blank squares are read as knits")
+    assert kept_chart(flat_studio) == "PKPKPK\nKPKPKP\nPKPKPK\nKPKPKP"

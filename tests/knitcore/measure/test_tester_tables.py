@@ -10,8 +10,9 @@ import pytest
 from knitcore import Direction, InputError
 from knitcore.fit.pull_fit import Reduction
 from knitcore.fit.strip_fit import fit_tests
-from knitcore.measure.stretch_tables import TableReading
 from knitcore.measure.stretch_test import StretchTest
+from knitcore.measure.table_reading import DoubtError, TableReading
+from knitcore.measure.tester_tables import table_heads
 from knitcore.measure.uniaxial_files import read_stretch_test
 from tests.knitcore.measure.synthetic import LAW, csv_pair, write_csv
 
@@ -174,3 +175,55 @@ def test_a_law_is_fitted_without_a_strain_across_and_says_that_it_is_less_certai
     assert set(fit.waist_rms or {}) == {Direction.WALE}
     with pytest.raises(InputError, match="no strain across"):
         fit_tests(tmp_path / "tester.csv", measured[1], reduction=Reduction.UNIFORM)
+
+
+def test_heads_say_what_each_column_is_and_what_no_column_says(tmp_path: Path) -> None:
+    file = tmp_path / "test.csv"
+    file.write_bytes(german())
+    heads = table_heads(file, TableReading())
+    assert heads
+    assert heads.titles == ("Prüfzeit", "Standardweg", "Standardkraft", "Temperatur")
+    assert heads.quantities == ("time", "extension_mm", "force_n", "")
+    assert heads.units == ("s", "mm", "N", "")
+    assert heads.constants == {"width_mm": WIDTH_MM, "length_mm": LENGTH_MM}
+    assert heads.rows[0] == ("0.1", "0.00000", "0.00000", "20")
+    file.write_bytes(channels())
+    heads = table_heads(file, TableReading(columns={"force_n": "Ch 2 (N)"}))
+    assert heads
+    assert heads.quantities == ("", "force_n")
+    file.write_bytes(b"1,2\n3,4")
+    assert table_heads(file, TableReading()) is None
+
+
+def test_a_column_that_the_user_names_is_taken_for_no_other(tmp_path: Path) -> None:
+    rows = [
+        f"{e:.5f},{f:.5f},{2 * f:.5f},{0.3 * e:.5f}" for e, f in zip(STRAIN, FORCE, strict=True)
+    ]
+    content = "\n".join(["Strain,Load,Force,Lateral strain", *rows]).encode()
+    columns = {"force_n": "Force", "strain_across": ""}
+    (run,) = read(tmp_path / "a.csv", content, columns=columns, width_mm=WIDTH_MM).runs
+    assert run.stress == pytest.approx(2 * FORCE / WIDTH_MM, abs=1e-6)
+    assert np.isnan(run.strain_across).all()
+    with pytest.raises(DoubtError, match="18% wider"):
+        read(tmp_path / "a.csv", content, columns={"force_n": "Load"}, width_mm=WIDTH_MM)
+    narrowing = {"narrowing_is_positive": True, "columns": {"force_n": "Load"}}
+    (run,) = read(tmp_path / "a.csv", content, width_mm=WIDTH_MM, **narrowing).runs
+    assert run.strain_across == pytest.approx(-0.3 * STRAIN, abs=1e-5)
+
+
+def test_units_of_the_user_come_before_those_of_the_file(tmp_path: Path) -> None:
+    size = {"width_mm": WIDTH_MM, "columns": {"strain_along": "L (mm)", "force_n": "Ch 2 (N)"}}
+    rows = [f"{1 + e:.5f},{100 * f:.4f}" for e, f in zip(STRAIN, FORCE, strict=True)]
+    content = "\n".join(["L (mm),Ch 2 (N)", *rows]).encode()
+    units = {"strain_along": "ratio", "force_n": "cN"}
+    (run,) = read(tmp_path / "a.csv", content, units=units, **size).runs
+    assert run.strain_along == pytest.approx(STRAIN, abs=1e-5)
+    assert run.stress == pytest.approx(FORCE / WIDTH_MM, abs=1e-6)
+
+
+def test_a_length_in_cm_is_doubted_where_the_strain_is_beyond_any_knit(tmp_path: Path) -> None:
+    content = channels("Extension (mm),Load (N)").replace(b"Ext", b"Grip separation,10\nExt", 1)
+    with pytest.raises(DoubtError, match="distance of the clamps of 10 looks like cm"):
+        read(tmp_path / "a.csv", content, width_mm=WIDTH_MM)
+    test = read(tmp_path / "a.csv", content, width_mm=WIDTH_MM, length_mm=100.0)
+    assert test.largest_strain == pytest.approx(0.6)

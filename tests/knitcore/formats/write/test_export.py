@@ -1,6 +1,7 @@
 import csv
 import io
 import re
+import zlib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -318,3 +319,26 @@ def test_a_drawing_is_xml_whatever_it_is_called() -> None:
     page = Page(10.0, 10.0, (Label(1.0, 1.0, "a\ufffe\x0b\ud800🧶", 3.0),))
     drawn = ET.fromstring(to_svg(page, "\x00")).find("{*}text")  # noqa: S314 - our own
     assert drawn.text == "a\ufffd\ufffd\ufffd🧶"
+
+
+def pdf_letters(content: bytes) -> set[str]:
+    """Letters of the embedded fonts of a PDF, as programs find and copy them."""
+    letters: set[str] = set()
+    for head in re.finditer(
+        rb"/Filter \[ /FlateDecode \] /Length (\d+)\s+>>\s+stream\r?\n", content
+    ):
+        text = zlib.decompress(content[head.end() : head.end() + int(head[1])]).decode("latin-1")
+        codes = re.findall(r"<([0-9A-F]{4})>", text) if "beginbf" in text else []
+        letters |= {chr(int(code, 16)) for code in codes}
+    return letters
+
+
+@pytest.mark.parametrize("kind", [ExportKind.PDF, ExportKind.PATTERN, ExportKind.REPORT])
+def test_names_keep_the_letters_of_their_language(kind: ExportKind) -> None:
+    chart = StitchChart.of_fabric("seed", rows=2, columns=4)
+    name = "Łódź – Жук, sleeve ⅛, őΕλ"
+    file = export_chart(chart, kind, ACRYLIC, ExportOptions(name=name))
+    assert set(name) - {" "} <= pdf_letters(file.content)
+    assert file.notes == ()
+    (note,) = export_chart(chart, kind, ACRYLIC, ExportOptions(name="毛衣 סוודר")).notes
+    assert "毛衣סודר" in note

@@ -50,6 +50,9 @@ def test_a_pattern_has_all_that_a_knitter_needs(pages: tuple[Page, ...]) -> None
     assert re.search(r"Rows 1–6: ribbed hem\n.*k1, p1|Rows 1–6: ribbed hem\n.*p1, k1", words)
     assert re.search(r"\d+ % \(\d+ to \d+\)", words)
     assert "k2tog" not in words  # no row uses it
+    assert re.search(r"\n\d+ stitches and \d+ rows to 10 cm", words)  # as a swatch shows it
+    assert "modul" not in words  # mechanics are in the report
+    assert "its sides roll to the back" in words
     assert words.count(f"page 1 of {len(pages)}") == 1
 
 
@@ -126,3 +129,13 @@ def test_pdf_and_svg_have_the_same_pages(pages: tuple[Page, ...]) -> None:
 def test_other_photos_are_refused(photo: bytes, problem: str) -> None:
     with pytest.raises(InputError, match=problem):
         pattern_pages(Piece.plain(CHART), ACRYLIC, STYLE, photo=photo)
+
+
+def test_decreases_are_explained_as_they_are_worked() -> None:
+    chart = StitchChart.parse("PPPPPP\nKKKKKK")
+    outline = np.array([[True] * 6, [False, *[True] * 4, False]])
+    piece = Piece.plain(ShapedChart(chart, outline))
+    words = " ".join(label.text for label in labels(pattern_pages(piece, ACRYLIC, ChartStyle())))
+    shown = re.search(r"ss[kp]: slip two stitches[^;]*", words)
+    assert shown
+    assert "together through the back loops" in shown[0]
