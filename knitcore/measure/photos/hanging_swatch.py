@@ -263,7 +263,9 @@ def _fabric(
     varies = uniform_filter(filled**2, side) - uniform_filter(filled, side) ** 2
     rough = np.log(np.maximum(varies, MIN_CONTRAST**2))
     mask: Mask = (rough > threshold_otsu(rough)) & ~outside
-    mask = binary_opening(binary_fill_holes(mask), np.ones((3, 3)), iterations=max(1, side // 2))
+    mask = binary_opening(
+        binary_fill_holes(mask), np.ones((3, 3), dtype=bool), iterations=max(1, side // 2)
+    )
     regions = regionprops(label(mask))
     region = max(regions, key=lambda r: r.area, default=None)
     rows = np.zeros(0) if region is None else region.image.sum(axis=1)

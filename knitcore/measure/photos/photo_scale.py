@@ -9,6 +9,7 @@ ratio of the smaller to the larger scale.
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import binary_fill_holes, map_coordinates, uniform_filter
@@ -250,11 +251,11 @@ def _edge_of_coin(
     )
 
 
-def _is_elliptic(region: object) -> bool:
+def _is_elliptic(region: Any) -> bool:
     """Say whether a region fills the ellipse of its moments, and is not slender."""
-    major, minor = region.axis_major_length, region.axis_minor_length  # type: ignore[attr-defined]
+    major, minor = float(region.axis_major_length), float(region.axis_minor_length)
     area = math.pi / 4 * major * minor
-    return minor > 0.8 * major and abs(region.area_filled / area - 1) < 0.03  # type: ignore[attr-defined]
+    return minor > 0.8 * major and abs(float(region.area_filled) / area - 1) < 0.03
 
 
 def _dark(grey: Array) -> Mask:
