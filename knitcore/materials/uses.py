@@ -1,4 +1,4 @@
-"""What a yarn's data serve for, and what is missing for the rest."""
+"""Uses that a yarn's data serve for, and what is missing for the others."""
 
 from dataclasses import dataclass
 

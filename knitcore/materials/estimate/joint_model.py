@@ -84,14 +84,16 @@ class JointModel:
         """The same, given points of stretch curves."""
         if not points:
             return self
-        start, noise = self.mean.ravel(), np.diag([point.deviation**2 for point in points])
+        start: Array = self.mean.ravel()
+        noise = np.diag([point.deviation**2 for point in points])
         measured = np.array([point.value for point in points])
         state: Array = start
-        gain, slopes = np.zeros((len(start), len(points))), np.zeros((len(points), len(start)))
+        gain: Array = np.zeros((len(start), len(points)))
+        slopes: Array = np.zeros((len(points), len(start)))
         for step in range(_STEPS):
             expected, slopes = self._linear(state, points)
             spread = slopes @ self.covariance @ slopes.T + noise
-            gain = np.linalg.solve(spread, slopes @ self.covariance).T
+            gain = np.asarray(np.linalg.solve(spread, slopes @ self.covariance).T, dtype=float)
             new = start + gain @ (measured - expected - slopes @ (start - state))
             change = new - state
             state = state + (change if step < 8 else 0.5 * change)

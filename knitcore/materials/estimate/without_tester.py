@@ -40,7 +40,7 @@ from knitcore.materials.estimate.yarn_statistics import (
 from knitcore.materials.law_uncertainty import COVERAGE, Z_SCORE, CurveUncertainty, LawUncertainty
 from knitcore.materials.library import load_library
 from knitcore.materials.material import MM_PER_INCH, FabricRecord, Material, Origin, Yarn
-from knitcore.measure.photos.hanging_swatch import StretchPoint
+from knitcore.measure.stretch_test import StretchPoint
 
 INTERVAL_SOURCE = (
     "Yarns of the library left out one at a time, and measured in the same way; errors of the"
@@ -74,7 +74,7 @@ _REPEATS = 3
 
 @dataclass(frozen=True)
 class KnownSwatch:
-    """What ruler, scale and ball band say; all but fabric and gauge may be missing (None).
+    """A swatch by ruler, scale and ball band; all but fabric and gauge may be missing (None).
 
     Attributes
     ----------
@@ -120,7 +120,7 @@ class KnownSwatch:
 
 @dataclass(frozen=True)
 class Step:
-    """What is known after a measurement.
+    """State of knowledge after a measurement.
 
     Attributes
     ----------
@@ -528,8 +528,10 @@ def _fabrics(
         poisson, poisson_sd = _poisson(fabric, i, points)
         modulus, alpha, beta = values[:, i].tolist()
         law = ConstitutiveLaw.of_moduli(
-            *modulus,
-            *poisson,
+            modulus[0],
+            modulus[1],
+            poisson[0],
+            poisson[1],
             alpha_xx=alpha[0],
             alpha_yy=alpha[1],
             beta_xx=beta[0],

@@ -22,6 +22,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.measure.photos.photo_scale import MARKS_MM, PhotoScale, coin_scale, sheet_scale
 from knitcore.measure.photos.stitch_spacing import StitchSpacing, stitch_spacing
+from knitcore.measure.stretch_test import StretchPoint
 
 GRAVITY_N_PER_G = 9.80665e-3
 WORKING_PIXELS = 3000
@@ -64,7 +65,7 @@ class SwatchPhoto:
 
 @dataclass(frozen=True)
 class Swatch:
-    """What a ruler and a kitchen scale say of the swatch.
+    """The swatch by ruler and kitchen scale.
 
     Attributes
     ----------
@@ -96,7 +97,7 @@ class Swatch:
 
 @dataclass(frozen=True, eq=False)
 class PhotoReading:
-    """What a photo shows.
+    """Stitches in a photo, and its scale.
 
     Attributes
     ----------
@@ -112,27 +113,6 @@ class PhotoReading:
     spacing: StitchSpacing
     scale: PhotoScale
     fabric_mm: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class StretchPoint:
-    """A point of the stretch curve, the width free, with standard deviations.
-
-    Attributes
-    ----------
-    fabric, direction : of the pull.
-    force_n_per_mm : force per clamped width in the middle of the swatch.
-    strain_along, strain_along_sd : along the pull.
-    strain_across, strain_across_sd : across it, below 0 where the swatch narrows.
-    """
-
-    fabric: Fabric
-    direction: Direction
-    force_n_per_mm: float
-    strain_along: float
-    strain_along_sd: float
-    strain_across: float
-    strain_across_sd: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""What a yarn serves for."""
+"""A yarn says what it serves for."""
 
 from dataclasses import replace
 

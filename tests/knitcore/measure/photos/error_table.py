@@ -1,7 +1,7 @@
-"""Errors of stitch spacing and strain in rendered photos: ``python -m studies.hanging_photos``.
+"""Print errors of rendered photos: ``python -m tests.knitcore.measure.photos.error_table``.
 
-Prints the table of docs/a-new-yarn.md: a swatch as the product draws it, before the sheet or
-beside a coin, at rest and pulled down by 30 %; largest errors of four scatters of stitches.
+The table is that of docs/measure-your-yarn.md: a swatch as the product draws it, before the
+sheet or beside a coin, at rest and pulled down by 30 %; largest errors of four scatters of stitches.
 """
 
 from dataclasses import replace
@@ -18,7 +18,7 @@ SWATCH = Swatch(Fabric.STOCKINETTE, Direction.WALE, 100 / STITCH_MM[0], 100 / ST
 
 
 def main() -> None:
-    print("| photo | spacing, largest error | strain along | strain across |\n|---|---|---|---|")
+    print("| photo | spacing, largest error | strain along | strain across |\n|---|---|---|---|")  # noqa: T201
     for fabric in Fabric:
         _row(f"{fabric}", Scene(fabric=fabric))
     for tilt in (5, 10, 15, 19, 22):
@@ -38,14 +38,14 @@ def _row(name: str, scene: Scene) -> None:
     try:
         errors = [_errors(replace(scene, seed=seed)) for seed in range(REPEATS)]
     except InputError as error:
-        print(f"| {name} | refused: {error.problem} | | |", flush=True)
+        print(f"| {name} | refused: {error.problem} | | |", flush=True)  # noqa: T201
         return
     largest = [max(abs(e[i]) for e in errors) for i in range(3)]
-    print(f"| {name} | {largest[0]:.2%} | {largest[1]:.4f} | {largest[2]:.4f} |", flush=True)
+    print(f"| {name} | {largest[0]:.2%} | {largest[1]:.4f} | {largest[2]:.4f} |", flush=True)  # noqa: T201
 
 
 def _errors(rest: Scene) -> tuple[float, float, float]:
-    """Of the spacing (relative, the largest of four) and of both strains (absolute)."""
+    """Errors of the spacing (relative, the largest of four) and of both strains (absolute)."""
     loaded = replace(rest.pulled(ALONG, ACROSS), seed=rest.seed + 100)
     fabric, coin = replace(SWATCH, fabric=rest.fabric), rest.coin_mm
     sizes = []
