@@ -36,6 +36,9 @@ _REACH = 0.42
 """Farthest shift that is used, over the size of the fabric."""
 _SCATTER = 0.0015
 """Relative error that remains: of pixels, and of what the window cuts off."""
+_UNEVEN = 0.3
+"""Relative error times the stitches in a row, over 1 / correlation - 1: a few uneven stitches are
+not as wide as the swatch's mean (from rendered swatches of scattered stitches)."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +102,9 @@ def stitch_spacing(
     lattice, covariance = _fitted_lattice(correlation, middle, np.array(vectors), heights)
     lengths = np.hypot(*lattice.T)
     _check_size(np.array(straightened.shape[::-1]), lengths, px_per_mm, name)
-    errors = np.hypot(np.sqrt(np.diag(covariance)), _SCATTER * lengths)
+    counts = np.array(straightened.shape[::-1]) / lengths * repeats
+    uneven = _UNEVEN * (1 / np.minimum(heights, 1) - 1) / counts
+    errors = np.hypot(np.sqrt(np.diag(covariance)), np.hypot(_SCATTER, uneven) * lengths)
     if (errors > MAX_ERROR * lengths).any():
         problem = f"the stitches are too uneven: ± {(errors / lengths).max():.1%} of a stitch."
         remedy = "Go closer, light the fabric evenly, and let it hang flat without creases."

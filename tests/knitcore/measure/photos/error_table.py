@@ -1,7 +1,7 @@
 """Print errors of rendered photos: ``python -m tests.knitcore.measure.photos.error_table``.
 
 The table is that of docs/measure-your-yarn.md: a swatch as the product draws it, before the
-sheet or beside a coin, at rest and pulled down by 30 %; largest errors of four scatters of stitches.
+sheet or beside a coin, at rest and pulled down by 30 %; the largest errors of four scatters.
 """
 
 from dataclasses import replace
