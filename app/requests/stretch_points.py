@@ -8,7 +8,7 @@ from pydantic import Field
 
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
-from knitcore.measure.stretch_test import StretchPoint
+from knitcore.measure.stretch_points import StretchPoint
 
 from .base import RequestModel
 

@@ -51,7 +51,7 @@ export async function adopt(studio, document) {
   studio.tell(
     complete
       ? `${added.name} is added, and chosen.`
-      : `${added.name} is added, but not chosen: it lacks some of the four fabrics. Change it: with a bending modulus and the yarn in a stitch they are estimated.`,
+      : `${added.name} is added, but not chosen: it lacks some of the four fabrics. Change it under Own yarns, and keep it: they are estimated.`,
   );
   return added;
 }

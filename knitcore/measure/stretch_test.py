@@ -11,7 +11,7 @@ from scipy.ndimage import median_filter
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
-from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.fabric import Direction
 
 MIN_POINTS = 20
 """Fewest points of a pull; with fewer, a linear part looks like a stiffening one."""
@@ -23,27 +23,6 @@ FALL_SHARE = 0.35
 """Fall below the running maximum, over the peak, that marks an unloading or a rupture."""
 _NAMED = re.compile(r"(?<![a-z])(course|wale)(?:wise)?(?![a-z])", re.IGNORECASE)
 """A direction by name in a description or a file's name."""
-
-
-@dataclass(frozen=True)
-class StretchPoint:
-    """A point of the stretch curve, the width free, with standard deviations.
-
-    Attributes
-    ----------
-    fabric, direction : of the pull.
-    force_n_per_mm : force per clamped width in the middle of the swatch.
-    strain_along, strain_along_sd : along the pull.
-    strain_across, strain_across_sd : across it, below 0 where the swatch narrows.
-    """
-
-    fabric: Fabric
-    direction: Direction
-    force_n_per_mm: float
-    strain_along: float
-    strain_along_sd: float
-    strain_across: float
-    strain_across_sd: float
 
 
 @dataclass(frozen=True, eq=False)

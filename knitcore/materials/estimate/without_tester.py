@@ -40,7 +40,7 @@ from knitcore.materials.estimate.yarn_statistics import (
 from knitcore.materials.law_uncertainty import COVERAGE, Z_SCORE, CurveUncertainty, LawUncertainty
 from knitcore.materials.library import load_library
 from knitcore.materials.material import MM_PER_INCH, FabricRecord, Material, Origin, Yarn
-from knitcore.measure.stretch_test import StretchPoint
+from knitcore.measure.stretch_points import StretchPoint
 
 INTERVAL_SOURCE = (
     "Yarns of the library left out one at a time, and measured in the same way; errors of the"
@@ -190,7 +190,7 @@ class UntestedYarn:
 def points_of_law(fabric: Fabric, law: ConstitutiveLaw) -> tuple[StretchPoint, ...]:
     """Points of the curves of a law that was fitted to tests, from which other fabrics follow."""
     points = []
-    for direction in DIRECTIONS:
+    for direction in Direction:
         strains = [strain_at_stress(law, direction, stress) for stress in LAW_STRESSES_N_PER_MM]
         curve = uniaxial_response(law, direction, strains)
         rows = zip(LAW_STRESSES_N_PER_MM, strains, curve.transverse_strain.tolist(), strict=True)

@@ -22,7 +22,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.measure.photos.photo_scale import MARKS_MM, PhotoScale, coin_scale, sheet_scale
 from knitcore.measure.photos.stitch_spacing import StitchSpacing, stitch_spacing
-from knitcore.measure.stretch_test import StretchPoint
+from knitcore.measure.stretch_points import StretchPoint
 
 GRAVITY_N_PER_G = 9.80665e-3
 WORKING_PIXELS = 3000

@@ -1,12 +1,12 @@
 """A yarn without a tester, in five steps."""
 
+import json
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.page import complaints
-from tests.knitcore.measure.synthetic import csv_pair
 
 pytestmark = pytest.mark.slow
 
@@ -62,22 +62,25 @@ def test_a_yarn_is_made_from_a_ruler_a_scale_and_photos(flat_studio: Page) -> No
     assert [line for line in said if "422" not in line] == []
 
 
-def test_two_tests_alone_make_a_yarn_for_any_chart_that_says_what_it_lacks(
-    flat_studio: Page, tmp_path: Path
+def test_one_tested_fabric_makes_a_yarn_for_any_chart_that_says_what_it_lacks(
+    flat_studio: Page,
 ) -> None:
     page = flat_studio
-    course, wale = csv_pair(tmp_path)
+    file = page.evaluate("fetch('/api/v1/materials/acrylic/document').then((a) => a.json())")
+    garter = file["fabrics"]["garter"] | {"loop_length_mm": None}
+    file |= {"identifier": "twice", "name": "Tested twice", "yarn": {}}
+    file |= {"fabrics": {"garter": garter}}
     page.focus("#chart")
     page.keyboard.press("Shift+Y")
-    page.click("#yarn-new")
-    page.fill("#yarn-name", "Tested twice")
-    page.fill("#yarn-garter-stitches", "25")
-    page.fill("#yarn-garter-rows", "50")
-    page.set_input_files("#yarn-garter-along-rows", course)
-    page.set_input_files("#yarn-garter-along-columns", wale)
+    content = {"name": "twice.json", "mimeType": "application/json"}
+    page.set_input_files("#yarn-file", files=[{**content, "buffer": json.dumps(file).encode()}])
+    expect(page.locator("#material-button")).to_contain_text("Worsted acrylic")
+    page.focus("#chart")
+    page.keyboard.press("Shift+Y")
+    page.get_by_label("Change Tested twice").click()
     page.click("#yarn-make")
     uses = page.locator("#yarn-maker .yarn-use")
-    expect(uses.last).to_contain_text("the bending modulus", timeout=120_000)
+    expect(uses.last).to_contain_text("the bending modulus")
     expect(uses.first).not_to_contain_text("No")
     page.click("#yarn-make")
-    expect(page.locator("#material-button")).to_contain_text("Tested twice", timeout=120_000)
+    expect(page.locator("#material-button")).to_contain_text("Tested twice")

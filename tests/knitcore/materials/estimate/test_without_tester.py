@@ -16,7 +16,7 @@ from knitcore.materials.estimate.without_tester import (
     yarn_without_tester,
 )
 from knitcore.materials.material_document import MaterialDocument
-from knitcore.measure.stretch_test import StretchPoint
+from knitcore.measure.stretch_points import StretchPoint
 
 FABRIC = Fabric.STOCKINETTE
 RECORD = material("cotton").record(FABRIC)
