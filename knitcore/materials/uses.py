@@ -7,9 +7,9 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials.law_uncertainty import log_deviation
 from knitcore.materials.material import Material
 
-ROUGH_LOG_STRESS = 0.2
+ROUGH_LOG_STRESS = 0.25
 """Standard deviation of the logarithm of a stress beyond which sizes under load are rough: 90 %
-intervals of a factor of 1.4."""
+intervals of a factor of 1.5."""
 ROUGH_LOG_BENDING = 0.25
 """The same of the bending modulus: a factor of 1.5."""
 
@@ -40,12 +40,7 @@ class Use:
 
 def uses_of(material: Material) -> tuple[Use, ...]:
     """The uses that the page and the library have for a yarn, the commonest first."""
-    return (
-        _any_chart(material),
-        *(_one_fabric(material, fabric) for fabric in material.fabrics),
-        _amount(material),
-        _yarn_level(material),
-    )
+    return (_any_chart(material), *_under_load(material), _amount(material), _yarn_level(material))
 
 
 def _any_chart(material: Material) -> Use:
@@ -60,13 +55,21 @@ def _any_chart(material: Material) -> Use:
     return Use(name, Serves.ROUGHLY, f"a swatch of {worst}, hung or tested, narrows it most")
 
 
-def _one_fabric(material: Material, fabric: Fabric) -> Use:
-    name = f"sizes of {fabric} under load: garments, tubes, pressure"
-    rough = [d for d in Direction if _errors(material, fabric)[d.axis] > ROUGH_LOG_STRESS]
-    if not rough:
-        return Use(name, Serves.YES)
-    ways = " and ".join(f"{direction}-wise" for direction in rough)
-    return Use(name, Serves.ROUGHLY, f"photos or tests of a {fabric} swatch pulled {ways}")
+def _under_load(material: Material) -> list[Use]:
+    """Sizes of fabrics, together where they are rough in the same directions."""
+    groups: dict[tuple[Direction, ...], list[str]] = {}
+    for fabric in material.fabrics:
+        errors = _errors(material, fabric)
+        rough = tuple(d for d in Direction if errors[d.axis] > ROUGH_LOG_STRESS)
+        groups.setdefault(rough, []).append(fabric.value)
+    uses = []
+    for rough, fabrics in groups.items():
+        name = f"sizes of {', '.join(fabrics)} under load: garments, tubes, pressure"
+        ways = " and ".join(f"{direction}-wise" for direction in rough)
+        swatch = "its swatch" if len(fabrics) == 1 else "a swatch of each"
+        missing = f"photos or tests of {swatch}, pulled {ways}"
+        uses.append(Use(name, Serves.ROUGHLY, missing) if rough else Use(name, Serves.YES))
+    return uses
 
 
 def _amount(material: Material) -> Use:

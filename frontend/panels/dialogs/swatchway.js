@@ -39,7 +39,7 @@ export function swatchWay(studio, made) {
   const grams = figure("swatch-ball-grams");
   const metres = figure("swatch-ball-metres");
   const wraps = figure("swatch-wraps");
-  const fabric = selectField({ id: "swatch-fabric", class: "text" }, sameWords(FABRICS));
+  const fabric = selectField({ id: "swatch-fabric", class: "select" }, sameWords(FABRICS));
   const stitches = figure("swatch-stitches");
   const rows = figure("swatch-rows");
   const weight = figure("swatch-weight");
