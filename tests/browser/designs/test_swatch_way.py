@@ -74,6 +74,7 @@ def test_one_tested_fabric_makes_a_yarn_for_any_chart_that_says_what_it_lacks(
     page.keyboard.press("Shift+Y")
     content = {"name": "twice.json", "mimeType": "application/json"}
     page.set_input_files("#yarn-file", files=[{**content, "buffer": json.dumps(file).encode()}])
+    expect(page.locator("#yarns-dialog")).to_be_hidden()
     expect(page.locator("#material-button")).to_contain_text("Worsted acrylic")
     page.focus("#chart")
     page.keyboard.press("Shift+Y")
