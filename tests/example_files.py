@@ -13,6 +13,7 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.cloth.flat import SheetModel
 from knitcore.materials import material
 from tests.knitcore.cloth.flat.synthetic import camera_arrays
+from tests.knitcore.measure.photos.rendered import Scene
 from tests.knitcore.measure.synthetic import hanging_yarn, pull, save_photo
 from tests.knitcore.measure.test_compression import squeeze, write
 
@@ -43,6 +44,12 @@ def field(file: Path) -> None:
     np.savez_compressed(file, displacement=tenths.astype(np.float16), frame=frame[:2])
 
 
+def swatch(file: Path, scene: Scene) -> None:
+    """A hanging swatch before the sheet of marks."""
+    grey = np.uint8(255 * scene.photo())
+    Image.fromarray(grey).save(file, quality=60, optimize=True)
+
+
 def main() -> None:
     """Write them."""
     for direction in Direction:
@@ -51,6 +58,9 @@ def main() -> None:
     made = squeeze(1e-3, 2.5)
     write(EXAMPLES / "my-yarn-1.csv", made.depth_mm[::6], made.force_n[::6])
     field(EXAMPLES / "field.npz")
+    rest = Scene(px_per_mm=2.6, noise=0.0, blur_px=0.4)
+    swatch(EXAMPLES / "swatch-rest.jpg", rest)
+    swatch(EXAMPLES / "swatch-500g.jpg", rest.pulled(0.3, -0.12))
 
 
 if __name__ == "__main__":

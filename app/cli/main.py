@@ -59,7 +59,7 @@ SECTIONS: dict[str, dict[str, Entry]] = {
     },
     "Measure": {
         "fit": ("measure.fit", "Fit a law to a course-wise and a wale-wise stretch test."),
-        "measure": ("", "Measure a yarn's bending and its compression."),
+        "measure": ("", "Measure a yarn without a tester, its bending, its compression."),
         "calibrate": (
             "measure.fields",
             "Fit shear and couplings to a measured displacement field.",
@@ -94,6 +94,9 @@ GROUPS: dict[str, dict[str, Entry]] = {
             "measure.compression",
             "Fit the contact law of a yarn to compression tests.",
         ),
+        "marks": ("measure.photos", "Write the sheet of marks for photos of a hanging swatch."),
+        "photos": ("measure.photos", "Read the stretch of a hanging swatch in IMAGES."),
+        "swatch": ("measure.swatch", "Estimate a yarn from a swatch, without a tester."),
     }
 }
 """Commands of groups."""

@@ -16,6 +16,9 @@ import { isComplete } from "../state/studio.js";
 /** Longest side of a photo of yarn as it is sent; a hand's length of yarn is still some pixels wide. */
 const PHOTO_SIDE_PX = 2400;
 
+/** Names of the standard errors of a fit that a yarn keeps. */
+const DEVIATION = /^(modulus|poisson)_/;
+
 /** Names of the constants of a law in a fit. */
 const CONSTANT = /^(stiffness|alpha|beta|shear_modulus|kappa)_/;
 
@@ -49,7 +52,7 @@ export async function adopt(studio, document) {
   studio.tell(
     complete
       ? `${added.name} is added, and chosen.`
-      : `${added.name} is added, but not chosen: it lacks some of the four fabrics. Change it: with a bending modulus and the yarn in a stitch they are estimated.`,
+      : `${added.name} is added, but not chosen: it lacks some of the four fabrics. Change it under Own yarns, and keep it: they are estimated.`,
   );
   return added;
 }
@@ -95,7 +98,7 @@ export const bendingRequest = async (photos, { gramsPerMetre, lengthMm }) => ({
  *
  * @param {File} photo as it is if the browser cannot read it: the service says what is wrong with it
  */
-async function shrunk(photo) {
+export async function shrunk(photo) {
   const bitmap = await createImageBitmap(photo).catch(() => null);
   const scale = PHOTO_SIDE_PX / Math.max(bitmap?.width ?? 0, bitmap?.height ?? 0);
   if (!bitmap || scale >= 1) return photo;
@@ -205,12 +208,12 @@ const fabricOf = ({ tests, fit }) => ({
   law: lawOf(fit),
   ...sizes(tests),
   law_source: `fitted to ${tests.course.name} and ${tests.wale.name}, ${fit.rms_n_per_mm.toFixed(4)} N/mm rms`,
-  standard_deviation: withoutUnits(Object.entries(fit.standard_errors)),
+  standard_deviation: withoutUnits(Object.entries(fit.standard_errors).filter(([name]) => DEVIATION.test(name))),
   measured: fit.curves,
 });
 
-/** @param {string} name */
-function identifierOf(name) {
+/** The name by which files refer to a yarn. @param {string} name */
+export function identifierOf(name) {
   const plain = name
     .normalize("NFKD")
     .replace(/\p{M}/gu, "")

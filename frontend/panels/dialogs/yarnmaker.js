@@ -25,6 +25,8 @@ import { Run } from "../../widgets/jobrun.js";
 import { table, tableRow } from "../../widgets/table.js";
 import { attempt } from "../../widgets/problem.js";
 import { testReader } from "./testreader.js";
+import { untestedFabrics, usesOf } from "../../services/swatches.js";
+import { usesList } from "./yarnuses.js";
 
 const ESTIMATED = "estimated from the library's yarns";
 const TABLES = ".csv,.xlsx,.xls";
@@ -35,6 +37,8 @@ export function yarnMaker(studio, made) {
   const run = new Run();
   /** The yarn that is changed; null for a new one. @type {MaterialDocument | null} */
   let base = null;
+  /** The yarn of which its user has seen what it lacks. */
+  let seen = "";
   /** Where the figures come from, by subject. @type {Map<string, string>} */
   const evidence = new Map();
   /** Deviation and diameter, which have no field of their own. @type {Partial<YarnDocument>} */
@@ -148,7 +152,7 @@ export function yarnMaker(studio, made) {
         "Give its bending modulus and the yarn in a stitch, or two stretch tests and the gauge of a fabric.",
       );
     }
-    const yarn = await attempt(status, async () => (lacking.length && estimable ? completed(known, lacking) : known));
+    const yarn = await attempt(status, async () => (lacking.length ? completed(known, lacking, estimable) : known));
     if (!yarn) return;
     /** @type {Map<Fabric, Gauge>} */
     const gauges = new Map();
@@ -156,12 +160,20 @@ export function yarnMaker(studio, made) {
       const given = gauge();
       if (given) gauges.set(fabric, given);
     }
-    if (await attempt(status, () => adopt(studio, withGauges(yarn, gauges)))) made();
+    const whole = withGauges(yarn, gauges);
+    const uses = await attempt(status, () => usesOf(whole));
+    if (!uses) return;
+    const text = JSON.stringify(whole);
+    if (uses.some(({ serves }) => serves === "no") && text !== seen) {
+      seen = text;
+      return status.replaceChildren(remark("Some uses need more. Add it, or keep the yarn as it is."), usesList(uses));
+    }
+    if (await attempt(status, () => adopt(studio, whole))) made();
   };
 
-  /** @param {MaterialDocument} known @param {readonly Fabric[]} lacking */
-  const completed = async (known, lacking) => {
-    const { material, warnings } = await estimated(known, loop.valueAsNumber);
+  /** @param {MaterialDocument} known @param {readonly Fabric[]} lacking @param {boolean} bends whether it is known how */
+  const completed = async (known, lacking, bends) => {
+    const { material, warnings } = await (bends ? estimated : untestedFabrics)(known, loop.valueAsNumber);
     const fabrics = Object.fromEntries(
       lacking.map((fabric) => [fabric, { ...material.fabrics[fabric], law_source: ESTIMATED }]),
     );

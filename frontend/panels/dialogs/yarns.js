@@ -11,6 +11,7 @@ import { OWN, adopt, evidenceOf, isYarnFile, refresh, yarns } from "../../servic
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { listRow } from "../../widgets/listrow.js";
+import { swatchWay } from "./swatchway.js";
 import { yarnMaker } from "./yarnmaker.js";
 import { attempt, problemBox } from "../../widgets/problem.js";
 
@@ -33,6 +34,11 @@ export function create(studio) {
     },
   });
   const maker = yarnMaker(studio, () => element.close());
+  const way = swatchWay(studio, () => element.close());
+  /** Show one of the two forms. @param {typeof maker | typeof way} form */
+  const alone = (form) => {
+    for (const { element: other } of [maker, way]) other.hidden = other !== form.element;
+  };
 
   const element = dialog(
     "yarns-dialog",
@@ -47,9 +53,11 @@ export function create(studio) {
       { class: "dialog-tools wrap gap-10" },
       h("label", { class: "button", for: "yarn-file" }, "Add a yarn file …"),
       file,
-      textButton("plus", "Make a yarn …", () => maker.open(null), { id: "yarn-new" }),
+      textButton("plus", "Make a yarn …", () => (alone(maker), maker.open(null)), { id: "yarn-new" }),
+      textButton("camera", "Without a tester …", () => (alone(way), way.open()), { id: "yarn-swatch" }),
     ),
     maker.element,
+    way.element,
   );
 
   /** @param {string} title @param {string} detail */
@@ -72,7 +80,7 @@ export function create(studio) {
           "Change",
           async () => {
             const document = await attempt(status, () => yarns.file(id));
-            if (document) maker.open(document);
+            if (document) (alone(maker), maker.open(document));
           },
           { "aria-label": `Change ${label}` },
         ),
@@ -115,6 +123,7 @@ export function create(studio) {
     status.replaceChildren();
     const { droppedTest } = studio;
     studio.droppedTest = null;
+    way.element.hidden = true;
     if (!droppedTest) maker.element.hidden = true;
     if (!element.open) element.showModal();
     if (!droppedTest) return;

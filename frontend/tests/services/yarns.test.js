@@ -21,6 +21,7 @@ const FIT = /** @type {FitResult} */ (
     kappa_yy: 0.2,
     rms_n_per_mm: 0.0012,
     standard_errors: {
+      stiffness_xxxx_n_per_mm: 0.004,
       modulus_course_n_per_mm: 0.005,
       modulus_wale_n_per_mm: 0.006,
       poisson_yx: 0.01,
@@ -46,6 +47,7 @@ test("a yarn of fitted tests has their constants, gauge and evidence, under a pl
   assert.equal(rib.law.shear_modulus, 0.02);
   assert.equal(rib.law.kappa_yy, 0.2);
   assert.equal(rib.standard_deviation.modulus_course, 0.005);
+  assert.ok(!("stiffness_xxxx" in rib.standard_deviation)); // a yarn's file has no place for it
   assert.equal(rib.measured.course.pulls, 2);
   assert.equal(rib.law_source, "fitted to a.csv and b.xlsx, 0.0012 N/mm rms");
   assert.ok(isYarnFile(yarn));
