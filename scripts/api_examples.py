@@ -6,7 +6,6 @@ The requests are those of the schema, which shows the answers where they have be
 import json
 import tempfile
 import time
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -54,12 +53,6 @@ def short(value: Any) -> Any:
     return value[:MAX_CHARACTERS] if isinstance(value, str) else value
 
 
-def in_order(names: Iterable[str]) -> list[str]:
-    """Operations in an order in which each finds the resources it needs."""
-    between = [name for name in names if name not in (*FIRST, *LAST)]
-    return [*FIRST, *between, *LAST]
-
-
 def _request(operation: dict[str, Any]) -> Any:
     """The example of a request, if it has a body."""
     content = operation.get("requestBody", {}).get("content", {})
@@ -74,7 +67,8 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
     own: dict[str, Any] = {}
     answers = {}
     documented = dict(documented_operations(client.get("/openapi.json").json()))
-    for name in in_order(documented):
+    between = [name for name in documented if name not in (*FIRST, *LAST)]
+    for name in (*FIRST, *between, *LAST):  # each finds the resources it needs
         method, path = name.split()
         if path.endswith(ENDLESS):
             continue

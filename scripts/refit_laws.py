@@ -259,7 +259,9 @@ def pulled_evenly(tests: dict[Key, StretchTest], strips: dict[Key, MeasuredStrip
             force, _ = simulated(strips[fabric, direction], law)
             errors.append(np.log(force / STRESSES))
             print(f"  {fabric:12} {direction:7}", np.round(force / STRESSES, 2))
-    return _log_rms(errors)
+    log_factor = math.sqrt(float(np.nanmean(np.square(errors))))
+    print(f"  rms factor {math.exp(log_factor):.2f}")
+    return log_factor
 
 
 def left_out(
@@ -297,12 +299,6 @@ def simulated(strip: MeasuredStrip, law: ConstitutiveLaw) -> tuple[Array, Array]
     levels = np.sort(np.interp(STRESSES, stress, strip.strain))
     force, narrowing = strip.simulate(law, levels)
     return force, narrowing - np.interp(levels, strip.strain, waist)
-
-
-def _log_rms(errors: list[Array]) -> float:
-    log_factor = math.sqrt(float(np.nanmean(np.square(errors))))
-    print(f"  rms factor {math.exp(log_factor):.2f}")
-    return log_factor
 
 
 def mended(law: ConstitutiveLaw) -> ConstitutiveLaw:

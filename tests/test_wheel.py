@@ -52,17 +52,12 @@ def installed(wheels: Path, tmp_path: Path) -> Callable[..., Path]:
         programs = tmp_path / "venv" / "bin"
         [wheel] = wheels.glob(f"{name}-{VERSION}-*.whl")
         python = programs / "python"
-        run(ROOT / "scripts" / "install", f"{wheel}{extra}", cwd=_as_checkout(tmp_path, python))
+        (tmp_path / ".venv").symlink_to(python.parent.parent)  # the script installs into it
+        (python.parent / "uv").symlink_to(UV)
+        run(ROOT / "scripts" / "install", f"{wheel}{extra}", cwd=tmp_path)
         return programs
 
     return install
-
-
-def _as_checkout(folder: Path, python: Path) -> Path:
-    """``scripts/install`` works on the .venv of the folder it is called in."""
-    (folder / ".venv").symlink_to(python.parent.parent)
-    (python.parent / "uv").symlink_to(UV)
-    return folder
 
 
 @pytest.fixture

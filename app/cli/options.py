@@ -152,7 +152,8 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
             show_notes(notes)
             return chart_in_file
     named = _chart_of_name(chart)
-    if named is None and not _is_one_line(chart):
+    signs = set(chart)
+    if named is None and not (signs & STITCHES and signs <= STITCHES | SEPARATORS):
         raise _no_chart(chart)
     cloth = StitchChart.parse(chart.replace("/", "\n")) if named is None else named
     if size is not None:
@@ -202,11 +203,6 @@ def is_fabric(chart: str) -> bool:
 def _names_file(chart: str) -> bool:
     # unlike those of pathlib, these functions take names of any length
     return os.path.exists(chart) and not os.path.isdir(chart)
-
-
-def _is_one_line(chart: str) -> bool:
-    signs = set(chart)
-    return bool(signs & STITCHES) and signs <= STITCHES | SEPARATORS
 
 
 def _chart_of_name(name: str) -> StitchChart | None:

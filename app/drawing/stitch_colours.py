@@ -102,7 +102,10 @@ def stitch_colours(
     if colour in (Colour.STRAIN, Colour.UTILISATION):
         return _stretched(colour, stretch, step)
     if colour is Colour.PRESSURE:
-        return _pressed(mmhg)
+        if mmhg is None:
+            raise InputError("colour", "needs a tube on a limb.", "Compute one and name its id.")
+        pressed = np.nan_to_num(mmhg)
+        return sequential(pressed, 0.0, float(pressed.max()))
     return _kinds(colour, stitch_table(material), palette)[surroundings(chart)]
 
 
@@ -127,14 +130,6 @@ def _stretched(colour: Colour, stretch: StretchView | None, step: int) -> Colour
         return sequential(stretch.utilisation[step], 0.0, 1.0)
     along = stretch.strain[..., stretch.direction.axis]
     return diverging(along[step], float(np.abs(along).max()))
-
-
-def _pressed(mmhg: NDArray[np.float32] | None) -> Colours:
-    """Colours of pressures, from none to the largest there is."""
-    if mmhg is None:
-        raise InputError("colour", "needs a tube on a limb.", "Compute one and name its id.")
-    pressed = np.nan_to_num(mmhg)
-    return sequential(pressed, 0.0, float(pressed.max()))
 
 
 def region_labels(chart: StitchChart, regions: Sequence[DesignRegion]) -> NDArray[np.intp]:

@@ -136,7 +136,10 @@ class SceneWriter:
             self._put("rectangles", None)
             self._put("panes", None)
             return
-        corners = _lifted(scene.rectangles_mm - middle, scene)
+        highest = scene.placement.depth * scene.shapes.lines[..., 2].max()
+        height = highest + 1.3 * scene.shapes.yarn_radius_mm
+        flat = scene.rectangles_mm - middle
+        corners = _units(np.concatenate([flat, np.full((*flat.shape[:2], 1), height)], axis=2))
         first = 4 * np.arange(len(corners))[:, None]
         faces = (first + np.array([0, 1, 2, 0, 2, 3])).reshape(-1, 3).astype(np.uint32)
         self._put_mesh("panes", corners.reshape(-1, 3), faces, PAPER, opacity=0.55)
@@ -247,11 +250,3 @@ def _room(ground: Ground) -> tuple[float, ...]:
 def _units(points_mm: Array) -> NDArray[np.float32]:
     """Places of the fabric in the scene's unit."""
     return (UNITS_PER_MM * points_mm).astype(np.float32)
-
-
-def _lifted(corners: Array, scene: FabricScene) -> NDArray[np.float32]:
-    """Corners (rectangles, 4, 2) in mm over the face, (rectangles, 4, 3) in the scene's unit."""
-    highest = scene.placement.depth * scene.shapes.lines[..., 2].max()
-    height = highest + 1.3 * scene.shapes.yarn_radius_mm
-    lifted = np.concatenate([corners, np.full((*corners.shape[:2], 1), height)], axis=2)
-    return _units(lifted)

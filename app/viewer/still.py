@@ -86,11 +86,6 @@ class _Eye:
         focal = height / 2 / math.tan(FIELD_OF_VIEW / 2)
         return cls(width, height, np.append(drawing.ground.middle_mm, 0.0), place, axes, focal)
 
-    @property
-    def pixels_per_mm(self) -> float:
-        """Scale at the middle of the scene."""
-        return self.focal / float(np.linalg.norm(self.place_mm))
-
     def seen(self, points_mm: Array) -> Array:
         """Points (n, 3), from the left, from the top and towards the eye, pixels."""
         places = points_mm - self.middle_mm
@@ -121,7 +116,7 @@ class _Balls:
 
 def _balls(drawing: Drawing, eye: _Eye) -> _Balls:
     scene = drawing.part
-    radius = scene.shapes.yarn_radius_mm * eye.pixels_per_mm
+    radius = scene.shapes.yarn_radius_mm * eye.focal / float(np.linalg.norm(eye.place_mm))
 
     steps = np.diff(scene.shapes.lines, axis=1) * [*scene.shapes.lattice.sizes_mm[0, 0], 1.0]
     longest = float(np.linalg.norm(steps, axis=2).sum(axis=1).max())

@@ -153,7 +153,8 @@ export class Painter {
     const cell = view.cellAt(event);
     const gesture = this.#gesture;
     if (!gesture) {
-      this.#hoverSoon(cell);
+      if (!this.#pointed) setTimeout(() => this.#pointed && this.#hover(this.#pointed), HOVER_MS);
+      this.#pointed = cell;
       return;
     }
     this.#hover(cell);
@@ -162,12 +163,6 @@ export class Painter {
     const between = freehand ? (event.getCoalescedEvents?.() ?? []) : [];
     for (const each of between.length ? between : [event]) this.#follow(view.cellAt(each), event.shiftKey);
     view.flush();
-  }
-
-  /** @param {Cell} cell */
-  #hoverSoon(cell) {
-    if (!this.#pointed) setTimeout(() => this.#pointed && this.#hover(this.#pointed), HOVER_MS);
-    this.#pointed = cell;
   }
 
   /** @param {Cell} cell */

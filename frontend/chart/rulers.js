@@ -27,7 +27,7 @@ export function drawRulers(context, view, grid, palette, round) {
   const left = Math.max(MARGIN.left, view.x) - 8;
   const right = Math.min(view.width - MARGIN.right, view.x + grid.columns * view.cellWidth) + 8;
 
-  const every = rowStep(view.cellHeight);
+  const every = [1, 5, 10, 25, 50].find((n) => n * 2 * view.cellHeight >= 17) ?? 100; // of the rows of a side
   for (let number = 1; number <= grid.rows; number++) {
     const wrong = !round && number % 2 === 0;
     if (every > 1) {
@@ -58,11 +58,6 @@ export function drawRulers(context, view, grid, palette, round) {
   if (!round || start === "RS") context.fillText(start, left, base);
   context.textAlign = "left";
   if (!round || end === "RS") context.fillText(end, right, base);
-}
-
-/** Label every n-th right-side and wrong-side row. @param {number} height */
-function rowStep(height) {
-  return [1, 5, 10, 25, 50].find((n) => n * 2 * height >= 17) ?? 100;
 }
 
 /** @param {number} width */

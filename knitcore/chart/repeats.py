@@ -73,7 +73,8 @@ def known_larger_repeats() -> tuple[StitchChart, ...]:
     """List larger repeats: ribs, welts and baskets up to 8 stitches a side, and named patterns."""
     sides = [(a, b) for a in range(1, 8) for b in range(1, a + 1) if 4 < a + b <= 8]
     charts = [*(rib(a, b) for a, b in sides), *(welt(a, b) for a, b in sides)]
-    charts += [_basket(a, b) for a in range(1, 5) for b in range(1, 5) if max(a, b) > 2]
+    checks = [(a, b) for a in range(1, 5) for b in range(1, 5) if max(a, b) > 2]
+    charts += [StitchChart(np.kron(np.eye(2)[::-1], np.ones(check)) > 0) for check in checks]
     charts += [p.chart for p in PATTERNS if max(p.chart.purl.shape) > 4]
     return tuple(dict.fromkeys(chart.canonical() for chart in charts))
 
@@ -113,9 +114,3 @@ def _stripes() -> Iterator[StitchChart]:
                 upright = np.where(np.arange(8) < width, *fabrics)[:2, :total]
                 level = np.where(np.arange(8)[:, None] < width, *fabrics)[:total, :2]
                 yield from (StitchChart(upright), StitchChart(level))
-
-
-def _basket(rows: int, columns: int) -> StitchChart:
-    """Checkers of rows x columns stitches."""
-    row, column = np.indices((2 * rows, 2 * columns))
-    return StitchChart((row // rows + column // columns) % 2 == 1)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore.base.arrays import Array, Mask
+from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction
 from knitcore.draw.lattice import resting_lattice
 from knitcore.garment.shaped import ShapedChart
@@ -59,7 +59,9 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Prediction) ->
     else:
         known = RelaxedSize(*stitch.tolist()) if answer.size_is_known else None
         corners = laid_corners_mm(shaped, material, known)
-        sides = np.ptp(corners[_reached(shaped)], axis=0)
+        cells = np.pad(shaped.stitch, 1)
+        reached = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
+        sides = np.ptp(corners[reached], axis=0)
     width, height = sides.tolist()
     return SizeAtRest(
         width,
@@ -111,27 +113,5 @@ def laid_corners_mm(
     return np.asarray(corners - corners.min(axis=(0, 1)))
 
 
-def laid_sizes_mm(
-    shaped: ShapedChart, material: Material, gauge: RelaxedSize | None = None
-) -> Array:
-    """Mean width and height of each cell as laid flat, (rows, columns, 2).
-
-    Raises
-    ------
-    InputError
-        If the material lacks a pure fabric that the chart needs.
-    """
-    corners = laid_corners_mm(shaped, material, gauge)
-    across, up = np.diff(corners[..., 0], axis=1), np.diff(corners[..., 1], axis=0)
-    return np.stack([across[1:] + across[:-1], up[:, 1:] + up[:, :-1]], axis=-1) / 2
-
-
 def _stitch_mm(answer: Prediction) -> Array:
     return np.array([answer.along(direction).relaxed_mm for direction in Direction])
-
-
-def _reached(shaped: ShapedChart) -> Mask:
-    """Mask (rows + 1, columns + 1) of the corners that belong to a stitch."""
-    cells = np.pad(shaped.stitch, 1)
-    reached: Mask = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
-    return reached

@@ -43,13 +43,6 @@ class Lattice:
         return np.asarray((edges[1:] + edges[:-1]) / 2)
 
 
-def stitch_sizes_mm(material: Material) -> Array:
-    """Width and height of the 16 kinds of stitch, (16, 2), each the mean of its four quarters."""
-    sizes = np.array([material.record(fabric).stitch_mm for fabric in PHASES])
-    of_code: Array = sizes[QUARTERS_OF_CODE].mean(axis=(1, 2))
-    return of_code
-
-
 def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
     """The chart as a flat sheet, with the mean width of each wale and mean height of each course.
 
@@ -60,7 +53,8 @@ def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
     InputError
         If the material lacks one of the four fabrics.
     """
-    sizes = stitch_sizes_mm(material)[surroundings(chart)]
+    of_phase = np.array([material.record(fabric).stitch_mm for fabric in PHASES])
+    sizes = of_phase[QUARTERS_OF_CODE].mean(axis=(1, 2))[surroundings(chart)]
     widths, heights = sizes[:, :, 0].mean(axis=0), sizes[:, :, 1].mean(axis=1)
     x, y = np.cumsum(widths) - widths / 2, np.cumsum(heights) - heights / 2
     return Lattice(

@@ -189,11 +189,6 @@ class LimbPlace:
         """Circumference of the tube over that of the limb, minus one: negative where stretched."""
         return self.rest_mm / self.girth_mm - 1.0
 
-    @property
-    def axial_strain(self) -> float:
-        """Strain along the limb, where nothing holds the tube."""
-        return 0.0 if self.pressure is None else self.pressure.axial_strain_free
-
 
 def on_limb(
     along: Along,

@@ -29,7 +29,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
@@ -112,7 +112,8 @@ class SegmentGeometry:
             raise InputError(
                 "curve_mm", "does not describe a segment.", "Give a curved centre line."
             )
-        slope = abs(float(_end_tangent(points)[1]))
+        tangent = -1.5 * points[0] + 2 * points[1] - 0.5 * points[2]  # of second order
+        slope = abs(float((tangent / np.linalg.norm(tangent))[1]))
         if parity is Parity.EVEN:
             return cls(parity, separation, length, slope)
         return cls(parity, separation, length, slope, math.atan2(abs(chord[1]), abs(chord[0])))
@@ -131,13 +132,6 @@ class SegmentGeometry:
         if self.angle_rad is None:
             return 180 * scale / self.slope**2
         return 12 * scale * (1 + self.slope / math.tan(self.angle_rad))
-
-
-def _end_tangent(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Unit tangent at the first point, from it into the curve (second order)."""
-    tangent = -1.5 * points[0] + 2 * points[1] - 0.5 * points[2]
-    unit: NDArray[np.float64] = tangent / np.linalg.norm(tangent)
-    return unit
 
 
 def stitch_modulus_n_per_mm(

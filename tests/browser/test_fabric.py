@@ -402,7 +402,7 @@ def test_a_page_is_saved_that_needs_no_service(studio: Page, tmp_path: Path) -> 
     download.value.save_as(file)
     text = file.read_text(encoding="utf-8")
     assert "<html" in text
-    assert service_address(studio) not in text
+    assert studio.evaluate("location.host") not in text
     given = studio.context.new_page()
     said = complaints(given)
     given.goto(file.as_uri())
@@ -410,11 +410,6 @@ def test_a_page_is_saved_that_needs_no_service(studio: Page, tmp_path: Path) -> 
     stays = [coloured(pixels(given, "body")) for _ in range(6)]
     assert min(stays) >= YARN
     assert said == []
-
-
-def service_address(page: Page) -> str:
-    """Host and port of the service."""
-    return str(page.evaluate("location.host"))
 
 
 def _design(page: Page) -> str:

@@ -95,10 +95,11 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
     if limit := MAX_STITCHES.get(request.to):
         check_stitches(chart.stitches, limit, instead=f" for {request.to}, or the command line")
     file = _export(chart, request, context)
+    kept = "".join(c if c.isalnum() or c in " -_." else "-" for c in request.name).strip(" .")
     return ExportResult(
         **dict(_facts(chart, file)),
         media_type=file.media_type,
-        name=_file_name(request.name) + file.suffix,
+        name=(kept[:80] or "chart") + file.suffix,
         content=base64.b64encode(file.content).decode(),
     )
 
@@ -111,12 +112,6 @@ def _export(chart: StitchChart, request: ExportRequest, context: Context) -> Exp
 
 def _facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
     return ExportFacts.of(file, rows=chart.rows, columns=chart.columns, bytes=len(file.content))
-
-
-def _file_name(name: str) -> str:
-    """A file name from a design's name: letters, digits and a few signs."""
-    kept = "".join(c if c.isalnum() or c in " -_." else "-" for c in name).strip(" .")
-    return kept[:80] or "chart"
 
 
 @out_option("-o", "--out", required=True, help="FILE to write.")

@@ -85,7 +85,8 @@ def triangulation(piece: CutPiece, size_mm: float) -> tuple[Array, Indices]:
     InputError
         If the sides cannot be made of triangles' edges.
     """
-    rings = [np.asarray(ring.coords)[:-1] for ring in _rings(piece.polygon.segmentize(size_mm))]
+    polygon = piece.polygon.segmentize(size_mm)
+    rings = [np.asarray(r.coords)[:-1] for r in (polygon.exterior, *polygon.interiors)]
     inside = _lattice(piece.polygon, size_mm)
     for _ in range(MAX_SPLITS):
         boundary = np.concatenate(rings)
@@ -113,10 +114,6 @@ def triangulation(piece: CutPiece, size_mm: float) -> tuple[Array, Indices]:
         "no mesh fits it: sides come too close to each other.",
         "Use a smaller mesh_mm, or a simpler outline.",
     )
-
-
-def _rings(polygon: shapely.Polygon) -> list[shapely.LinearRing]:
-    return [polygon.exterior, *polygon.interiors]
 
 
 def _lattice(polygon: shapely.Polygon, size: float) -> Array:

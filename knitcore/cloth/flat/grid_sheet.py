@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -46,10 +46,6 @@ class Linearisation:
     force: Nodes
     tangent: CellTangents
     columns: int
-
-    def with_force(self, force: Nodes) -> Linearisation:
-        """The same tangent with other forces."""
-        return replace(self, force=force)
 
     def condensed_force(self) -> Array:
         """Gradient on the corners (corners, 2) with the centres in balance to first order."""

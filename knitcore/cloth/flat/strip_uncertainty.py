@@ -175,9 +175,8 @@ class StripSpread:
         ):
             raised = sheet.law_force(parameter.up, state)
             lowered = sheet.law_force(parameter.down, state)
-            change = lin.with_force(
-                Nodes(*((u - d) / (2 * STEP) for u, d in zip(raised, lowered, strict=True)))
-            )
+            force = Nodes(*((u - d) / (2 * STEP) for u, d in zip(raised, lowered, strict=True)))
+            change = replace(lin, force=force)
             condensed = change.condensed_force()
             free = np.where(self._fixed, 0.0, -condensed)
             corner_step = self._factor.solve(free).reshape(condensed.shape)

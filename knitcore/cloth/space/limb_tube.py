@@ -84,14 +84,17 @@ def worn_tube(
         at = along_mm[-1] + 0.5 * height
         place = place_on(prediction, at, float(np.interp(at, limb.at_mm, limb.girths_mm)), rest)
         places.append(place)
-        along_mm.append(along_mm[-1] + height * (1.0 + place.axial_strain))
+        along_limb = 0.0 if place.pressure is None else place.pressure.axial_strain_free
+        along_mm.append(along_mm[-1] + height * (1.0 + along_limb))
     rings = _between(np.array([max(p.rest_mm, p.girth_mm) for p in places])) / (2.0 * np.pi)
     shares = np.cumsum(sizes[..., 0], axis=1) / rests[:, None]
     angles = 2.0 * np.pi * _between(np.pad(shares, ((0, 0), (1, 0)))) - np.pi
     bare = BARE * places[-1].girth_mm
     reached = np.array([-bare, *along_mm, along_mm[-1] + bare])
     radius = limb.girth_mm(reached) / (2.0 * np.pi)
-    level = _levels(reached, radius)[:, None]
+    steps = np.square(np.diff(reached)) - np.square(np.diff(radius))
+    along_axis = np.concatenate([[0.0], np.cumsum(np.sqrt(np.maximum(steps, 0.0)))])
+    level = (along_axis - 0.5 * along_axis[-1])[:, None]
     corners = _turned(rings[:, None], angles, level[1:-1])
     sides = np.linspace(-np.pi, np.pi, SIDES, endpoint=False)[None]
     skin = _turned(radius[:, None], sides, level)
@@ -104,13 +107,6 @@ def worn_tube(
 def _between(lines: Array) -> Array:
     """Values at the borders between lines, from the values of the lines."""
     return np.concatenate([lines[:1], 0.5 * (lines[1:] + lines[:-1]), lines[-1:]])
-
-
-def _levels(along_mm: Array, radius_mm: Array) -> Array:
-    """Project places along the limb's surface on its axis, measured from the middle."""
-    flat = np.square(np.diff(along_mm)) - np.square(np.diff(radius_mm))
-    level = np.concatenate([[0.0], np.cumsum(np.sqrt(np.maximum(flat, 0.0)))])
-    return np.asarray(level - 0.5 * level[-1])
 
 
 def _turned(radius_mm: Array, angles: Array, level_mm: Array) -> NDArray[np.float64]:

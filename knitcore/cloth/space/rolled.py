@@ -40,17 +40,14 @@ def start(
     CancelledError
         If ``cancelled`` returned True.
     """
-    bent = [_bent(sheet, axis, time_limit_s, cancelled) for axis in _shorter_first(sheet)]
+    width, height, _ = np.ptp(sheet.flat_mm, axis=0)
+    shorter_first = (0, 1) if height <= width else (1, 0)
+    bent = [_bent(sheet, axis, time_limit_s, cancelled) for axis in shorter_first]
     energy = [_energy(sheet, shape) for shape in bent]
     best = bent[0] if energy[0] < (1.0 + _ALIKE) * energy[1] else bent[1]
     if min(energy) > (1.0 - _ALIKE) * _energy(sheet, sheet.flat_mm):
         best = sheet.flat_mm
     return np.asarray(best + shake_mm(best.shape))
-
-
-def _shorter_first(sheet: StitchSheet) -> tuple[int, int]:
-    width, height, _ = np.ptp(sheet.flat_mm, axis=0)
-    return (0, 1) if height <= width else (1, 0)
 
 
 def _bent(sheet: StitchSheet, axis: int, time_limit_s: float, cancelled: Cancelled | None) -> Array:

@@ -248,15 +248,13 @@ def _area(sheet: StitchSheet) -> float:
 def _coefficient(sheet: StitchSheet, x: Array, disc_mm: float) -> float:
     disc = 0.25 * math.pi * disc_mm**2
     ring = len(sheet.quads) * _area(sheet) - disc
-    return (_shadow(x[:, :2], sheet.quads) - disc) / ring
-
-
-def _shadow(at: Array, quads: NDArray[np.int64]) -> float:
-    """Area that rectangles cover, seen from above, each as two triangles."""
-    triangles = np.concatenate([at[quads[:, [0, 1, 3, 0]]], at[quads[:, [0, 3, 2, 0]]]])
+    triangles = np.concatenate(
+        [x[sheet.quads[:, half], :2] for half in ([0, 1, 3, 0], [0, 3, 2, 0])]
+    )
     shapes = shapely.polygons(triangles)
     solid = shapes[shapely.area(shapes) > 1e-9]
-    return float(shapely.union_all(solid, grid_size=1e-4).area)
+    shadow = float(shapely.union_all(solid, grid_size=1e-4).area)
+    return (shadow - disc) / ring
 
 
 def _folds(sheet: StitchSheet, shape: Shape, ring_mm: float) -> int:

@@ -5,7 +5,7 @@ The same fields are in the project file, in the service's designs and in the pag
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -107,11 +107,6 @@ class DesignLayout(BaseModel):
         if sum(len(region.runs) for region in self.regions) > MAX_RUNS:
             raise ValueError(f"all regions together have at most {MAX_RUNS} runs")
         return self
-
-
-def layout_fields(design: DesignLayout) -> dict[str, Any]:
-    """The layout of a design of any kind, by field."""
-    return {name: getattr(design, name) for name in DesignLayout.model_fields}
 
 
 def region_cells(region: DesignRegion, rows: int, columns: int) -> Mask:

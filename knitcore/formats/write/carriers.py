@@ -85,7 +85,7 @@ def _inherited(active: dict[int, YarnRun], runs: tuple[YarnRun, ...]) -> dict[in
             (min(below.stop, run.stop) - max(below.start, run.start), index, carrier)
             for index, run in enumerate(runs)
             for carrier, below in active.items()
-            if carrier_fits(below, run)
+            if below.yarn == run.yarn and below.start < run.stop and run.start < below.stop
         ),
         key=lambda candidate: (-candidate[0], candidate[1]),
     )
@@ -94,8 +94,3 @@ def _inherited(active: dict[int, YarnRun], runs: tuple[YarnRun, ...]) -> dict[in
         if index not in taken and carrier not in taken.values():
             taken[index] = carrier
     return taken
-
-
-def carrier_fits(below: YarnRun, run: YarnRun) -> bool:
-    """Say whether a run of a row can continue with the yarn of a run in the row below."""
-    return below.yarn == run.yarn and below.start < run.stop and run.start < below.stop

@@ -11,13 +11,7 @@ from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.draw.laid_out import mean_stitch_mm
 from knitcore.formats.designs.design_file import DesignFile, write_design
-from knitcore.formats.designs.layout import (
-    DesignLayout,
-    DesignRepeat,
-    layout_fields,
-    piece_of,
-    region_cells,
-)
+from knitcore.formats.designs.layout import DesignLayout, DesignRepeat, piece_of, region_cells
 from knitcore.formats.read.knitout_reader import verified
 from knitcore.formats.write.chart_drawing import chart_pdf, chart_svg
 from knitcore.formats.write.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
@@ -29,7 +23,7 @@ from knitcore.formats.write.png import write_png
 from knitcore.formats.write.report import design_report
 from knitcore.formats.write.stitch_values import write_csv, write_vtu
 from knitcore.formats.write.written_pattern import write_rows
-from knitcore.formats.write.yarn_mesh import write_glb, write_stl
+from knitcore.formats.write.yarn_mesh import mesh_file, yarn_mesh
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
 from knitcore.materials import Material
@@ -241,7 +235,7 @@ def _design(piece: Piece, material: Material, options: ExportOptions) -> str:
         material=material.identifier,
         chart=piece.chart.text,
         note=options.note,
-        **layout_fields(options.layout),
+        **{name: getattr(options.layout, name) for name in DesignLayout.model_fields},
     )
     return write_design(document)
 
@@ -320,8 +314,20 @@ _BUILT_IN = (
     ),
     Exporter(ExportKind.WRITTEN, *_TXT, _written),
     Exporter(ExportKind.DESIGN, ".json", "application/json", _design),
-    Exporter(ExportKind.GLB, *_GLB, lambda p, m, _: write_glb(p, m), _DRAWN, holds_yarns=False),
-    Exporter(ExportKind.STL, *_STL, lambda p, m, _: write_stl(p, m), _DRAWN, holds_yarns=False),
+    Exporter(
+        ExportKind.GLB,
+        *_GLB,
+        lambda p, m, _: mesh_file(yarn_mesh(p, m), 0.001, "glb"),
+        _DRAWN,
+        holds_yarns=False,
+    ),
+    Exporter(
+        ExportKind.STL,
+        *_STL,
+        lambda p, m, _: mesh_file(yarn_mesh(p, m), 1.0, "stl"),
+        _DRAWN,
+        holds_yarns=False,
+    ),
     Exporter(ExportKind.VTU, ".vtu", "application/xml", lambda p, m, _: write_vtu(p, m), _LOCAL),
     Exporter(ExportKind.CSV, *_CSV, lambda p, m, _: write_csv(p, m), _LOCAL),
 )

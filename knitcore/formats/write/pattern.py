@@ -19,7 +19,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.row_sides import Construction
-from knitcore.draw.laid_out import SizeAtRest, laid_sizes_mm, size_at_rest
+from knitcore.draw.laid_out import SizeAtRest, laid_corners_mm, size_at_rest
 from knitcore.formats.write.chart_drawing import A4_MM, chart_pages
 from knitcore.formats.write.chart_key import (
     GRID,
@@ -172,7 +172,10 @@ class _Facts:
         prediction = predict(shaped.rectangle_inside(), material, piece.gauge)
         size = size_at_rest(shaped, material, prediction)
         own = prediction if piece.is_rectangle else None
-        return cls(piece, own, size, laid_sizes_mm(shaped, material, piece.gauge))
+        corners = laid_corners_mm(shaped, material, piece.gauge)
+        across, up = np.diff(corners[..., 0], axis=1), np.diff(corners[..., 1], axis=0)
+        sizes = np.stack([across[1:] + across[:-1], up[:, 1:] + up[:, :-1]], axis=-1) / 2
+        return cls(piece, own, size, sizes)
 
     @property
     def finished(self) -> str:

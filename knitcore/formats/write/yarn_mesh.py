@@ -101,16 +101,6 @@ def solid(lines: Iterable[Array], radius_mm: float) -> TriangleMesh:
     )
 
 
-def write_glb(chart: StitchChart | Piece, material: Material) -> bytes:
-    """Binary glTF 2.0 in metres."""
-    return mesh_file(yarn_mesh(chart, material), 0.001, "glb")
-
-
-def write_stl(chart: StitchChart | Piece, material: Material) -> bytes:
-    """Binary STL in mm."""
-    return mesh_file(yarn_mesh(chart, material), 1.0, "stl")
-
-
 def write_curled_glb(
     chart: StitchChart, corners_mm: Array, material: Material, stitches: Mask | None = None
 ) -> bytes:

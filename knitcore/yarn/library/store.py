@@ -151,7 +151,8 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
     if placed is None:
         return None
     points = np.asarray(_controls()[key], dtype=float)
-    bending = stored_bending(key)
+    bent = _table("bending.json").get(key)
+    bending = None if bent is None else of_document(bent)
     if placed.mirror:
         bending = bending and bending.mirror_image()
     if placed.swap:
@@ -209,12 +210,6 @@ def stored_charts(material_id: str) -> list[StitchChart]:
         for key, entry in _entries().items()
         if key.startswith(prefix) and "failure" not in entry
     ]
-
-
-def stored_bending(key: str) -> RepeatBending | None:
-    """Bending of a representative of the store, by its material and chart (``acrylic/K``)."""
-    entry = _table("bending.json").get(key)
-    return None if entry is None else of_document(entry)
 
 
 def document_of(bending: RepeatBending) -> dict[str, Any]:

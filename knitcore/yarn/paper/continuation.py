@@ -54,15 +54,6 @@ class Continuation:
     held: Array = field(default_factory=lambda: np.empty((0, 8)))
     held_mm: Array = field(default_factory=lambda: np.empty(0))
 
-    def minimise_at(
-        self, course_mm: float | None, wale_mm: float | None, start: Array
-    ) -> BezierMinimum:
-        """Minimise at given sizes (None: free) from a start, whose sizes are replaced."""
-        free = free_constraints(self.loop_length_mm, course_mm, wale_mm)
-        rules = replace(free, held=self.held, held_mm=self.held_mm)
-        first = _resized(start, course_mm, wale_mm)
-        return minimise_bezier(self.stitch, first, self.loop_length_mm, rules, near=True)
-
     def go(
         self, path: Sequence[Array], course_mm: float | None, wale_mm: float | None
     ) -> tuple[BezierMinimum, int] | None:
@@ -114,7 +105,10 @@ class Continuation:
                 ratio = float(goal[held] @ moved / (moved @ moved))
                 starts.insert(0, last + np.clip(ratio, -2.0, 2.0) * change)
         for start in starts:
-            minimum = self.minimise_at(course_mm, wale_mm, start)
+            free = free_constraints(self.loop_length_mm, course_mm, wale_mm)
+            rules = replace(free, held=self.held, held_mm=self.held_mm)
+            first = _resized(start, course_mm, wale_mm)
+            minimum = minimise_bezier(self.stitch, first, self.loop_length_mm, rules, near=True)
             if (
                 minimum.converged
                 and is_admissible(self.stitch, minimum)

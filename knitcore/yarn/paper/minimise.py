@@ -178,13 +178,6 @@ def minimise_bezier(
     return problem.report(x, converged, certified)
 
 
-def _even_rows(stitch: Stitch) -> Array:
-    """Weights of the unknowns in the constraints that keep c11 even, shape (2, unknowns)."""
-    alpha = stitch.ties[PARAMETERS.index("c11_alpha")]
-    beta = stitch.ties[PARAMETERS.index("c11_beta")]
-    return np.array([alpha, -2.0 * alpha - 10.0 * beta])
-
-
 class _Problem:
     """A stitch in dimensionless unknowns, with the last evaluation kept."""
 
@@ -200,7 +193,8 @@ class _Problem:
         self.evaluations = 0
         self._at: bytes = b""
         self._last: Evaluation | None = None
-        self.even = _even_rows(stitch)
+        alpha, beta = (stitch.ties[PARAMETERS.index(f"c11_{name}")] for name in ("alpha", "beta"))
+        self.even = np.array([alpha, -2.0 * alpha - 10.0 * beta])  # rows that keep c11 even
         rows, values = [np.ones(8)], [loop_length_mm]
         if constraints.held is not None and constraints.held_mm is not None:
             rows.extend(constraints.held)

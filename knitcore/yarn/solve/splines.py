@@ -401,19 +401,14 @@ def _compile() -> None:
     outcome(CellEnergy(cell, yarn, np.array([12.0]), Convention.PUBLISHED), minimum)
 
 
-def _size_log_sd(cell: RelaxedCell) -> float:
-    """Standard deviation of the logarithm of knitted over relaxed sizes."""
-    folded = cell.branch is Branch.FREE and has_mirrors(cell.chart)
-    return YARN_LEVEL_FREE_SIZE_LOG_SD if folded else YARN_LEVEL_SIZE_LOG_SD
-
-
 def size_intervals(cell: RelaxedCell) -> tuple[Interval, Interval]:
     """90 % intervals of the width and height of a knitted stitch, mm.
 
     They cover those of other shapes that are as low, for which of them is shown is a rule.
     """
     others = cell.other_minima_mm if isinstance(cell, RelaxedRepeat) else ()
-    log_sd = _size_log_sd(cell)
+    folded = cell.branch is Branch.FREE and has_mirrors(cell.chart)
+    log_sd = YARN_LEVEL_FREE_SIZE_LOG_SD if folded else YARN_LEVEL_SIZE_LOG_SD
     each = zip((cell.cell_course_mm, cell.cell_wale_mm), *others, strict=True)
     course, wale = (
         Interval(log_interval(min(sizes), log_sd).low, log_interval(max(sizes), log_sd).high)

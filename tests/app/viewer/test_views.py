@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 import viser
-from fastapi.testclient import TestClient
 
 from app.service import memory
 from app.service.limits.user_limits import OverLimitError, UserLimits
@@ -36,20 +35,6 @@ def _servers() -> int:
     return sum(type(thing) is viser.ViserServer for thing in gc.get_objects())
 
 
-def _look(client: TestClient) -> None:
-    """Open some views, look at each, and go away."""
-    for number in range(VIEWS):
-        draw(client, f"dropped-{number}", {"fabric": "rib", "columns": 6, "rows": 6})
-        with watching(client, f"/view/dropped-{number}") as socket:
-            assert socket.receive_bytes()
-
-
-def _dropped(client: TestClient, most: tuple[int, int]) -> None:
-    """Close all views, and wait until no more is held than ``most``."""
-    state_of(client).views.close()
-    wait_until(lambda: all(now <= m for now, m in zip(_held(), most, strict=True)))
-
-
 def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None:
     memory.give_back()
     others = _servers()  # of services that other tests use
@@ -57,8 +42,12 @@ def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None
         assert client.get("/readyz").status_code == 200
         start = _held()
         for _ in range(ROUNDS):
-            _look(client)
-            _dropped(client, start)
+            for number in range(VIEWS):
+                draw(client, f"dropped-{number}", {"fabric": "rib", "columns": 6, "rows": 6})
+                with watching(client, f"/view/dropped-{number}") as socket:
+                    assert socket.receive_bytes()
+            state_of(client).views.close()
+            wait_until(lambda: all(now <= m for now, m in zip(_held(), start, strict=True)))
     memory.give_back()
     assert _servers() <= others
 

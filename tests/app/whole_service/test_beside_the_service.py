@@ -8,8 +8,6 @@ import gzip
 import json
 from pathlib import Path
 
-import httpx2 as httpx
-
 from app.cli.main import main
 from app.service.designs.store import DesignStore
 from tests.app.cli.test_main import EVERY
@@ -23,6 +21,13 @@ PREDICT = "predict"
 """In the place of all operations: none of them opens the database."""
 REFUSED = {"serve": "another service", "restore": "already"}
 """Commands that must not succeed beside a service, and what they say."""
+ELSEWHERE = """
+import sqlite3, sys
+connection = sqlite3.connect(sys.argv[1])
+connection.execute("SELECT * FROM designs").fetchone()
+connection.close()
+"""
+"""Another program that opens and closes the file."""
 
 
 def arguments_of(folder: Path, token: str) -> dict[str, list[str]]:
@@ -38,19 +43,6 @@ def arguments_of(folder: Path, token: str) -> dict[str, list[str]]:
         "serve": ["--port", "0"],
         "warm-up": ["--help"],  # does not touch the data, and takes a minute
     }
-
-
-def _elsewhere(file: Path) -> None:
-    """Another program opens and closes the file."""
-    code = (
-        "import sqlite3, sys; c = sqlite3.connect(sys.argv[1])\n"
-        "c.execute('SELECT * FROM designs').fetchone(); c.close()"
-    )
-    python("-c", code, file)
-
-
-def _until_refused(client: httpx.Client, token: str) -> None:
-    wait_until(lambda: client.get("/api/v1/designs", headers=bearing(token)).status_code == 401)
 
 
 def _made(service: Service, user: str) -> dict[str, str]:
@@ -91,9 +83,10 @@ def test_commands_beside_the_service_lose_nothing(tmp_path: Path) -> None:
                 if name == "backup":
                     saved = _revisions(tmp_path / "backup.gz")
                     assert all(saved[d] >= revision for d, revision in before.items())
-            _elsewhere(file)
+            python("-c", ELSEWHERE, file)
             assert log.stat().st_ino == ours
-            _until_refused(client, leaver["token"])
+            left = bearing(leaver["token"])
+            wait_until(lambda: client.get("/api/v1/designs", headers=left).status_code == 401)
             late = _made(service, "late")
             assert client.get("/api/v1/designs", headers=bearing(late["token"])).is_success
             assert client.get("/readyz").status_code == 200

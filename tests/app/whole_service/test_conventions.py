@@ -111,7 +111,10 @@ def test_no_interval_is_written_otherwise(shapes: dict[str, Schema]) -> None:
 
 def test_charts_repeats_and_cells_are_each_written_in_one_way(shapes: dict[str, Schema]) -> None:
     """A chart is lines, a repeat has its rows between slashes; both have their top row first."""
-    descriptions = {kind: _description(kind) for kind in (ChartLines, RepeatText, Motif, CellLines)}
+    descriptions = {
+        kind: kind.__metadata__[0].description
+        for kind in (ChartLines, RepeatText, Motif, CellLines)
+    }
     ways = {
         "chart": ("K/P lines, the top row first",),
         "repeat": (descriptions[RepeatText],),
@@ -144,10 +147,6 @@ def test_a_chart_is_taken_as_lines_and_with_slashes(client: TestClient, written:
     body = {"chart": "KP\nPP", "material": "acrylic"}
     expected = client.post("/api/v1/predict", json=body).json()
     assert client.post("/api/v1/predict", json=body | {"chart": written}).json() == expected
-
-
-def _description(kind: Any) -> str:
-    return str(kind.__metadata__[0].description)
 
 
 def test_library_commands_and_service_have_the_version_of_pyproject(client: TestClient) -> None:

@@ -19,7 +19,6 @@ from app.requests.fabrics import GaugeInput
 from knitcore import Direction, Fabric, RelaxedSize, StitchChart, curve, predict, strip_test
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.atlas_build import build_atlas
-from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.draw.laid_out import laid_corners_mm, mean_stitch_mm
 from knitcore.formats.designs.layout import DesignRegion
 from knitcore.formats.write import report
@@ -247,24 +246,6 @@ def test_a_long_free_strip_stretches_like_its_curve(
     np.testing.assert_allclose(along.strain(test.stress_n_per_mm), strains, rtol=0.1)
     area = 12 * 32 * along.relaxed_mm * across.relaxed_mm
     assert test.length_mm * test.width_mm == pytest.approx(area, rel=1e-6 if gauge else 0.03)
-
-
-@pytest.mark.parametrize("direction", Direction)
-@pytest.mark.parametrize("fabric", Fabric)
-def test_a_target_pressure_agrees_with_the_pressure_command(
-    fabric: Fabric, direction: Direction
-) -> None:
-    """The laws of every day, a tube a quarter wider on the limb; within 1 %."""
-    chart = StitchChart.of_fabric(fabric, 2, 2)
-    atlas = build_atlas(material("acrylic"), [chart.canonical()])
-    shown = run(
-        "pressure", "--material", "acrylic", "--fabric", str(fabric),
-        "--direction", str(direction), "--rest-mm", "200", "--worn-mm", "250",
-    )  # fmt: skip
-    middle = float(np.sqrt(np.prod(shown["mmhg"])))
-    target = Target(Quantity(f"pressure_{direction}_mmhg"), middle, limb=WornTube(200.0, 250.0))
-    value, _, _ = values_of(atlas, target)
-    assert value[0] == pytest.approx(middle, rel=0.01)
 
 
 @pytest.mark.parametrize("fill", [None, "KKPP"])

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from PIL import Image
 
 from knitcore.formats.write.export import FORMATS, ExportKind
-from tests.app.command_line import printed, refused, run
+from tests.app.command_line import printed, run
 from tests.app.rest import post, upload
 
 CHART = "KPKK\nPPKP\nKKPP"
@@ -153,11 +153,6 @@ def test_a_design_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
     document = {"format": "knitcore-design", "version": 2, "chart": CHART}
     design.write_text(json.dumps(document), encoding="utf-8-sig")
     assert run("import", str(design))["chart"] == CHART
-
-
-@pytest.mark.parametrize(("name", "says"), [("none.png", "does not exist"), (".", "is a folder")])
-def test_a_missing_file_is_reported(name: str, says: str, tmp_path: Path) -> None:
-    assert says in refused("import", str(tmp_path / name))
 
 
 def test_the_schema_is_published(client: TestClient) -> None:

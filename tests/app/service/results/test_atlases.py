@@ -14,13 +14,8 @@ from knitcore.chart.stitch_chart import StitchChart
 def context(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Context:
     repeats = tuple(StitchChart.parse(text) for text in ("K", "KP", "K\nP"))
     monkeypatch.setattr(atlases, "repeats_of", lambda _: repeats)
-    forget(monkeypatch)
-    return Context(tmp_path)
-
-
-def forget(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Begin as in a new process."""
     monkeypatch.setattr(atlases, "built_here", dict)
+    return Context(tmp_path)
 
 
 def files(context: Context) -> list[str]:
