@@ -88,6 +88,7 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
 
     from ..service import memory
     from ..service.main import create_app
+    from ..service.web.unread import WatchedProtocol
     from ..viewer.incoming import MAX_PICTURE_BYTES
 
     sys.setswitchinterval(SWITCH_S)
@@ -110,6 +111,7 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
             forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
             server_header=False,
             log_config=None,
+            http=WatchedProtocol,
             ws="websockets-sansio",
             limit_concurrency=max(64, _raise_handles() - SPARE_HANDLES),
             ws_per_message_deflate=False,  # deflate drops most frames of an animation

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import uvicorn
-from fastapi import FastAPI
+from starlette.types import ASGIApp
 
 from scripts import serving
 
@@ -57,9 +57,10 @@ def threads_of_no_pool() -> list[str]:
 
 
 @contextlib.contextmanager
-def on_a_server(app: FastAPI) -> Iterator[str]:
-    """An application on a real server in a thread; yields its address."""
-    server = uvicorn.Server(uvicorn.Config(app, port=0, log_config=None, lifespan="on"))
+def on_a_server(app: ASGIApp, **options: Any) -> Iterator[str]:
+    """An application on a real server in a thread, with options of uvicorn; yields its address."""
+    chosen = {"lifespan": "on"} | options
+    server = uvicorn.Server(uvicorn.Config(app, port=0, log_config=None, **chosen))
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})

@@ -17,7 +17,7 @@ from ..jobs.runner import JobRunner
 from ..problems import NotFoundError, Problem
 from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
 from ..web.events import event_stream, stream_of
-from ..web.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
+from ..web.packed import ASKED_WITH_TAG, TAGGED, is_known, takes_gzip
 
 EVENT_PERIOD_S = 0.25
 
@@ -112,17 +112,21 @@ async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request)
             if not status.state.is_final
             else "Run it again.",
         )
-    body = await asyncio.to_thread(runner.store.result, owner, job)
-    if body is None:
+    result = await asyncio.to_thread(runner.store.result, owner, job)
+    if result is None:
         raise NotFoundError(
             "The result is no longer stored.", field="job", remedy="Run the job again."
         )
-    tag = await asyncio.to_thread(etag_of, body)
-    if is_known(tag, request.headers):
-        return Response(status_code=304, headers={"ETag": tag})
-    answer = await json_response(body, request.headers)
-    answer.headers["ETag"] = tag
-    return answer
+    headers = {"ETag": f'W/"{result.key[:32]}"', "Vary": "Accept-Encoding"}
+    if is_known(headers["ETag"], request.headers):
+        return Response(status_code=304, headers=headers)
+    if takes_gzip(request.headers):
+        parts, size = result.packed(), result.size_bytes
+        headers["Content-Encoding"] = "gzip"
+    else:
+        parts, size = result.unpacked(), await asyncio.to_thread(lambda: result.unpacked_bytes)
+    headers["Content-Length"] = str(size)
+    return StreamingResponse(parts, media_type="application/json", headers=headers)
 
 
 @router.delete("/jobs/{job}", summary="Cancel a job")

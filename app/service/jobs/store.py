@@ -2,7 +2,9 @@
 
 import contextlib
 import secrets
-from collections.abc import Mapping
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
@@ -15,6 +17,8 @@ from ..store.tables import job_requests, jobs, now, results
 from .document import JobPage, JobState, JobStatus
 
 WAITING, RUNNING = OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
+PART_BYTES = 65_536
+"""Part of a result that is read from the database at once."""
 KEPT_S = 30 * 86_400.0
 ORPHANED_S = 60.0
 """A process not seen for this long, by the clock of the database, counts as gone; the others take
@@ -26,6 +30,49 @@ INTERRUPTED = Problem(
     detail="The service was stopped or failed while this job ran.",
     remedy="Run it again.",
 )
+
+
+@dataclass(frozen=True)
+class StoredResult:
+    """A result in the database, of which only a part at a time is in memory.
+
+    Attributes
+    ----------
+    database : where it is.
+    key : of its content.
+    size_bytes : of its gzipped JSON.
+    """
+
+    database: Database
+    key: str
+    size_bytes: int
+
+    @property
+    def unpacked_bytes(self) -> int:
+        """Size of its JSON, from the last four bytes of the gzip format (RFC 1952)."""
+        return int.from_bytes(self._part(self.size_bytes - 4, 4) or b"", "little")
+
+    def packed(self) -> Iterator[bytes]:
+        """Parts of its gzipped JSON; they end early if it is deleted meanwhile."""
+        for start in range(0, self.size_bytes, PART_BYTES):
+            part = self._part(start, min(PART_BYTES, self.size_bytes - start))
+            if part is None:
+                return
+            yield part
+
+    def unpacked(self) -> Iterator[bytes]:
+        """Parts of its JSON."""
+        gzip = zlib.decompressobj(wbits=31)
+        for part in self.packed():
+            yield gzip.decompress(part, PART_BYTES)
+            while gzip.unconsumed_tail:
+                yield gzip.decompress(gzip.unconsumed_tail, PART_BYTES)
+        yield gzip.flush()
+
+    def _part(self, start: int, size: int) -> bytes | None:
+        with self.database.read() as connection:
+            row = results.c.key == self.key
+            return self.database.backend.part_of(connection, results.c.body, row, start, size)
 
 
 class JobStore:
@@ -193,16 +240,16 @@ class JobStore:
 
         return self._database.write(action)
 
-    def result(self, owner: str, job: str) -> bytes | None:
-        """The result of a job as compressed JSON, or None if it is not stored."""
+    def result(self, owner: str, job: str) -> StoredResult | None:
+        """The result of a job, or None if it is not stored."""
         with self._database.read() as connection:
             key = _one(connection, owner, job).key
-            body: bytes | None = connection.execute(
-                select(results.c.body).where(results.c.key == key)
-            ).scalar()
-        if body is not None:
-            self._used(key)
-        return body
+            size = select(results.c.size_bytes).where(results.c.key == key)
+            size_bytes: int | None = connection.execute(size).scalar()
+        if size_bytes is None:
+            return None
+        self._used(key)
+        return StoredResult(self._database, key, size_bytes)
 
     def knows(self, key: str) -> bool:
         """Return whether the result of this content is stored; if so, renew its time of use."""

@@ -88,6 +88,8 @@ class UserLimits:
     kept_bytes : designs and their versions together.
     job_bytes : requests of jobs, together; those that ended the longest ago make room.
     body_bytes : bodies of requests that are open, together.
+    unsent_bytes : large answers that their clients have not read yet, together; results of jobs are
+        read from the database as they are sent, and do not count.
     """
 
     connections: int = 128
@@ -105,6 +107,7 @@ class UserLimits:
     kept_bytes: int = 1_000_000_000
     job_bytes: int = 200_000_000
     body_bytes: int = 128_000_000
+    unsent_bytes: int = 64_000_000
 
 
 USER_LIMITS = UserLimits()

@@ -28,9 +28,10 @@ REPLACED = "replaced"
 """Folder within it of what users replaced last."""
 PREFIX = "own:"
 KINDS = (".json", ".yaml", ".yml")
-MAX_FILES = 200
 MAX_KEPT = 40
 """Materials that one user keeps through the service."""
+REMEMBERED = 10_000
+"""Materials that are not read again while their files stay as they are."""
 
 _log = logging.getLogger("knitcore.materials")
 
@@ -64,8 +65,7 @@ def own_materials(data_dir: Path) -> dict[str, Material]:
 def _materials_in(folder: Path) -> dict[str, Material]:
     if not folder.is_dir():
         return {}
-    files = sorted(file for file in folder.iterdir() if file.suffix.lower() in KINDS)
-    return _readable(files[:MAX_FILES])
+    return _readable(sorted(file for file in folder.iterdir() if file.suffix.lower() in KINDS))
 
 
 def _readable(files: Sequence[Path]) -> dict[str, Material]:
@@ -142,7 +142,7 @@ def _read(file: Path) -> Material:
     return _state_of(file, facts.st_mtime_ns, facts.st_size)
 
 
-@lru_cache(maxsize=MAX_FILES)
+@lru_cache(maxsize=REMEMBERED)
 def _state_of(file: Path, _modified_ns: int, _size: int) -> Material:
     own = load_material_file(file)
     mark = hashlib.sha256(file.read_bytes()).hexdigest()[:6]

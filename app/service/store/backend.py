@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from sqlalchemy import Connection, Engine, Insert, Table
+from sqlalchemy import Column, ColumnElement, Connection, Engine, Insert, Table, func, select
 
 
 class Backend(ABC):
@@ -75,6 +75,19 @@ class Backend(ABC):
 
     def check_writable(self) -> None:  # noqa: B027
         """Do the same before each change, without a question to the server."""
+
+    def part_of(
+        self,
+        connection: Connection,
+        column: Column[bytes],
+        row: ColumnElement[bool],
+        start: int,
+        size: int,
+    ) -> bytes | None:
+        """Bytes of a large value, without the rest of it; None if its row is gone."""
+        part = func.substr(column, start + 1, size)
+        content: bytes | None = connection.execute(select(part).where(row)).scalar()
+        return content
 
     def is_whole(self, connection: Connection) -> bool:
         """Return whether no page is damaged."""

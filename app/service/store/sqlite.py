@@ -17,7 +17,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, create_engine, event
+from sqlalchemy import (
+    Column,
+    ColumnElement,
+    Connection,
+    Integer,
+    create_engine,
+    event,
+    literal_column,
+    select,
+)
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.pool import QueuePool
 
@@ -167,6 +176,24 @@ class SqliteFile(Backend):
                 STOP_FIRST,
             )
         return True
+
+    def part_of(
+        self,
+        connection: Connection,
+        column: Column[bytes],
+        row: ColumnElement[bool],
+        start: int,
+        size: int,
+    ) -> bytes | None:
+        """Bytes of a large value; ``substr`` would read all of it each time."""
+        place = select(literal_column("rowid", Integer)).select_from(column.table).where(row)
+        rowid = connection.execute(place).scalar()
+        if rowid is None:
+            return None
+        file: sqlite3.Connection = connection.connection.driver_connection  # type: ignore[assignment]
+        with file.blobopen(column.table.name, column.name, rowid, readonly=True) as blob:
+            blob.seek(start)
+            return blob.read(size)
 
     def is_whole(self, connection: Connection) -> bool:
         """Look through all pages for damage, about a second for a gigabyte."""

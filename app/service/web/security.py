@@ -181,25 +181,35 @@ class AccessControl:
         if answer is not None:
             await answer(scope, receive, send_with_headers)
             return
-        answered = Answer(send_with_headers)
+        concurrency: ConcurrencyLimit = scope["app"].state.concurrency
+        user = current_user.get()
+        with (
+            concurrency.growing("body_bytes", user) as count,
+            concurrency.growing("unsent_bytes", user) as count_unsent,
+        ):
+            received = limited(receive, self.settings.max_body_bytes, count)
+            answered = Answer(send_with_headers, count_unsent)
+            await self._answer(scope, received, answered, send_with_headers)
+
+    async def _answer(self, scope: Scope, receive: Receive, answered: Answer, send: Send) -> None:
+        """Run the application, and end the answer that it could not give."""
         try:
-            concurrency: ConcurrencyLimit = scope["app"].state.concurrency
-            with concurrency.growing("body_bytes", current_user.get()) as count:
-                received = limited(receive, self.settings.max_body_bytes, count)
-                if not await self._run_while_open(scope, received, answered):
-                    await answered.end(answer_to(_signed_out()), scope, receive)
+            if not await self._run_while_open(scope, receive, answered):
+                await answered.end(answer_to(_signed_out()), scope, receive)
+            elif answered.refusal is not None:
+                await answered.end(answer_to(answered.refusal), scope, receive)
         except asyncio.CancelledError:  # the service stops, and does not wait any longer
             if answered.started or not scope["app"].state.stopping:
                 raise
             stopped = answer_to(StoppingError("The service is stopping."))
-            await stopped(scope, receive, send_with_headers)
+            await stopped(scope, receive, send)
         except ClientDisconnect:  # before its request was complete; only the log says so
             if not answered.started:
-                await Response(status_code=GONE)(scope, receive, send_with_headers)
+                await Response(status_code=GONE)(scope, receive, send)
         except Exception as error:  # answered here, so that its answer has the headers, too
             if answered.started:
                 raise
-            await unexpected(error)(scope, receive, send_with_headers)
+            await unexpected(error)(scope, receive, send)
 
     def _check(self, scope: Scope, *, has_pass: bool) -> None:
         """Refuse other names, changes from pages of other sites, and bodies that are too large."""

@@ -71,6 +71,11 @@ def test_strokes_and_their_refusals(client: TestClient, made: str) -> None:
     assert client.post(f"{DESIGNS}/not-a-design/strokes", json=body).status_code == 404
 
 
+def test_a_nul_in_a_search_is_refused(client: TestClient) -> None:
+    answer = client.get(DESIGNS, params={"q": "\0"})
+    assert (answer.status_code, answer.json()["field"]) == (422, "q")
+
+
 def test_a_retry_with_a_key_makes_one_design(client: TestClient) -> None:
     key = {"Idempotency-Key": "a-key-of-this-test"}
     first = client.post(DESIGNS, json=RIB, headers=key)

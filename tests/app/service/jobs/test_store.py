@@ -1,5 +1,6 @@
 """Jobs in a database, where several processes know, cancel and survive each other's."""
 
+import gzip
 import os
 import threading
 import time
@@ -120,7 +121,28 @@ def test_equal_jobs_of_two_processes_may_end_at_the_same_time(database: Database
             assert list(ended) == [True, True]
             for job in jobs:
                 assert stores[0].get("ada", job).state is JobState.DONE
-                assert stores[0].result("ada", job) == b"the result"
+                result = stores[0].result("ada", job)
+                assert result is not None
+                assert b"".join(result.packed()) == b"the result"
+
+
+def test_a_result_is_read_in_parts(database: Database) -> None:
+    store = JobStore(database, "main")
+    content = os.urandom(300_000).hex().encode() + bytes(3_000_000)
+    body = gzip.compress(content)
+    job = store.add("ada", "work", "{}", "k", JobState.WAITING).id
+    store.finish(job, "work", "k", body)
+    result = store.result("ada", job)
+    assert result is not None
+    assert (result.size_bytes, result.unpacked_bytes) == (len(body), len(content))
+    for parts, whole in ((result.packed(), body), (result.unpacked(), content)):
+        listed = list(parts)
+        assert b"".join(listed) == whole
+        assert max(map(len, listed)) <= store_module.PART_BYTES
+    parts = result.packed()
+    next(parts)
+    store.tidy(most_bytes=0)
+    assert list(parts) == []  # the answer ends early; its length says so
 
 
 def test_the_longest_unused_results_make_room(database: Database) -> None:

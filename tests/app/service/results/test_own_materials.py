@@ -3,12 +3,14 @@
 import logging
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
 
 from app.service.results.own_materials import (
+    MAX_KEPT,
     added_by,
     keep_material,
     own_materials,
@@ -161,3 +163,16 @@ def test_only_who_added_a_material_removes_it(folder: Path) -> None:
     assert not remove_material(kept.identifier, "bob", folder.parent)
     assert remove_material(kept.identifier, "ann", folder.parent)
     assert own_materials(folder.parent) == {}
+
+
+def test_as_many_users_as_there_are_see_all_their_materials(folder: Path) -> None:
+    document = MaterialDocument.from_material(material("acrylic"))
+    users = [f"user-{number}" for number in range(6)]
+    for user, number in product(users, range(MAX_KEPT)):
+        own = document.model_copy(update={"identifier": f"{user}-{number}"})
+        keep_material(own, user, folder.parent)
+    everything = own_materials(folder.parent)
+    for user in users:
+        mine = added_by(user, folder.parent)
+        assert len(mine) == MAX_KEPT
+        assert mine <= everything.keys()

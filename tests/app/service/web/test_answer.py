@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import json
 import threading
 from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
@@ -16,11 +17,12 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Message, Receive, Scope, Send
 
-from app.service.limits.user_limits import ConcurrencyLimit
+from app.service.limits.user_limits import USER_LIMITS, ConcurrencyLimit
 from app.service.main import create_app
 from app.service.problems import StoreError
 from app.service.settings import Settings
 from app.service.web import security, sessions
+from app.service.web.answer import PART_BYTES
 from app.service.web.security import PAGE_POLICY, AccessControl
 from app.service.web.sessions import Tokens
 from tests.app.running import on_a_server
@@ -188,6 +190,32 @@ def test_a_message_that_the_server_takes_is_not_cut() -> None:
             await asyncio.sleep(security.REMEMBERED_S)  # the guard would cancel it
 
     assert _sent(script, slowly=slowly) == [_head(), _part(b"slow"), END]
+
+
+def test_a_large_answer_is_handed_over_in_parts() -> None:
+    content = bytes(range(256)) * 600
+
+    async def whole(_: Login, send: Send, __: Receive) -> None:
+        await send(_head(len(content)))
+        await send(_part(content, more=False))
+
+    head, *parts = _sent(whole)
+    assert head["status"] == 200
+    assert b"".join(part["body"] for part in parts) == content
+    assert max(len(part["body"]) for part in parts) == PART_BYTES
+    assert [part["more_body"] for part in parts] == [True, True, False]
+
+
+def test_an_answer_beyond_what_may_wait_unread_is_refused() -> None:
+    content = bytes(USER_LIMITS.unsent_bytes + 1)
+
+    async def whole(_: Login, send: Send, __: Receive) -> None:
+        await send(_head(len(content)))
+        await send(_part(content, more=False))
+
+    head, problem = _sent(whole)
+    assert head["status"] == 429
+    assert json.loads(problem["body"])["field"] == "unsent_bytes"
 
 
 def test_a_request_outlasts_a_lost_database() -> None:

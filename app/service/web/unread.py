@@ -1,0 +1,70 @@
+"""Answers that are not read: their connections are closed."""
+
+import asyncio
+import contextlib
+import fcntl
+import logging
+import struct
+import termios
+
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+
+log = logging.getLogger("knitcore.app")
+
+STALLED_S = 30.0
+"""An answer of which the client has taken nothing for this long is given up, as by the proxy."""
+
+
+class WatchedProtocol(HttpToolsProtocol):
+    """HTTP that closes a connection whose client reads no more; uvicorn's would keep it."""
+
+    _watch: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Begin; from now on every byte that has to wait is noticed."""
+        super().connection_made(transport)
+        transport.set_write_buffer_limits(0)
+
+    def handle_websocket_upgrade(self) -> None:
+        """Hand the connection on, with the limits that its next protocol expects."""
+        self.transport.set_write_buffer_limits()
+        super().handle_websocket_upgrade()
+
+    def pause_writing(self) -> None:
+        """Look from time to time whether what waits gets less."""
+        super().pause_writing()
+        self._look_after(self._unread_bytes())
+
+    def resume_writing(self) -> None:
+        """Look no more: all was taken."""
+        self._stop_looking()
+        super().resume_writing()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Look no more: the client has left, or was given up."""
+        self._stop_looking()
+        super().connection_lost(exc)
+
+    def _look_after(self, before: int) -> None:
+        self._watch = self.loop.call_later(STALLED_S, self._look, before)
+
+    def _look(self, before: int) -> None:
+        unread = self._unread_bytes()
+        if unread < before:
+            self._look_after(unread)
+            return
+        log.info("closed a connection whose client had read nothing for %g s", STALLED_S)
+        self.transport.abort()  # to close it would wait for the client
+
+    def _stop_looking(self) -> None:
+        if self._watch is not None:
+            self._watch.cancel()
+
+    def _unread_bytes(self) -> int:
+        """Bytes that wait here, and those in the system's buffer that the client has not got."""
+        unread = self.transport.get_write_buffer_size()
+        with contextlib.suppress(OSError):  # not every system tells
+            socket = self.transport.get_extra_info("socket")
+            (there,) = struct.unpack("i", fcntl.ioctl(socket.fileno(), termios.TIOCOUTQ, bytes(4)))
+            unread += there
+        return unread
