@@ -8,7 +8,7 @@ from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.prediction import Along, Prediction, Source
 
 CURL = (
-    "Stockinette curls: its sides roll to the back, its top and bottom edges to the face. The "
+    "Stockinette curls: its sides roll to the purl side, its top and bottom to the knit side. The "
     "moduli are those of a sheet held flat."
 )
 
