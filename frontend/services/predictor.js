@@ -20,7 +20,11 @@ export function startPredictor(studio) {
       async (signal) => {
         const { kind: scope, grid, shaped } = scopeOf(studio);
         const cloth = { chart: grid.text, material: studio.materialId.value };
-        const value = await api.run("predict", { ...cloth, ...shaped, gauge: studio.gauges.of(cloth) }, signal);
+        const value = await api.run(
+          "predict",
+          { ...cloth, ...shaped, gauge: studio.gauges.of(cloth), hand: true },
+          signal,
+        );
         if (signal.aborted) return;
         prediction.value = { value, busy: false, problem: null, scope };
         studio.online.value = true;

@@ -14,6 +14,7 @@
  * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb
  * @typedef {{request: import("../types.js").GloveRequest, outline: string}} PlannedGlove the hand for which
  *   a glove was made, and the glove's outline
+ * @typedef {"light" | "hand" | "firm"} HandPull how hard a hand pulls
  * @typedef {"stitch" | "block" | "region"} Groups what an extensibility rectangle stands for
  */
 
@@ -32,6 +33,8 @@ const SETTINGS = {
   yarnColours: /** @type {YarnColours} */ ("chart"),
   groups: /** @type {Groups} */ ("stitch"),
   block: 4,
+  handPull: /** @type {HandPull} */ ("hand"),
+  details: false,
   limbAround: /** @type {Direction} */ ("course"),
   girths: /** @type {GirthAt[] | null} */ (null),
   glove: /** @type {PlannedGlove | null} */ (null),
@@ -44,6 +47,10 @@ export class Seeing {
     this.groups = new Signal(settings.groups);
     /** Stitches on a side of a block. */
     this.block = new Signal(settings.block);
+    /** At which the inspector tells the stretch. */
+    this.handPull = new Signal(settings.handPull);
+    /** Whether the inspector shows moduli and segments, too. */
+    this.details = new Signal(settings.details);
     /** Whether strain crosses are drawn over the chart. */
     this.crosses = new Signal(false);
     /** Id of the region that the inspector describes; null for the whole chart. */
@@ -71,6 +78,8 @@ export class Seeing {
     /** The stitch that was clicked in the 3D view last. */
     this.clickedStitch = new Signal(/** @type {Cell | null} */ (null));
     this.yarnColours.listen((yarnColours) => saveSettings({ yarnColours }));
+    this.handPull.listen((handPull) => saveSettings({ handPull }));
+    this.details.listen((details) => saveSettings({ details }));
     this.groups.listen((groups) => saveSettings({ groups }));
     this.glove.listen((glove) => saveSettings({ glove }));
     this.limb.listen(({ direction, girths }) => saveSettings({ limbAround: direction, girths }));

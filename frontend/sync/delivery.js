@@ -9,6 +9,7 @@
  * @property {{id: string, revision: number} | null} remote the service's name for it
  * @property {DesignDocument | null} base what the service has acknowledged last
  * @property {DesignDocument} document what it should have
+ * @property {DesignDocument[]} [sent] what left since, and may have arrived although no answer came
  * @property {DesignDocument | null} [posted] what the first delivery sends, every time until it is answered
  *
  * @typedef {object} Kept the design as the service has it
@@ -68,20 +69,23 @@ export async function deliver(parcel, service) {
 }
 
 /**
- * What is here and what the service has by now, as one.
+ * What is here and what the service has by now, as one. What the service has of our own, since an answer was lost,
+ * is no change of somebody else.
  *
  * @param {Parcel} parcel
  * @param {Kept} theirs
  * @returns {Outcome}
  */
 export function combine(parcel, theirs) {
-  const { base, document } = parcel;
+  const { document } = parcel;
+  const own = parcel.sent?.some((sent) => same(sent, theirs.document));
+  const base = own ? null : parcel.base;
   const { document: merged, conflicts } = merge(base ?? theirs.document, document, theirs.document);
   if (conflicts.length) return { kind: "conflict", theirs, parts: conflicts };
   const remote = { id: theirs.id, revision: theirs.revision };
   return {
-    kind: same(merged, document) && same(merged, theirs.document) ? "kept" : "merged",
-    parcel: { ...parcel, remote, base: theirs.document, document: merged, posted: null },
+    kind: own || (same(merged, document) && same(merged, theirs.document)) ? "kept" : "merged",
+    parcel: { ...parcel, remote, base: theirs.document, document: merged, sent: [], posted: null },
   };
 }
 
@@ -130,5 +134,5 @@ async function create(parcel, key, document, service) {
  * @returns {Outcome}
  */
 function settled(parcel, id, revision, base) {
-  return { kind: "kept", parcel: { ...parcel, remote: { id, revision }, base, posted: null } };
+  return { kind: "kept", parcel: { ...parcel, remote: { id, revision }, base, sent: [], posted: null } };
 }

@@ -30,6 +30,8 @@ const SEND_MS = 900;
 /** Unless another window waits to show them. */
 const SEND_SEEN_MS = 100;
 const RETRY_MS = 4000;
+/** Unanswered deliveries that are remembered. */
+const MAX_SENT = 4;
 /** How often the service is asked what others did. */
 const LOOK_MS = 4000;
 
@@ -241,6 +243,8 @@ export class Keeper {
     const change = this.#change;
     const sent = this.studio.toDocument();
     const parcel = { ...this.#parcel, document: sent };
+    if (parcel.remote)
+      parcel.sent = [...(parcel.sent ?? []).filter((other) => !same(other, sent)), sent].slice(-MAX_SENT);
     if (!parcel.remote) parcel.posted ??= sent;
     this.#parcel = parcel;
     drafts.put(parcel); // before it leaves, so that an answer that is lost does no harm
@@ -310,7 +314,7 @@ export class Keeper {
 
   /** @param {DesignDocument} document */
   #acknowledged(document) {
-    this.#parcel = { ...this.#parcel, base: document, document };
+    this.#parcel = { ...this.#parcel, base: document, document, sent: [] };
     this.#sentChange = this.#change;
     drafts.drop(this.#parcel.id);
     this.save();

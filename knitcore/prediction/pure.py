@@ -7,7 +7,9 @@ from knitcore.materials import FabricRecord, Interval, Material, Origin
 from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.prediction import Along, Prediction, Source
 
-CURLS = "Stockinette curls: its sides roll to the back, its top and bottom edges to the face."
+CURLS = (
+    "Stockinette curls: its sides roll to the purl side, its top and bottom edges to the knit side."
+)
 CURL = f"{CURLS} The moduli are those of a sheet held flat."
 
 SIZE_LOG_SD = 0.08

@@ -94,8 +94,8 @@ def keep_messages(page: Page) -> None:
 
 
 def number(page: Page, selector: str) -> float:
-    """A number on show."""
-    return float(page.locator(f"{selector} .value").inner_text().replace("−", "-"))
+    """A number in the inspector, whether its fold is open or not."""
+    return float((page.locator(f"{selector} .value").text_content() or "").replace("−", "-"))
 
 
 def kept_design(page: Page) -> dict[str, Any]:

@@ -52,9 +52,11 @@ def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page)
         faults += [f"{theme} drape: {wrong}" for wrong in violations(page, "#inspector")]
         page.click("#tab-curve")
         expect(page.locator("#plot-curve .main-svg").first).to_be_visible()
-        page.click("#provenance")  # with the field for one's own gauge
+        page.click("#provenance")
+        page.click("#inspector-details summary")
         faults += [f"{theme} source: {wrong}" for wrong in violations(page, "#inspector")]
         page.click("#provenance")
+        page.click("#inspector-details summary")
         page.focus("#chart")
         for name in MENUS:
             page.click(f"#{name}-button")

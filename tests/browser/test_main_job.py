@@ -46,7 +46,7 @@ def test_painting_changes_chart_segments_and_moduli(flat_studio: Page) -> None:
     flat_studio.click("#overlay-modulus-course")
     before = pixels(flat_studio, "#chart")
     modulus = number(flat_studio, "#modulus-course")
-    shown = flat_studio.locator("#modulus-course .value").inner_text()
+    shown = flat_studio.locator("#modulus-course .value").text_content()
     expect(flat_studio.locator("#segments-course")).not_to_contain_text("odd")
 
     drag(flat_studio, 90, 40)

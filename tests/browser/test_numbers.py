@@ -103,11 +103,11 @@ def test_a_repeat_of_a_simulated_material_is_relaxed_while_painting_pauses(
     page = open_design(visitor, service, chart=chart, material="acrylic:simulation")
     source = page.locator("#provenance")
     expect(source).to_have_text("learned, relaxing …")
-    guessed = page.locator("#modulus-course .interval").inner_text()
+    guessed = page.locator("#hand-course .interval").inner_text()
     with page.expect_request(lambda sent: sent.method == "DELETE" and "/jobs/" in sent.url):
         page.click("#stretch-run")
     expect(source).to_have_text("learned with known size")
-    expect(page.locator("#modulus-course .interval")).not_to_have_text(guessed)
+    expect(page.locator("#hand-course .interval")).not_to_have_text(guessed)
     source.click()
     expect(page.locator(".source .notes")).to_contain_text("relaxation of this chart")
     expect(page.locator("#own-gauge-stitches")).to_have_value("")

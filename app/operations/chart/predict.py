@@ -1,14 +1,15 @@
 """The mechanics of a chart."""
 
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
-from knitcore.chart.fabric import Direction
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.segments import SegmentCounts, segment_map
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.draw.laid_out import size_at_rest
 from knitcore.garment.shaped import ShapedChart, outline_marks
+from knitcore.prediction.hand import hand_pulls
 from knitcore.prediction.predict import predict as predict_chart
 from knitcore.prediction.swept import worth_relaxing
 
@@ -24,6 +25,32 @@ class PredictRequest(GaugedRequest):
     inside its outline, its size is that of the whole."""
 
     outline: OutlineInput = None
+    hand: bool = Field(
+        False, description="Also tell how far the chart stretches at three pulls of a hand."
+    )
+
+
+class HandStretchResult(ResultModel):
+    """Stretch along one direction at one pull."""
+
+    strain: float = Field(description="From the size at rest, the other direction free.")
+    interval: Ends
+    interval_with_gauge: Ends | None = Field(
+        description="The interval if a gauge of this chart were counted; null if it is known, or "
+        "in a chart that is predicted in patches."
+    )
+    word: Literal["firm", "slightly stretchy", "stretchy", "very stretchy"]
+    more_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch less.")
+    less_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch more.")
+
+
+class HandPullResult(ResultModel):
+    """Stretch at one pull of a hand."""
+
+    pull: Literal["light", "hand", "firm"]
+    n_per_mm: float = Field(description="Force per width of cloth: 0.1 N/mm is 10 N on 10 cm.")
+    course: HandStretchResult
+    wale: HandStretchResult
 
 
 class SegmentCountsResult(ResultModel, SegmentCounts):
@@ -66,6 +93,7 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
         "with which these numbers would be more certain; null if there is none."
     )
     notes: list[str]
+    hand: list[HandPullResult] = Field(description="By growing pull; empty unless asked for.")
 
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
@@ -107,6 +135,7 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         poisson_xy_interval=predicted.wale.poisson_interval,
         worth_relaxing=None if to_relax is None else to_relax.text,
         notes=[*notes, *predicted.notes],
+        hand=hand_pulls(chart, material, predicted) if request.hand else [],
     )
 
 
@@ -127,8 +156,17 @@ def _lines(r: PredictResult) -> list[str]:
         f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
         f"stitch at rest  {_relaxed(r)}",
         f"size at rest    {r.width_mm / 10:.1f} x {r.height_mm / 10:.1f} cm",
+        *(_hand_line(pull) for pull in r.hand),
         f"source          {r.provenance} ({r.method})",
     ]
+
+
+def _hand_line(pull: HandPullResult) -> str:
+    along = (
+        f"{direction} {of.strain:.0%} ({of.interval[0]:.0%} to {of.interval[1]:.0%}, {of.word})"
+        for direction, of in (("course", pull.course), ("wale", pull.wale))
+    )
+    return f"{pull.pull + ' pull':<16}{'   '.join(along)} at {pull.n_per_mm:g} N/mm"
 
 
 def _relaxed(r: PredictResult) -> str:

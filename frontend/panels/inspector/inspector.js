@@ -7,7 +7,7 @@
  */
 
 import { DIRECTIONS, LINES, along } from "../../core/directions.js";
-import { figure, percents, range } from "../../core/format.js";
+import { figure, percent, percentRange, percents, range } from "../../core/format.js";
 import { paced } from "../../core/paced.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
 import { scopeOf, sizeAtRest } from "../../services/scope.js";
@@ -22,6 +22,13 @@ import { segmented } from "../../widgets/fields.js";
 import { problemText } from "../../widgets/problem.js";
 
 const COUNT_MS = 80;
+/** Loop lengths of a yarn's fabrics that differ by more than this make their sizes another cloth's. */
+const LOOP_SPREAD = 1.15;
+const PULLS = /** @type {const} */ ([
+  ["light", "Light", { title: "A light pull: 0.03 N/mm, 3 N on 10 cm of cloth" }],
+  ["hand", "Hand", { title: "A hand's pull: 0.1 N/mm, 10 N on 10 cm of cloth" }],
+  ["firm", "Firm", { title: "A firm pull: 0.3 N/mm, 30 N on 10 cm of cloth" }],
+]);
 const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb", "drape"]);
 /** @typedef {(typeof PLOTS)[number]} Plot */
 
@@ -41,10 +48,27 @@ export function inspector(host, studio) {
   const gauge = ownGauge(studio);
   const provenance = h("summary", { id: "provenance", title: "Where these numbers come from" });
   const notes = h("ul", { class: "notes" });
-  const source = h("details", { class: "source small muted" }, provenance, gauge.element, notes);
+  const source = h("details", { class: "source small muted" }, provenance, notes);
   const problem = h("div", { class: "problem", hidden: true });
+  const felt = h("table", { class: "numbers full-width" });
   const table = h("table", { class: "numbers full-width" });
+  const rank = h("div", { class: "small muted hand-rank", id: "hand-rank" });
+  const compared = h("p", { class: "small muted hand-rank", id: "sizes-compared" });
   const shares = h("div", { class: "shares stack gap-6" });
+  const segments = h("div", { class: "shares stack gap-6" });
+  const { handPull, details: detailed } = studio.seeing;
+  const hands = segmented("Pull at which the stretch is told", PULLS, handPull.value, (at) => (handPull.value = at), {
+    class: "segmented small",
+    id: "hand-pull",
+  });
+  const details = h(
+    "details",
+    { class: "inspector-details small", id: "inspector-details", open: detailed.value },
+    h("summary", {}, "Modulus, Poisson's ratio, segments"),
+    table,
+    segments,
+  );
+  details.addEventListener("toggle", () => (detailed.value = details.open));
   const rigidity = h("div", { class: "plot relative shrinks-x shrinks-y clipped", id: "plot-rigidity" });
   const curve = h("div", { class: "plot relative shrinks-x shrinks-y clipped", id: "plot-curve" });
   const worn = h("div", { class: "limb stack shrinks-x shrinks-y gap-10", id: "plot-limb" });
@@ -115,8 +139,13 @@ export function inspector(host, studio) {
         source,
       ),
       problem,
-      table,
+      h("div", { class: "line gap-8 spread small" }, h("span", { class: "muted" }, "At a pull of"), hands.element),
+      felt,
+      rank,
+      gauge.element,
+      compared,
       shares,
+      details,
     ),
     h(
       "div",
@@ -142,15 +171,61 @@ export function inspector(host, studio) {
     problem.hidden = !wrong || wrong.type === "offline";
     if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
     // Numbers of another scope would be mistaken for this one's.
-    fill(table, scope === part.kind ? value : null, part);
+    const told = scope === part.kind ? value : null;
+    fill(table, told);
+    feel(told, part);
     source.hidden = !value;
     if (value) {
       const lines = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
       name();
       notes.replaceChildren(...lines.map((note) => h("li", {}, note)));
-      gauge.show();
+      gauge.show(value);
     }
   };
+  /** What a hand feels, and how wide the cloth lies. @param {PredictResult | null} value @param {Scope} part */
+  const feel = (value, part) => {
+    const pull = value?.hand.find((each) => each.pull === handPull.value);
+    const size = value && sizeAtRest(part, value);
+    felt.replaceChildren(
+      columnHeads(),
+      h(
+        "tbody",
+        {},
+        row(
+          "Stretch",
+          "",
+          "How far the cloth stretches from its size at rest when pulled along its rows or columns",
+          ...DIRECTIONS.map((way) => {
+            const of = pull?.[way];
+            const ends = of ? `${percentRange(of.interval)} %` : "";
+            return cell(`hand-${way}`, of ? percent(of.strain) : "–", ends, of?.word);
+          }),
+        ),
+        row(
+          "Size at rest",
+          "cm",
+          "Width and height of the cloth when nothing pulls at it",
+          ...DIRECTIONS.map((way) =>
+            cell(`size-${way}`, figure(inCm(size?.[way].value)), range(size && cmOf(size[way].interval))),
+          ),
+        ),
+      ),
+    );
+    rank.replaceChildren(
+      ...(pull ? DIRECTIONS.map((way) => h("div", {}, `${capital(LINES[way])}: ${amongFabrics(pull[way])}`)) : []),
+    );
+    const lengths = FABRICS.flatMap((fabric) => studio.yarn?.fabrics[fabric]?.loop_length_mm ?? []);
+    const [least, most] = [Math.min(...lengths), Math.max(...lengths)];
+    compared.textContent =
+      most > LOOP_SPREAD * least
+        ? `The sizes of this yarn's fabrics do not compare: they were knitted with ${figure(least)} to ${figure(most)} mm of yarn a stitch.`
+        : "";
+  };
+  handPull.listen(() => {
+    const { value, scope } = studio.prediction.value;
+    const part = scopeOf(studio);
+    feel(scope === part.kind ? value : null, part);
+  });
   const name = () => {
     const { value } = studio.prediction.value;
     provenance.textContent = `${value?.provenance}${studio.relaxing.value ? ", relaxing …" : ""}`;
@@ -158,7 +233,7 @@ export function inspector(host, studio) {
   const count = () => {
     const { document: chart } = studio;
     const { grid, mask } = scopeOf(studio).counted;
-    const segments = countSegments(grid, mask);
+    const counted = countSegments(grid, mask);
     const mix = fabricShares(grid === chart.grid ? chart.codes : surroundings(grid, mask), mask);
     const rounded = percents(mix);
     shares.replaceChildren(
@@ -166,8 +241,10 @@ export function inspector(host, studio) {
         "share-fabrics",
         FABRICS.map((fabric, i) => ({ share: mix[i], colour: `var(--${fabric})`, text: `${fabric} ${rounded[i]}` })),
       ),
+    );
+    segments.replaceChildren(
       ...DIRECTIONS.map((direction) => {
-        const { even, odd } = segments[direction];
+        const { even, odd } = counted[direction];
         const all = even + odd || 1;
         return shareBar(
           `segments-${direction}`,
@@ -220,27 +297,53 @@ export function inspector(host, studio) {
   };
 }
 
-/** @param {HTMLTableElement} table @param {PredictResult | null} value @param {Scope} scope of the numbers */
-function fill(table, value, scope) {
-  const size = value && sizeAtRest(scope, value);
+/** How a stretch compares with those of the yarn's own fabrics. @param {PredictResult["hand"][number]["course"]} stretch */
+function amongFabrics({ more_than: more, less_than: less }) {
+  const parts = [more.length && `more than ${inWords(more)}`, less.length && `less than ${inWords(less)}`];
+  return `${parts.filter(Boolean).join(", ") || "like this yarn's other fabrics"}.`;
+}
+
+/** @param {string} word */
+const capital = (word) => word[0].toUpperCase() + word.slice(1);
+
+/** @param {string[]} words */
+const inWords = (words) =>
+  words.length < 2 ? words.join("") : `${words.slice(0, -1).join(", ")} and ${words[words.length - 1]}`;
+
+const columnHeads = () =>
+  h(
+    "thead",
+    {},
+    h(
+      "tr",
+      {},
+      h("td", {}),
+      ...DIRECTIONS.map((way) =>
+        h("th", { scope: "col", title: `Pulled ${along(way)}` }, icon(way), capital(LINES[way])),
+      ),
+    ),
+  );
+
+/** @param {string} id @param {string} value @param {string} interval @param {string} [word] */
+const cell = (id, value, interval, word) =>
+  h(
+    "td",
+    { id },
+    h("span", { class: "value" }, value),
+    interval && h("span", { class: "interval", title: "90 % interval" }, interval),
+    word && h("span", { class: "word" }, word),
+  );
+
+/** @param {string} label @param {string} unit @param {string} hint @param {HTMLElement[]} cells */
+const row = (label, unit, hint, ...cells) =>
+  h("tr", {}, h("th", { scope: "row", title: hint }, label, unit && h("span", { class: "unit" }, unit)), ...cells);
+
+/** @param {HTMLTableElement} table @param {PredictResult | null} value */
+function fill(table, value) {
   /** @param {string} id @param {number | undefined} number @param {readonly number[] | null | undefined} ends */
-  const cell = (id, number, ends) => {
-    const interval = range(ends);
-    return h(
-      "td",
-      { id },
-      h("span", { class: "value" }, figure(number)),
-      interval && h("span", { class: "interval", title: "90 % interval" }, interval),
-    );
-  };
-  /** @param {string} label @param {string} unit @param {string} hint @param {HTMLElement[]} cells */
-  const row = (label, unit, hint, ...cells) =>
-    h("tr", {}, h("th", { scope: "row", title: hint }, label, h("span", { class: "unit" }, unit)), ...cells);
-  /** @param {Direction} direction @param {string} name */
-  const head = (direction, name) =>
-    h("th", { scope: "col", title: `Pulled ${along(direction)}` }, icon(direction), name);
+  const number = (id, number, ends) => cell(id, figure(number), range(ends));
   table.replaceChildren(
-    h("thead", {}, h("tr", {}, h("td", {}), head("course", "Rows"), head("wale", "Columns"))),
+    columnHeads(),
     h(
       "tbody",
       {},
@@ -248,33 +351,30 @@ function fill(table, value, scope) {
         "Modulus",
         "N/mm",
         "Young's modulus at the beginning of a pull: force per width over stretch",
-        cell("modulus-course", value?.modulus_course_n_per_mm, value?.modulus_course_interval_n_per_mm),
-        cell("modulus-wale", value?.modulus_wale_n_per_mm, value?.modulus_wale_interval_n_per_mm),
+        number("modulus-course", value?.modulus_course_n_per_mm, value?.modulus_course_interval_n_per_mm),
+        number("modulus-wale", value?.modulus_wale_n_per_mm, value?.modulus_wale_interval_n_per_mm),
       ),
       row(
         "Extensibility",
         "mm/N",
         "One over the modulus: the stretch of 1 mm under 1 N per mm of width",
-        cell(
+        number(
           "extensibility-course",
           value?.extensibility_course_mm_per_n,
           inverse(value?.modulus_course_interval_n_per_mm),
         ),
-        cell("extensibility-wale", value?.extensibility_wale_mm_per_n, inverse(value?.modulus_wale_interval_n_per_mm)),
-      ),
-      row(
-        "Size at rest",
-        "cm",
-        "Width and height of the cloth when nothing pulls at it",
-        cell("size-course", inCm(size?.course.value), size && cmOf(size.course.interval)),
-        cell("size-wale", inCm(size?.wale.value), size && cmOf(size.wale.interval)),
+        number(
+          "extensibility-wale",
+          value?.extensibility_wale_mm_per_n,
+          inverse(value?.modulus_wale_interval_n_per_mm),
+        ),
       ),
       row(
         "Poisson",
         "ratio",
         "Contraction across when pulled along",
-        cell("poisson-yx", value?.poisson_yx, value?.poisson_yx_interval),
-        cell("poisson-xy", value?.poisson_xy, value?.poisson_xy_interval),
+        number("poisson-yx", value?.poisson_yx, value?.poisson_yx_interval),
+        number("poisson-xy", value?.poisson_xy, value?.poisson_xy_interval),
       ),
     ),
   );

@@ -2,13 +2,23 @@
  * Your own gauge of the cloth that the inspector describes.
  *
  * @import {Studio} from "../../state/studio.js"
+ * @import {PredictResult} from "../../types.js"
  */
 
+import { percent } from "../../core/format.js";
 import { h } from "../../elements/dom.js";
 import { scopeOf } from "../../services/scope.js";
 import { numberField } from "../../widgets/fields.js";
 
-/** @param {Studio} studio @returns {{element: HTMLElement, show: () => void}} `show` fills in what is known */
+/** Half of a 90 % interval of a size that was counted, as a share of it. */
+const COUNTED = 0.05;
+
+/**
+ * `show` fills in what is known, and says what a count would bring.
+ *
+ * @param {Studio} studio
+ * @returns {{element: HTMLElement, show: (predicted: PredictResult) => void}}
+ */
 export function ownGauge(studio) {
   const cloth = () => ({ chart: scopeOf(studio).grid.text, material: studio.materialId.value });
   const keep = () => {
@@ -24,15 +34,18 @@ export function ownGauge(studio) {
     numberField({ id, min: "1", max: "400", step: "any", "aria-label": label, onchange: keep });
   const stitches = field("own-gauge-stitches", "Stitches per 10 cm of your knitted cloth");
   const rows = field("own-gauge-rows", "Rows per 10 cm of your knitted cloth");
+  const brings = h("span", { class: "muted full-width", id: "gauge-brings" });
   const element = h(
     "div",
-    { class: "own-gauge line", title: "Counted on cloth of this chart at rest: it makes the numbers more certain" },
-    "Your gauge, 10 cm:",
+    { class: "own-gauge line small", title: "Stitches and rows counted on 10 cm of cloth of this chart, at rest" },
+    h("span", { class: "muted" }, "Your gauge, 10 cm:"),
     stitches,
     "×",
     rows,
+    brings,
   );
-  const show = () => {
+  const show = (/** @type {PredictResult} */ predicted) => {
+    brings.textContent = gain(predicted);
     if (element.contains(document.activeElement)) return;
     const known = studio.gauges.changes.value ? studio.gauges.of(cloth()) : null;
     const counted = known?.known_by === "relaxation" ? null : known;
@@ -41,3 +54,21 @@ export function ownGauge(studio) {
   };
   return { element, show };
 }
+
+/** What a counted gauge would narrow, in words; "" if it would not. @param {PredictResult} predicted */
+function gain({ relaxed_course_mm: width, relaxed_course_interval_mm: ends, hand }) {
+  const size = half(ends, width);
+  const stretch = hand.find(({ pull }) => pull === "hand")?.course;
+  if (size <= COUNTED) return "";
+  const [now, then] = [stretch?.interval, stretch?.interval_with_gauge].map((of) =>
+    stretch && of ? half(of, stretch.strain) : 0,
+  );
+  const narrows = then && now - then >= 0.02 ? `, and stretch from ${aboutOf(now)} to ${aboutOf(then)}` : "";
+  return `A count narrows the size from ${aboutOf(size)} to ${aboutOf(COUNTED)}${narrows}.`;
+}
+
+/** Half of an interval as a share of its value. @param {readonly number[]} interval @param {number} value */
+const half = ([low, high], value) => (high - low) / 2 / value;
+
+/** @param {number} share */
+const aboutOf = (share) => `±${percent(share)}`;

@@ -225,3 +225,33 @@ test("a service that has lost everything gets the design anew", async () => {
   await deliver({ ...mine, document: design("KP") }, service);
   assert.equal(now(), "KP");
 });
+
+test("a delivery whose answer was lost is no conflict with oneself", async () => {
+  const service = new OneDesign();
+  const first = design("KK\nKK");
+  const { parcel } = /** @type {any} */ (
+    await deliver({ id: "mine", remote: null, base: null, document: first }, service)
+  );
+  const sent = design("PK\nKK", { name: "Sleeve", repeats: [] });
+  await service.replace("1", sent, 1); // it arrived, but its answer did not
+  const undone = { ...parcel, document: design("KK\nKK", { name: "Cuff of mine" }), sent: [sent] };
+  const outcome = await deliver(undone, service);
+  assert.equal(outcome.kind, "kept");
+  assert.deepEqual(/** @type {any} */ (outcome).parcel.document, undone.document);
+  const again = await deliver(/** @type {any} */ (outcome).parcel, service);
+  assert.equal(again.kind, "kept");
+  assert.deepEqual(service.kept?.document, undone.document);
+  const others = await deliver({ ...undone, sent: [] }, service);
+  assert.notEqual(others.kind, "conflict"); // the service has the very same by now
+});
+
+test("the same change by somebody else is a conflict still", async () => {
+  const service = new OneDesign();
+  const first = design("KK\nKK");
+  const { parcel } = /** @type {any} */ (
+    await deliver({ id: "mine", remote: null, base: null, document: first }, service)
+  );
+  await service.replace("1", design("PK\nKK", { name: "Theirs" }), 1);
+  const mine = { ...parcel, document: design("KK\nKK", { name: "Mine" }), sent: [design("PP\nKK")] };
+  assert.equal((await deliver(mine, service)).kind, "conflict");
+});

@@ -26,7 +26,7 @@ def test_selection_shows_numbers_of_its_own(flat_studio: Page) -> None:
 
 
 def test_material_changes_the_numbers(flat_studio: Page) -> None:
-    old = flat_studio.locator("#modulus-wale .value").inner_text()
+    old = flat_studio.locator("#modulus-wale .value").text_content()
     flat_studio.click("#material-button")
     flat_studio.click("#material-cotton")
     expect(flat_studio.locator("#modulus-wale .value")).not_to_have_text(old)

@@ -39,6 +39,17 @@ def test_garter_is_the_papers(client: TestClient) -> None:
     assert post(client, "predict", body) == result
 
 
+def test_the_pull_of_a_hand_is_told_if_asked_for(client: TestClient) -> None:
+    body = {"chart": "KKPP", "material": "acrylic"}
+    assert post(client, "predict", body)["hand"] == []
+    light, hand, firm = post(client, "predict", {**body, "hand": True})["hand"]
+    assert (light["pull"], hand["n_per_mm"], firm["pull"]) == ("light", 0.1, "firm")
+    low, high = hand["course"]["interval"]
+    assert low < hand["course"]["strain"] < high
+    assert hand["wale"]["more_than"] == ["stockinette"]
+    assert run("predict", "KKPP", "--material", "acrylic", "--hand")["hand"] == [light, hand, firm]
+
+
 @pytest.mark.parametrize("yarn", list(load_library()))
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_every_pure_fabric_has_its_table_values(yarn: str, fabric: Fabric) -> None:

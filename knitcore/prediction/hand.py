@@ -1,0 +1,132 @@
+"""Stretch of a chart at the pull of a hand, with a word and its place among the yarn's fabrics."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.uniaxial import free_strains_at_stress
+from knitcore.materials import Material
+from knitcore.materials.law_uncertainty import Interval
+from knitcore.prediction.patches import is_large
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Along, Prediction
+from knitcore.prediction.size import RelaxedSize
+
+PULLS_N_PER_MM = {"light": 0.03, "hand": 0.1, "firm": 0.3}
+"""Forces per width of cloth: a hand that feels, that tries, and that tugs. The middle one is 10 N
+on 10 cm."""
+
+_WORDS = ((0.15, "firm"), (0.35, "slightly stretchy"), (0.70, "stretchy"))
+_MOST = "very stretchy"
+"""Words by the strain below which they are used."""
+_ALIKE = 1.05
+"""Fabrics whose stretches differ by less than this factor stretch alike."""
+
+
+@dataclass(frozen=True)
+class HandStretch:
+    """Stretch along one direction at one pull.
+
+    Attributes
+    ----------
+    strain : from the size at rest, the other direction free.
+    interval : 90 % interval of the strain.
+    interval_with_gauge : the interval if a gauge of this chart were counted; None if the size is
+        known, or the chart is predicted in patches.
+    word : from firm to very stretchy.
+    more_than, less_than : pure fabrics of the same yarn that stretch less, and that stretch more.
+    """
+
+    strain: float
+    interval: Interval
+    interval_with_gauge: Interval | None
+    word: str
+    more_than: tuple[Fabric, ...]
+    less_than: tuple[Fabric, ...]
+
+
+@dataclass(frozen=True)
+class HandPull:
+    """Stretch of a chart at one pull.
+
+    Attributes
+    ----------
+    pull : light, hand or firm.
+    n_per_mm : force per width, of :data:`PULLS_N_PER_MM`.
+    course, wale : pulled along the rows, and along the columns.
+    """
+
+    pull: str
+    n_per_mm: float
+    course: HandStretch
+    wale: HandStretch
+
+
+def hand_pulls(
+    chart: StitchChart, material: Material, prediction: Prediction
+) -> tuple[HandPull, ...]:
+    """Tell how far a chart stretches at a light, a usual and a firm pull.
+
+    Parameters
+    ----------
+    chart, material : of the prediction.
+    """
+    counted = None
+    if not prediction.size_is_known and not is_large(chart):
+        size = RelaxedSize(prediction.relaxed_course_mm, prediction.relaxed_wale_mm)
+        counted = predict(chart, material, size)
+    along = {
+        direction: _stretches(
+            prediction.along(direction),
+            None if counted is None else counted.along(direction),
+            material,
+            direction,
+        )
+        for direction in Direction
+    }
+    return tuple(
+        HandPull(pull, force, along[Direction.COURSE][k], along[Direction.WALE][k])
+        for k, (pull, force) in enumerate(PULLS_N_PER_MM.items())
+    )
+
+
+def _stretches(
+    along: Along, counted: Along | None, material: Material, direction: Direction
+) -> list[HandStretch]:
+    forces = tuple(PULLS_N_PER_MM.values())
+    strains = along.strain(forces).tolist()
+    intervals = _intervals(along)
+    narrowed: Sequence[Interval | None] = [None] * len(forces)
+    if counted is not None:
+        narrowed = _intervals(counted)
+    pure = {
+        fabric: _strains(record.law, direction, forces)
+        for fabric, record in material.fabrics.items()
+    }
+    return [
+        HandStretch(
+            strain,
+            intervals[k],
+            narrowed[k],
+            next((word for below, word in _WORDS if strain < below), _MOST),
+            tuple(fabric for fabric, of in pure.items() if strain > _ALIKE * of[k]),
+            tuple(fabric for fabric, of in pure.items() if of[k] > _ALIKE * strain),
+        )
+        for k, strain in enumerate(strains)
+    ]
+
+
+def _intervals(along: Along) -> list[Interval]:
+    low, high = along.strain_interval(tuple(PULLS_N_PER_MM.values()))
+    return [Interval(*ends) for ends in zip(low.tolist(), high.tolist(), strict=True)]
+
+
+@lru_cache(maxsize=512)
+def _strains(
+    law: ConstitutiveLaw, direction: Direction, forces: tuple[float, ...]
+) -> tuple[float, ...]:
+    """Strains of a pure fabric, which are the same for every chart of the yarn."""
+    return tuple(free_strains_at_stress(law, direction, forces).tolist())

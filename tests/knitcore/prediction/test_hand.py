@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+
+from knitcore import Fabric, StitchChart, material, predict
+from knitcore.prediction.hand import PULLS_N_PER_MM, HandPull, hand_pulls
+from knitcore.prediction.size import RelaxedSize
+
+ACRYLIC = material("acrylic")
+RIB = StitchChart.parse("KKPP")
+
+
+def pulls_of(chart: StitchChart, size: RelaxedSize | None = None) -> tuple[HandPull, ...]:
+    return hand_pulls(chart, ACRYLIC, predict(chart, ACRYLIC, size))
+
+
+def test_stretches_are_those_of_the_predicted_curve() -> None:
+    predicted = predict(RIB, ACRYLIC)
+    pulls = pulls_of(RIB)
+    assert [pull.pull for pull in pulls] == ["light", "hand", "firm"]
+    for pull in pulls:
+        assert pull.n_per_mm == PULLS_N_PER_MM[pull.pull]
+        for along, stretch in ((predicted.course, pull.course), (predicted.wale, pull.wale)):
+            assert stretch.strain == pytest.approx(float(along.strain(pull.n_per_mm)), rel=1e-6)
+            assert stretch.interval.low < stretch.strain < stretch.interval.high
+    assert np.all(np.diff([pull.course.strain for pull in pulls]) > 0)
+
+
+def test_a_stretch_has_its_place_among_the_fabrics_of_the_yarn() -> None:
+    along = pulls_of(RIB)[1].course
+    assert along.word == "very stretchy"
+    assert set(along.more_than) == {Fabric.STOCKINETTE, Fabric.GARTER, Fabric.SEED}
+    assert along.less_than == (Fabric.RIB,)
+    for fabric in Fabric:
+        own = pulls_of(StitchChart.of_fabric(fabric))
+        assert all(fabric not in (*p.course.more_than, *p.course.less_than) for p in own)
+
+
+def test_words_go_by_the_stretch() -> None:
+    words = ("firm", "slightly stretchy", "stretchy", "very stretchy")
+    stretches = [
+        of
+        for fabric in Fabric
+        for pull in pulls_of(StitchChart.of_fabric(fabric))
+        for of in (pull.course, pull.wale)
+    ]
+    ranks = [words.index(of.word) for of in sorted(stretches, key=lambda of: of.strain)]
+    assert ranks == sorted(ranks)
+    assert {words[rank] for rank in ranks} >= set(words[1:])
+
+
+def test_a_counted_gauge_narrows_a_mixed_chart() -> None:
+    along = pulls_of(RIB)[1].course
+    assert along.interval_with_gauge is not None
+    assert along.interval_with_gauge.high < along.interval.high
+    assert along.interval_with_gauge.low > along.interval.low
+    known = pulls_of(RIB, RelaxedSize(2.3, 2.8))[1].course
+    assert known.interval_with_gauge is None
+    patches = StitchChart(np.arange(20 * 20).reshape(20, 20) % 7 == 0)
+    assert pulls_of(patches)[1].course.interval_with_gauge is None
