@@ -33,16 +33,16 @@ class HandStretch:
     Attributes
     ----------
     strain : from the size at rest, the other direction free.
-    interval : 90 % interval of the strain.
-    interval_with_gauge : the interval if a gauge of this chart were counted; None if the size is
+    strain_interval : its 90 % interval.
+    strain_with_gauge : the interval if a gauge of this chart were counted; None if the size is
         known, or the chart is predicted in patches.
     word : from firm to very stretchy.
     more_than, less_than : pure fabrics of the same yarn that stretch less, and that stretch more.
     """
 
     strain: float
-    interval: Interval
-    interval_with_gauge: Interval | None
+    strain_interval: Interval
+    strain_with_gauge: Interval | None
     word: str
     more_than: tuple[Fabric, ...]
     less_than: tuple[Fabric, ...]

@@ -34,8 +34,8 @@ class HandStretchResult(ResultModel):
     """Stretch along one direction at one pull."""
 
     strain: float = Field(description="From the size at rest, the other direction free.")
-    interval: Ends
-    interval_with_gauge: Ends | None = Field(
+    strain_interval: Ends
+    strain_with_gauge: Ends | None = Field(
         description="The interval if a gauge of this chart were counted; null if it is known, or "
         "in a chart that is predicted in patches."
     )
@@ -162,10 +162,10 @@ def _lines(r: PredictResult) -> list[str]:
 
 
 def _hand_line(pull: HandPullResult) -> str:
-    along = (
-        f"{direction} {of.strain:.0%} ({of.interval[0]:.0%} to {of.interval[1]:.0%}, {of.word})"
-        for direction, of in (("course", pull.course), ("wale", pull.wale))
-    )
+    along = []
+    for direction, of in (("course", pull.course), ("wale", pull.wale)):
+        low, high = of.strain_interval
+        along.append(f"{direction} {of.strain:.0%} ({low:.0%} to {high:.0%}, {of.word})")
     return f"{pull.pull + ' pull':<16}{'   '.join(along)} at {pull.n_per_mm:g} N/mm"
 
 

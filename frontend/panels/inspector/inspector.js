@@ -171,9 +171,9 @@ export function inspector(host, studio) {
     problem.hidden = !wrong || wrong.type === "offline";
     if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
     // Numbers of another scope would be mistaken for this one's.
-    const told = scope === part.kind ? value : null;
-    fill(table, told);
-    feel(told, part);
+    const ofScope = scope === part.kind ? value : null;
+    fill(table, ofScope);
+    feel(ofScope, part);
     source.hidden = !value;
     if (value) {
       const lines = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
@@ -197,7 +197,7 @@ export function inspector(host, studio) {
           "How far the cloth stretches from its size at rest when pulled along its rows or columns",
           ...DIRECTIONS.map((way) => {
             const of = pull?.[way];
-            const ends = of ? `${percentRange(of.interval)} %` : "";
+            const ends = of ? `${percentRange(of.strain_interval)} %` : "";
             return cell(`hand-${way}`, of ? percent(of.strain) : "–", ends, of?.word);
           }),
         ),

@@ -60,7 +60,7 @@ function gain({ relaxed_course_mm: width, relaxed_course_interval_mm: ends, hand
   const size = half(ends, width);
   const stretch = hand.find(({ pull }) => pull === "hand")?.course;
   if (size <= COUNTED) return "";
-  const [now, then] = [stretch?.interval, stretch?.interval_with_gauge].map((of) =>
+  const [now, then] = [stretch?.strain_interval, stretch?.strain_with_gauge].map((of) =>
     stretch && of ? half(of, stretch.strain) : 0,
   );
   const narrows = then && now - then >= 0.02 ? `, and stretch from ${aboutOf(now)} to ${aboutOf(then)}` : "";

@@ -261,8 +261,9 @@ def test_a_request_passes_its_fields_to_the_library() -> None:
     assert request.pass_to(pull, "KP", 0.4, mesh=2.0, steps=5) == ("KP", 0.4, 0.03, 5, 2.0)
 
 
-YARN_ALONE = {"characterise", "import", "material", "relax", "rs", "sweep", "tube", "whole"}
-"""They compute from the yarn or the size of its stitches; the address of `material` names laws."""
+YARN_ALONE = {"characterise", "import", "material", "relax", "rs", "sweep", "tube", "uses", "whole"}
+"""They compute from the yarn, the size of its stitches or its document; the address of `material`
+names laws."""
 
 
 @pytest.mark.parametrize("name", operations())

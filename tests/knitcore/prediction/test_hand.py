@@ -21,7 +21,7 @@ def test_stretches_are_those_of_the_predicted_curve() -> None:
         assert pull.n_per_mm == PULLS_N_PER_MM[pull.pull]
         for along, stretch in ((predicted.course, pull.course), (predicted.wale, pull.wale)):
             assert stretch.strain == pytest.approx(float(along.strain(pull.n_per_mm)), rel=1e-6)
-            assert stretch.interval.low < stretch.strain < stretch.interval.high
+            assert stretch.strain_interval.low < stretch.strain < stretch.strain_interval.high
     assert np.all(np.diff([pull.course.strain for pull in pulls]) > 0)
 
 
@@ -50,10 +50,10 @@ def test_words_go_by_the_stretch() -> None:
 
 def test_a_counted_gauge_narrows_a_mixed_chart() -> None:
     along = pulls_of(RIB)[1].course
-    assert along.interval_with_gauge is not None
-    assert along.interval_with_gauge.high < along.interval.high
-    assert along.interval_with_gauge.low > along.interval.low
+    assert along.strain_with_gauge is not None
+    assert along.strain_with_gauge.high < along.strain_interval.high
+    assert along.strain_with_gauge.low > along.strain_interval.low
     known = pulls_of(RIB, RelaxedSize(2.3, 2.8))[1].course
-    assert known.interval_with_gauge is None
+    assert known.strain_with_gauge is None
     patches = StitchChart(np.arange(20 * 20).reshape(20, 20) % 7 == 0)
-    assert pulls_of(patches)[1].course.interval_with_gauge is None
+    assert pulls_of(patches)[1].course.strain_with_gauge is None

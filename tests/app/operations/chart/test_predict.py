@@ -44,7 +44,7 @@ def test_the_pull_of_a_hand_is_told_if_asked_for(client: TestClient) -> None:
     assert post(client, "predict", body)["hand"] == []
     light, hand, firm = post(client, "predict", {**body, "hand": True})["hand"]
     assert (light["pull"], hand["n_per_mm"], firm["pull"]) == ("light", 0.1, "firm")
-    low, high = hand["course"]["interval"]
+    low, high = hand["course"]["strain_interval"]
     assert low < hand["course"]["strain"] < high
     assert hand["wale"]["more_than"] == ["stockinette"]
     assert run("predict", "KKPP", "--material", "acrylic", "--hand")["hand"] == [light, hand, firm]

@@ -52,7 +52,7 @@ def test_a_pattern_has_all_that_a_knitter_needs(pages: tuple[Page, ...]) -> None
     assert "k2tog" not in words  # no row uses it
     assert re.search(r"\n\d+ stitches and \d+ rows to 10 cm", words)  # as a swatch shows it
     assert "modul" not in words  # mechanics are in the report
-    assert "its sides roll to the back" in words
+    assert "its sides roll to the purl side" in words
     assert words.count(f"page 1 of {len(pages)}") == 1
 
 
