@@ -67,9 +67,9 @@ export const usesOf = async (material) => (await api.run("measure/uses", { mater
 /** Tex of a ball. @param {number} grams @param {number} metres @returns {number | null} */
 export const texOf = (grams, metres) => (grams > 0 && metres > 0 ? (1000 * grams) / metres : null);
 
-/** A value with its interval, in words. @param {{value: number, interval: [number, number]}} known @param {number} factor @param {number} digits @param {string} unit */
-export function inWords({ value, interval }, factor, digits, unit) {
-  const [middle, low, high] = [value, ...interval].map((number) => (factor * number).toFixed(digits));
+/** A value with its interval, in words. @param {{value: number, value_interval: [number, number]}} known @param {number} factor @param {number} digits @param {string} unit */
+export function inWords({ value, value_interval: ends }, factor, digits, unit) {
+  const [middle, low, high] = [value, ...ends].map((number) => (factor * number).toFixed(digits));
   return `${middle}${unit} (${low} to ${high})`;
 }
 
@@ -80,7 +80,7 @@ export function inWords({ value, interval }, factor, digits, unit) {
  * @param {StepResult | null} before
  */
 export function stepCells(step, before) {
-  /** @type {((of: StepResult) => [{value: number, interval: [number, number]}, number, number, string])[]} */
+  /** @type {((of: StepResult) => [{value: number, value_interval: [number, number]}, number, number, string])[]} */
   const columns = [
     (of) => [of.loop_length_mm, 1, 1, " mm"],
     (of) => [of.bending_modulus_n_mm2, 1000, 0, " mN·mm²"],

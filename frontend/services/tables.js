@@ -93,7 +93,7 @@ export function inWords({ columns, units, width_mm, length_mm, narrowing_is_posi
 }
 
 /** What still has to be said before there is a law, in words. @param {TableResult} test */
-export const asked = ({ missing, doubts }) => [
+export const openQuestions = ({ missing, doubts }) => [
   ...missing.map((quantity) =>
     quantity === "strain_along" ? "strain or extension" : (QUANTITIES[quantity] ?? quantity),
   ),

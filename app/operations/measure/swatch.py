@@ -57,7 +57,7 @@ class KnownValue(ResultModel):
     """A value with its 90 % interval."""
 
     value: float
-    interval: Ends
+    value_interval: Ends
 
 
 class StepResult(ResultModel):
@@ -133,7 +133,7 @@ def _step(step: Step) -> StepResult:
 
 
 def _estimate(estimate: Estimate) -> KnownValue:
-    return KnownValue(value=estimate.value, interval=(estimate.low, estimate.high))
+    return KnownValue(value=estimate.value, value_interval=(estimate.low, estimate.high))
 
 
 @click.option(
@@ -178,7 +178,8 @@ def _lines(r: SwatchResult) -> list[str]:
 
 
 def _shown(estimate: KnownValue, form: str, factor: float = 1.0) -> str:
-    value, low, high = (format(factor * v, form) for v in (estimate.value, *estimate.interval))
+    numbers = estimate.value, *estimate.value_interval
+    value, low, high = (format(factor * number, form) for number in numbers)
     return f"{value} ({low} to {high})"
 
 

@@ -15,7 +15,7 @@ import {
   QUANTITIES,
   answerable,
   asItStands,
-  asked,
+  openQuestions,
   changed,
   inWords,
   isSaid,
@@ -220,7 +220,7 @@ export function testReader(fabric, pickers) {
   const half = (direction, along, test) => {
     const template = templates[direction];
     const words = inWords(template);
-    const lacking = test.missing.length ? `Say ${asked({ ...test, doubts: [] }).join(", ")}.` : "";
+    const lacking = test.missing.length ? `Say ${openQuestions({ ...test, doubts: [] }).join(", ")}.` : "";
     const wrong = lacking || test.problem;
     const asStands = () => void say(direction, asItStands());
     const save = () => {
@@ -277,7 +277,7 @@ export function testReader(fabric, pickers) {
     /** What has to be answered before a law is fitted; empty if nothing has. */
     open: () => {
       if (!element.hidden && !read) return "Its tests are still being read, or cannot be.";
-      const open = Object.values(read?.tests ?? {}).flatMap((test) => [test.problem ?? [], asked(test)].flat());
+      const open = Object.values(read?.tests ?? {}).flatMap((test) => [test.problem ?? [], openQuestions(test)].flat());
       const both = (read?.doubts ?? []).filter(({ is_open }) => is_open).map(({ problem }) => problem);
       return [...open, ...both].join(" ");
     },

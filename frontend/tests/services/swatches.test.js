@@ -5,8 +5,8 @@ import { inKnittersWords, stepCells, texOf } from "../../services/swatches.js";
 
 /** @param {number} loop @param {number} wale */
 const step = (loop, wale) => {
-  /** @param {number} value @returns {{value: number, interval: [number, number]}} */
-  const known = (value) => ({ value, interval: [0.9 * value, 1.1 * value] });
+  /** @param {number} value @returns {{value: number, value_interval: [number, number]}} */
+  const known = (value) => ({ value, value_interval: [0.9 * value, 1.1 * value] });
   return {
     name: "library",
     loop_length_mm: known(loop),

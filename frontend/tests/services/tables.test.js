@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { asItStands, asked, changed, inWords, isSaid, unitsOf, withColumn } from "../../services/tables.js";
+import { asItStands, openQuestions, changed, inWords, isSaid, unitsOf, withColumn } from "../../services/tables.js";
 
 /** @import {TableResult} from "../../types.js" */
 
@@ -43,7 +43,7 @@ test("a template says in words how a table is read, and an answer is known again
 
 test("what is missing or open is asked", () => {
   const doubt = { field: "a.csv", problem: "A width of 7 looks like cm.", remedy: "", readings: [], is_open: true };
-  const open = asked({ ...TABLE, doubts: [doubt, { ...doubt, is_open: false }] });
+  const open = openQuestions({ ...TABLE, doubts: [doubt, { ...doubt, is_open: false }] });
   assert.deepEqual(open, ["strain or extension", "width", "A width of 7 looks like cm."]);
   assert.deepEqual(unitsOf("strain_across"), ["-", "%", "ratio"]);
   assert.deepEqual(unitsOf("run"), []);

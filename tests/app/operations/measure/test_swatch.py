@@ -35,7 +35,7 @@ def test_a_swatch_gives_a_yarn_and_says_what_each_measurement_brought(
     assert names[0] == "library"
     assert names[-1] == "photos, pulled wale-wise"
     stretch = made["steps"][-1]["strain_at_0_1_n_per_mm"]["wale"]
-    assert stretch["interval"][0] < 0.2 < stretch["interval"][1]
+    assert stretch["value_interval"][0] < 0.2 < stretch["value_interval"][1]
     assert stretch["value"] == pytest.approx(0.2, rel=0.05)
     assert made["uses"][0]["serves"] == "roughly"
     kept = load_material_file(out)
