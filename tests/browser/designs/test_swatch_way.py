@@ -55,7 +55,7 @@ def test_a_yarn_is_made_from_a_ruler_a_scale_and_photos(flat_studio: Page) -> No
     expect(rows).to_have_count(5)
     expect(rows.last).to_contain_text("Photos, pulled along the columns")
     expect(rows.last.locator(".swatch-brought")).to_have_count(2)
-    expect(page.locator("#swatch-way")).to_contain_text("pulled wale-wise only")
+    expect(page.locator("#swatch-way")).to_contain_text("pulled along the columns only")
     expect(page.locator(".yarn-use").first).to_contain_text("Roughly: charts on the page")
     page.click("#swatch-next")
     expect(page.locator("#material-button")).to_contain_text("Bottle wool")
