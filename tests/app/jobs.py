@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from app.context import Context
 from app.operations.perform import perform
 from app.operations.registry import Operation
+from app.requests.base import read
 from knitcore import InputError
 
 
@@ -126,6 +127,7 @@ def killed_in_the_middle(kind: str, run: Any, *job: Any, progress: Any, **option
         os.kill(os.getpid(), signal.SIGKILL)
         return False
 
-    _, request, data_dir = job
-    run(request, Context(data_dir, cancelled=kill))
+    model, request, data_dir = job
+    decoded = read(model, request) if isinstance(request, bytes) else request
+    run(decoded, Context(data_dir, cancelled=kill))
     return kill()
