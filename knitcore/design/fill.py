@@ -126,7 +126,8 @@ def fill_field(
     Raises
     ------
     InputError
-        If the maps do not fit or have no target, or the atlas is another material's.
+        If the maps do not fit or have no target, a part lies wholly outside the piece, or the atlas
+        is another material's.
     CancelledError
         If it was asked to stop.
     """
@@ -186,6 +187,7 @@ class _Fill:
         inside = np.ones(target.shape[1:], dtype=bool) if stitch is None else stitch
         self._target_map = np.where(inside, target, np.nan)
         self._parts = PartsNow(parts, inside, kept, material)
+        self._parts.check_inside()
         self._scattered = scattered
         self._material, self._atlas, self._stitch = material, atlas, inside
         no_target = np.isnan(self._target_map).all(axis=0)

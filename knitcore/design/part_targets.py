@@ -128,6 +128,22 @@ class PartsNow:
         """Stitches (rows, columns) of each part, inside the piece."""
         return tuple(_cells(t, *self.stitch.shape) & self.stitch for t in self.targets)
 
+    def check_inside(self) -> None:
+        """Refuse a part without a stitch.
+
+        Raises
+        ------
+        InputError
+            If all of a part lies outside the piece.
+        """
+        for target, cells in zip(self.targets, self.cells, strict=True):
+            if not cells.any():
+                raise InputError(
+                    "wishes",
+                    f"“{target.name}” lies outside the outline.",
+                    "Draw it inside, or leave it out.",
+                )
+
     def of(self, row: int, column: int) -> list[int]:
         """The parts that a stitch belongs to."""
         return [part for part, cells in enumerate(self.cells) if cells[row, column]]

@@ -272,6 +272,17 @@ def test_each_part_has_its_own_repeat() -> None:
     assert field.off_share >= 0.5
 
 
+def test_a_part_outside_the_piece_is_refused() -> None:
+    stitch = np.ones((8, 8), dtype=bool)
+    stitch[4:, 4:] = False
+    targets = [
+        PartTarget("body", ((0, 0, 8),), 0.1, None),
+        PartTarget("gap", ((6, 5, 2),), 0.1, None),
+    ]
+    with pytest.raises(InputError, match="“gap” lies outside the outline"):
+        filled(*target_maps(targets, 8, 8), parts=targets, stitch=stitch)
+
+
 def test_stitches_without_a_target_are_not_constrained() -> None:
     garter = ACRYLIC.law(Fabric.GARTER)
     course = np.full((10, 10), np.nan)
