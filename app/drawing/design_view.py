@@ -1,9 +1,7 @@
 """A design in the 3D view."""
 
 import math
-from collections.abc import Callable
 from enum import StrEnum
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +30,7 @@ from ..requests.charts import (
     to_chart,
 )
 from .computed import PosedView, StretchView
-from .fabric import Drawing, FabricScene
+from .fabric import FabricScene
 from .stitch_colours import Colour, FieldColours, Palette, region_labels, stitch_colours
 
 MAX_REGIONS = 200
@@ -116,13 +114,6 @@ def is_large(request: ViewRequest) -> bool:
     Such a chart is not drawn whole, and no stretch test is as large.
     """
     return size_of_chart(request.chart) > MAX_LETTERS
-
-
-def build_drawing(
-    request: ViewRequest, data_dir: Path, *, cancelled: Callable[[], bool]
-) -> Drawing:
-    """Make the drawing of a large chart, which has no stretch test or shape; runs in a worker."""
-    return build_scene(request, None, Context(data_dir, cancelled=cancelled)).drawing()
 
 
 def build_scene(

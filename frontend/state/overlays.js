@@ -61,7 +61,7 @@ const stitches = {
   label: "Stitches",
   short: "Stitches",
   hint: "Knits and purls alone",
-  view: "fabric",
+  view: "yarn",
   available: always,
   colouring: (_, { knit, purl }) => byKind((_code, _quarter, p) => pixel(p ? purl : knit)),
   legend: () => swatches(), // the key above the chart shows it
@@ -73,19 +73,14 @@ const fabrics = {
   label: "Fabrics",
   short: "Fabrics",
   hint: "Which of the four fabrics each quarter of a stitch behaves like",
-  view: "fabric",
+  view: "yarn",
   available: always,
   colouring: (_, palette) =>
     byKind((code, quarter, p) => pixel(palette.fabrics[QUARTERS[code][quarter]], p ? PURL_SHADE : 1)),
   legend: (_, palette) => {
     const colours = palette.fabrics.map(css);
-    const mixed = `linear-gradient(90deg, ${colours[0]}, ${colours[2]})`;
     const fabrics = FABRICS.map((label, i) => ({ label, colour: colours[i] }));
-    const others = [
-      { label: "mixed (in 3D)", colour: mixed },
-      { label: "purl", colour: "transparent", dot: true },
-    ];
-    return { kind: "swatches", items: [...fabrics, ...others] };
+    return { kind: "swatches", items: [...fabrics, { label: "purl", colour: "transparent", dot: true }] };
   },
 };
 
@@ -95,7 +90,7 @@ const segments = {
   label: "Segments",
   short: "Segments",
   hint: "Symmetry of the yarn between neighbours: even joins like stitches, odd unlike ones",
-  view: "fabric",
+  view: "yarn",
   available: always,
   colouring: stitches.colouring,
   legend: (_, { even, odd }) => swatches(["even (K–K, P–P)", even], ["odd (K–P)", odd]),

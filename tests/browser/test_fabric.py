@@ -92,7 +92,7 @@ def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
         before = pixels(page, CLOTH)
         with page.expect_response(lambda r: r.url.endswith(view) and r.request.method == "PUT"):
             drag(page, 60, 30, start=(0, below))
-        wait_for_picture(page, CLOTH, partial(_recoloured, before), 200)
+        wait_for_picture(page, CLOTH, partial(_recoloured, before), 10)
         settle(page)
         _wait_until_framed(page, still)
 
@@ -104,7 +104,7 @@ def _cloth(picture: np.ndarray) -> np.ndarray:
 
 def _recoloured(before: np.ndarray, picture: np.ndarray) -> int:
     """Pixels of the cloth that have another colour than before."""
-    changed = np.abs(picture - before).max(axis=2) > 40
+    changed = np.abs(picture - before).max(axis=2) > 20
     return int((changed & _cloth(before) & _cloth(picture)).sum())
 
 

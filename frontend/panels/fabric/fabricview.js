@@ -309,7 +309,7 @@ export function viewRequest(studio, view) {
   const { written: palette } = readPalette();
   const seen = view.viewport.visible(chart.grid);
   if (posed?.piece) {
-    return { ...studio.request, ...posed.piece, colour: "fabric", palette, curl: { id: posed.id } };
+    return { ...studio.request, ...posed.piece, colour: "yarn", palette, curl: { id: posed.id } };
   }
   return {
     ...studio.request,

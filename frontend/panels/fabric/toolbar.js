@@ -28,8 +28,8 @@ const HINTS = [
 
 /** @type {[import("../../state/seeing.js").YarnColours, string][]} */
 const COLOURS = [
-  ["chart", "Colours of the chart"],
-  ["yarn", "The yarn's own colour"],
+  ["chart", "The yarn's own; stiffness and stretch as on the chart"],
+  ["yarn", "Always the yarn's own colour"],
   ["region", "Colours of the regions"],
   ["fabric", "The four fabrics, mixed within a stitch"],
   ["phase", "The main fabric of each stitch"],
