@@ -26,7 +26,7 @@ import { Editing } from "./editing.js";
 import { OVERLAYS } from "./overlays.js";
 import { Seeing } from "./seeing.js";
 import { Gauges } from "./gauges.js";
-import { TOOLS } from "../tools/registry.js";
+import { TOOLS } from "../tools/tools.js";
 
 const SETTINGS = { overlay: "fabrics", rectangles: false, tool: "pencil", size: 1, weight: 0.5 };
 

@@ -11,7 +11,7 @@ import { figure, percent, range } from "../../core/format.js";
 import { Ink } from "../../design/ink.js";
 import { motifGrid } from "../../grid/grid.js";
 import { h, remark } from "../../elements/dom.js";
-import { pencil } from "../../tools/pencil.js";
+import { pencil } from "../../tools/tools.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { Run } from "../../widgets/jobrun.js";
 import { inWords, scatter } from "./scatter.js";

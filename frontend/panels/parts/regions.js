@@ -18,7 +18,7 @@ import { ownPatterns } from "../../design/shelf.js";
 import { loadShelf } from "../../design/store.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
-import { pencil } from "../../tools/pencil.js";
+import { pencil } from "../../tools/tools.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { textLine } from "../../widgets/fields.js";
 import { docked, refreshed } from "../../widgets/dock.js";

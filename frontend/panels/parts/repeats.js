@@ -14,7 +14,7 @@ import { MAX_ITEMS } from "../../design/design.js";
 import { withPlace } from "../../design/repeats.js";
 import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
-import { repeat as placeTool } from "../../tools/repeat.js";
+import { placeRepeat } from "../../tools/tools.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { docked, refreshed } from "../../widgets/dock.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
@@ -103,9 +103,9 @@ export function create(studio, context) {
               "Place",
               () => {
                 editing.repeatId.value = id;
-                studio.tool.value = placeTool;
+                studio.tool.value = placeRepeat;
               },
-              { "aria-pressed": String(studio.tool.value === placeTool), title: "Then drag in the chart (P)" },
+              { "aria-pressed": String(studio.tool.value === placeRepeat), title: "Then drag in the chart (P)" },
             ),
             wide("fill", "fill", selection.value ? "Fill selection" : "Fill chart", () => {
               const box = filledBox(repeat, selection.value ?? chart.grid.box);
