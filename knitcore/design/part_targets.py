@@ -80,7 +80,7 @@ def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Indi
 
 
 @dataclass(frozen=True)
-class PartAnswer:
+class FilledPart:
     """Moduli of a part in a filled chart, beside those that it had.
 
     Attributes
@@ -168,8 +168,8 @@ class PartsNow:
         for part, cells in enumerate(self.cells):
             if cells.any():
                 inside = StitchChart(chart.purl[largest_rectangle(cells)])
-                answer = predict(inside, self.material)
-                moduli[part] = [answer.modulus_n_per_mm(direction) for direction in Direction]
+                predicted = predict(inside, self.material)
+                moduli[part] = [predicted.modulus_n_per_mm(direction) for direction in Direction]
         logarithms: Array = np.log(moduli)
         return logarithms
 
@@ -186,7 +186,7 @@ class PartsNow:
         )
         return nearer
 
-    def answers(self, log_moduli: Array, repainted: Mask) -> tuple[PartAnswer, ...]:
+    def filled(self, log_moduli: Array, repainted: Mask) -> tuple[FilledPart, ...]:
         """Compare each part of a filled chart with what it was.
 
         Parameters
@@ -196,7 +196,7 @@ class PartsNow:
         """
         before, after = np.exp(self.log_now).tolist(), np.exp(log_moduli).tolist()
         return tuple(
-            PartAnswer(target.name, int(cells.sum()), bool(is_new), *then, *now)
+            FilledPart(target.name, int(cells.sum()), bool(is_new), *then, *now)
             for target, cells, is_new, then, now in zip(
                 self.targets, self.cells, repainted, before, after, strict=True
             )
