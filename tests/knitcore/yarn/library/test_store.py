@@ -86,7 +86,7 @@ def test_a_welt_upside_down_is_the_same_cloth():
 
 
 def test_a_build_is_reproducible_and_resumes(tmp_path, monkeypatch):
-    """With a stand-in for the solver, which gives no shape to garter."""
+    """A stand-in for the solver gives no shape to garter."""
     calls = []
 
     def solve(task):
