@@ -272,8 +272,8 @@ def order_doubt(course: StretchTest, wale: StretchTest, fabric: Fabric) -> Doubt
     words = {Direction.COURSE: "rows", Direction.WALE: "columns"}
     return Doubt(
         f"{course.source} and {wale.source}",
-        f"say that this {fabric} is {stiffness[softer] / stiffness[softer.other]:.1f} times stiffer"
-        f" along its {words[softer]}; of other yarns it is softer there.",
+        f"say that this {fabric} is {stiffness[softer] / stiffness[softer.other]:.3g} times stiffer"
+        f" along its {words[softer]}; that of other yarns is softer there.",
         "Are the two files exchanged?",
         (OtherReading("exchange them", exchanges=True), OtherReading("they stand as they are")),
         is_open=False,

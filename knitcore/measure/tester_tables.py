@@ -4,7 +4,8 @@ Testers write what they measured as text (commas, semicolons or tabs; decimal po
 line ``sep=;``; UTF-8, UTF-16 or Windows' letters) or as a workbook with a sheet for each specimen.
 Lines about the test come first, such as ``Width;25 mm``; then a line of names, often a line of
 units, and the readings. Either line starts a new specimen when it comes again; so does a quantity
-that comes again in the line of names.
+that comes again in the line of names. Numbers without a line of names have columns called
+``column 1``, ``column 2`` and so on, until a user says what they are.
 """
 
 import csv
@@ -106,7 +107,7 @@ def read_specimens(path: Path, reading: TableReading) -> tuple[list[Specimen], l
     heads: list[str] = []
     for sheet, rows in _sheets(path, notes):
         specimens += _specimens(path.name, sheet, rows, reading, notes)
-        heads = heads or [cell for cell in _names_line(rows)[0] if cell]
+        heads = heads or [cell for cell in _first_numbers(rows).titles if cell]
     if not specimens:
         has = f" (it has {', '.join(heads[:8])})" if heads else ""
         raise InputError(
@@ -190,23 +191,28 @@ def _specimens(
     """Specimens of a sheet, in the order of their readings."""
     constants: dict[str, float] = {}
     title = sheet
+    nameless = _first_numbers(rows)
     row = 0
     while row < len(rows):
-        groups = _heads(rows[row], reading.columns)
+        is_nameless = not nameless.has_names and row == nameless.first
+        heads = nameless.titles if is_nameless else rows[row]
+        groups = _heads(heads, reading.columns)
         if not groups:
             title, constants = _about(rows[row], title, constants)
             row += 1
             continue
-        first = row + 1
-        if first < len(rows) and _is_units(rows[first]):
-            groups = [[_with_unit(c, rows[first]) for c in group] for group in groups]
-            first += 1
+        first = row if is_nameless else row + 1
+        units = nameless.units
+        if not is_nameless:
+            units = rows[first] if first < len(rows) and _is_units(rows[first]) else []
+            first += bool(units)
+        groups = [[_with_unit(c, units) for c in group] for group in groups]
         end = first
         while end < len(rows) and _is_reading(rows[end], groups):
             end += 1
         readings = [(at, rows[at]) for at in range(first, end) if any(rows[at])]
         if len(readings) >= MIN_READINGS:
-            _tell_unread(file, rows[row], groups, reading.columns, notes)
+            _tell_unread(file, heads, groups, reading.columns, notes)
             for place, group in enumerate(groups):
                 name = title or "readings"
                 name = f"{name} {place + 1}" if len(groups) > 1 else name
@@ -215,14 +221,40 @@ def _specimens(
         row = max(end, first)
 
 
-def _names_line(rows: Rows) -> tuple[list[str], list[str], int]:
-    """The line above the first rows of numbers, that of their units, and the first row's place."""
+@dataclass(frozen=True)
+class _FirstNumbers:
+    """Where the first numbers of a sheet begin, and what stands above them.
+
+    ``titles`` are ``column 1``, ``column 2`` and so on if no line of names does.
+    """
+
+    titles: list[str]
+    units: list[str]
+    first: int
+    has_names: bool
+
+
+def _first_numbers(rows: Rows) -> _FirstNumbers:
     numeric = [sum(_number(cell) is not None for cell in row) >= 2 for row in rows]
-    for at in range(1, len(rows) - MIN_READINGS + 1):
-        if all(numeric[at : at + MIN_READINGS]):
-            has_units = at > 1 and _is_units(rows[at - 1])
-            return rows[at - 2 if has_units else at - 1], rows[at - 1] if has_units else [], at
-    return [], [], 0
+    starts = range(len(rows) - MIN_READINGS + 1)
+    first = next((at for at in starts if all(numeric[at : at + MIN_READINGS])), None)
+    if first is None:
+        return _FirstNumbers([], [], len(rows), has_names=True)
+    above = [row for row in rows[:first] if any(row)]
+    units = above.pop() if above and _is_units(above[-1]) else []
+    if above and _is_names(above[-1]):
+        return _FirstNumbers(above[-1], units, first, has_names=True)
+    width = max(map(len, rows[first : first + MIN_READINGS]))
+    return _FirstNumbers(
+        [f"column {number + 1}" for number in range(width)], units, first, has_names=False
+    )
+
+
+def _is_names(row: list[str]) -> bool:
+    """Tell whether a line may name columns: it has two texts, and no number or constant."""
+    cells = [cell for cell in row if cell]
+    has_numbers = any(_number(cell) is not None for cell in cells) or _about(row, "", {})[1]
+    return len(cells) > 1 and not has_numbers
 
 
 @dataclass(frozen=True)
@@ -244,7 +276,7 @@ class TableHeads:
 
 
 def table_heads(path: Path, reading: TableReading, *, most: int = 4) -> TableHeads | None:
-    """Heads and first rows of a table; None if no line stands above its numbers.
+    """Heads and first rows of a table; None if it has no numbers.
 
     Raises
     ------
@@ -252,11 +284,12 @@ def table_heads(path: Path, reading: TableReading, *, most: int = 4) -> TableHea
         If the file is not text, or too large.
     """
     for _, rows in _sheets(path, []):
-        titles, units, first = _names_line(rows)
+        numbers = _first_numbers(rows)
+        titles, units, first = numbers.titles, numbers.units, numbers.first
         if not titles:
             continue
         constants: dict[str, float] = {}
-        for row in rows[: rows.index(titles)]:
+        for row in rows[:first]:
             _, constants = _about(row, "", constants)
         width = max(map(len, (titles, *rows[first : first + most])))
         named = {c.place: _with_unit(c, units) for c in _named(titles, reading.columns)}

@@ -98,7 +98,7 @@ export function yarnMaker(studio, made) {
     measured = { ...measured, diameter_mm: diameters.reduce((sum, mm) => sum + mm, 0) / diameters.length };
     const words = `k ${stiffness.value} mN/mm³, p ${exponent.value} from ${counted(mean.samples, "sample")} of ${squeezes.files?.[0]?.name}`;
     evidence.set("contact", `Contact law ${words}.`);
-    squeezed.textContent = `${words}.`;
+    squeezed.textContent = [`${words}.`, ...compression.notes].join(" ");
   };
   const squeeze = async () => {
     const [file] = squeezes.files ?? [];

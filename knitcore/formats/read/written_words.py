@@ -215,9 +215,9 @@ def _shaped(line: Line, stitches: Stitches, first: int, last: int) -> tuple[int,
     for index, form in ((i, s.form) for i, s in enumerate(stitches) if s.form):
         if form in ("k3tog", "p3tog") and end == 0:
             first, last = first - 1, last - 1
-        elif form in ("ssk", "ssp") and index == 0:
+        elif index == 0 and form in (("ssk", "p2tog", "ssp") if end else ("ssk", "p2tog")):
             first -= 1
-        elif form in ("k2tog", "p2tog") and index == end:
+        elif form in ("k2tog", "ssp", "p2tog") and index == end:
             last -= 1
         elif form in ("m1", "m1p") and index == 1 and end > 2:
             first += 1

@@ -414,15 +414,15 @@ def _log_strain(point: StretchPoint) -> LogStrain:
 
 
 @cache
-def _library_values() -> Array:
-    """(yarns, 3, 4, 2) logarithms of modulus, alpha and beta."""
+def library_values() -> Array:
+    """Logarithms of modulus, alpha and beta of the library, (yarns, 3, 4, 2)."""
     table = library_table()
     return np.stack([table.modulus + table.scale, table.alpha, table.beta], axis=1)
 
 
 @cache
 def _law_model(without: tuple[int, ...]) -> JointModel:
-    return JointModel.fit(np.delete(_library_values(), without, axis=0))
+    return JointModel.fit(np.delete(library_values(), without, axis=0))
 
 
 @cache
@@ -430,7 +430,7 @@ def _factors(points: tuple[LogStrain, ...]) -> dict[str, float]:
     """Standard deviations that 90 % of left-out values need, measured as these points were."""
     random = np.random.default_rng(0)
     errors: dict[str, list[Array]] = {"modulus": [], "alpha": [], "beta": [], "strain": []}
-    for index, truth in enumerate(_library_values()):
+    for index, truth in enumerate(library_values()):
         others = _law_model((index,))
         true = JointModel(truth, np.zeros((24, 24)))
         for _ in range(_REPEATS if points else 1):

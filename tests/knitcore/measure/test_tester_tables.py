@@ -145,6 +145,39 @@ def test_columns_that_say_too_little_can_be_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("above", "constants"),
+    [
+        ("", {}),
+        ("\n\n", {}),
+        ("mm,N\n", {}),
+        ("Specimen 1\nWidth,70 mm\n\n", {"width_mm": WIDTH_MM}),
+        ("Width,70,mm\nmm,N\n", {"width_mm": WIDTH_MM}),
+    ],
+)
+def test_numbers_without_names_can_be_named(
+    tmp_path: Path, above: str, constants: dict[str, float]
+) -> None:
+    file, content = tmp_path / "test.csv", above.encode() + channels().split(b"\n", 1)[1]
+    called = {"extension_mm": "column 1", "force_n": "column 2"}
+    test = read(file, content, columns=called, width_mm=WIDTH_MM, length_mm=LENGTH_MM)
+    assert test.runs[0].length == len(STRAIN)
+    assert test.largest_strain == pytest.approx(0.6)
+    heads = table_heads(file, TableReading(columns=called))
+    assert heads
+    assert heads.titles == ("column 1", "column 2")
+    assert heads.quantities == ("extension_mm", "force_n")
+    assert heads.units == (("mm", "N") if "mm,N" in above else ("", ""))
+    assert heads.rows[0] == ("0.0000", "0.0000")
+    assert heads.constants == constants
+    with pytest.raises(InputError, match="it has column 1, column 2"):
+        read(file, content)
+    wrong = content.replace(b"\n7.5949,", b"\n7.5949,x")
+    row = 12 + above.count("\n") - 1
+    with pytest.raises(InputError, match=f"row {row} holds"):
+        read(file, wrong, columns=called, width_mm=WIDTH_MM, length_mm=LENGTH_MM)
+
+
+@pytest.mark.parametrize(
     ("content", "says"),
     [
         (channels("Extension (mm),Load (stone)"), "'stone', which is not known"),
