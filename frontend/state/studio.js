@@ -26,7 +26,7 @@ import { Editing } from "./editing.js";
 import { OVERLAYS } from "./overlays.js";
 import { Seeing } from "./seeing.js";
 import { Gauges } from "./gauges.js";
-import { TOOLS } from "../tools/registry.js";
+import { TOOLS, pencil } from "../tools/tools.js";
 
 const SETTINGS = { overlay: "fabrics", rectangles: false, tool: "pencil", size: 1, weight: 0.5 };
 
@@ -245,6 +245,12 @@ export class Studio {
     const fields = this.currentStretch()?.stitch_fields;
     if (name === "utilisation") return fields?.utilisation_interval;
     return fields?.[this.stretchDirection() === "course" ? "strain_course_interval" : "strain_wale_interval"];
+  }
+
+  /** Paint with an ink; with the pencil if the tool does not paint. @param {Ink} ink */
+  paintWith(ink) {
+    this.ink.value = ink;
+    if (!["stroke", "shape", "once"].includes(this.tool.value.mode)) this.tool.value = pencil;
   }
 
   /** Show a message to the user. @param {Problem} problem */

@@ -70,8 +70,8 @@ class Fit:
     def __post_init__(self) -> None:
         for name, value in (("ease", self.ease), ("mmhg", self.mmhg or 0.0)):
             if not isinstance(value, Real):
-                problem = f"a {type(value).__name__} is not one number."
-                raise InputError(name, problem, "Give one number for the whole garment.")
+                remedy = "Give one number for the whole garment."
+                raise InputError(name, f"is of type {type(value).__name__}.", remedy)
         check_range("ease", self.ease, -0.6, 1, what="an ease")
 
     def rest_mm(

@@ -85,7 +85,7 @@ def studio(visitor: Page, service: str) -> Page:
 
 @pytest.fixture
 def flat_studio(visitor: Page, service: str) -> Page:
-    """The same with an empty 3D view."""
+    """The page with a small chart and an empty 3D view."""
     return open_small_chart(flat(visitor), service)
 
 

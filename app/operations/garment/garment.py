@@ -376,7 +376,7 @@ def read_measured(
 
 @click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))
 @measured_options
-def _asked(
+def _garment_fields(
     template: str, settings: tuple[str, ...], gauge: str | None, per: str
 ) -> dict[str, object]:
     return read_measured(template, settings, gauge, per)
@@ -427,7 +427,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         names={"garment": None, "gauge": None, "linear_density_tex": "--tex"},
-        fields=_asked,
+        fields=_garment_fields,
         run=_command,
     ),
 )

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from knitcore.chart.fabric import Fabric
 from knitcore.draw.body import Body
-from knitcore.garment.worn_glove import GloveOnHand, answer_of, glove_on_hand
+from knitcore.garment.worn_glove import GloveOnHand, glove_on_hand, prediction_of
 from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN
 
@@ -67,7 +67,7 @@ def glove(request: GloveRequest, context: Context) -> Viewed[GloveResult]:
 
 def _result(worn: GloveOnHand, request: GloveRequest, context: Context) -> GloveResult:
     rows, columns = worn.mmhg.shape
-    support = answer_of(Fabric.STOCKINETTE, context.material(request.material))
+    support = prediction_of(Fabric.STOCKINETTE, context.material(request.material))
     return GloveResult(
         interval_source=in_a_sentence(support.stretch_errors),
         id=OPERATION.key(request),

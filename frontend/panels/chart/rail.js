@@ -9,7 +9,7 @@ import { SIZES } from "../../actions/look.js";
 import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
-import { TOOLS } from "../../tools/registry.js";
+import { TOOLS } from "../../tools/tools.js";
 import { actionButton } from "../../widgets/buttons.js";
 
 const SYMMETRY_NAMES = { none: "off", across: "left and right", up: "top and bottom", both: "both ways" };

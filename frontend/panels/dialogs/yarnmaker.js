@@ -48,14 +48,14 @@ export function yarnMaker(studio, made) {
   const say = (title, detail) => run.say({ title, detail, remedy: null });
 
   const name = h("input", { class: "text-field grows shrinks-x rounded", id: "yarn-name", maxLength: 80 });
-  const bending = figure("yarn-bending", { min: ".01", max: "10000" });
+  const bending = figure("yarn-bending", { min: "0.01", max: "10000" });
   const loop = figure("yarn-loop", { min: "1", max: "200" });
-  const stiffness = figure("yarn-stiffness", { min: ".0001", max: "100000" });
+  const stiffness = figure("yarn-stiffness", { min: "0.0001", max: "100000" });
   const exponent = figure("yarn-exponent", { min: "1.01", max: "20" });
 
   // Bending, from photos.
   const photos = picker("yarn-photos", "image/*", true);
-  const weight = figure("yarn-weight", { min: ".005", max: "20" });
+  const weight = figure("yarn-weight", { min: "0.005", max: "20" });
   const hanging = figure("yarn-hanging", { min: "10", max: "1000" });
   const bent = h("p", { class: "muted", role: "status" });
   const bend = async () => {
@@ -77,7 +77,7 @@ export function yarnMaker(studio, made) {
 
   // Contact, from squeezing.
   const squeezes = picker("yarn-squeezes", TABLES);
-  const diameter = figure("yarn-diameter", { min: ".01", max: "50" });
+  const diameter = figure("yarn-diameter", { min: "0.01", max: "50" });
   const which = h("select", {
     id: "yarn-which",
     hidden: true,

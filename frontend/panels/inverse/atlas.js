@@ -11,7 +11,6 @@ import { figure, percent, range } from "../../core/format.js";
 import { Ink } from "../../design/ink.js";
 import { motifGrid } from "../../grid/grid.js";
 import { h, remark } from "../../elements/dom.js";
-import { pencil } from "../../tools/pencil.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { Run } from "../../widgets/jobrun.js";
 import { inWords, scatter } from "./scatter.js";
@@ -206,8 +205,7 @@ export function atlasTab(studio, context) {
 
 /** @param {Studio} studio @param {string} key */
 export function paintWith(studio, key) {
-  studio.ink.value = new Ink(`atlas-${key}`, nameOf(key), motifGrid(key), "From the atlas");
-  if (!["stroke", "shape", "once"].includes(studio.tool.value.mode)) studio.tool.value = pencil;
+  studio.paintWith(new Ink(`atlas-${key}`, nameOf(key), motifGrid(key), "From the atlas"));
   studio.tell(`You are painting with ${nameOf(key)}.`);
 }
 

@@ -236,7 +236,7 @@ export function fromStiffness(studio) {
         columns,
         chart: chart.grid.text,
         outline: chart.outlineText,
-        wishes: targeted.map(({ name, cells, course, wale }) => ({
+        targets: targeted.map(({ name, cells, course, wale }) => ({
           name,
           runs: runsOf(cells, columns),
           modulus_course_n_per_mm: course,

@@ -318,7 +318,7 @@ class _Reading:
         self._courses, self._wale = courses, wale
         self._by_wale: list[dict[int, Loop]] = []
         self._row: dict[Loop, int] = {}
-        self._told_colours = False
+        self._colours_noted = False
         for row, course in enumerate(courses):
             self._by_wale.append({wale(o): o for run in course for o in run})
             self._row.update((o, row) for run in course for o in run)
@@ -409,12 +409,12 @@ class _Reading:
             raise self._refused(row, twice[1], StitchKind.TWO_BEDS)
 
     def _tell_colours(self, row: int) -> None:
-        if not self._told_colours:
+        if not self._colours_noted:
             self.notes.append(
                 f"From course {row + 1} on yarns float behind each other's stitches (stranded "
                 "colours); the floats are left out."
             )
-        self._told_colours = True
+        self._colours_noted = True
 
     def _gaps(self, row: int) -> Iterator[int]:
         course = self._by_wale[row]

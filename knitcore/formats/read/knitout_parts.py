@@ -45,7 +45,7 @@ class _Section:
         """Number of stitches, more or less by what they are."""
         return self.factor * len(self.stitches)
 
-    def told(self) -> str:
+    def in_words(self) -> str:
         lines = f"lines {self.stitches[0].line} to {self.stitches[-1].line}"
         number = len(self.stitches)
         return f"{number} {'stitch' if number == 1 else 'stitches'}, {lines}"
@@ -103,7 +103,7 @@ def main_part(loops: Sequence[Loop]) -> Part:
                 else f"what {name} knits after the piece hangs from it"
             )
             left_out = [section for section in side if section.carriers == carriers]
-            sizes = "; ".join(section.told() for section in left_out)
+            sizes = "; ".join(section.in_words() for section in left_out)
             alike = max(section.factor for section in left_out) == likeliest
             notes.append(
                 f"Waste{', by its size alone' if alike else ''}: {relation} ({sizes}). It is left "

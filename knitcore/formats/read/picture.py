@@ -118,7 +118,7 @@ def _size(colours: Array, scale: PictureScale, *, is_own: bool) -> tuple[int, in
     height, width = colours.shape[:2]
     columns, rows = scale.columns, scale.rows
     if columns is None and rows is None:
-        across, down, notes = _found_size(colours, is_own=is_own)
+        across, down, notes = _size_shown(colours, is_own=is_own)
         if scale.aspect is not Aspect.AS_KNITTED:
             check_chart_size(down, across)
             return across, down, notes
@@ -154,7 +154,7 @@ def _size(colours: Array, scale: PictureScale, *, is_own: bool) -> tuple[int, in
     return columns, rows, notes
 
 
-def _found_size(colours: Array, *, is_own: bool) -> tuple[int, int, list[str]]:
+def _size_shown(colours: Array, *, is_own: bool) -> tuple[int, int, list[str]]:
     """Columns and rows that the picture itself shows."""
     height, width = colours.shape[:2]
     is_small = max(height, width) <= MAX_STITCHES_PER_SIDE

@@ -27,7 +27,7 @@ from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import strain_at_stress, uniaxial_response
+from knitcore.law.uniaxial import free_strains_at_stress, uniaxial_response
 from knitcore.materials.estimate.estimate import Estimate, FabricEstimate
 from knitcore.materials.estimate.joint_model import JointModel, LogStrain
 from knitcore.materials.estimate.mixed_model import covering
@@ -191,7 +191,7 @@ def points_of_law(fabric: Fabric, law: ConstitutiveLaw) -> tuple[StretchPoint, .
     """Points of the curves of a law that was fitted to tests, from which other fabrics follow."""
     points = []
     for direction in Direction:
-        strains = [strain_at_stress(law, direction, stress) for stress in LAW_STRESSES_N_PER_MM]
+        strains = free_strains_at_stress(law, direction, LAW_STRESSES_N_PER_MM).tolist()
         curve = uniaxial_response(law, direction, strains)
         rows = zip(LAW_STRESSES_N_PER_MM, strains, curve.transverse_strain.tolist(), strict=True)
         points += [
@@ -573,7 +573,7 @@ def _curve(
     """Error of the stress at a strain, from that of the strain at 0.1 N/mm."""
     step = 0.05
     low, high = (
-        math.log(strain_at_stress(law, direction, LOAD_N_PER_MM * math.exp(sign * step)))
+        math.log(free_strains_at_stress(law, direction, LOAD_N_PER_MM * math.exp(sign * step)))
         for sign in (-1, 1)
     )
     return CurveUncertainty(_log_deviation(strains[direction]) * 2 * step / (high - low))

@@ -244,5 +244,5 @@ def test_measurements_that_cannot_be_knitted(make: object, field: str) -> None:
 
 
 def test_a_fit_takes_one_pressure() -> None:
-    with pytest.raises(InputError, match="mmhg: a list is not one number"):
+    with pytest.raises(InputError, match="mmhg: is of type list"):
         Fit(mmhg=[20.0, 15.0])
