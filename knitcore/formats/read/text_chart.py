@@ -385,7 +385,8 @@ def _without_number_cells(
     drawn: Sequence[tuple[int, str]],
 ) -> tuple[list[tuple[int, str]], list[int | None]]:
     """Rows of a table without their first or last cell, where it has the number of every row."""
-    rows, counts = list(drawn), [None] * len(drawn)
+    rows = list(drawn)
+    counts: list[int | None] = [None] * len(drawn)
     for pattern in _NUMBER_CELLS:
         matches = [pattern.search(line) for _, line in rows]
         numbers = [int(m["count"]) for m in matches if m is not None]
