@@ -30,7 +30,7 @@ from knitcore.measure.stretch_test import (
 from knitcore.measure.table_reading import Doubt, DoubtError, TableReading, doubt_of_width
 from knitcore.measure.tables import numbers, read_table, rows_by_label
 from knitcore.measure.tester_tables import Specimen, has_units, in_unit, read_specimens
-from knitcore.measure.workbooks import is_workbook, read_workbook
+from knitcore.measure.workbooks import Worksheet, is_workbook, read_workbook
 
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
 TABLE_LENGTHS = {"length_mm": "the clamps", "across_mm": "the points tracked across"}
@@ -62,8 +62,8 @@ def read_stretch_table(path: Path, reading: TableReading | None = None) -> Stret
 def is_own_table(path: Path) -> bool:
     """Tell whether the first line has names of our own columns, between commas, in our units."""
     if is_workbook(path):
-        rows = next(iter(read_workbook(path).values()), [[]])[:2]
-        names, below = ([str(cell) for cell in row] for row in (*rows, [], [])[:2])
+        rows: Worksheet = [*next(iter(read_workbook(path).values()), []), [], []]
+        names, below = ([str(cell) for cell in row] for row in rows[:2])
     else:
         with path.open("rb") as file:
             lines = [file.readline(10_000).decode("utf-8-sig", "replace") for _ in range(2)]

@@ -72,9 +72,9 @@ def test_a_strain_that_does_not_begin_at_zero_is_shifted_and_one_under_load_told
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (lambda e, t: (1 + e, 1 + t), "strain_along : begins at 1, .* stretch ratio"),
-        (lambda e, t: (1 + e, t), "strain_along : begins at 1, .* stretch ratio"),
-        (lambda e, t: (e, 1 + t), "strain_across : begins at 1, .* stretch ratio"),
+        (lambda e, t: (1 + e, 1 + t), "strain_along: begins at 1, .* stretch ratio"),
+        (lambda e, t: (1 + e, t), "strain_along: begins at 1, .* stretch ratio"),
+        (lambda e, t: (e, 1 + t), "strain_across: begins at 1, .* stretch ratio"),
         (lambda e, t: (e, -t), "strain_across.*wider"),
     ],
 )
