@@ -29,7 +29,7 @@ QUANTITIES = {
     r"|(längs|standard)?dehnung( längs)?",
     "extension_mm": r"((tensile|compressive|machine|axial|corrected) )?"
     r"(extension|displacement|elongation|position|travel)( mm| from preload)?"
-    r"|standard travel|deformation|stroke"
+    r"|standard travel|deformation|stroke|depth(_mm)?"
     r"|cross ?head( (travel|position|displacement|separation|extension))?"
     r"|(standard|traversen)?weg|verlängerung|allongement|déplacement|desplazamiento"
     r"|alargamiento|spostamento|allungamento|corsa",
