@@ -24,20 +24,29 @@ from knitcore.measure.workbooks import MAX_COLUMNS, MAX_ROWS, is_workbook, read_
 QUANTITIES = {
     "strain_across": r"strain_across|(transverse|lateral|width(wise)?) strain|dehnung quer"
     r"|querdehnung|strain (2|trans\w*|lat\w*)",
-    "strain_along": r"strain_along|((tensile|axial|longitudinal|nominal|engineering) )?strain( 1)?"
-    r"|(längs|standard)?dehnung( längs)?|strain (axial|longitudinal)",
-    "extension_mm": r"((tensile|compressive) )?(extension|displacement)( mm)?|elongation"
-    r"|cross ?head( (travel|position|displacement|separation))?|stroke|position"
-    r"|(standard|traversen)?weg|verlängerung",
-    "force_n": r"force_n|(standard ?)?(force|kraft)|(tensile )?load( cell)?|(standard)?last",
-    "width_mm": r"((specimen|sample|clamped|initial) )?(width|breite)|width_mm|proben?breite|b0",
-    "length_mm": r"((initial|original) )?(gauge length|grip separation|clamp distance)|length_mm"
-    r"|((specimen|sample) )?length|einspannlänge|messlänge|(grip|clamp)(ing)? length|l0",
+    "strain_along": r"strain_along|strain (1|axial|longitudinal)"
+    r"|((tensile|axial|longitudinal|nominal|engineering|stroke) )?strain"
+    r"|(längs|standard)?dehnung( längs)?",
+    "extension_mm": r"((tensile|compressive|machine|axial|corrected) )?"
+    r"(extension|displacement|elongation|position|travel)( mm| from preload)?"
+    r"|standard travel|deformation|stroke|depth(_mm)?"
+    r"|cross ?head( (travel|position|displacement|separation|extension))?"
+    r"|(standard|traversen)?weg|verlängerung|allongement|déplacement|desplazamiento"
+    r"|alargamiento|spostamento|allungamento|corsa",
+    "force_n": r"force_n|((standard|axial|tensile) ?)?(force|kraft|load)( cell)?|(standard)?last"
+    r"|fuerza|carga|forza|carico",
+    "width_mm": r"((specimen|sample|clamped|initial) )?(width|breite)( [bw]0)?|width_mm"
+    r"|proben?breite( b0)?|b0|largeur|ancho|larghezza",
+    "length_mm": r"((initial|original) )?gau?ge length( l0)?|length_mm|((initial|original) )?grip"
+    r"( to grip)? separation( at .*)?|clamp distance|((specimen|sample|initial) )?length( l0)?"
+    r"|(einspann|mess|proben)?länge( l0| bei .*)?|(grip|clamp)(ing)? length|l0|longueur|longitud"
+    r"|lunghezza",
     "across_mm": r"across_mm",
     "run": r"run|specimen( (no\.?|number|id))?|sample( (no\.?|number))?|probe(n?nummer)?",
-    "time": r"time|zeit|prüfzeit|test time",
+    "time": r"((test|running|elapsed) )?time|(prüf)?zeit|temps|tiempo|tempo",
 }
-"""Titles of testers' columns, in English and German, by the names that we use."""
+"""Titles of testers' columns, in English and German, and the usual ones in French, Spanish and
+Italian, by the names that we use."""
 UNITS = {
     "force": {
         "n": 1.0, "kn": 1e3, "mn": 1e-3, "cn": 1e-2, "g": 9.80665e-3, "gf": 9.80665e-3,
@@ -59,6 +68,15 @@ MIN_READINGS = 5
 _UNIT = re.compile(
     r"\s*[(\[]\s*([^)\]]*?)\s*[)\]]\s*$|[\s_](%|percent|cn|mn|kn|kgf|gf|lbf|cm|in)$", re.IGNORECASE
 )
+_STATED = re.compile(r"(?P<name>[^\d:=]*[^\d:=\s])\s*[:=]?\s+(?P<value>\d.*)")
+"""A quantity and its value in one cell: ``Width : 50 mm``."""
+_SPACED = re.compile(
+    r" *[+-]?\d+(?:[.,]\d+)?(?:e[+-]?\d+)?(?: +[+-]?\d+(?:[.,]\d+)?(?:e[+-]?\d+)?)+ *", re.I
+)
+_GROUPED = re.compile(
+    r"[+-]?\d{1,3}(?:,\d{3})+\.\d+|[+-]?\d{1,3}(?:[ \u00a0\u2009\u202f]\d{3})+[.,]?\d*"
+)
+"""Thousands in groups, where nothing else can be meant."""
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d{1,3}(\.\d{3})+|\d+),\d*(e[+-]?\d+)?", re.IGNORECASE)
 
 _STRETCHES = {"strain_along", "extension_mm"}
@@ -133,14 +151,33 @@ def _sheets(path: Path, notes: list[str]) -> Iterator[tuple[str, Rows]]:
     if lines and (named := re.fullmatch(r'"?sep=(.)"?', lines[0].strip(), re.IGNORECASE)):
         separator, lines[0] = named.group(1), ""
     separator = separator or _separator(lines)
-    rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
+    if separator:
+        rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
+    else:
+        rows = [re.split(r"\s{2,}", line.strip()) for line in lines]
+        if max(map(len, rows), default=0) < 2:
+            rows = [line.split() for line in lines]
     if max(map(len, rows), default=0) > MAX_COLUMNS:
         raise InputError(path.name, f"has more than {MAX_COLUMNS} columns.", "Give the test only.")
-    stripped = [[cell.strip() for cell in row] for row in rows]
-    if separator != "," and any(_DECIMAL_COMMA.fullmatch(c) for row in stripped for c in row):
+    stripped = [[_ungrouped(cell.strip()) for cell in row] for row in rows]
+    if _has_decimal_commas(stripped, separator):
         notes.append(f"{path.name}: commas are read as decimal commas.")
         stripped = [[_with_point(cell) for cell in row] for row in stripped]
     yield "", stripped
+
+
+def _has_decimal_commas(rows: Rows, separator: str) -> bool:
+    """Say whether commas are decimal ones; in quotes between commas 1,234 may be a thousand."""
+    with_comma = [cell for row in rows for cell in row if _DECIMAL_COMMA.fullmatch(cell)]
+    if separator != ",":
+        return bool(with_comma)
+    return any(re.search(r"^[+-]?0,|,(?!\d{3}$)", cell) for cell in with_comma)
+
+
+def _ungrouped(cell: str) -> str:
+    if _GROUPED.fullmatch(cell) is None:
+        return cell
+    return re.sub(r"[ \u00a0\u2009\u202f]|,(?=.*\.)", "", cell)
 
 
 def _decoded(path: Path, notes: list[str]) -> str:
@@ -158,8 +195,10 @@ def _decoded(path: Path, notes: list[str]) -> str:
 
 
 def _separator(lines: list[str]) -> str:
-    """The character that most lines have most often, outside decimal commas."""
+    """The character that most lines have most often; "" where spaces stand between numbers."""
     some = [line for line in lines[:400] if line.strip()]
+    if sum(_SPACED.fullmatch(line) is not None for line in some) > len(some) / 2:
+        return ""
 
     def columns(separator: str) -> tuple[int, int]:
         counts = [line.count(separator) for line in some]
@@ -210,8 +249,11 @@ def _specimens(
         end = first
         while end < len(rows) and _is_reading(rows[end], groups):
             end += 1
+        while end > first and not _is_numeric(rows[end - 1], groups):  # results below the readings
+            end -= 1
         readings = [(at, rows[at]) for at in range(first, end) if any(rows[at])]
         if len(readings) >= MIN_READINGS:
+            _check_width(file, [head for head in heads if head], *readings[0])
             _tell_unread(file, heads, groups, reading.columns, notes)
             for place, group in enumerate(groups):
                 name = title or "readings"
@@ -219,6 +261,14 @@ def _specimens(
                 yield _specimen(f"{file}, {name}", group, readings, constants, reading.units)
             title = sheet
         row = max(end, first)
+
+
+def _check_width(file: str, heads: list[str], at: int, row: list[str]) -> None:
+    """Refuse numbers that a decimal comma cuts in two."""
+    if len(row) >= 2 * len(heads):
+        problem = f"row {at + 1} has {len(row)} numbers under {len(heads)} names: its decimals are"
+        remedy = "Save it with semicolons between columns, or with decimal points."
+        raise InputError(file, f"{problem} commas between commas.", remedy)
 
 
 @dataclass(frozen=True)
@@ -371,6 +421,11 @@ def _is_units(row: list[str]) -> bool:
     return 2 * named > len(cells) and not any(_number(cell) is not None for cell in cells)
 
 
+def has_units(names: list[str], below: list[str], ours: set[str]) -> bool:
+    """Tell whether a line of names, or the one below, gives other units than ours, or all units."""
+    return _is_units(below) or any((_unit(name) or "1").lower() not in ours for name in names)
+
+
 def _with_unit(column: _Column, units: list[str]) -> _Column:
     unit = units[column.place].strip("()[] ") if column.place < len(units) else ""
     share = column.name == "extension_mm" and unit.lower() in ("%", "percent", "mm/mm", "m/m")
@@ -383,6 +438,17 @@ def _is_reading(row: list[str], groups: list[list[_Column]]) -> bool:
         return True
     cells = [row[c.place] for group in groups for c in group if c.place < len(row)]
     return any(_number(cell) is not None for cell in cells)
+
+
+def _is_numeric(row: list[str], groups: list[list[_Column]]) -> bool:
+    """Tell whether a row has numbers in our columns and nothing else, or the columns are empty."""
+    cells = [
+        row[c.place]
+        for group in groups
+        for c in group
+        if c.name not in ("time", "run") and c.place < len(row)
+    ]
+    return any(cells) and all(_number(cell) is not None for cell in cells if cell)
 
 
 def _number(cell: str) -> float | None:
@@ -398,6 +464,8 @@ def _about(row: list[str], title: str, constants: dict[str, float]) -> tuple[str
     cells = [cell for cell in row if cell]
     if not cells:
         return title, constants
+    if len(cells) == 1 and (stated := _STATED.fullmatch(cells[0])):
+        cells = [stated["name"], stated["value"]]
     name = _quantity(cells[0])
     if name in ("width_mm", "length_mm") and len(cells) > 1:
         value, _, behind = cells[1].partition(" ")
@@ -480,10 +548,15 @@ def _tell_unread(
     notes: list[str],
 ) -> None:
     used = {column.place for group in groups for column in group}
-    unread = [
-        cell
-        for place, cell in enumerate(heads)
-        if cell and place not in used and (_quantity(cell) is None or _quantity(cell) in called)
-    ]
+    left = [(place, cell) for place, cell in enumerate(heads) if cell and place not in used]
+    unread = [cell for _, cell in left if _quantity(cell) is None or _quantity(cell) in called]
     if unread:
         notes.append(f"{file}: not used: {', '.join(unread[:8])}.")
+    beside = [cell for _, cell in left if _quantity(cell) in {*_STRETCHES, "force_n"} - {*called}]
+    if beside:
+        taken = [
+            heads[c.place] for group in groups for c in group if c.name in (*_STRETCHES, "force_n")
+        ]
+        notes.append(
+            f"{file}: {', '.join(taken[:4])} are read, and {', '.join(beside[:4])} is not."
+        )

@@ -85,15 +85,16 @@ def _xlsx_sheets(path: Path) -> Iterator[tuple[str, Iterable[Sequence[Any]]]]:
     with zipfile.ZipFile(path) as packed:
         if sum(part.file_size for part in packed.infolist()) > MAX_UNPACKED_BYTES:
             raise _too_large(path)
-    book = load_workbook(path, read_only=True, data_only=True, keep_links=False)
-    try:
-        for sheet in book.worksheets[:MAX_SHEETS]:
-            yield (
-                sheet.title,
-                sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS, values_only=True),
-            )
-    finally:
-        book.close()
+    with path.open("rb") as file:  # which has another name than a workbook's, at times
+        book = load_workbook(file, read_only=True, data_only=True, keep_links=False)
+        try:
+            for sheet in book.worksheets[:MAX_SHEETS]:
+                yield (
+                    sheet.title,
+                    sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS, values_only=True),
+                )
+        finally:
+            book.close()
 
 
 def _cells(row: Sequence[Any]) -> list[Cell]:

@@ -18,7 +18,7 @@ from itertools import pairwise
 
 from knitcore.base.errors import InputError
 from knitcore.formats.read.knitout_machine import Loop
-from knitcore.formats.read.knitout_parts import is_chained, named
+from knitcore.formats.read.knitout_parts import named, stitches_of
 from knitcore.formats.write.knitout import TAG_STITCHES
 
 MOST_LEFT_OUT = 0.25
@@ -108,7 +108,7 @@ Course = list[Pass]
 
 
 def _last_knit(loops: Sequence[Loop]) -> int:
-    return next((o.number for o in reversed(loops) if o.parents and not is_chained(o)), -1)
+    return stitches_of(loops)[-1].number
 
 
 def _passes(loops: Sequence[Loop], stitches: Sequence[Loop]) -> list[Pass | None]:
