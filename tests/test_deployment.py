@@ -72,7 +72,7 @@ def test_services_wait_for_each_other_and_keep_their_data() -> None:
         assert service["logging"]["options"]["max-size"]
         assert name == "database" or service["init"]
     app, worker = services["app"], services["worker"]
-    assert app["volumes"] == worker["volumes"]  # own materials, and results that are kept
+    assert app["volumes"] == worker["volumes"]  # results that are kept
     assert app["environment"]["KNITCORE_DATA_DIR"] == worker["environment"]["KNITCORE_DATA_DIR"]
     database, url = services["database"]["environment"], app["environment"]["KNITCORE_DATABASE_URL"]
     assert url.startswith(f"postgresql+psycopg://{database['POSTGRES_USER']}:")

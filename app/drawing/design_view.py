@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from enum import StrEnum
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,7 @@ from knitcore.formats.designs.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
 from knitcore.materials import Material
 
-from ..context import Context
+from ..context import Context, Supplies
 from ..requests.base import RequestModel
 from ..requests.charts import (
     ChartInput,
@@ -119,10 +118,10 @@ def is_large(request: ViewRequest) -> bool:
 
 
 def build_drawing(
-    request: ViewRequest, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: ViewRequest, supplies: Supplies, *, cancelled: Callable[[], bool]
 ) -> Drawing:
     """Make the drawing of a large chart, which has no stretch test or shape; runs in a worker."""
-    return build_scene(request, None, Context(data_dir, cancelled=cancelled)).drawing()
+    return build_scene(request, None, supplies.context(cancelled=cancelled)).drawing()
 
 
 def build_scene(

@@ -88,7 +88,8 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
     large: Drawing | None = None
     if computed is None and is_large(body):
-        large = await _by_worker(request, build_drawing, body, context.data_dir)
+        supplies = await state.answers.supplies(body)
+        large = await _by_worker(request, build_drawing, body, supplies)
 
     def draw() -> ViewResult:
         drawing = large or build_scene(body, computed, context).drawing()
@@ -197,8 +198,8 @@ async def post_still(
 
     Of a chart of more than 40,000 stitches only what the view draws as yarn.
     """
-    data_dir = request.app.state.answers.context().data_dir
-    draw = partial(shared_still, body, _computed(body, request), data_dir, width, height)
+    supplies = await request.app.state.answers.supplies(body)
+    draw = partial(shared_still, body, _computed(body, request), supplies, width, height)
     lock: FairLock = request.app.state.drawing
     if size_of_chart(body.chart) > MAX_STILL_HERE:
         content = await _by_worker(request, draw)
@@ -211,8 +212,8 @@ async def post_still(
 async def _shared(
     make: Callable[..., bytes], body: SharedViewRequest, request: Request, media: str, ending: str
 ) -> Response:
-    data_dir = request.app.state.answers.context().data_dir
-    content = await _by_worker(request, make, body, _computed(body, request), data_dir)
+    supplies = await request.app.state.answers.supplies(body)
+    content = await _by_worker(request, make, body, _computed(body, request), supplies)
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
 
