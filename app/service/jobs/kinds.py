@@ -12,8 +12,10 @@ from pydantic import Discriminator, Field, create_model
 from knitcore.base.extensions import Group, extensions
 from knitcore.yarn.library import fingerprint
 
+from ...context import Context, Supplies
 from ...operations.registry import Operation, operations
 from ...requests.base import RequestModel, ResultModel, read
+from ...requests.faults import check_all
 
 KINDS: dict[str, Operation[Any, Any]] = {
     name: operation for name, operation in operations().items() if operation.job
@@ -62,13 +64,26 @@ def job_key(kind: str, request: str) -> str:
         return fingerprint.content_key(content, (KINDS[kind].run.__module__,))
 
 
-def read_job(content: bytes, *, cancelled: Callable[[], bool]) -> tuple[str, str]:
+def read_job(
+    content: bytes, supplies: Supplies, *, cancelled: Callable[[], bool]
+) -> tuple[str, str]:
     """Kind and request, as JSON, of a job that somebody asks for; a worker reads a large one.
 
     Raises
     ------
-    InvalidRequestError
+    InvalidRequestError, InputError
     """
-    del cancelled
     job = read(JobRequest, content)
+    return accepted(job, supplies.context(cancelled=cancelled))
+
+
+def accepted(job: JobOf, context: Context) -> tuple[str, str]:
+    """Kind and request, as JSON, of a job that its operation accepts.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong.
+    """
+    check_all(job.request, context)
     return job.kind, job.request.model_dump_json()

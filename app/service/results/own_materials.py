@@ -94,6 +94,11 @@ def marked(identifier: str, content: bytes) -> str:
     return f"{PREFIX}{identifier}.{hashlib.sha256(content).hexdigest()[:6]}"
 
 
+def is_identifier(text: str) -> bool:
+    """Tell whether a text can name a material of a user; others are no question for a database."""
+    return text.isascii() and _NAMED.fullmatch(text.encode()) is not None
+
+
 def named_in(content: bytes) -> list[str]:
     """Identifiers of users' materials in a JSON request, each once."""
     if PREFIX.encode() not in content:

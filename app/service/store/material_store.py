@@ -17,7 +17,7 @@ from knitcore.materials.material_document import MaterialDocument
 
 from ..identity import LOCAL_USER
 from ..limits.user_limits import USER_LIMITS, OverLimitError
-from ..results.own_materials import KINDS, GivenMaterials, marked, own_material
+from ..results.own_materials import KINDS, GivenMaterials, is_identifier, marked, own_material
 from .database import Database
 from .tables import access_tokens, designs, jobs, now, own_materials
 
@@ -58,7 +58,7 @@ class MaterialStore:
 
         Of different materials under one identifier, the earliest counts.
         """
-        names = list(identifiers)
+        names = [name for name in identifiers if is_identifier(name)]
         stems = {name: name.partition(":")[2].rpartition(".")[0] for name in names}
         chosen = select(_MINE.id, _MINE.document).where(_MINE.id.in_(names))
         ordered = chosen.order_by(_PRESENT, _MINE.added_at.desc())
