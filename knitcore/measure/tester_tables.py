@@ -132,7 +132,10 @@ def _sheets(path: Path, notes: list[str]) -> Iterator[tuple[str, Rows]]:
     if lines and (named := re.fullmatch(r'"?sep=(.)"?', lines[0].strip(), re.IGNORECASE)):
         separator, lines[0] = named.group(1), ""
     separator = separator or _separator(lines)
-    rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
+    try:
+        rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
+    except csv.Error as error:
+        raise InputError(path.name, f"is not CSV ({error}).", "Save it as CSV again.") from None
     if max(map(len, rows), default=0) > MAX_COLUMNS:
         raise InputError(path.name, f"has more than {MAX_COLUMNS} columns.", "Give the test only.")
     stripped = [[cell.strip() for cell in row] for row in rows]
