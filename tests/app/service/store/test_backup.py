@@ -38,9 +38,9 @@ def filled(tmp_path: Path) -> Iterator[Database]:
 
 
 @pytest.fixture
-def other(tmp_path: Path) -> Iterator[Database]:
-    """A new database without tables."""
-    with opened(tmp_path / "new", migrated=False) as database:
+def other(place: Path | str) -> Iterator[Database]:
+    """A new database without tables, of either kind."""
+    with opened(place / "new" if isinstance(place, Path) else place, migrated=False) as database:
         yield database
 
 
