@@ -4,12 +4,13 @@ import pytest
 
 from studies.speed.readers import CASES, ENOUGH_S, growth
 
-MOST = 10.0
-"""Time of four times the file over that of the file: linear is 4, quadratic 16."""
+MOST = 3.0
+"""Time of twice the file over that of the file: linear is 2, quadratic 4."""
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
-def test_four_times_the_file_takes_about_four_times_as_long(name: str) -> None:
-    _, (once, _, four_times) = growth(CASES[name])
-    assert four_times < ENOUGH_S or four_times < MOST * once
+def test_twice_the_file_takes_about_twice_as_long(name: str) -> None:
+    """Once of two doublings: a machine that does much else disturbs either."""
+    _, (once, twice, four_times) = growth(CASES[name])
+    assert four_times < ENOUGH_S or min(twice / once, four_times / twice) < MOST
