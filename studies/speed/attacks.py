@@ -26,7 +26,10 @@ from pathlib import Path
 from typing import Any
 
 import httpx2 as httpx
+import viser
 from PIL import Image
+from websockets import Subprotocol, WebSocketException
+from websockets.sync.client import connect
 
 from app.service.store.database import Database
 from app.service.store.schema import migrate
@@ -37,6 +40,7 @@ from studies.speed.service import resident_mb
 
 WAIT_MS = 100.0
 """Longest wait of another user on a quiet machine."""
+FRAME_BYTES = 15_900_000
 AT_ONCE = 12
 """Requests that Mallory makes at once."""
 Attack = Callable[[httpx.Client, int], object]
@@ -102,6 +106,21 @@ def _viewed(client: httpx.Client, turn: int) -> httpx.Response:
     return client.put(f"/api/v1/views/view-{turn % 20:08}", json=body)
 
 
+def _frames(client: httpx.Client, turn: int) -> None:
+    """Frames as large as a view takes them, which are no message of viser's."""
+    name = f"frames-{turn % 4}"
+    client.put(f"/api/v1/views/{name}", json=CHART)
+    address = f"{str(client.base_url).replace('http', 'ws', 1).rstrip('/')}/view/{name}"
+    headers = {"Authorization": client.headers["Authorization"]}
+    protocols = [Subprotocol(f"viser-v{viser.__version__}")]
+    with (
+        contextlib.suppress(WebSocketException, OSError),
+        connect(address, subprotocols=protocols, additional_headers=headers) as view,
+    ):
+        view.send(b"\xdd" * FRAME_BYTES)
+        view.recv(5)
+
+
 _random = random.Random(1)
 ATTACKS: dict[str, Attack] = {
     "none": lambda client, _: time.sleep(0.2),
@@ -140,6 +159,7 @@ ATTACKS: dict[str, Attack] = {
     "wrong tokens": _wrong_token,
     "own yarns": _kept_yarn,
     "views of large charts": _viewed,
+    "frames of a view": _frames,
 }  # fmt: skip
 
 

@@ -1,7 +1,6 @@
 """Operations that run in the background because they may take longer than a page should wait."""
 
 import hashlib
-import threading
 from collections.abc import Callable
 from functools import reduce
 from operator import or_
@@ -20,8 +19,6 @@ from ...requests.faults import check_all
 KINDS: dict[str, Operation[Any, Any]] = {
     name: operation for name, operation in operations().items() if operation.job
 }
-_reading = threading.Lock()
-"""Held while the program's sources are read, which many jobs at once would all do."""
 
 
 class JobOf(RequestModel):
@@ -58,10 +55,9 @@ def job_key(kind: str, request: str) -> str:
     The first one takes half a second.
     """
     digest = hashlib.sha256(request.encode()).hexdigest()  # a file's megabytes are hashed once
-    with _reading:
-        packages = [extension.package for extension in extensions(Group.MATERIALS)]
-        content = {"kind": kind, "request": digest, "packages": packages}
-        return fingerprint.content_key(content, (KINDS[kind].run.__module__,))
+    packages = [extension.package for extension in extensions(Group.MATERIALS)]
+    content = {"kind": kind, "request": digest, "packages": packages}
+    return fingerprint.content_key(content, (KINDS[kind].run.__module__,))
 
 
 def read_job(
