@@ -40,10 +40,11 @@ RUN apt-get update \
  && mkdir -p /var/lib/knitcore && chown knit:knit /var/lib/knitcore && chmod 700 /var/lib/knitcore
 COPY --from=program /opt/knitcore /opt/knitcore
 USER knit
-# Beyond loopback the service asks for a token: docker run -e KNITCORE_TOKEN=… -p 8737:8737
+# Beyond loopback the service asks for a token: docker run -v /a/folder:/run/secrets:ro -p 8737:8737
+# where the folder has a file knitcore_token.
 ENV PATH=/opt/knitcore/bin:$PATH PYTHONDONTWRITEBYTECODE=1 NUMBA_CACHE_DIR=/tmp/numba \
     KNITCORE_HOST=0.0.0.0 KNITCORE_PORT=8737 KNITCORE_DATA_DIR=/var/lib/knitcore
 VOLUME /var/lib/knitcore
 EXPOSE 8737
-HEALTHCHECK CMD ["python", "-c", "import urllib.request as u; u.urlopen('http://127.0.0.1:8737/healthz')"]
+HEALTHCHECK CMD ["python", "-c", "import os, urllib.request as u; u.urlopen(f\"http://127.0.0.1:{os.environ['KNITCORE_PORT']}/healthz\")"]
 CMD ["knitcore", "serve"]

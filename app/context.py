@@ -3,15 +3,16 @@ line."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from knitcore.materials import Material, load_material_file, material
 
 from .service.results.on_disk import KeptResults
-from .service.results.own_materials import KINDS, PREFIX, find_own_material
+from .service.results.own_materials import KINDS, PREFIX, GivenMaterials, OwnMaterials
 
 if TYPE_CHECKING:
     from knitcore.design.atlas import Atlas
@@ -24,7 +25,8 @@ class Context:
 
     Parameters
     ----------
-    data_dir : folder of the user's materials and stored results, or a function that returns it.
+    data_dir : folder of stored results, or a function that returns it.
+    own : materials of users; none by default.
     local : whether the caller works on this machine: materials may then be files, and charts may be
         as large as the library accepts.
     cancelled : whether the caller has given up.
@@ -36,12 +38,14 @@ class Context:
         self,
         data_dir: Path | Callable[[], Path],
         *,
+        own: OwnMaterials | None = None,
         local: bool = False,
         cancelled: Callable[[], bool] = lambda: False,
         progress: Callable[[float, float], None] = lambda done, total: None,
         before: object = None,
     ) -> None:
         self._data_dir = data_dir
+        self.own = own or GivenMaterials()
         self.local = local
         self.cancelled = cancelled
         self.progress = progress
@@ -49,7 +53,7 @@ class Context:
 
     @cached_property
     def data_dir(self) -> Path:
-        """Folder of the user's materials and stored results."""
+        """Folder of stored results."""
         return self._data_dir if isinstance(self._data_dir, Path) else self._data_dir()
 
     @property
@@ -67,7 +71,7 @@ class Context:
         """
         if self.local and name.lower().endswith(KINDS):
             return load_material_file(name)
-        return find_own_material(name, self.data_dir) if name.startswith(PREFIX) else material(name)
+        return self.own.find(name) if name.startswith(PREFIX) else material(name)
 
     def atlas(self, name: str, extent: Extent, file: Path | None = None) -> Atlas:
         """The atlas of a material, built if it is not kept; or that of a file.
@@ -103,5 +107,27 @@ class Context:
             self.progress(start + share * done / total, 1.0)
 
         return Context(
-            self._data_dir, local=self.local, cancelled=self.cancelled, progress=progress
+            self._data_dir,
+            own=self.own,
+            local=self.local,
+            cancelled=self.cancelled,
+            progress=progress,
         )
+
+
+@dataclass(frozen=True)
+class Supplies:
+    """Things that a worker, here or on another machine, gets with a request.
+
+    Attributes
+    ----------
+    data_dir : folder of stored results.
+    own : JSON of the users' materials that the request names, by identifier.
+    """
+
+    data_dir: Path
+    own: Mapping[str, str] = field(default_factory=dict)
+
+    def context(self, **more: Any) -> Context:
+        """The context of an operation, with other arguments of a :class:`Context`."""
+        return Context(self.data_dir, own=GivenMaterials(self.own), **more)

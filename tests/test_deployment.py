@@ -20,29 +20,40 @@ COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "compose.yaml").read_text())
 
 
 def _filled(value: str) -> str:
-    """A value of the compose file with variables as an .env file would give them."""
-    given = {"KNITCORE_TOKEN": "x" * 32, "POSTGRES_PASSWORD": "secret"}
-    defaulted = re.sub(r"\$\{(\w+):-(.*)\}", r"\2", value)
-    return re.sub(r"\$\{(\w+):\?[^}]*\}", lambda m: given[m[1]], defaulted)
+    """A value of the compose file with the defaults of its variables."""
+    return re.sub(r"\$\{(\w+):-(.*)\}", r"\2", value)
 
 
-def test_the_environment_of_the_service_is_valid(monkeypatch: pytest.MonkeyPatch) -> None:
-    given = COMPOSE["services"]["app"]["environment"]
-    for name, value in given.items():
+def test_the_environment_of_the_service_is_valid(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    app = COMPOSE["services"]["app"]
+    for name, value in app["environment"].items():
         if name.startswith("KNITCORE_"):
             assert name.removeprefix("KNITCORE_").lower() in Settings.model_fields
             monkeypatch.setenv(name, _filled(value))
+    for secret in app["secrets"]:
+        assert secret["source"] in COMPOSE["secrets"]
+        (tmp_path / secret["target"]).write_text("a-secret/of-its-own\n")
+    monkeypatch.setenv("KNITCORE_SECRETS_DIR", str(tmp_path))
     settings = Settings().check()
-    assert settings.store_url == "postgresql+psycopg://knitcore:secret@database/knitcore"
+    assert settings.store_url == (
+        "postgresql+psycopg://knitcore:a-secret%2Fof-its-own@database/knitcore"
+    )
+    assert settings.token is not None
+    assert settings.require_login
     assert not settings.is_loopback
 
 
-def test_no_secret_has_a_default_or_is_committed() -> None:
-    assert ".env" in (ROOT / ".gitignore").read_text().splitlines()
+def test_secrets_are_files_that_are_not_committed() -> None:
+    ignored = (ROOT / ".gitignore").read_text().splitlines()
+    assert {".env", "/secrets/"} <= set(ignored)
     for service in COMPOSE["services"].values():
         for name, value in service["environment"].items():
             if re.search("TOKEN|PASSWORD", name):
-                assert ":?" in value, f"{name} must come from outside"
+                assert (name, value) == ("POSTGRES_PASSWORD_FILE", "/run/secrets/database_password")
+        assert not re.search(r":[^@/]+@", service["environment"].get("KNITCORE_DATABASE_URL", ""))
+    assert all(secret["file"].startswith("secrets/") for secret in COMPOSE["secrets"].values())
 
 
 def test_the_cluster_is_the_one_that_the_service_asks() -> None:
@@ -68,20 +79,22 @@ def test_services_wait_for_each_other_and_keep_their_data() -> None:
             assert volume.split(":")[0] in volumes
         assert set(service["networks"]) <= set(COMPOSE["networks"])
         assert service["mem_limit"]
+        assert service["cpus"]
+        assert all("size=" in place for place in service["tmpfs"])
         assert service["pids_limit"]
         assert service["logging"]["options"]["max-size"]
         assert name == "database" or service["init"]
     app, worker = services["app"], services["worker"]
-    assert app["volumes"] == worker["volumes"]  # own materials, and results that are kept
+    assert app["volumes"] == worker["volumes"]  # results that are kept
     assert app["environment"]["KNITCORE_DATA_DIR"] == worker["environment"]["KNITCORE_DATA_DIR"]
     database, url = services["database"]["environment"], app["environment"]["KNITCORE_DATABASE_URL"]
-    assert url.startswith(f"postgresql+psycopg://{database['POSTGRES_USER']}:")
+    assert url.startswith(f"postgresql+psycopg://{database['POSTGRES_USER']}@")
     assert url.endswith(f"@database/{database['POSTGRES_DB']}")
 
 
 def test_the_service_has_no_rights_and_is_reached_through_its_proxy_only() -> None:
     services, networks = COMPOSE["services"], COMPOSE["networks"]
-    for name in ("proxy", "app", "scheduler", "worker"):
+    for name in services:
         assert services[name]["read_only"]
         assert services[name]["cap_drop"] == ["ALL"]
     open_ = [name for name, of in services.items() if "ports" in of or "outside" in of["networks"]]
@@ -148,6 +161,8 @@ def test_the_image_runs_as_a_plain_user() -> None:
     assert _all("USER") == ["knit"]
     assert "RUN" not in names[names.index("USER") :]
     assert names.count("HEALTHCHECK") == names.count("CMD") == 1
+    for check in (*_all("HEALTHCHECK"), str(COMPOSE["services"]["app"]["healthcheck"]["test"])):
+        assert "KNITCORE_PORT" in check
     folder = COMPOSE["services"]["app"]["volumes"][0].split(":")[1]
     assert any(f"mkdir -p {folder} && chown knit:knit {folder}" in step for step in _all("RUN"))
     for setting in re.findall(r"KNITCORE_(\w+)=", " ".join(_all("ENV"))):

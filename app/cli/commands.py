@@ -22,7 +22,7 @@ from ..context import Context
 from ..operations.perform import carried_out
 from ..operations.registry import Operation
 from ..requests.base import IntervalResult
-from .common import emit, json_option, telling_what_is_compiled, user_data_dir
+from .common import UserMaterials, emit, json_option, telling_what_is_compiled, user_data_dir
 from .inputs import Inputs
 from .options import CHART_HELP
 
@@ -41,7 +41,8 @@ def command_of(operation: Operation[Any, Any], name: str, line: str = "") -> cli
             with telling_what_is_compiled():
                 more = declared.fields or dict
                 request = inputs.request(given, more(**_options_for(declared.fields, given)))
-                result = carried_out(run, request, Context(user_data_dir, local=True)).result
+                context = Context(user_data_dir, own=UserMaterials(), local=True)
+                result = carried_out(run, request, context).result
         except InputError as error:
             raise _with_options(error, command) from error
         emit(result, "\n".join(declared.lines(result)), as_json=given["as_json"])

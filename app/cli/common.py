@@ -17,6 +17,9 @@ from pydantic import BaseModel
 from knitcore.base.errors import InputError
 
 if TYPE_CHECKING:
+    from knitcore.materials import Material
+
+    from ..service.results.own_materials import OwnMaterials
     from ..service.settings import Settings
     from ..service.store.database import Database
 
@@ -47,13 +50,41 @@ def user_settings() -> Settings:
 def open_database(settings: Settings, *, migrated: bool = True) -> Iterator[Database]:
     """The database of the settings, brought up to date."""
     from ..service.store.database import Database
-    from ..service.store.schema import migrate
+    from ..service.store.schema import prepare
 
     settings.make_folder()
     with contextlib.closing(Database(settings.store_url)) as database:
         if migrated:
-            migrate(database)
+            prepare(database, settings.folder)
         yield database
+
+
+class UserMaterials:
+    """Materials of users in the database of the settings, which is opened when one is needed."""
+
+    def find(self, identifier: str) -> Material:
+        """A user's own material."""
+        with self._opened() as own:
+            return own.find(identifier)
+
+    def listed(self, user: str) -> list[tuple[Material, bool]]:
+        """All materials, each with whether it is this user's."""
+        with self._opened() as own:
+            return own.listed(user)
+
+    @contextlib.contextmanager
+    def _opened(self) -> Iterator[OwnMaterials]:
+        from ..service.results.own_materials import GivenMaterials
+        from ..service.store.database import backend_of
+        from ..service.store.material_store import FOLDER, MaterialStore
+
+        settings = user_settings()
+        has_files = (settings.folder / FOLDER).is_dir()
+        if has_files or backend_of(settings.store_url).check_unopened():
+            with open_database(settings) as database:
+                yield MaterialStore(database)
+        else:  # no service has run here yet
+            yield GivenMaterials()
 
 
 def user_data_dir() -> Path:

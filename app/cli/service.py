@@ -134,12 +134,10 @@ def backup(file: Path, as_json: bool) -> None:
 
     Earlier versions of designs are kept with them. The service may run meanwhile.
     """
-    from ..service.results.own_materials import FOLDER
     from ..service.store.backup import back_up
 
-    settings = user_settings()
-    with open_database(settings) as database:
-        report = back_up(database, file, settings.folder / FOLDER)
+    with open_database(user_settings()) as database:
+        report = back_up(database, file)
     emit(report, report.text, as_json=as_json)
 
 
@@ -151,10 +149,9 @@ def restore(file: Path, as_json: bool) -> None:
 
     The settings name the folder, or the database.
     """
-    from ..service.results.own_materials import FOLDER
     from ..service.store import backup as store
 
     settings = user_settings()
     with open_database(settings, migrated=False) as database:
-        report = store.restore(database, file, settings.folder / FOLDER)
+        report = store.restore(database, file, settings.folder)
     emit(report, report.text, as_json=as_json)

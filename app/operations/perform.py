@@ -4,14 +4,13 @@ import gzip
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 from pydantic import BaseModel
 
 from knitcore.base.errors import InputError
 
-from ..context import Context
+from ..context import Context, Supplies
 from ..requests.base import read
 from ..requests.faults import all_faults
 
@@ -83,7 +82,7 @@ def perform(
     run: Callable[..., Any],
     model: type[BaseModel],
     request: BaseModel | bytes,
-    data_dir: Path,
+    supplies: Supplies,
     *,
     cancelled: Callable[[], bool],
     progress: Callable[[float, float], None],
@@ -97,7 +96,7 @@ def perform(
         If the request came as bytes and is none of the model.
     """
     decoded: BaseModel = read(model, request) if isinstance(request, bytes) else request
-    context = Context(data_dir, cancelled=cancelled, progress=progress, before=before)
+    context = supplies.context(cancelled=cancelled, progress=progress, before=before)
     outcome = carried_out(run, decoded, context)
     body = gzip.compress(outcome.result.model_dump_json().encode(), LEVEL)
     return Reply(body, outcome.view, "" if decoded is request else key_of(run, decoded))

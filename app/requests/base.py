@@ -1,10 +1,13 @@
 """Bases of requests and results."""
 
+from __future__ import annotations
+
 import json
 import math
+import re
 from collections.abc import Callable
 from inspect import signature
-from typing import Annotated, Any, Self, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
 
@@ -12,7 +15,12 @@ from knitcore.base.errors import InputError
 
 from .faults import problem_in_words
 
+if TYPE_CHECKING:
+    from ..context import Context
+
 T = TypeVar("T")
+_HALF = re.compile("[\ud800-\udfff]")
+"""Half of a character, which texts of JSON may hold but no answer and no database."""
 UNIT = "_n_per_mm"
 
 
@@ -56,11 +64,17 @@ def read(model: Any, content: bytes | str) -> Any:
 def unrepeated(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """An object of JSON, whose names differ: which of two values was meant, nobody can say.
 
+    Its texts have whole characters.
+
     Raises
     ------
     json.JSONDecodeError
     """
     values = dict(pairs)
+    for name, value in pairs:
+        for part in (name, value):
+            if isinstance(part, str) and not part.isascii() and _HALF.search(part):
+                raise json.JSONDecodeError(f"{name!r} holds half of a character", "", 0)
     if len(values) < len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
@@ -87,6 +101,16 @@ class RequestModel(BaseModel):
         names = list(signature(function).parameters)[len(first) :]
         mine = {n: f for n in names for f in (n, n + UNIT) if f in type(self).model_fields}
         return function(*first, **{n: getattr(self, f) for n, f in mine.items()} | more)
+
+    def check_parts(self, context: Context) -> None:
+        """Refuse parts that do not go together, or are too large together.
+
+        An operation does so before it computes, and so does the queue of jobs.
+
+        Raises
+        ------
+        InputError
+        """
 
 
 class NoRequest(RequestModel):

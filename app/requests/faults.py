@@ -17,6 +17,7 @@ from knitcore.base.errors import InputError
 
 if TYPE_CHECKING:
     from ..context import Context
+    from .base import RequestModel
 
 
 @dataclass(frozen=True)
@@ -33,9 +34,29 @@ class CheckedBy:
 
 def all_faults(error: InputError, request: BaseModel, context: Context) -> InputError:
     """The error that stopped an operation, with those of the request's other parts."""
+    return with_others(error, [*error.others, *_faults_of_parts(request, context)])
+
+
+def check_all(request: RequestModel, context: Context) -> None:
+    """Refuse a request that its operation would refuse before it computes.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong.
+    """
+    try:
+        request.check_parts(context)
+    except InputError as error:
+        raise all_faults(error, request, context) from None
+    faults = _faults_of_parts(request, context)
+    if (first := next(faults, None)) is not None:
+        raise with_others(first, faults)
+
+
+def _faults_of_parts(request: BaseModel, context: Context) -> Iterator[InputError]:
     fields = ((name, getattr(request, name)) for name in type(request).model_fields)
-    others = faults_of(type(request), dict(fields), context)
-    return with_others(error, [*error.others, *others])
+    return faults_of(type(request), dict(fields), context)
 
 
 def with_others(error: InputError, others: Iterable[InputError]) -> InputError:

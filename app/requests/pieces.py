@@ -119,13 +119,13 @@ class PieceTestRequest(LawsRequest):
         description="Length of an element's side; by default there are about 600 elements.",
     )
 
-    def check(self, piece: CutPiece, context: Context) -> None:
-        """Refuse a test that would take too long for the service.
+    def cut(self) -> CutPiece:
+        """The piece that is tested."""
+        raise NotImplementedError
 
-        Raises
-        ------
-        InputError
-        """
+    def check_parts(self, context: Context) -> None:
+        """Refuse a test that would take too long for the service."""
+        piece = self.cut()
         least = size_for(piece, MAX_ELEMENT_STEPS // self.steps)
         size = size_for(piece, DEFAULT_ELEMENTS) if self.mesh_mm is None else self.mesh_mm
         if size < least and not context.local:
@@ -135,11 +135,9 @@ class PieceTestRequest(LawsRequest):
                 f"Use at least {least:.3g} mm, fewer steps, or the command line.",
             )
 
-    def pull(
-        self, test: Callable[..., T], size_mm: tuple[float, float], context: Context, **more: Any
-    ) -> tuple[T, Material]:
+    def pull(self, test: Callable[..., T], context: Context, **more: Any) -> tuple[T, Material]:
         """A test of the library on a rectangle of the chart's cloth, and the cloth's material."""
-        self.check(CutPiece.rectangle(*size_mm), context)
+        self.check_parts(context)
         material = context.material(self.material)
         control = {"progress": context.progress, "cancelled": context.cancelled}
         return self.pass_to(test, to_repeat(self.chart), material, **control, **more), material

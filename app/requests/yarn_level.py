@@ -57,6 +57,10 @@ class StitchRequest(RequestModel):
             check_stitches(repeat.stitches, most, "its repeat")
         return repeat
 
+    def check_parts(self, context: Context) -> None:
+        """Refuse loop lengths and charts that do not go together."""
+        self.yarn(self.repeat(), context)
+
     def yarn(self, repeat: StitchChart, context: Context) -> ChartYarn:
         """The material's yarn in a repeat, with the loop length if it is given."""
         return _yarn(context.material(self.material), repeat, self.loop_length_mm)
@@ -194,6 +198,11 @@ class RubbedRequest(YarnLevelRequest):
     @abstractmethod
     def has_friction(self) -> bool:
         """True if an option that needs friction is given."""
+
+    def check_parts(self, context: Context) -> None:
+        """Refuse what cannot be had with friction, too."""
+        super().check_parts(context)
+        self.with_friction(context)
 
     def with_friction(self, context: Context) -> Self:
         """The request with its coefficient of friction, that of the yarn unless it is given.

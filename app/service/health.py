@@ -3,12 +3,15 @@
 import asyncio
 
 from fastapi import APIRouter, Request, Response
+from fastapi.concurrency import run_in_threadpool
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 from pydantic import BaseModel, Field
 
 from .doctor import examine
 from .identity import LOCAL_USER, current_user
 from .problems import Problem, RefusedError, UnavailableError
+from .store.database import Database
+from .web.sessions import Tokens
 
 router = APIRouter(tags=["service"])
 
@@ -49,17 +52,23 @@ async def healthz() -> Health:
 async def readyz(request: Request) -> Readiness:
     """Run the checks of `knitcore doctor`: while this fails, send requests elsewhere.
 
-    It fails without database, disk or cluster; `knitcore doctor` reports the rest.
+    It fails without database, disk or cluster, and where no thread is free: it takes one, looks
+    for a login and waits for its turn to write, as requests do. `knitcore doctor` reports the rest.
     """
     state = request.app.state
+    database: Database = state.database
     try:
         async with asyncio.timeout(PATIENCE_S):
-            report = await asyncio.to_thread(examine, state.settings, state.database, state.cluster)
+            report = await run_in_threadpool(examine, state.settings, database, state.cluster)
+            for check in report.failed:
+                if check.name in NEEDED:
+                    raise NotReadyError(check.problem or check.name, remedy=check.remedy)
+            await asyncio.to_thread(Tokens(database).find, identifier="")
+            await database.written(lambda _: None)
     except TimeoutError:
-        raise NotReadyError("The database or the cluster does not answer.") from None
-    for check in report.failed:
-        if check.name in NEEDED:
-            raise NotReadyError(check.problem or check.name, remedy=check.remedy)
+        raise NotReadyError(
+            "The database, the cluster or a thread of the service does not answer."
+        ) from None
     return Readiness(checks={check.name: check.ok for check in report.checks})
 
 

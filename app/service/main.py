@@ -35,7 +35,8 @@ from .limits.user_limits import USER_LIMITS, ConcurrencyLimit
 from .problems import PROBLEM_RESPONSES, StoreError
 from .settings import Settings
 from .store.database import Database
-from .store.schema import migrate
+from .store.material_store import MaterialStore
+from .store.schema import prepare
 from .web.errors import install_problem_handlers
 from .web.observing import Metrics, Observer, configure_logging
 from .web.page import serve_page
@@ -80,7 +81,9 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.backs = set()  # tasks that draw the backs of cloths
     app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
     app.state.recent = RecentResults()
-    app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
+    app.state.answers = Answers(
+        app.state.compute, app.state.recent, chosen.folder, MaterialStore(app.state.database)
+    )
     app.state.viewer_page = relay.viewer_page()
     job_store = JobStore(app.state.database, chosen.process_name)
     app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
@@ -218,7 +221,7 @@ def _most_each(settings: Settings) -> int | None:
 def _open_database(settings: Settings) -> Database:
     settings.make_folder()
     database = Database(settings.store_url)
-    migrate(database)
+    prepare(database, settings.folder)
     return database
 
 

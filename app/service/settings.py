@@ -14,6 +14,7 @@ from pydantic import Field, IPvAnyNetwork, SecretStr
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
+    SecretsSettingsSource,
     SettingsConfigDict,
     TomlConfigSettingsSource,
 )
@@ -22,7 +23,9 @@ from knitcore.base.errors import InputError
 
 from .memory import machine_bytes
 
-OTHERS = ("CONFIG", "STUDY_DATA", "WORKER_NICENESS")
+SECRETS = Path("/run/secrets")
+"""Folder in which container engines put secrets."""
+OTHERS = ("CONFIG", "SECRETS_DIR", "STUDY_DATA", "WORKER_NICENESS")
 OF_TESTS = ("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES")
 """Variables of the environment that are no settings."""
 
@@ -59,6 +62,9 @@ class Settings(BaseSettings):
     )
     database_url: SecretStr | None = Field(
         None, description="postgresql+psycopg://…; an SQLite file in the data folder otherwise."
+    )
+    database_password: SecretStr | None = Field(
+        None, description="Password of the database, where its URL has none."
     )
     log_format: Literal["text", "json"] = Field(
         "text", description="Log lines for people, or one JSON object per line."
@@ -111,16 +117,18 @@ class Settings(BaseSettings):
         dotenv_settings: PydanticBaseSettingsSource,
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
-        """Given values come first, then the environment, then the file.
+        """Given values come first, then the environment, then secrets, then the file.
 
         Raises
         ------
         InputError
-            If the file that KNITCORE_CONFIG names does not exist, or is not TOML.
+            If the file that KNITCORE_CONFIG names does not exist, or is not TOML; or there is no
+            folder that KNITCORE_SECRETS_DIR names.
         """
+        first = init_settings, env_settings, *_secrets(settings_cls)
         named = os.environ.get("KNITCORE_CONFIG")
         if named is None:
-            return init_settings, env_settings
+            return first
         file = Path(named)
         try:
             source = TomlConfigSettingsSource(settings_cls, file)
@@ -133,7 +141,7 @@ class Settings(BaseSettings):
                 f"{file} is not a TOML file.",
                 "Name a file with lines: port = 8737",
             )
-        return init_settings, env_settings, source
+        return *first, source
 
     @cached_property
     def is_loopback(self) -> bool:
@@ -173,7 +181,12 @@ class Settings(BaseSettings):
                 "names a database that is not supported.",
                 "Use postgresql+psycopg://user:password@host/name, or leave it out.",
             )
-        return url
+        if self.database_password is None:
+            return url
+        from sqlalchemy import make_url  # a command without a database is spared it
+
+        known = make_url(url).set(password=self.database_password.get_secret_value())
+        return known.render_as_string(hide_password=False)
 
     def make_folder(self) -> None:
         """Make the data folder if the database is a file in it.
@@ -214,6 +227,17 @@ class Settings(BaseSettings):
         if self.token is not None and len(self.token.get_secret_value().strip()) < 16:
             raise InputError("token", "is too short.", "Use at least 16 characters.")
         return self
+
+
+def _secrets(settings: type[BaseSettings]) -> tuple[SecretsSettingsSource, ...]:
+    """Files that are named after settings, such as ``knitcore_token``: secrets of a container."""
+    named = os.environ.get("KNITCORE_SECRETS_DIR")
+    folder = Path(named or SECRETS)
+    if folder.is_dir():
+        return (SecretsSettingsSource(settings, secrets_dir=folder),)
+    if named:
+        raise InputError("KNITCORE_SECRETS_DIR", f"{folder} is not a folder.", "Name one.")
+    return ()
 
 
 def _check_names(environment: Mapping[str, str]) -> None:

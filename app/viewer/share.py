@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 from pydantic import Field
@@ -10,7 +9,7 @@ from pydantic import Field
 from knitcore.chart.stitch_chart import check_stitches
 from knitcore.garment.shaped import outline_marks
 
-from ..context import Context
+from ..context import Context, Supplies
 from ..drawing.computed import PosedView, StretchView
 from ..drawing.design_view import StretchStep, ViewRequest, build_scene
 from ..drawing.fabric import MAX_SOLID, FabricScene, solid_glb
@@ -89,26 +88,38 @@ Computed = StretchView | PosedView | None
 
 
 def shared_page(
-    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest,
+    computed: Computed,
+    supplies: Supplies,
+    *,
+    cancelled: Callable[[], bool],
 ) -> bytes:
     """A page that needs neither the service nor the network, and plays the steps if there are
     several."""
-    with _recorded(request, computed, Context(data_dir, cancelled=cancelled)) as serializer:
+    with _recorded(request, computed, supplies.context(cancelled=cancelled)) as serializer:
         page: str = serializer.as_html(dark_mode=request.dark)
     return with_scripts(page, PAGE_POLICY).encode()
 
 
 def shared_recording(
-    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest,
+    computed: Computed,
+    supplies: Supplies,
+    *,
+    cancelled: Callable[[], bool],
 ) -> bytes:
     """A ``.viser`` recording."""
-    with _recorded(request, computed, Context(data_dir, cancelled=cancelled)) as serializer:
+    with _recorded(request, computed, supplies.context(cancelled=cancelled)) as serializer:
         content: bytes = serializer.serialize()
     return content
 
 
 def shared_solid(
-    request: SharedViewRequest, computed: Computed, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: SharedViewRequest,
+    computed: Computed,
+    supplies: Supplies,
+    *,
+    cancelled: Callable[[], bool],
 ) -> bytes:
     """The yarn as binary glTF.
 
@@ -118,20 +129,20 @@ def shared_solid(
         If there are too many stitches for a solid of use.
     """
     _check_size(request, MAX_SOLID)
-    return solid_glb(build_scene(request, computed, Context(data_dir, cancelled=cancelled)))
+    return solid_glb(build_scene(request, computed, supplies.context(cancelled=cancelled)))
 
 
 def shared_still(
     request: ViewRequest,
     computed: Computed,
-    data_dir: Path,
+    supplies: Supplies,
     width: int,
     height: int,
     *,
     cancelled: Callable[[], bool],
 ) -> bytes:
     """A picture without background, with this many pixels: a PNG."""
-    scene = build_scene(request, computed, Context(data_dir, cancelled=cancelled))
+    scene = build_scene(request, computed, supplies.context(cancelled=cancelled))
     return still_png(scene, width, height)
 
 

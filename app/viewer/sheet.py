@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageFilter
@@ -12,7 +11,7 @@ from knitcore.draw.body import Floats
 from knitcore.draw.placing import mean_sizes_mm
 from knitcore.draw.tubes import resampled
 
-from ..context import Context
+from ..context import Supplies
 from ..drawing.colours import linear
 from ..drawing.computed import PosedView, StretchView
 from ..drawing.design_view import ViewRequest, build_scene
@@ -42,22 +41,22 @@ def looks_even(scene: FabricScene) -> bool:
 
 
 def build_drawing(
-    request: ViewRequest, data_dir: Path, *, cancelled: Callable[[], bool]
+    request: ViewRequest, supplies: Supplies, *, cancelled: Callable[[], bool]
 ) -> tuple[Drawing, Picture | None]:
     """Draw a large chart, which has no stretch test or shape, and its face; runs in a worker."""
-    scene = build_scene(request, None, Context(data_dir, cancelled=cancelled))
+    scene = build_scene(request, None, supplies.context(cancelled=cancelled))
     return scene.drawing(), sheet_picture(scene)
 
 
 def build_back(
     request: ViewRequest,
     computed: StretchView | PosedView | None,
-    data_dir: Path,
+    supplies: Supplies,
     *,
     cancelled: Callable[[], bool],
 ) -> Picture | None:
     """Draw the back of a design; runs in a worker."""
-    scene = build_scene(request, computed, Context(data_dir, cancelled=cancelled))
+    scene = build_scene(request, computed, supplies.context(cancelled=cancelled))
     return sheet_picture(scene, back=True)
 
 

@@ -61,8 +61,8 @@ def rows_by_label(table: pd.DataFrame, column: str, default: str) -> dict[str, I
     """
     if column not in table:
         return {default: np.arange(len(table))}
-    labels = table[column].fillna("").str.strip().to_numpy(dtype=str)
-    return {label: np.flatnonzero(labels == label) for label in dict.fromkeys(labels.tolist())}
+    groups = table.groupby(table[column].fillna("").str.strip(), sort=False)
+    return {str(label): np.asarray(rows) for label, rows in groups.indices.items()}
 
 
 def numbers(where: str, values: Sequence[object] | pd.Series, first_row: int = 2) -> Array:

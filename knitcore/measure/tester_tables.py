@@ -152,7 +152,10 @@ def _sheets(path: Path, notes: list[str]) -> Iterator[tuple[str, Rows]]:
         separator, lines[0] = named.group(1), ""
     separator = separator or _separator(lines)
     if separator:
-        rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
+        try:
+            rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
+        except csv.Error as error:
+            raise InputError(path.name, f"is not CSV ({error}).", "Save it as CSV again.") from None
     else:
         rows = [re.split(r"\s{2,}", line.strip()) for line in lines]
         if max(map(len, rows), default=0) < 2:

@@ -16,7 +16,10 @@ MAX_UNPACKED_BYTES = 256 * 2**20
 MAX_SHEETS = 200
 MAX_ROWS = 500_000
 MAX_COLUMNS = 200
-MAX_CELLS = 3_000_000
+MAX_CELLS = 400_000
+"""Cells of all sheets; reading so many takes some 10 s."""
+MAX_TAGS = 4 * MAX_CELLS
+"""Tags in the parts of a workbook: four for each cell. They are counted before any part is read."""
 MAX_EMPTY_ROWS = 1000
 """Longest gap of empty rows inside a sheet; a stray cell far below is ignored."""
 _XLS = bytes.fromhex("d0cf11e0a1b11ae1")
@@ -85,6 +88,13 @@ def _xlsx_sheets(path: Path) -> Iterator[tuple[str, Iterable[Sequence[Any]]]]:
     with zipfile.ZipFile(path) as packed:
         if sum(part.file_size for part in packed.infolist()) > MAX_UNPACKED_BYTES:
             raise _too_large(path)
+        tags = 0
+        for part in packed.infolist():
+            with packed.open(part) as stream:
+                while chunk := stream.read(2**20):
+                    tags += chunk.count(b"<")
+                    if tags > MAX_TAGS:
+                        raise _too_large(path)
     with path.open("rb") as file:  # which has another name than a workbook's, at times
         book = load_workbook(file, read_only=True, data_only=True, keep_links=False)
         try:

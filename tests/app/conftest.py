@@ -10,7 +10,7 @@ from app.context import Context
 from app.service.store.database import Database
 from app.service.store.tables import metadata
 from tests.app.clients import served
-from tests.app.databases import opened, postgres, postgres_programs
+from tests.app.databases import empty, opened, postgres, postgres_programs
 
 
 @pytest.fixture(scope="session")
@@ -64,8 +64,22 @@ def postgres_database(postgres_url: str) -> Iterator[Database]:
                 connection.execute(table.delete())
 
 
-@pytest.fixture(params=["sqlite", pytest.param("postgres", marks=pytest.mark.postgres)])
+BOTH = ["sqlite", pytest.param("postgres", marks=pytest.mark.postgres)]
+"""The same tests on both databases; ``make test-hard`` runs those on PostgreSQL."""
+
+
+@pytest.fixture(params=BOTH)
 def database(request: pytest.FixtureRequest) -> Database:
-    """The same tests on both databases; ``make test-hard`` runs those on PostgreSQL."""
+    """An empty database with its tables."""
     database: Database = request.getfixturevalue(f"{request.param}_database")
     return database
+
+
+@pytest.fixture(params=BOTH)
+def place(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Path | str]:
+    """Where there is no database yet: a folder, or the URL of an empty one."""
+    if request.param == "sqlite":
+        yield tmp_path
+    else:
+        with empty(request.getfixturevalue("postgres_url")) as url:
+            yield url

@@ -2,11 +2,14 @@
 
 import contextlib
 import os
+import secrets
 import shutil
 import sqlite3
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+
+from sqlalchemy import create_engine, text
 
 from app.service.store.database import Database
 from app.service.store.schema import migrate
@@ -22,6 +25,21 @@ def opened(place: Path | str, *, migrated: bool = True) -> Iterator[Database]:
         if migrated:
             migrate(database)
         yield database
+
+
+@contextlib.contextmanager
+def empty(url: str) -> Iterator[str]:
+    """The URL of an empty database of its own on the server at a URL."""
+    name = f"knit_{secrets.token_hex(6)}"
+    server = create_engine(url, isolation_level="AUTOCOMMIT")
+    try:
+        with server.connect() as connection:
+            connection.execute(text(f"CREATE DATABASE {name}"))
+        yield url.replace("/postgres?", f"/{name}?")
+        with server.connect() as connection:
+            connection.execute(text(f"DROP DATABASE {name} WITH (FORCE)"))
+    finally:
+        server.dispose()
 
 
 @contextlib.contextmanager

@@ -127,7 +127,7 @@ def killed_in_the_middle(kind: str, run: Any, *job: Any, progress: Any, **option
         os.kill(os.getpid(), signal.SIGKILL)
         return False
 
-    model, request, data_dir = job
+    model, request, supplies = job
     decoded = read(model, request) if isinstance(request, bytes) else request
-    run(decoded, Context(data_dir, cancelled=kill))
+    run(decoded, supplies.context(cancelled=kill))
     return kill()

@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
+from knitcore.cloth.cut import CutPiece
 from knitcore.cloth.cut.standard_tests import bias_test, biaxial_test, trellis_test
 
 from ...context import Context
@@ -26,6 +27,10 @@ class BiasRequest(PieceTestRequest):
         le=180,
         description="Angle from the width to the rows: 0 pulls along columns, 90 along rows.",
     )
+
+    def cut(self) -> CutPiece:
+        """The rectangle that is tested."""
+        return CutPiece.rectangle(self.width_mm, self.length_mm)
 
 
 class BiasResult(PieceTestResult):
@@ -50,6 +55,10 @@ class BiaxialRequest(PieceTestRequest):
     width_mm: Size = Field(100.0, description="Length along x.")
     length_mm: Size = Field(100.0, description="Length along y.")
     grain_deg: float = Field(0.0, ge=-180, le=180, description="Angle from the x axis to the rows.")
+
+    def cut(self) -> CutPiece:
+        """The rectangle that is tested."""
+        return CutPiece.rectangle(self.width_mm, self.length_mm)
 
 
 class BiaxialResult(PieceTestResult):
@@ -77,6 +86,10 @@ class TrellisRequest(PieceTestRequest):
         0.0, ge=-180, le=180, description="Angle from a bar of the frame to the rows."
     )
 
+    def cut(self) -> CutPiece:
+        """The square that is tested."""
+        return CutPiece.rectangle(self.side_mm, self.side_mm)
+
 
 class TrellisResult(PieceTestResult):
     """A simulated trellis (picture frame) test."""
@@ -91,20 +104,18 @@ class TrellisResult(PieceTestResult):
 
 def bias(request: BiasRequest, context: Context) -> BiasResult:
     """Force and waist of a strip cut at an angle, on the bias by default."""
-    size = request.width_mm, request.length_mm
-    return BiasResult.of_pull(*request.pull(bias_test, size, context))
+    return BiasResult.of_pull(*request.pull(bias_test, context))
 
 
 def biaxial(request: BiaxialRequest, context: Context) -> BiaxialResult:
     """Forces on the edges of a rectangle that is pulled in both directions."""
-    size = request.width_mm, request.length_mm
-    return BiaxialResult.of_pull(*request.pull(biaxial_test, size, context))
+    return BiaxialResult.of_pull(*request.pull(biaxial_test, context))
 
 
 def trellis(request: TrellisRequest, context: Context) -> TrellisResult:
     """Force of a hinged frame that shears a square."""
-    size, angle = (request.side_mm, request.side_mm), math.radians(request.angle_deg)
-    test, material = request.pull(trellis_test, size, context, shear_angle=angle)
+    angle = math.radians(request.angle_deg)
+    test, material = request.pull(trellis_test, context, shear_angle=angle)
     return TrellisResult.of_pull(test, material, angle_deg=np.degrees(test.shear_angle))
 
 

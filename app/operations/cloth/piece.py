@@ -10,7 +10,7 @@ import click
 from pydantic import Field, ValidationError
 
 from knitcore.base.errors import InputError
-from knitcore.cloth.cut import PieceTest, cloth_under, solve
+from knitcore.cloth.cut import CutPiece, PieceTest, cloth_under, solve
 from knitcore.cloth.cut.cut_results import SUFFIXES
 from knitcore.cloth.cut.cut_uncertainty import piece_spreads
 from knitcore.materials import Material
@@ -30,6 +30,10 @@ class PieceRequest(PieceTestRequest):
 
     piece: Annotated[PieceInput, CheckedBy(lambda cut, _: cut.piece())]
     fields: bool = Field(False, description="Return the final shape and strains too.")
+
+    def cut(self) -> CutPiece:
+        """The piece that is tested."""
+        return self.piece.piece()
 
 
 class LoadedEdge(ResultModel):
@@ -83,8 +87,8 @@ def piece(request: PieceRequest, context: Context) -> PieceResult:
 
 
 def _test(request: PieceRequest, material: Material, context: Context) -> PieceTest:
-    cut = request.piece.piece()
-    request.check(cut, context)
+    request.check_parts(context)
+    cut = request.cut()
     cloth = request.pass_to(cloth_under, cut, to_repeat(request.chart), material)
     control = {"progress": context.progress, "cancelled": context.cancelled}
     return request.pass_to(solve, cut, cloth, request.piece.loads(), **control)

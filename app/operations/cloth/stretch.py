@@ -76,6 +76,23 @@ class StretchRequest(GaugedRequest):
         None, ge=1, le=10_000, description="Size wale-wise; from the gauge by default."
     )
 
+    def check_parts(self, context: Context) -> None:
+        """Refuse a test without one load, or one that is too large for the service."""
+        if self.strain is None and self.force_n is None:
+            raise InputError("strain", "is missing.", "Give a strain or a force.")
+        if self.strain is not None and self.force_n is not None:
+            raise InputError("force_n", "strain is given as well.", "Give one of the two.")
+        stitches = to_chart(self.chart).stitches
+        if context.local:
+            return
+        check_stitches(stitches, MAX_STITCHES, instead=", or the command line")
+        if stitches * self.steps > MAX_VALUES:
+            raise InputError(
+                "steps",
+                f"{self.steps} are too many here for a chart of this size.",
+                f"Use at most {MAX_VALUES // stitches}, or the command line.",
+            )
+
 
 StitchValues = list[list[float]]
 StitchEnds = tuple[StitchValues, StitchValues]
@@ -148,13 +165,6 @@ def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:
     A test that was run a short while ago is returned from memory.
     """
     chart = to_chart(request.chart)
-    check_stitches(chart.stitches, MAX_STITCHES, instead=", or the command line")
-    if chart.stitches * request.steps > MAX_VALUES:
-        raise InputError(
-            "steps",
-            f"{request.steps} are too many here for a chart of this size.",
-            f"Use at most {MAX_VALUES // chart.stitches}, or the command line.",
-        )
     test, margins = _test(chart, request, context)
     return _stitches(chart, request, test, margins)
 
@@ -162,6 +172,7 @@ def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:
 def _test(
     chart: StitchChart, request: StretchRequest, context: Context
 ) -> tuple[StripTest, StretchMargins]:
+    request.check_parts(context)
     material = context.material(request.material)
     total = request.steps + len(sampled_steps(request.steps))
     sheet = request.pass_to(
@@ -191,15 +202,9 @@ def _test(
 
 def _last_strain(sheet: Sheet, request: StretchRequest, context: Context) -> float:
     """The strain that is asked for, or at which the clamps hold the force that is."""
-    match request.strain, request.force_n:
-        case float(strain), None:
-            return strain
-        case None, float():
-            return request.pass_to(strain_at_force, sheet, cancelled=context.cancelled)
-        case None, None:
-            raise InputError("strain", "is missing.", "Give a strain or a force.")
-        case _:
-            raise InputError("force_n", "strain is given as well.", "Give one of the two.")
+    if request.strain is not None:
+        return request.strain
+    return request.pass_to(strain_at_force, sheet, cancelled=context.cancelled)
 
 
 def _curve(request: StretchRequest, test: StripTest, margins: StretchMargins) -> StretchCurve:

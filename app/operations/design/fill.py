@@ -115,6 +115,16 @@ class FillRequest(LawsRequest):
         "differs. Parts are judged by what is predicted for them.",
     )
 
+    def check_parts(self, context: Context) -> None:
+        """Refuse maps or targets of parts that do not go together, or are too large for the service."""
+        size = _targets(self)[0].size
+        if size > MAX_STITCHES and not context.local:
+            raise InputError(
+                "rows" if self.targets else MAPS[0],
+                f"{size} stitches are too many here.",
+                f"Use at most {MAX_STITCHES}, or the command line.",
+            )
+
 
 class PatchResult(ResultModel):
     """A region of one repeat."""
@@ -227,13 +237,8 @@ def fill(request: FillRequest, context: Context) -> FillResult:
     InputError
         If the maps or the targets of parts cannot be used, or are too large here.
     """
+    request.check_parts(context)
     targets = _targets(request)
-    if targets[0].size > MAX_STITCHES:
-        raise InputError(
-            "rows" if request.targets else MAPS[0],
-            f"{targets[0].size} stitches are too many here.",
-            f"Use at most {MAX_STITCHES}, or the command line.",
-        )
     atlas = context.within(0.0, 0.3).atlas(request.material, request.repeats)
     return _filled(request, targets, atlas, context.within(0.3, 0.7))
 

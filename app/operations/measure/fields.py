@@ -75,6 +75,18 @@ class CompareRequest(FieldRequest, LawsRequest):
     edges: Edges = Edges.MEASURED
     model: EnergyModel = EnergyModel.FULL
 
+    def check_parts(self, context: Context) -> None:
+        """Refuse anything but one law."""
+        del context
+        if self.law is not None:
+            if self.material is not None:
+                raise InputError("law", "material is given as well.", "Give one of the two.")
+        elif self.material is None:
+            remedy = "Give a material and a fabric, or a law file."
+            raise InputError("material", "is missing.", remedy)
+        elif self.fabric is None:
+            raise InputError("fabric", "is missing.", "Name the fabric of the material.")
+
 
 class CompareResult(ResultModel):
     """Errors of each frame, in the order of the stretch."""
@@ -135,17 +147,13 @@ def compare(request: CompareRequest, context: Context) -> CompareResult:
 
 def _law_and_model(request: CompareRequest, context: Context) -> tuple[ConstitutiveLaw, SheetModel]:
     """The law of a file, or of a fabric of a material, and the model."""
+    request.check_parts(context)
     model = SheetModel(request.model)
-    if request.law is not None and request.material is None:
-        with stored([request.law]) as (path,):
-            return load_law(path).law, model
-    if request.law is not None:
-        raise InputError("law", "material is given as well.", "Give one of the two.")
-    if request.material is None:
-        raise InputError("material", "is missing.", "Give a material and a fabric, or a law file.")
-    if request.fabric is None:
-        raise InputError("fabric", "is missing.", "Name the fabric of the material.")
-    return context.material(request.material).law(request.fabric), model
+    if request.material is not None and request.fabric is not None:
+        return context.material(request.material).law(request.fabric), model
+    files = [] if request.law is None else [request.law]
+    with stored(files) as (path,):
+        return load_law(path).law, model
 
 
 def calibrate(request: CalibrateRequest, context: Context) -> CalibrateResult:

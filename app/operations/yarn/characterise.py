@@ -91,6 +91,14 @@ class CharacteriseRequest(CharacteriseOptions):
             raise ValueError("material and yarn are both given; give one of them")
         return self
 
+    def used(self, context: Context) -> Material | YarnInput | None:
+        """The yarn that is characterised."""
+        return self.yarn if self.material is None else context.material(self.material)
+
+    def check_parts(self, context: Context) -> None:
+        """Refuse options that do not apply to the yarn."""
+        _plan(self.used(context), self)
+
 
 class YarnsRequest(CharacteriseOptions):
     """Yarns of the command line, characterised together."""
@@ -178,9 +186,8 @@ class YarnsResult(RootModel[list[CharacteriseResult]]):
 
 def characterise(request: CharacteriseRequest, context: Context) -> CharacteriseResult:
     """Every fabric is relaxed at every loop length and stretched both ways."""
-    yarn = request.yarn if request.material is None else context.material(request.material)
     (table,) = characterise_yarns(
-        [_plan(yarn, request)],
+        [_plan(request.used(context), request)],
         workers=1,
         progress=lambda at: context.progress(at.done, at.total),
         cancelled=context.cancelled,

@@ -32,7 +32,6 @@ from ...requests.base import (
 from ...requests.charts import MaterialName
 from ...requests.fabrics import ElasticConstants, Extensibility, LawResult, Moduli, law_fields
 from ...service.identity import current_user
-from ...service.results.own_materials import added_by, own_materials
 from ..registry import Command, Operation
 
 CURVE_POINTS = 60
@@ -232,11 +231,11 @@ def materials(request: NoRequest, context: Context) -> Materials:
     """The user's own materials, the paper's yarns and their variants, and those of extensions."""
     del request
     library = {**load_library(), **load_variants(), **offered_materials()}
-    known = {**own_materials(context.data_dir), **library}
-    yours = added_by(current_user.get(), context.data_dir)
+    own = context.own.listed(current_user.get())
     return Materials(
         materials=[
-            summary(material, added_by_you=name in yours) for name, material in known.items()
+            *(summary(material, added_by_you=yours) for material, yours in own),
+            *(summary(material, added_by_you=False) for material in library.values()),
         ]
     )
 

@@ -6,14 +6,16 @@ from collections.abc import AsyncGenerator
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Request, Response
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
-from ..compute.compute import Compute
+from ..compute.answers import Answers
 from ..designs.conditions import ConflictError
 from ..designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
 from ..jobs.document import JobPage, JobState, JobStatus
-from ..jobs.kinds import JobRequest, JobResult, read_job
+from ..jobs.kinds import JobRequest, JobResult, accepted, read_job
 from ..jobs.runner import JobRunner
+from ..limits.fair_queue import FairLock
 from ..problems import NotFoundError, Problem
 from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
 from ..web.events import event_stream, stream_of
@@ -45,11 +47,16 @@ async def post_job(
 ) -> JobStatus:
     """Queue a job, which waits for its turn among all users. If the result is known, the job is
     done immediately."""
+    answers: Answers = request.app.state.answers
     if isinstance(body, Undecoded):
-        compute: Compute = request.app.state.compute
-        kind, text = await compute.run(request.is_disconnected, read_job, body.content)
+        supplies = await answers.supplies(body.content)
+        kind, text = await answers.compute.run(
+            request.is_disconnected, read_job, body.content, supplies
+        )
     else:
-        kind, text = body.kind, body.request.model_dump_json()
+        lock: FairLock = request.app.state.light_work
+        async with lock.turn(owner):
+            kind, text = await run_in_threadpool(accepted, body, answers.context())
     status = await runner.submit(owner, kind, text, retry(kind, text))
     response.headers["Location"] = f"/api/v1/jobs/{status.id}"
     return status

@@ -11,32 +11,32 @@ from ...context import Context
 from ...operations.yarn.materials import MaterialSummary, summary
 from ..designs.parameters import MISSING, Owner
 from ..problems import NotFoundError
-from ..results.own_materials import keep_material, remove_material
+from ..store.material_store import MaterialStore
 from ..web.bodies import BoundedRoute
 
 router = APIRouter(route_class=BoundedRoute, tags=["materials"], responses=MISSING)
 
 
-async def _context(request: Request) -> Context:
-    context: Context = request.app.state.answers.context()
-    return context
+async def _store(request: Request) -> MaterialStore:
+    return MaterialStore(request.app.state.database)
 
 
-Here = Annotated[Context, Depends(_context)]
+Here = Annotated[MaterialStore, Depends(_store)]
 Identifier = Annotated[str, Path(max_length=200, examples=["acrylic"])]
 
 
 @router.post("/materials", status_code=201, summary="Add a material of your own")
-async def post_material(body: MaterialDocument, owner: Owner, context: Here) -> MaterialSummary:
+async def post_material(body: MaterialDocument, owner: Owner, store: Here) -> MaterialSummary:
     """Add a material, or replace one of yours with the same identifier. Everybody on this service
     can use it."""
-    kept = await run_in_threadpool(keep_material, body, owner, context.data_dir)
+    kept = await run_in_threadpool(store.keep, body, owner)
     return summary(kept, added_by_you=True)
 
 
 @router.get("/materials/{identifier}/document", summary="A material as a file")
-async def get_material_document(identifier: Identifier, context: Here) -> MaterialDocument:
+async def get_material_document(identifier: Identifier, request: Request) -> MaterialDocument:
     """Return a material as a file, which `knitcore` reads and which you can add as your own."""
+    context: Context = request.app.state.answers.context()
     material = await run_in_threadpool(context.material, identifier)
     plain = material.identifier.removeprefix("own:").rpartition(".")
     document = MaterialDocument.from_material(material)
@@ -44,9 +44,9 @@ async def get_material_document(identifier: Identifier, context: Here) -> Materi
 
 
 @router.delete("/materials/{identifier}", status_code=204, summary="Remove a material of your own")
-async def delete_material(identifier: Identifier, owner: Owner, context: Here) -> None:
+async def delete_material(identifier: Identifier, owner: Owner, store: Here) -> None:
     """Remove a material. Designs that use it keep its name and ask for another one."""
-    if not await run_in_threadpool(remove_material, identifier, owner, context.data_dir):
+    if not await run_in_threadpool(store.remove, identifier, owner):
         raise NotFoundError(
             f"You added no material {identifier}.",
             field="identifier",

@@ -10,6 +10,7 @@ from ..designs.store import DesignStore
 from ..identity import current_session
 from ..limits.user_limits import USER_LIMITS, ConcurrencyLimit, Use
 from ..problems import NotFoundError, Problem
+from ..store.material_store import MaterialStore
 from ..web.security import OPENED_BY, SESSION_COOKIE
 from ..web.sessions import Login, Sessions, SignedIn
 
@@ -42,6 +43,7 @@ def _use(owner: str, state: Any) -> dict[str, Use]:
         "kept_bytes": kept_bytes,
         "versions": DesignStore(state.database).most_versions(owner),
         "links": Sharing(state.database).most_given(owner),
+        "materials": MaterialStore(state.database).count(owner),
         "job_bytes": state.jobs.store.kept_bytes(owner),
     }
     return {name: Use(used=value, most=getattr(USER_LIMITS, name)) for name, value in used.items()}

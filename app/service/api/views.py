@@ -94,7 +94,8 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
     made: tuple[Drawing, Picture | None] | None = None
     if computed is None and is_large(body):
-        made = await _by_worker(request, build_drawing, body, context.data_dir)
+        supplies = await state.answers.supplies(body)
+        made = await _by_worker(request, build_drawing, body, supplies)
 
     def draw() -> tuple[Drawing, Picture | None, ViewResult]:
         if made is None:
@@ -137,9 +138,9 @@ async def _show_back(
     if await changed():
         return
     compute: Compute = state.compute
-    data_dir = state.answers.context().data_dir
     try:
-        picture = await compute.run(changed, build_back, body, computed, data_dir, background=True)
+        supplies = await state.answers.supplies(body)
+        picture = await compute.run(changed, build_back, body, computed, supplies, background=True)
     except ServiceError as error:  # its tubes are shown from behind
         log.info("the back of a cloth is not drawn: %s", error)
         return
@@ -241,8 +242,8 @@ async def post_still(
 
     Of a chart of more than 40,000 stitches only what the view draws as yarn.
     """
-    data_dir = request.app.state.answers.context().data_dir
-    draw = partial(shared_still, body, _computed(body, request), data_dir, width, height)
+    supplies = await request.app.state.answers.supplies(body)
+    draw = partial(shared_still, body, _computed(body, request), supplies, width, height)
     lock: FairLock = request.app.state.drawing
     if size_of_chart(body.chart) > MAX_STILL_HERE:
         content = await _by_worker(request, draw)
@@ -255,8 +256,8 @@ async def post_still(
 async def _shared(
     make: Callable[..., bytes], body: SharedViewRequest, request: Request, media: str, ending: str
 ) -> Response:
-    data_dir = request.app.state.answers.context().data_dir
-    content = await _by_worker(request, make, body, _computed(body, request), data_dir)
+    supplies = await request.app.state.answers.supplies(body)
+    content = await _by_worker(request, make, body, _computed(body, request), supplies)
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
 

@@ -1,5 +1,6 @@
 """Answers of operations: from memory, or computed by a worker."""
 
+import asyncio
 from collections import OrderedDict
 from collections.abc import Awaitable, Callable
 from functools import partial
@@ -8,9 +9,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from ...context import Context
+from ...context import Context, Supplies
 from ...operations.perform import Reply, perform
 from ...operations.registry import Operation
+from ..results.own_materials import named_in
+from ..store.material_store import MaterialStore
 from .compute import Compute
 
 MAX_RECENT_BYTES = 32_000_000
@@ -56,17 +59,28 @@ class Answers:
     ----------
     compute : where the work is done.
     recent : the latest answers, by the request's key.
-    data_dir : folder of own materials and kept results.
+    data_dir : folder of kept results.
+    materials : those of users.
     """
 
-    def __init__(self, compute: Compute, recent: RecentResults, data_dir: Path) -> None:
+    def __init__(
+        self, compute: Compute, recent: RecentResults, data_dir: Path, materials: MaterialStore
+    ) -> None:
         self.compute = compute
         self._recent = recent
         self._data_dir = data_dir
+        self._materials = materials
 
     def context(self) -> Context:
         """The context of operations that need no worker."""
-        return Context(self._data_dir)
+        return Context(self._data_dir, own=self._materials)
+
+    async def supplies(self, request: BaseModel | bytes) -> Supplies:
+        """Things that a worker gets with a request, or with JSON that it is to decode."""
+        sent = request if isinstance(request, bytes) else request.model_dump_json().encode()
+        names = named_in(sent)
+        documents = await asyncio.to_thread(self._materials.documents, names) if names else {}
+        return Supplies(self._data_dir, documents)
 
     def can_be_viewed(self, operation: Operation[Any, Any], request: str) -> bool:
         """Return whether the result's data for the 3D view are in memory; True if it has none.
@@ -100,7 +114,7 @@ class Answers:
             return known
         earlier: Reply | None = self._recent.get(getattr(request, "after", None) or "")
         job = partial(perform, before=earlier and earlier.view)
-        args = operation.run, operation.request, request, self._data_dir
+        args = operation.run, operation.request, request, await self.supplies(request)
         answer: Reply = await self.compute.run(abandoned, job, *args, **turn)
         self._recent.put(answer.key or key, answer, answer.size_bytes)
         return answer

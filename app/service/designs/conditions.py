@@ -148,5 +148,5 @@ def once(
 
 def forget_old_keys(database: Database) -> None:
     """Drop keys after a day."""
-    old = idempotency_keys.c.created_at < now() - KEPT_S
+    old = idempotency_keys.c.created_at < database.clock - KEPT_S
     database.write(lambda connection: connection.execute(idempotency_keys.delete().where(old)))

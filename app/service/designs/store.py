@@ -149,9 +149,8 @@ class DesignStore:
             row = find_design(connection, owner, design, change=True)
             if if_match is not None:
                 check_match(if_match, row.revision)
-            connection.execute(
-                update(designs).where(designs.c.id == design).values(deleted_at=now())
-            )
+            put_aside = {"deleted_at": self._database.clock}
+            connection.execute(update(designs).where(designs.c.id == design).values(put_aside))
 
         self._database.write(action)
 
@@ -214,7 +213,7 @@ class DesignStore:
 
     def forget_deleted(self) -> int:
         """Remove designs that were deleted 30 days ago for good; returns their number."""
-        gone = designs.delete().where(designs.c.deleted_at < now() - DELETED_KEPT_S)
+        gone = designs.delete().where(designs.c.deleted_at < self._database.clock - DELETED_KEPT_S)
         return self._database.write(lambda connection: connection.execute(gone).rowcount)
 
     def _change(

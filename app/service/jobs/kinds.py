@@ -1,7 +1,6 @@
 """Operations that run in the background because they may take longer than a page should wait."""
 
 import hashlib
-import threading
 from collections.abc import Callable
 from functools import reduce
 from operator import or_
@@ -12,14 +11,14 @@ from pydantic import Discriminator, Field, create_model
 from knitcore.base.extensions import Group, extensions
 from knitcore.yarn.library import fingerprint
 
+from ...context import Context, Supplies
 from ...operations.registry import Operation, operations
 from ...requests.base import RequestModel, ResultModel, read
+from ...requests.faults import check_all
 
 KINDS: dict[str, Operation[Any, Any]] = {
     name: operation for name, operation in operations().items() if operation.job
 }
-_reading = threading.Lock()
-"""Held while the program's sources are read, which many jobs at once would all do."""
 
 
 class JobOf(RequestModel):
@@ -56,19 +55,31 @@ def job_key(kind: str, request: str) -> str:
     The first one takes half a second.
     """
     digest = hashlib.sha256(request.encode()).hexdigest()  # a file's megabytes are hashed once
-    with _reading:
-        packages = [extension.package for extension in extensions(Group.MATERIALS)]
-        content = {"kind": kind, "request": digest, "packages": packages}
-        return fingerprint.content_key(content, (KINDS[kind].run.__module__,))
+    packages = [extension.package for extension in extensions(Group.MATERIALS)]
+    content = {"kind": kind, "request": digest, "packages": packages}
+    return fingerprint.content_key(content, (KINDS[kind].run.__module__,))
 
 
-def read_job(content: bytes, *, cancelled: Callable[[], bool]) -> tuple[str, str]:
+def read_job(
+    content: bytes, supplies: Supplies, *, cancelled: Callable[[], bool]
+) -> tuple[str, str]:
     """Kind and request, as JSON, of a job that somebody asks for; a worker reads a large one.
 
     Raises
     ------
-    InvalidRequestError
+    InvalidRequestError, InputError
     """
-    del cancelled
     job = read(JobRequest, content)
+    return accepted(job, supplies.context(cancelled=cancelled))
+
+
+def accepted(job: JobOf, context: Context) -> tuple[str, str]:
+    """Kind and request, as JSON, of a job that its operation accepts.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong.
+    """
+    check_all(job.request, context)
     return job.kind, job.request.model_dump_json()

@@ -56,6 +56,7 @@ class JobRunner:
         self.timeout_s = timeout_s
         self._runs: dict[str, _Run] = {}
         self._stopping = False
+        self._reading = asyncio.Lock()
         self._heart: asyncio.Task[None] | None = None
 
     async def resume(self) -> None:
@@ -73,7 +74,7 @@ class JobRunner:
         OverLimitError
             If too many jobs of this owner wait.
         """
-        key = await asyncio.to_thread(job_key, kind, request)
+        key = await self._key_of(kind, request)
         known = await asyncio.to_thread(self.store.knows, key) and await asyncio.to_thread(
             self._answers.can_be_viewed, KINDS[kind], request
         )
@@ -89,6 +90,12 @@ class JobRunner:
         if not known:
             self._start(status.id, owner, kind, request)
         return status
+
+    async def _key_of(self, kind: str, request: str) -> str:
+        """The key of a job's result, made by one thread: the first one reads the program's sources,
+        and jobs that waited for it in threads would leave none to others."""
+        async with self._reading:
+            return await asyncio.to_thread(job_key, kind, request)
 
     async def again(self, owner: str, job: str) -> JobStatus:
         """Run the same job again."""
@@ -195,7 +202,7 @@ class JobRunner:
                 timeout_s=self.timeout_s,
                 on_share=on_share,
             )
-            key = await asyncio.to_thread(job_key, kind, request)
+            key = await self._key_of(kind, request)
             await self._keep(lambda: self.store.finish(job, kind, key, answer.body))
             log.info("job done", extra=extra)
         except asyncio.CancelledError:

@@ -287,7 +287,8 @@ class JobStore:
         """Delete old jobs, and the longest unused results beyond a size."""
 
         def action(connection: Connection) -> None:
-            connection.execute(jobs.delete().where(jobs.c.finished_at < now() - KEPT_S))
+            old = jobs.c.finished_at < self._database.clock - KEPT_S
+            connection.execute(jobs.delete().where(old))
             newest = func.sum(results.c.size_bytes).over(
                 order_by=(results.c.used_at.desc(), results.c.key)
             )

@@ -85,6 +85,7 @@ class UserLimits:
     designs : designs kept, deleted ones included.
     versions : versions kept of one design.
     links : open links to one design.
+    materials : yarns of one's own.
     kept_bytes : designs and their versions together.
     job_bytes : requests of jobs, together; those that ended the longest ago make room.
     body_bytes : bodies of requests that are open, together.
@@ -104,6 +105,7 @@ class UserLimits:
     designs: int = 5_000
     versions: int = 500
     links: int = 100
+    materials: int = 40
     kept_bytes: int = 1_000_000_000
     job_bytes: int = 200_000_000
     body_bytes: int = 128_000_000

@@ -73,6 +73,9 @@ class Backend(ABC):
         StoreError, SQLAlchemyError
         """
 
+    def take_turns(self, connection: Connection, name: str) -> None:  # noqa: B027 - one writer
+        """Let other transactions of this name wait until this one ends."""
+
     def check_writable(self) -> None:  # noqa: B027
         """Do the same before each change, without a question to the server."""
 

@@ -18,9 +18,9 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from knitcore.base.errors import InputError
 
-from ..results.own_materials import KINDS
 from .database import Database
-from .schema import migrate, revision
+from .material_store import FOLDER
+from .schema import migrate, prepare, revision
 from .tables import metadata
 
 FORMAT = "knitcore-backup"
@@ -45,12 +45,8 @@ class BackupReport(BaseModel):
         return f"{self.file}: {', '.join(f'{n} {name}' for name, n in self.tables.items())}"
 
 
-def back_up(database: Database, file: Path, materials: Path | None = None) -> BackupReport:
+def back_up(database: Database, file: Path) -> BackupReport:
     """Write everything that must not be lost to a new file, while the service runs.
-
-    Parameters
-    ----------
-    materials : folder of the user's own materials, which are included.
 
     Raises
     ------
@@ -83,10 +79,6 @@ def back_up(database: Database, file: Path, materials: Path | None = None) -> Ba
                         out.write(json.dumps({"table": table.name, "row": dict(row._mapping)}))
                         out.write("\n")
                         counts[table.name] += 1
-                for own in _files(materials):
-                    content = own.read_text(encoding="utf-8")
-                    out.write(json.dumps({"material": own.name, "content": content}) + "\n")
-                    counts[OWN] = counts.get(OWN, 0) + 1
                 out.write(json.dumps({"end": counts}) + "\n")
             raw.flush()
             os.fsync(raw.fileno())
@@ -100,18 +92,13 @@ def back_up(database: Database, file: Path, materials: Path | None = None) -> Ba
     return BackupReport(file=str(file), tables=counts)
 
 
-def _files(materials: Path | None) -> list[Path]:
-    if materials is None or not materials.is_dir():
-        return []
-    return sorted(f for f in materials.iterdir() if f.suffix.lower() in KINDS and f.is_file())
-
-
-def restore(database: Database, file: Path, materials: Path | None = None) -> BackupReport:
+def restore(database: Database, file: Path, data_dir: Path) -> BackupReport:
     """Read a backup into an empty database; all of it or nothing.
 
     Parameters
     ----------
-    materials : folder for the user's own materials; existing ones are kept.
+    data_dir : where backups of earlier programs put files of users' materials, which are taken
+        over from there; existing ones are kept.
 
     Raises
     ------
@@ -147,13 +134,12 @@ def restore(database: Database, file: Path, materials: Path | None = None) -> Ba
         counts = database.write(action)
     except (LookupError, TypeError, AttributeError, SQLAlchemyError) as error:
         raise InputError("file", f"{file} is damaged.", "Use another backup.") from error
-    migrate(database)
-    if materials is not None and own:
-        materials.mkdir(parents=True, exist_ok=True, mode=0o700)
-        for name, content in own.items():
-            place = materials / Path(name).name  # which cannot lead out of the folder
-            if not place.exists():
-                place.write_text(content, encoding="utf-8")
+    for name, content in own.items():
+        place = data_dir / FOLDER / Path(name).name  # which cannot lead out of the folder
+        place.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        if not place.exists():
+            place.write_text(content, encoding="utf-8")
+    prepare(database, data_dir)
     return BackupReport(file=str(file), tables=counts)
 
 
@@ -164,7 +150,7 @@ def _fill(
     file: Path,
     own: dict[str, str],
 ) -> dict[str, int]:
-    """Rows into tables, and the files of materials into ``own``."""
+    """Rows into tables, and the files of materials, of an earlier program, into ``own``."""
     counts: dict[str, int] = {}
     waiting: list[dict[str, Any]] = []
     current = ""

@@ -26,6 +26,7 @@ IS_TAKEN = text(
     " WHERE datname = current_database() AND locktype = 'advisory' AND granted AND objsubid = 1"
     " AND (classid::bigint << 32 | objid::bigint) = hashtextextended(:name, 0)"
 )
+TAKE_TURNS = text("SELECT pg_advisory_xact_lock(hashtextextended(:name, 0))")
 SET_MARK = text("SELECT set_config('application_name', :mark, false)")
 END_MARKED = text(
     "SELECT pg_terminate_backend(pid) FROM pg_stat_activity"
@@ -69,6 +70,10 @@ class PostgresqlServer(Backend):
         """Ask whether the name is still reserved for this process."""
         if self.name_lock is not None:
             self.name_lock.keep()
+
+    def take_turns(self, connection: Connection, name: str) -> None:
+        """Let other transactions of this name wait until this one ends."""
+        connection.execute(TAKE_TURNS, {"name": f"knitcore turn {name}"})
 
     def check_writable(self) -> None:
         """Refuse to write after another process has taken the name."""

@@ -12,6 +12,7 @@ from knitcore.base.errors import InputError
 
 from ..problems import DamagedError
 from .database import Database
+from .material_store import FOLDER, MaterialStore
 from .tables import metadata
 
 MIGRATIONS = Path(__file__).with_name("migrations")
@@ -46,6 +47,18 @@ def migrate(database: Database, target: str = "head") -> None:
         command.upgrade(config, target)
 
     database.write(upgrade)
+
+
+def prepare(database: Database, data_dir: Path) -> None:
+    """Bring the schema up to date, and take over files of users' materials.
+
+    Raises
+    ------
+    InputError, StoreError
+        As :func:`migrate`.
+    """
+    migrate(database)
+    MaterialStore(database).take_over(data_dir / FOLDER)
 
 
 def check_schema(database: Database, target: str = "head") -> str | None:

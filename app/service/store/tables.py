@@ -156,6 +156,19 @@ sessions = Table(
     Column("created_at", Float, nullable=False),
 )
 
+own_materials = Table(
+    "own_materials",
+    metadata,
+    Column("owner", String(80), primary_key=True),
+    Column("id", String(80), primary_key=True),  # own:IDENTIFIER.MARK, as designs name it
+    Column("identifier", String(64), nullable=False),
+    Column("document", Text, nullable=False),  # JSON of a MaterialDocument
+    Column("added_at", Float, nullable=False),
+    Column("replaced_at", Float),
+    Index(None, "id"),
+    Index(None, "identifier"),
+)
+
 
 def now() -> float:
     """Seconds since 1970, UTC."""

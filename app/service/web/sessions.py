@@ -116,14 +116,21 @@ class Tokens:
             else access_tokens.c.id == identifier
         )
         with self._database.read() as connection:
-            row = connection.execute(select(access_tokens).where(which, _open())).one_or_none()
+            row = connection.execute(select(access_tokens).where(which, self._open)).one_or_none()
         return ("", "") if row is None else (row.id, row.user)
 
     def without_any(self, users: set[str]) -> set[str]:
         """Return those of these users who no longer have an open token."""
-        open_ = select(access_tokens.c.user).where(access_tokens.c.user.in_(users), _open())
+        open_ = select(access_tokens.c.user).where(access_tokens.c.user.in_(users), self._open)
         with self._database.read() as connection:
             return users - {LOCAL_USER} - set(connection.execute(open_).scalars())
+
+    @property
+    def _open(self) -> ColumnElement[bool]:
+        """The tokens that are neither revoked nor expired, by the clock of the database."""
+        expires = access_tokens.c.expires_at
+        is_fresh = or_(expires.is_(None), expires > self._database.clock)
+        return and_(access_tokens.c.revoked_at.is_(None), is_fresh)
 
     def session_key(self) -> str:
         """The key that signs sessions, made when it is first needed."""
@@ -136,12 +143,6 @@ class Tokens:
             return str(connection.execute(query).scalar_one())
 
         return self._database.write(action)
-
-
-def _open() -> ColumnElement[bool]:
-    """Choose the tokens that are neither revoked nor expired."""
-    expires = access_tokens.c.expires_at
-    return and_(access_tokens.c.revoked_at.is_(None), or_(expires.is_(None), expires > now()))
 
 
 class SessionSummary(BaseModel):
@@ -198,7 +199,7 @@ class Sessions:
     def find(self, session: str) -> tuple[str, str]:
         """(token, user) of a session; empty strings if there is none or it has expired."""
         query = select(sessions.c.token, sessions.c.user).where(
-            sessions.c.id == session, sessions.c.created_at > now() - SESSION_S
+            sessions.c.id == session, sessions.c.created_at > self._database.clock - SESSION_S
         )
         with self._database.read() as connection:
             row = connection.execute(query).one_or_none()
@@ -208,7 +209,9 @@ class Sessions:
         """All sessions of a user, latest first; ``this`` is the one that asks."""
         query = (
             select(sessions)
-            .where(sessions.c.user == user, sessions.c.created_at > now() - SESSION_S)
+            .where(
+                sessions.c.user == user, sessions.c.created_at > self._database.clock - SESSION_S
+            )
             .order_by(sessions.c.created_at.desc(), sessions.c.id)
         )
         with self._database.read() as connection:
@@ -225,7 +228,7 @@ class Sessions:
 
     def tidy(self) -> None:
         """Delete expired sessions."""
-        old = delete(sessions).where(sessions.c.created_at < now() - SESSION_S)
+        old = delete(sessions).where(sessions.c.created_at < self._database.clock - SESSION_S)
         self._database.write(lambda c: c.execute(old))
 
 

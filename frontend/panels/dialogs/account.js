@@ -26,6 +26,7 @@ const LIMITS = /** @type {const} */ ([
   ["kept_bytes", "Designs and their versions, MB", decimal(1e6)],
   ["versions", "Versions of one design, at most", count],
   ["links", "Links to one design, at most", count],
+  ["materials", "Own yarns", count],
   ["job_bytes", "Requests of jobs, MB", decimal(1e6)],
   ["cpu_s", "Computing time per day, hours", decimal(3600)],
   ["memory_bytes", "Memory of running computations, GB", decimal(1e9)],

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -11,7 +12,8 @@ import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 
-from app.service import VERSION, doctor
+from app.service import VERSION, doctor, health
+from app.service.main import THREADS
 from app.service.settings import Settings
 from app.service.web.observing import JsonLines, TextLines, configure_logging
 from tests.app.clients import LONG, bearing, closed_with, login, served, state_of
@@ -143,6 +145,38 @@ def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
         away.rename(file)
         assert client.get("/readyz").status_code == 200
         assert client.post("/api/v1/designs", json=design).status_code == 201
+
+
+@pytest.mark.parametrize("busy", ["threads of requests", "the writer", "a login"])
+def test_readiness_waits_for_what_requests_wait_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, busy: str
+) -> None:
+    """`/healthz` needs none of it."""
+    monkeypatch.setattr(health, "PATIENCE_S", 0.3)
+    go_on = threading.Event()
+
+    def wait(*_: object, **__: object) -> None:
+        go_on.wait(150)
+
+    with served(data_dir=tmp_path) as client, ThreadPoolExecutor(THREADS) as others:
+        state = state_of(client)
+        if busy == "threads of requests":
+            monkeypatch.setattr(type(state.database), "page", wait)
+            held = [others.submit(client.get, "/api/v1/designs") for _ in range(THREADS)]
+            wait_until(lambda: client.get("/readyz").status_code == 503)
+        elif busy == "the writer":
+            held = [others.submit(state.database.write, wait)]
+        else:
+            monkeypatch.setattr(health.Tokens, "find", wait)
+            held = []
+        answer = client.get("/readyz")
+        assert (answer.status_code, "thread" in answer.json()["detail"]) == (503, True)
+        assert client.get("/healthz").status_code == 200
+        go_on.set()
+        for each in held:
+            each.exception()
+        monkeypatch.undo()
+        assert client.get("/readyz").status_code == 200
 
 
 def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:

@@ -76,3 +76,23 @@ def test_an_empty_variable_is_refused(name: str, monkeypatch: pytest.MonkeyPatch
     result = CliRunner().invoke(main, ["doctor"])
     assert result.exit_code == 1
     assert "FAIL  settings" in result.output
+
+
+def test_secrets_come_from_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("KNITCORE_SECRETS_DIR", str(tmp_path / "none"))
+    with pytest.raises(InputError, match="not a folder"):
+        Settings()
+    monkeypatch.setenv("KNITCORE_SECRETS_DIR", str(tmp_path))
+    (tmp_path / "knitcore_token").write_text("of-a-file-that-is-long\n")
+    (tmp_path / "knitcore_database_password").write_text("p@ss/word\n")
+    (tmp_path / "another").write_text("is no setting")
+    monkeypatch.setenv("KNITCORE_DATABASE_URL", "postgresql+psycopg://knit@host/name")
+    settings = Settings().check()
+    assert settings.token is not None
+    assert settings.token.get_secret_value() == "of-a-file-that-is-long"
+    assert settings.store_url == "postgresql+psycopg://knit:p%40ss%2Fword@host/name"
+    assert "p@ss" not in repr(settings)
+    monkeypatch.setenv("KNITCORE_TOKEN", "of-the-environment-it-is")
+    given = Settings().token
+    assert given is not None
+    assert given.get_secret_value() == "of-the-environment-it-is"

@@ -10,6 +10,7 @@ from app.service.jobs.document import JobState, JobStatus
 from app.service.jobs.runner import JobRunner
 from app.service.jobs.store import JobStore
 from app.service.store.database import Database
+from app.service.store.material_store import MaterialStore
 from tests.app.jobs import Task
 
 PATIENCE_S = 150.0
@@ -25,7 +26,7 @@ def runner_of(
     folder: Path | None = None,
 ) -> JobRunner:
     """A runner of the jobs of a process."""
-    answers = Answers(compute, RecentResults(), folder or Path())
+    answers = Answers(compute, RecentResults(), folder or Path(), MaterialStore(database))
     return JobRunner(JobStore(database, name), answers, timeout_s)
 
 

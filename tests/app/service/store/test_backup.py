@@ -12,10 +12,13 @@ from app.service.designs.sharing import Sharing
 from app.service.designs.store import DesignStore
 from app.service.jobs.document import JobState
 from app.service.jobs.store import JobStore
-from app.service.store.backup import back_up, restore
+from app.service.store.backup import FORMAT, back_up, restore
 from app.service.store.database import Database
+from app.service.store.material_store import FOLDER, MaterialStore
 from app.service.store.schema import migrate
 from knitcore.base.errors import InputError
+from knitcore.materials import material
+from knitcore.materials.material_document import MaterialDocument
 from tests.app.command_line import refused, run
 from tests.app.databases import opened
 
@@ -35,9 +38,9 @@ def filled(tmp_path: Path) -> Iterator[Database]:
 
 
 @pytest.fixture
-def other(tmp_path: Path) -> Iterator[Database]:
-    """A new database without tables."""
-    with opened(tmp_path / "new", migrated=False) as database:
+def other(place: Path | str) -> Iterator[Database]:
+    """A new database without tables, of either kind."""
+    with opened(place / "new" if isinstance(place, Path) else place, migrated=False) as database:
         yield database
 
 
@@ -56,7 +59,7 @@ def test_a_restore_brings_everything_back(filled: Database, other: Database, fil
     report = back_up(filled, file)
     assert report.tables["designs"] == 4
     assert file.stat().st_mode & 0o077 == 0
-    assert restore(other, file).tables == report.tables
+    assert restore(other, file, file.parent).tables == report.tables
     for owner in ("ada", "bob"):
         assert designs_of(other, owner) == designs_of(filled, owner)
     assert DesignStore(other).get("bob", bob.id).document == RIB
@@ -70,7 +73,7 @@ def test_a_backup_never_overwrites_a_file(filled: Database, tmp_path: Path, file
     with pytest.raises(InputError, match="exists"):
         back_up(filled, file)
     with pytest.raises(InputError, match="holds 4 rows in designs"):
-        restore(filled, file)
+        restore(filled, file, file.parent)
     with pytest.raises(InputError, match="cannot be written"):
         back_up(filled, tmp_path / "no" / "folder.gz")
 
@@ -111,7 +114,7 @@ def test_a_damaged_backup_changes_nothing(
     back_up(filled, file)
     file.write_bytes(DAMAGES[damage](file.read_bytes()))
     with pytest.raises(InputError):
-        restore(other, file)
+        restore(other, file, file.parent)
     migrate(other)
     assert designs_of(other, "ada") == []
 
@@ -144,24 +147,40 @@ def test_a_crafted_backup_is_refused_with_a_message(
     crafted = [f"{json.dumps(row)}\n".encode() for row in (line, {"end": {"designs": 1}})]
     file.write_bytes(_of_lines(lambda lines: [lines[0], *crafted])(file.read_bytes()))
     with pytest.raises(InputError, match=r"damaged|not whole"):
-        restore(other, file)
+        restore(other, file, file.parent)
     assert designs_of(other, "ada") == []
 
 
-def test_own_materials_are_backed_up_and_restored_inside_their_folder(
-    filled: Database, other: Database, tmp_path: Path, file: Path
+def test_own_materials_are_backed_up_and_restored(
+    filled: Database, other: Database, file: Path
 ) -> None:
-    here, there = tmp_path / "here", tmp_path / "there" / "materials"
-    here.mkdir()
-    (here / "wool.yaml").write_text("name: Wool ä")
-    (here / "notes.txt").write_text("no material")
-    assert back_up(filled, file, here).tables["own materials"] == 1
+    document = MaterialDocument.from_material(material("acrylic"))
+    names = [
+        MaterialStore(filled).keep(document.model_copy(update={"name": name}), "ada").identifier
+        for name in ("First", "Second")
+    ]
+    assert back_up(filled, file).tables["own_materials"] == 2
+    restore(other, file, file.parent)
+    store = MaterialStore(other)
+    assert [store.find(name).name for name in names] == ["First", "Second"]
+    assert [own.name for own, mine in store.listed("ada") if mine] == ["Second"]
+
+
+def test_a_backup_of_an_earlier_program_has_files_of_materials(
+    other: Database, tmp_path: Path, file: Path
+) -> None:
+    """They are taken over, and cannot lead out of their folder."""
+    text = MaterialDocument.from_material(material("acrylic")).model_dump_json()
+    lines = [
+        {"format": FORMAT, "version": 1, "schema": "0008", "written_at": 0.0},
+        {"material": "../../wool.json", "content": text},
+        {"material": "broken.yaml", "content": "name: ä"},
+        {"end": {"own materials": 2}},
+    ]
+    file.write_bytes(gzip.compress("".join(f"{json.dumps(line)}\n" for line in lines).encode()))
+    there = tmp_path / "there"
     restore(other, file, there)
-    assert [f.name for f in there.iterdir()] == ["wool.yaml"]
-    assert (there / "wool.yaml").read_text() == "name: Wool ä"
-    content = gzip.decompress(file.read_bytes())
-    file.write_bytes(gzip.compress(content.replace(b'"wool.yaml"', b'"../../escaped.yaml"')))
-    with opened(tmp_path / "newer", migrated=False) as newer:
-        restore(newer, file, there)
-    assert not list(tmp_path.glob("escaped*"))
-    assert (there / "escaped.yaml").exists()
+    assert MaterialStore(other).count("local") == 1
+    assert (there / FOLDER / "taken over" / "wool.json").read_text() == text
+    assert (there / FOLDER / "broken.yaml").read_text() == "name: ä"
+    assert not list(tmp_path.glob("wool*"))

@@ -9,6 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.service import main as main_module
+from app.service.store.database import Database
 from app.service.web import security, sessions
 from app.service.web.sessions import MAX_SESSIONS, NewToken, Sessions
 from tests.app.clients import LONG, bearing, drain, served, state_of, tokens_of, watching
@@ -19,11 +20,13 @@ SESSION = "/api/v1/session"
 
 
 @pytest.fixture
-def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
+def lab(
+    tmp_path: Path, database: Database, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[TestClient]:
     """A service with logins that looks every instant whether they still hold."""
     for module in (security, sessions, main_module):
         monkeypatch.setattr(module, "REMEMBERED_S", 0.05)
-    with served(require_login=True, data_dir=tmp_path) as client:
+    with served(database=database, require_login=True, data_dir=tmp_path) as client:
         yield client
 
 

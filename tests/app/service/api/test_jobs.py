@@ -1,0 +1,73 @@
+"""A job accepts exactly what its operation accepts."""
+
+import json
+import re
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from app.context import Context
+from app.operations.registry import operations
+from app.service.jobs.kinds import KINDS, JobOf, accepted
+from app.service.web.bodies import SMALL_BYTES
+
+CHART = {"chart": "KP/PK", "material": "acrylic"}
+PULL = CHART | {"direction": "wale", "steps": 2}
+LARGE = {"fabric": "garter", "columns": 150, "rows": 150}
+CROSSED = {
+    "outline": [[0, 0], [50, 100], [50, 0], [0, 100]],
+    "edges": {"bottom": [1]},
+    "conditions": [{"kind": "held", "edge": "bottom"}],
+}
+YARN = {"name": "mine", "bending_modulus_n_mm2": 0.03, "diameter_mm": 1.4}
+REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
+    "a NUL in a chart": ("relax", CHART | {"chart": "KP\u0000"}, "chart"),
+    "half a character in a chart": ("relax", CHART | {"chart": "KP\ud800"}, "body"),
+    "an unknown yarn": ("stretch", PULL | {"material": "steel", "strain": 0.1}, "material"),
+    "a yarn that is gone": ("bend", CHART | {"material": "own:x.000000"}, "material"),
+    "two faults": ("relax", {"chart": "XY", "material": "steel"}, "chart"),
+    "no load": ("stretch", PULL, "strain"),
+    "two loads": ("stretch", PULL | {"strain": 0.1, "force_n": 1}, "force_n"),
+    "too many steps": ("stretch", PULL | {"chart": LARGE, "strain": 0.1, "steps": 999}, "steps"),
+    "a crossed outline": ("piece", CHART | {"piece": CROSSED}, "outline"),
+    "a fine mesh": ("bias", CHART | {"strain": 0.2, "mesh_mm": 0.01}, "mesh_mm"),
+    "two sorts of length": (
+        "relax",
+        CHART | {"loop_length_mm": 12, "loop_lengths_mm": [[12], [12]]},
+        "loop_lengths_mm",
+    ),
+    "friction held flat": ("relax", CHART | {"friction": 0.2, "flat": True}, "flat"),
+    "no maps": ("fill", {"material": "acrylic"}, "modulus_course_n_per_mm"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("padding", [0, SMALL_BYTES], ids=["here", "in a worker"])
+@pytest.mark.parametrize("case", REFUSED)
+def test_a_job_is_refused_as_its_operation_is(client: TestClient, case: str, padding: int) -> None:
+    kind, request, field = REFUSED[case]
+    job = {"kind": kind, "request": request}
+    answers = [
+        client.post(
+            f"/api/v1{address}",
+            content=json.dumps(content) + padding * " ",
+            headers={"Content-Type": "application/json"},
+        )
+        for address, content in ((operations()[kind].address, request), ("/jobs", job))
+    ]
+    assert [answer.status_code for answer in answers] == [422, 422]
+    direct, queued = (answer.json() for answer in answers)
+    assert field in direct["field"]
+    assert queued["field"] == direct["field"]
+    assert queued["remedy"] == direct["remedy"]
+    place = re.compile(r" at line \d+ column \d+")  # of the other body
+    assert place.sub("", queued["detail"]) == place.sub("", direct["detail"])
+
+
+def test_every_example_is_accepted(context: Context) -> None:
+    """Nothing that an operation takes is refused by the queue."""
+    for kind, operation in KINDS.items():
+        if operation.example:
+            request = operation.request.model_validate(operation.example)
+            job = JobOf.model_construct(kind=kind, request=request)
+            assert accepted(job, context)[0] == kind
