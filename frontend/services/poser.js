@@ -11,6 +11,7 @@ import { api } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "./latest.js";
 import { figure, percent } from "../core/format.js";
+import { POSES } from "../state/seeing.js";
 import { REST } from "../state/studio.js";
 
 const DELAY_MS = 25;
@@ -33,7 +34,9 @@ export function startPoser(studio) {
     const { rows, columns } = studio.document.grid;
     const old = posed.value;
     const fits = old?.pose === now && old.rows === rows && old.columns === columns;
-    posed.value = fits && old ? { ...old, converged: false } : null;
+    // What was said of it in numbers does not hold any more.
+    const words = now === "pulled" ? "Stretched" : POSES[now];
+    posed.value = fits && old ? { ...old, words, converged: false } : null;
     if (!shapes) return;
     latest.run(
       async (signal) => {
@@ -57,7 +60,10 @@ export function startPoser(studio) {
     else if (poseToShow() !== "flat") ask();
   };
   pose.listen((now) => now !== "tested" && ask());
-  studio.weight.listen(() => pose.value === "hung" && ask());
+  studio.weight.listen(() => {
+    if (pose.value === "tested") again();
+    else if (pose.value === "hung") ask();
+  });
   limb.listen(() => pose.value === "worn" && ask());
   studio.step.listen((step) => {
     if (step !== REST) pose.value = "flat"; // it is pulled

@@ -114,6 +114,10 @@ export function create(studio, { keeper }) {
       },
       ({ problem }) => {
         element.classList.remove("busy");
+        compared = []; // the numbers on show are of other pieces
+        for (const shown of [table, rectangles, ...sides.map(({ picture }) => picture)]) shown.replaceChildren();
+        for (const { size } of sides) size.textContent = "";
+        void drawPair(plot, []);
         status.replaceChildren(problemBox(problem, load));
       },
     );

@@ -48,7 +48,7 @@ export function fabricview(host, studio, view) {
   // Without our origin it may have a process of its own; then its frames do not keep the page waiting.
   frame.setAttribute("sandbox", "allow-scripts");
   const status = h("div", { class: "fabric-status raised line rounded gap-10", role: "status" });
-  const caption = h("div", { class: "fabric-caption small" });
+  const caption = h("div", { class: "fabric-caption small", "data-result": "fabric" });
   const still = new Still(frame);
   const drawing = { slow: false, held: false };
   /** @param {{pass: string} | {hold: boolean} | {ink: string}} message */
@@ -182,7 +182,11 @@ export function fabricview(host, studio, view) {
     const scene = request();
     const sceneWords = words();
     const text = JSON.stringify(scene);
-    if (text === sent) return;
+    const until = changes;
+    if (text === sent) {
+      [confirmed, changesShown] = [sceneWords, until];
+      return describe();
+    }
     sending = true;
     host.toggleAttribute("data-sending", true);
     if (!live) beStill();
@@ -194,7 +198,7 @@ export function fabricview(host, studio, view) {
       if (problem) status.replaceChildren();
       problem = false;
       source = answer.source;
-      confirmed = sceneWords;
+      [confirmed, changesShown] = [sceneWords, until];
       describe();
       studio.online.value = true;
       pass = answer.url.slice(answer.url.indexOf("#") + 1);
@@ -223,6 +227,7 @@ export function fabricview(host, studio, view) {
         return;
       }
       problem = true;
+      describe();
       status.replaceChildren(icon("warning"), problemText(error.problem));
     } finally {
       sending = false;
@@ -233,7 +238,11 @@ export function fabricview(host, studio, view) {
       }
     }
   };
+  /** How often something changed that the view shows, and up to which change it shows it. */
+  let changes = 0;
+  let changesShown = 0;
   const soon = () => {
+    outdate();
     clearTimeout(timer);
     timer = setTimeout(() => {
       if (studio.document.painting) soon();
@@ -241,11 +250,16 @@ export function fabricview(host, studio, view) {
     }, DELAY_MS);
   };
   const now = () => {
+    outdate();
     clearTimeout(timer);
     void send();
   };
+  const outdate = () => {
+    changes += 1;
+    caption.toggleAttribute("data-stale", confirmed !== "");
+  };
 
-  /** What the service said last that it shows; the cloth keeps it while the service cannot be reached. */
+  /** What the cloth on show is: it keeps that until another one is there. */
   let confirmed = "";
   const words = () => {
     const strain = studio.seeing.pose.value !== "flat" ? 0 : studio.currentStrain();
@@ -254,8 +268,12 @@ export function fabricview(host, studio, view) {
       : poseText(studio);
   };
   const describe = () => {
+    const stale = changes !== changesShown && confirmed !== "";
+    const left = stale && (problem || !studio.online.value); // no other one will come for now
+    caption.toggleAttribute("data-stale", stale);
+    host.toggleAttribute("data-left", left);
     caption.replaceChildren(
-      (!studio.online.value && confirmed) || words(),
+      stale ? `${confirmed}${left ? ", before the change" : ""}` : words(),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
     caption.title = studio.seeing.posed.value?.note ?? (source && `Yarn: ${source}`);

@@ -9,6 +9,7 @@
 
 import { api } from "../../api.js";
 import { FABRICS } from "../../grid/segments.js";
+import { Belonging } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
@@ -38,9 +39,13 @@ export function create(studio, { keeper }) {
   let hand = null;
   const latest = new Latest(TYPING_MS);
   const changed = () => {
+    belonging.check();
     make.disabled = true; // until the new plan is there, the old one must not be made
     latest.run(plan, ({ problem }) => {
       garment = null;
+      result.replaceChildren();
+      canvas.hidden = true;
+      belonging.clear();
       status.replaceChildren(problemBox({ ...problem, title: "This garment cannot be planned" }));
       planned();
     });
@@ -286,24 +291,29 @@ export function create(studio, { keeper }) {
     yarn.replaceChildren(...all.map(({ id, name }) => h("option", { value: id, selected: id === chosen }, name)));
   }
 
+  /** What is asked for. */
+  const request = () => ({
+    garment: {
+      template: template.id,
+      ...measured(),
+      ease: ease.valueAsNumber / 100,
+      target_mmhg: byPressure ? target.valueAsNumber : null,
+    },
+    material: yarn.value,
+    gauge: own.checked
+      ? { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber, per: per.value, fabric: of.value }
+      : null,
+    linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
+    intarsia: intarsia.checked,
+  });
+  const belonging = new Belonging(studio, () => ({ wish: request() }));
+  belonging.marks(result, "planner");
+
   /** @param {AbortSignal} signal */
   async function plan(signal) {
-    const body = {
-      garment: {
-        template: template.id,
-        ...measured(),
-        ease: ease.valueAsNumber / 100,
-        target_mmhg: byPressure ? target.valueAsNumber : null,
-      },
-      material: yarn.value,
-      gauge: own.checked
-        ? { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber, per: per.value, fabric: of.value }
-        : null,
-      linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
-      intarsia: intarsia.checked,
-    };
-    result.classList.add("busy");
+    const [body, { basis }] = [request(), belonging];
     garment = await api.run("garment", /** @type {GarmentRequest} */ (body), signal);
+    belonging.show(basis);
     hand = { garment: body.garment, material: body.material, gauge: body.gauge };
     status.replaceChildren();
     show(garment);
@@ -311,13 +321,13 @@ export function create(studio, { keeper }) {
   }
 
   function planned() {
-    result.classList.remove("busy");
     make.disabled = garment === null;
   }
 
   /** @param {GarmentResult} fitted */
   function show(fitted) {
     const gauge = fitted.gauges.find(({ fabric }) => fabric === "stockinette") ?? fitted.gauges[0];
+    canvas.hidden = false;
     drawGarment(canvas, fitted.design, gauge.stitches_per_10_cm / gauge.rows_per_10_cm);
     canvas.setAttribute(
       "aria-label",

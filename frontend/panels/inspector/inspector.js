@@ -128,25 +128,26 @@ export function inspector(host, studio) {
     draw[id]();
   };
 
-  host.append(
+  const numbers = h(
+    "div",
+    { class: "inspector-numbers", "data-result": "numbers" },
     h(
       "div",
-      { class: "inspector-numbers" },
-      h(
-        "div",
-        { class: "inspector-head stack" },
-        h("div", { class: "inspector-title line gap-8 spread" }, title, scopes),
-        source,
-      ),
-      problem,
-      h("div", { class: "line gap-8 spread small" }, h("span", { class: "muted" }, "At a pull of"), hands.element),
-      felt,
-      rank,
-      gauge.element,
-      compared,
-      shares,
-      details,
+      { class: "inspector-head stack" },
+      h("div", { class: "inspector-title line gap-8 spread" }, title, scopes),
+      source,
     ),
+    problem,
+    h("div", { class: "line gap-8 spread small" }, h("span", { class: "muted" }, "At a pull of"), hands.element),
+    felt,
+    rank,
+    gauge.element,
+    compared,
+    shares,
+    details,
+  );
+  host.append(
+    numbers,
     h(
       "div",
       { class: "inspector-plots stack shrinks-x shrinks-y relative" },
@@ -162,6 +163,7 @@ export function inspector(host, studio) {
   const show = () => {
     const { value, busy, problem: wrong, scope } = studio.prediction.value;
     host.classList.toggle("busy", busy);
+    numbers.toggleAttribute("data-stale", busy && value !== null);
     if (busy && shown === value) return; // asked again: the old numbers stay, greyed, until the answer comes
     shown = value;
     const part = scopeOf(studio);
@@ -175,11 +177,11 @@ export function inspector(host, studio) {
     fill(table, ofScope);
     feel(ofScope, part);
     source.hidden = !value;
+    gauge.show(value);
     if (value) {
       const lines = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
       name();
       notes.replaceChildren(...lines.map((note) => h("li", {}, note)));
-      gauge.show(value);
     }
   };
   /** What a hand feels, and how wide the cloth lies. @param {PredictResult | null} value @param {Scope} part */

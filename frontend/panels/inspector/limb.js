@@ -8,6 +8,7 @@
 
 import { api } from "../../api.js";
 import { percent, range } from "../../core/format.js";
+import { Belonging, clothOf } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
 import { h, remark } from "../../elements/dom.js";
 import { pressurePlot } from "../../plots/pressure.js";
@@ -35,9 +36,17 @@ export function limb(host, studio) {
     const rest_mm = tube.valueAsNumber > 0 ? tube.valueAsNumber : null;
     const sized = rest_mm ? girths.map((girth) => ({ ...girth, rest_mm })) : girths;
     const chart = rest_mm || kind !== "chart" ? grid.text : studio.request.chart;
+    belonging.check(); // the tube may be another
+    const { basis } = belonging;
     latest.run(
-      async (signal) => show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal)),
-      ({ problem }) => answer.replaceChildren(problemText(problem)),
+      async (signal) => {
+        show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal));
+        belonging.show(basis);
+      },
+      ({ problem }) => {
+        answer.replaceChildren(problemText(problem));
+        belonging.clear();
+      },
     );
   };
   const tube = numberField({ id: "limb-tube", min: "10", max: "3000", placeholder: "chart", oninput: ask });
@@ -98,6 +107,8 @@ export function limb(host, studio) {
   showGirths(chosen.value.girths ?? []);
 
   const answer = h("div", { role: "status", id: "limb-answer" });
+  const belonging = new Belonging(studio, () => ({ ...clothOf(studio), limb: [studio.limb, tube.value] }));
+  belonging.marks(answer, "limb");
   /** @param {LimbResult} fit */
   const show = (fit) => {
     const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm, interval_source } = fit;

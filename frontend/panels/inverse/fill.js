@@ -12,6 +12,7 @@
 
 import { ApiError, api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
+import { Belonging } from "../../services/belonging.js";
 import { Grid } from "../../grid/grid.js";
 import { largestRectangle } from "../../grid/inscribed.js";
 import { FABRICS } from "../../grid/segments.js";
@@ -39,10 +40,18 @@ export function fromStiffness(studio) {
   const run = new Run();
   const list = h("ol", { class: "plain-list stack gap-6", id: "parts" });
   const answer = h("div", { class: "inverse-answer", id: "fill-answer" });
+  const belonging = new Belonging(studio, () => ({
+    chart: [chart.grid.text, chart.outlineText],
+    yarn: studio.materialId.value,
+    wish: parts.map(({ name, course, wale }) => [name, course, wale]),
+  }));
+  belonging.marks(answer, "fill");
   /** @type {Part[]} */
   let parts = [];
   /** Size of the chart that the parts were drawn on. */
   let size = "";
+  /** Whose parts these are. */
+  let designId = studio.designId;
 
   const sizeNow = () => `${chart.grid.rows} ${chart.grid.columns}`;
   /** What is known of the yarn's pure fabrics. */
@@ -82,6 +91,11 @@ export function fromStiffness(studio) {
     for (const each of parts) each.show?.(); // another part may wait for these numbers
   };
   const measureAll = async () => {
+    if (designId !== studio.designId) {
+      designId = studio.designId;
+      parts = [];
+      show();
+    }
     if (parts.length && element.checkVisibility()) await Promise.all(parts.map(measure));
   };
 
@@ -105,6 +119,7 @@ export function fromStiffness(studio) {
     const now = AXES.map(({ axis }) => h("span", { class: "figures", id: `part-${at}-${axis}-now` }, "…"));
     const verdicts = AXES.map(() => h("span", { class: "muted part-verdict" }));
     part.show = () => {
+      belonging.check();
       const numbers = part.wish?.();
       if (numbers) {
         for (const { axis } of AXES) part[axis] = Number(numbers[axis].toPrecision(3));
@@ -227,6 +242,7 @@ export function fromStiffness(studio) {
       return;
     }
     answer.replaceChildren();
+    belonging.clear();
     /** @type {FillResult | null} */
     const fillResult = await run.run(
       "fill",
@@ -305,6 +321,7 @@ export function fromStiffness(studio) {
         ...fillResult.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
       ),
     );
+    belonging.show(belonging.basis);
     (changed ? keep : other).focus();
   };
 

@@ -7,6 +7,7 @@
  */
 
 import { figure, percent } from "../../core/format.js";
+import { Belonging } from "../../services/belonging.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
@@ -143,8 +144,28 @@ export function findTab(studio, context) {
   const transfers = limit("Transfers", { any: null, none: 0, "≤ ¼ a stitch": 0.25, "≤ ½ a stitch": 0.5 });
   const curl = limit("Curl", { any: null, "lies flat": 0.15, little: 0.5 });
 
-  const search = async () => {
+  const request = () => {
     const targets = readers.map((read) => read()).filter((target) => target !== null);
+    const all = studio.completeYarns.map(({ id }) => id);
+    const { value: own } = studio.materialId;
+    return {
+      materials: across.checked ? [own, ...all.filter((id) => id !== own)] : [own],
+      targets,
+      repeats: large.checked ? "all" : "small",
+      limits: { transfers_per_stitch: transfers.most(), curl: curl.most() },
+      count: COUNT,
+      elsewhere: false,
+    };
+  };
+  const belonging = new Belonging(studio, () => {
+    const { materials, ...wish } = request();
+    return { yarn: across.checked || materials, wish };
+  });
+  belonging.marks(answer, "find");
+
+  const search = async () => {
+    const wish = request();
+    const { materials, targets } = wish;
     if (targets.length < readers.length || !targets.length) {
       run.say({
         title: "A target is incomplete",
@@ -153,25 +174,15 @@ export function findTab(studio, context) {
       });
       return;
     }
-    const all = studio.completeYarns.map(({ id }) => id);
-    const materials = across.checked
-      ? [studio.materialId.value, ...all.filter((id) => id !== studio.materialId.value)]
-      : [studio.materialId.value];
-    const request = {
-      materials,
-      targets,
-      repeats: large.checked ? "all" : "small",
-      limits: { transfers_per_stitch: transfers.most(), curl: curl.most() },
-      count: COUNT,
-      elsewhere: false,
-    };
+    const { basis } = belonging;
     /** @type {FindResult | null} */
-    const findResult = await run.run("find", request, "Searching");
+    const findResult = await run.run("find", wish, "Searching");
     if (!findResult) return;
     show(findResult, targets);
-    if (findResult.reached || materials.length === all.length) return;
+    belonging.show(basis);
+    if (findResult.reached || materials.length === studio.completeYarns.length) return;
     /** @type {FindResult | null} */
-    const more = await run.run("find", { ...request, repeats: "small", elsewhere: true }, "Searching the other yarns");
+    const more = await run.run("find", { ...wish, repeats: "small", elsewhere: true }, "Searching the other yarns");
     if (more) show({ ...findResult, elsewhere: more.elsewhere }, targets);
   };
 
@@ -268,6 +279,8 @@ export function findTab(studio, context) {
       h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find"),
     ),
   );
+  // A row that is added or taken away is clicked.
+  for (const event of ["input", "change", "click"]) targetForm.addEventListener(event, () => belonging.check());
   const element = h("div", { class: "inverse-tab scrolls column shrinks-y gap-8" }, targetForm, run.element, answer);
   return { element, open: () => {}, retheme: () => {} };
 }
