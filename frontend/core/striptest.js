@@ -20,7 +20,7 @@ export function lockUpInWords({ strain, force_n, force_interval_n, first_taut: t
   );
   const [low, high] = force_interval_n.map((ends) => (ends[after] / force_n[after]) * taut.force_n);
   const known = spread([low, high]);
-  return `The tightest stitches run out of stretch at ${percent(taut.strain)} (${figure(taut.force_n)} N${known.wide ? `, ${known.text}` : ""}).`;
+  return `The tightest stitches run out of stretch at ${percent(taut.strain)} (${figure(taut.force_n)} N${known.wide ? `, very uncertain: ${known.text}` : ""}).`;
 }
 
 /**

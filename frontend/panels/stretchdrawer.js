@@ -24,6 +24,8 @@ const TOO_LARGE =
 
 /** What the field says in each unit at first. */
 const DEFAULTS = { "%": "30", N: "2" };
+/** What the service pulls at most. */
+const MOST = { "%": 500, N: 10_000 };
 
 /** @param {HTMLElement} host @param {Studio} studio @param {Stretcher} stretcher */
 export function stretchdrawer(host, studio, stretcher) {
@@ -42,7 +44,6 @@ export function stretchdrawer(host, studio, stretcher) {
   const amount = numberField({
     id: "stretch-amount",
     min: "1",
-    max: "400",
     step: "1",
     value: "30",
     "aria-label": "How far or how hard to pull",
@@ -62,13 +63,14 @@ export function stretchdrawer(host, studio, stretcher) {
   const start = () => {
     const pull = Number(amount.value);
     const toForce = unit.value === "N";
-    if (!(pull > 0)) {
+    const most = MOST[toForce ? "N" : "%"];
+    if (!(pull > 0 && pull <= most)) {
       studio.tellProblem({
         type: "input",
         status: 422,
-        title: "The pull cannot be used",
-        detail: `“${amount.value}” is not a ${toForce ? "force" : "percentage"} above 0.`,
-        remedy: `Enter for example ${DEFAULTS[toForce ? "N" : "%"]}.`,
+        title: toForce ? `Enter a force of up to ${most.toLocaleString("en")} N` : `Enter a stretch of up to ${most} %`,
+        detail: "",
+        remedy: `For example ${DEFAULTS[toForce ? "N" : "%"]}.`,
       });
       amount.focus();
       return;
@@ -210,10 +212,9 @@ export function stretchdrawer(host, studio, stretcher) {
         ? `Simulated strip test in ${value.seconds.toFixed(1)} s; not a certified test.`
         : `Stopped early at ${percent(value.strain[value.strain.length - 1] ?? 0)}.`;
       const lockUp = lockUpInWords(value);
-      note.append(
-        value.first_taut ? h("span", { class: "warned" }, icon("warning"), lockUp) : lockUp,
-        ` ${[outcome, ...(value.messages ?? [])].join(" ")}`,
-      );
+      const rest = ` ${[outcome, ...(value.messages ?? [])].join(" ")}`;
+      const warned = value.first_taut && h("span", { class: "warned" }, icon("warning"), lockUp);
+      note.append(h("span", {}, warned ?? lockUp, rest));
     } else if (tooLarge()) note.append(icon("info"), TOO_LARGE);
     else note.append("Pull the chart along its rows or columns and see where it gives.");
     run.disabled = !busy && tooLarge();

@@ -11,7 +11,7 @@
  * @typedef {{each: (index: number) => number}} StitchColours pixel of each stitch
  * @typedef {KindColours | StitchColours} Colouring
  *
- * @typedef {{kind: "swatches", items: {label: string, colour: string, dot?: boolean}[]}} SwatchLegend
+ * @typedef {{kind: "swatches", items: {label: string, colour: string}[]}} SwatchLegend
  * @typedef {{kind: "scale", map: ColourMap, low: number, high: number, unit: string, log: boolean,
  *   label: string}} ScaleLegend
  *
@@ -81,11 +81,7 @@ const fabrics = {
     const colours = palette.fabrics.map(css);
     const mixed = `linear-gradient(90deg, ${colours[0]}, ${colours[2]})`;
     const fabrics = FABRICS.map((label, i) => ({ label, colour: colours[i] }));
-    const others = [
-      { label: "mixed (in 3D)", colour: mixed },
-      { label: "purl", colour: "transparent", dot: true },
-    ];
-    return { kind: "swatches", items: [...fabrics, ...others] };
+    return { kind: "swatches", items: [...fabrics, { label: "mixed (in 3D)", colour: mixed }] };
   },
 };
 

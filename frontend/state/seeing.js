@@ -22,7 +22,7 @@ import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../design/store.js";
 
 /** Names of the poses. @type {Record<Pose, string>} */
-export const POSES = { flat: "Flat", lying: "As it lies", worn: "On the body", hung: "Hanging", tested: "In a test" };
+export const POSES = { flat: "Flat", lying: "Unpinned", worn: "On the body", hung: "Hanging", tested: "In a test" };
 
 /** What to say of a shape: one that is not at rest, or of a chart that was changed, is a preview. @param {Posed} posed */
 export function wordsOf({ words, converged }) {

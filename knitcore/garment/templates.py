@@ -78,9 +78,9 @@ def limb_tube(
     hem_rows = min(gauge.rows_for(hem_mm), rows // 3) if hem_mm > 0 else 0
     row = np.broadcast_to(np.arange(rows)[:, None], stitch.shape)
     parts = (
-        Part("first hem", row < hem_rows, hem),
+        Part("lower ribbing", row < hem_rows, hem),
         Part("body", (row >= hem_rows) & (row < rows - hem_rows), body),
-        Part("last hem", row >= rows - hem_rows, hem),
+        Part("upper ribbing", row >= rows - hem_rows, hem),
     )
 
     def place(along: float) -> Worn:

@@ -158,7 +158,7 @@ def test_the_palette_finds_what_is_meant(flat_studio: Page) -> None:
         "pressure": "Pressure on a limb",
         "strain": "Stress–strain curves",
         "colour fabrics": "Colour the chart by: fabrics",
-        "rest": "Show the cloth: as it lies",
+        "rest": "Show the cloth: unpinned",
     }
     page.keyboard.press("Control+k")
     for typed, label in meant.items():

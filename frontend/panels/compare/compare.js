@@ -291,7 +291,7 @@ function fill(table, pair) {
   );
 }
 
-const note = () => h("span", { class: "interval" }, "intervals meet");
+const note = () => h("span", { class: "interval" }, "no clear difference");
 
 /** Rectangles of both pieces on one scale, one in the other. @param {HTMLElement} host @param {PredictResult[]} pair */
 function drawRectangles(host, pair) {

@@ -359,6 +359,6 @@ function poseText(studio) {
   const { pose, posed } = studio.seeing;
   const { value } = pose;
   if (posed.value) return wordsOf(posed.value);
-  if (value === "flat") return "Relaxed, held flat";
+  if (value === "flat") return "Relaxed, pinned flat";
   return `${POSES[value]}: being computed`;
 }

@@ -254,7 +254,7 @@ export function create(studio, { keeper }) {
     const add = ([at, around]) => {
       const place = { at: length("Distance along the limb", at), around: length("Circumference there", around) };
       places.push(place);
-      const remove = iconButton("close", "Remove this place", () => {
+      const remove = iconButton("close", "Remove this measurement", () => {
         if (places.length <= 2) return;
         places.splice(places.indexOf(place), 1);
         row.remove();
@@ -270,7 +270,7 @@ export function create(studio, { keeper }) {
       table({ class: "planner-table full-width small" }, ["Along the limb", "Around it", ""], body),
       textButton(
         "plus",
-        "Add a place",
+        "Add a measurement",
         () => {
           const last = places[places.length - 1];
           add([last.at.mm + 40, last.around.mm]);

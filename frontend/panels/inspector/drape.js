@@ -56,10 +56,11 @@ const TESTS = [
     compute: async (request, signal) => {
       const draped = await api.run("drape", request, signal);
       const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, converged, piece } = draped;
-      const states = ends.map((end) => percent(end)).join(" to ");
+      const states = [...new Set(ends.map((end) => percent(end)))];
+      const others = states.length > 1 ? ` (it comes to rest in several ways: ${states.join(" to ")})` : "";
       return {
         words: [
-          `Drape coefficient ${percent(coefficient)} (states of rest found: ${states}), ${folds} folds.`,
+          `Drape coefficient ${percent(coefficient)}, ${folds} folds${others}.`,
           `Falls by ${figure(fall_mm / 10, 2)} cm. Soft cloth drapes more than this.`,
         ],
         notes,

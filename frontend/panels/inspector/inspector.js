@@ -9,6 +9,7 @@
 import { DIRECTIONS, LINES, along } from "../../core/directions.js";
 import { figure, percent, percentRange, percents, range } from "../../core/format.js";
 import { paced } from "../../core/paced.js";
+import { sourceInWords } from "../../core/plainly.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
 import { scopeOf, sizeAtRest } from "../../services/scope.js";
 import { h } from "../../elements/dom.js";
@@ -57,7 +58,7 @@ export function inspector(host, studio) {
   const shares = h("div", { class: "shares stack gap-6" });
   const segments = h("div", { class: "shares stack gap-6" });
   const { handPull, details: detailed } = studio.seeing;
-  const hands = segmented("Pull at which the stretch is told", PULLS, handPull.value, (at) => (handPull.value = at), {
+  const hands = segmented("How hard you pull", PULLS, handPull.value, (at) => (handPull.value = at), {
     class: "segmented small",
     id: "hand-pull",
   });
@@ -204,8 +205,8 @@ export function inspector(host, studio) {
           }),
         ),
         row(
-          "Size at rest",
-          "cm",
+          "Size, cm",
+          "",
           "Width and height of the cloth when nothing pulls at it",
           ...DIRECTIONS.map((way) =>
             cell(`size-${way}`, figure(inCm(size?.[way].value)), range(size && cmOf(size[way].interval))),
@@ -230,7 +231,7 @@ export function inspector(host, studio) {
   });
   const name = () => {
     const { value } = studio.prediction.value;
-    provenance.textContent = `${value?.provenance}${studio.relaxing.value ? ", relaxing …" : ""}`;
+    provenance.textContent = `How sure? ${sourceInWords(value?.provenance ?? "")}${studio.relaxing.value ? ", relaxing …" : ""}`;
   };
   const count = () => {
     const { document: chart } = studio;
@@ -359,7 +360,7 @@ function fill(table, value) {
       row(
         "Extensibility",
         "mm/N",
-        "One over the modulus: the stretch of 1 mm under 1 N per mm of width",
+        "How far it gives: mm of stretch per newton, for a square of cloth (1 over its stiffness)",
         number(
           "extensibility-course",
           value?.extensibility_course_mm_per_n,

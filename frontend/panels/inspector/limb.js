@@ -52,11 +52,11 @@ export function limb(host, studio) {
   const tube = numberField({ id: "limb-tube", min: "10", max: "3000", placeholder: "chart", oninput: ask });
   const around = selectField(
     {
-      class: "select shrinks-x",
+      class: "select",
       id: "limb-around",
       onchange: () => (chosen.value = { ...chosen.value, direction: /** @type {Direction} */ (around.value) }),
     },
-    { course: "rows", wale: "columns" },
+    { course: "rows go around", wale: "columns go around" },
   );
   around.value = chosen.value.direction;
 
@@ -156,7 +156,7 @@ export function limb(host, studio) {
         { class: "limb-more flex wrap gap-6" },
         h("button", { class: "button", id: "limb-add", onclick: add }, "Add a girth"),
         labelled("Tube at rest", tube, "mm"),
-        labelled("Around it run the", around),
+        labelled("Which way round?", around),
         h(
           "button",
           { class: "button", id: "limb-wear", onclick: () => (studio.seeing.pose.value = "worn") },

@@ -310,7 +310,7 @@ export function fromStiffness(studio) {
     });
     const changed = fillResult.parts.some(({ repainted }) => repainted);
     answer.replaceChildren(
-      verdict(fillResult.off_share <= 0.05, inWords(fillResult)),
+      verdict(fillResult.off_share <= 0.05, inWords(fillResult, targeted)),
       partList(fillResult, targeted),
       h("div", { class: "inverse-buttons" }, changed && keep, changed && back, other),
       h(
@@ -342,8 +342,8 @@ export function fromStiffness(studio) {
         { class: "inverse-more small" },
         h("summary", {}, "Options"),
         h("label", { class: "check" }, "No patch narrower than", smallest, "stitches"),
-        h("label", { class: "check" }, scattered, "Scattered purls, too, where they come nearer: hard to knit by hand"),
-        h("label", { class: "check" }, large, "Larger patterns, too (the first time takes up to a minute)"),
+        h("label", { class: "check" }, scattered, "Allow irregular patterns (closer match, harder to knit by hand)"),
+        h("label", { class: "check" }, large, "Allow larger patterns (the first time takes up to a minute)"),
       ),
       h(
         "div",
@@ -359,14 +359,26 @@ export function fromStiffness(studio) {
   return { element, opened: measureAll };
 }
 
-/** @param {FillResult} fillResult */
-function inWords({ off_share: off, parts }) {
-  const left = parts.filter(({ repainted }) => !repainted).map(({ name }) => name);
+/** Each part by its name. @param {FillResult} fillResult @param {Part[]} targeted */
+function inWords({ off_share: off, parts }, targeted) {
   if (off <= 0.05) return `On the chart now, as wanted: ${percent(1 - off)} of it is within 10 %.`;
-  if (left.length === parts.length) return "The chart stays as it is: nothing in this yarn comes nearer.";
-  const share = off >= 1 ? "none" : percent(1 - off);
-  const stays = left.length ? ` ${left.join(", ")} ${left.length > 1 ? "stay as they are" : "stays as it is"}.` : "";
-  return `On the chart now, the nearest that was found: ${share} of it is within 10 % of what was wanted.${stays}`;
+  if (parts.every(({ repainted }) => !repainted))
+    return "The chart stays as it is: no pattern in this yarn comes nearer to what you asked for.";
+  return `On the chart now, as near as this yarn comes. ${parts.map((part, i) => partInWords(part, targeted[i])).join(" ")}`;
+}
+
+/** @param {FillResult["parts"][number]} part @param {Part} wish */
+function partInWords(part, wish) {
+  const off = AXES.flatMap(({ axis, label }) => {
+    const [now, target] = [part[`${axis}_n_per_mm`], wish[axis]];
+    if (now === null || target === null) return [];
+    const words = against(now, target);
+    return words === "as wanted" ? [] : [`${words} along ${label}`];
+  });
+  const how = off.length ? off.join(", ") : "as wanted";
+  return part.repainted
+    ? `${part.name}: ${how}.`
+    : `${part.name}: nothing comes nearer, so it was left as it was (${how}).`;
 }
 
 /** What each part has now, beside what it had and what was wanted. @param {FillResult} fillResult @param {Part[]} targeted */
@@ -379,7 +391,7 @@ function partList({ parts }, targeted) {
         "li",
         {},
         h("strong", {}, part.name),
-        !part.repainted && h("span", { class: "muted" }, " stays as it is"),
+        !part.repainted && h("span", { class: "muted" }, " left as it was"),
         ...AXES.map(({ axis, label }) => {
           const [before, now, target] = [part[`${axis}_before_n_per_mm`], part[`${axis}_n_per_mm`], targeted[i][axis]];
           const change = part.repainted ? `${figure(before)} → ${figure(now)}` : figure(now);

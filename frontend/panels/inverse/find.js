@@ -7,12 +7,13 @@
  */
 
 import { figure, percent } from "../../core/format.js";
+import { sourceInWords } from "../../core/plainly.js";
 import { Belonging } from "../../services/belonging.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
-import { curlInWords, paintWith, sourceInWords } from "./atlas.js";
+import { curlInWords, knittingInWords, paintWith } from "./atlas.js";
 import { field, form, verdict } from "./form.js";
 import { Run } from "../../widgets/jobrun.js";
 import { sameWords, selectField } from "../../widgets/fields.js";
@@ -141,7 +142,7 @@ export function findTab(studio, context) {
 
   const across = h("input", { type: "checkbox", id: "find-all-yarns" });
   const large = h("input", { type: "checkbox", id: "find-large" });
-  const transfers = limit("Transfers", { any: null, none: 0, "≤ ¼ a stitch": 0.25, "≤ ½ a stitch": 0.5 });
+  const transfers = limit("Moves between beds", { any: null, none: 0, "≤ ¼ a stitch": 0.25, "≤ ½ a stitch": 0.5 });
   const curl = limit("Curl", { any: null, "lies flat": 0.15, little: 0.5 });
 
   const request = () => {
@@ -224,7 +225,7 @@ export function findTab(studio, context) {
               title: "Probability that all targets are met within their tolerances, from the 90 % intervals",
             },
             candidate.reached && icon("check"),
-            `${percent(candidate.chance)} sure`,
+            `${percent(candidate.chance)} chance of meeting ${Object.keys(candidate.values).length > 1 ? "all targets" : "the target"}`,
           ),
         ),
         h(
@@ -235,7 +236,7 @@ export function findTab(studio, context) {
         h(
           "div",
           { class: "muted" },
-          `${figure(candidate.transfers_per_stitch, 2)} transfers, ${figure(candidate.crossings_per_stitch, 2)} crossings a stitch; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`,
+          `${knittingInWords(candidate.transfers_per_stitch, candidate.crossings_per_stitch)}; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`,
         ),
       ),
       h(
@@ -273,7 +274,7 @@ export function findTab(studio, context) {
         "label",
         { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute per yarn" },
         large,
-        "Larger patterns, too",
+        "Larger patterns",
       ),
       h("span", { class: "spacer" }),
       h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find"),

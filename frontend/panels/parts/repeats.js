@@ -107,7 +107,7 @@ export function create(studio, context) {
               },
               { "aria-pressed": String(studio.tool.value === placeTool), title: "Then drag in the chart (P)" },
             ),
-            wide("fill", "fill", selection.value ? "Fill selection" : "Fill chart", () => {
+            wide("fill", "fill", selection.value ? "Repeat over the selection" : "Repeat over the chart", () => {
               const box = filledBox(repeat, selection.value ?? chart.grid.box);
               if (!box) {
                 studio.tell(`${name} does not fit: it is a ${repeat.rule}.`);
