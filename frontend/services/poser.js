@@ -129,18 +129,38 @@ async function* worn(studio, signal) {
   const hand = gloveOf(studio);
   if (hand) {
     const { id, parts, notes } = await api.run("glove", hand, signal);
-    yield { pose: "worn", id, rows, columns, converged: true, words: pressed(parts, "On the hand"), note: notes[1] };
+    yield {
+      pose: "worn",
+      id,
+      rows,
+      columns,
+      converged: true,
+      note: notes.at(-1) ?? "",
+      ...pressed(parts, notes, "hand"),
+    };
     return;
   }
   const { id, places, notes } = await api.run("limb", { ...studio.request, ...studio.limb }, signal);
   if (!id) return;
-  yield { pose: "worn", id, rows, columns, converged: true, words: pressed(places, "On the body"), note: notes[0] };
+  const note = notes.find((words) => !isWarning(words)) ?? "";
+  yield { pose: "worn", id, rows, columns, converged: true, note, ...pressed(places, notes, "body") };
 }
 
-/** @param {{mmhg: [number, number] | null}[]} places @param {string} where */
-function pressed(places, where) {
+/** Whether a note of the service warns of a pressure that can stop the blood. @param {string} note */
+export const isWarning = (note) => note.includes("stop the blood");
+
+/**
+ * What to say of a garment that is worn; its brightest stitches have the middle of the range of pressures.
+ *
+ * @param {{mmhg: [number, number] | null}[]} places
+ * @param {string[]} notes
+ * @param {string} where
+ * @returns {Pick<Posed, "words" | "pressure">}
+ */
+function pressed(places, notes, where) {
   const most = Math.max(0, ...places.map(({ mmhg }) => (mmhg ? (mmhg[0] + mmhg[1]) / 2 : 0)));
-  return most ? `${where}: 0 to ${figure(most, 2)} mmHg, dark to light` : `${where}: loose`;
+  if (!most) return { words: `On the ${where}: loose` };
+  return { words: `Pressure on the ${where}`, pressure: { most, warning: notes.filter(isWarning).join(" ") } };
 }
 
 /** The hand that the chart is a glove for, in the material of the design. @param {Studio} studio */

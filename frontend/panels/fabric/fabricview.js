@@ -11,6 +11,8 @@ import { ApiError, api } from "../../api.js";
 import { atRest, shownOverlay } from "../../state/overlays.js";
 import { onTheme, readPalette } from "../../state/palette.js";
 import { along } from "../../core/directions.js";
+import { figure } from "../../core/format.js";
+import { batlow } from "../../state/colormaps.js";
 import { h, nextTask } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { ViewLink } from "./link.js";
@@ -272,7 +274,9 @@ export function fabricview(host, studio, view) {
     const left = stale && (problem || !studio.online.value); // no other one will come for now
     caption.toggleAttribute("data-stale", stale);
     host.toggleAttribute("data-left", left);
+    const { pressure } = (!stale && studio.seeing.posed.value) || {};
     caption.replaceChildren(
+      pressure ? pressureBar(pressure) : "",
       stale ? `${confirmed}${left ? ", before the change" : ""}` : words(),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
@@ -312,6 +316,18 @@ export function fabricview(host, studio, view) {
       studio.seeing.forgotten.value = test.id; // it is run again, and then sent
     else now();
   };
+}
+
+/** The colours of pressure, and a warning where it is too much. @param {{most: number, warning: string}} pressure */
+function pressureBar({ most, warning }) {
+  const bar = h("span", { class: "gradient" });
+  bar.style.backgroundImage = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => batlow.css(i / 16))})`;
+  return h(
+    "div",
+    { class: "fabric-pressure stack gap-2", id: "fabric-pressure" },
+    warning && h("strong", { class: "problem-text", role: "alert" }, warning),
+    h("span", { class: "line gap-6 figures" }, "0", bar, `${figure(most, 2)} mmHg`),
+  );
 }
 
 /** What the view is to show. @param {Studio} studio @param {ChartView} view @returns {ViewRequest} */

@@ -10,6 +10,7 @@ import { api } from "../../api.js";
 import { percent, range } from "../../core/format.js";
 import { Belonging, clothOf } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
+import { isWarning } from "../../services/poser.js";
 import { h, remark } from "../../elements/dom.js";
 import { pressurePlot } from "../../plots/pressure.js";
 import { scopeOf } from "../../services/scope.js";
@@ -140,6 +141,7 @@ export function limb(host, studio) {
             )
           : "",
       ),
+      ...fit.notes.filter(isWarning).map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
       pressurePlot(places),
       h("p", { class: "muted figures" }, words.filter(Boolean).join(" ")),
       problem ? h("p", { class: "muted" }, problem) : "",
