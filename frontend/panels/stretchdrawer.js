@@ -131,11 +131,25 @@ export function stretchdrawer(host, studio, stretcher) {
   const player = h("div", { class: "player line gap-12" }, play, slider, figures, save);
   stretcher.belonging.marks(player, "stretch");
 
+  const fold = h("button", {
+    class: "stretch-fold bare line gap-6",
+    id: "stretch-fold",
+    onclick: () => folded(host.dataset.folded === undefined),
+  });
+  /** On small screens the drawer is closed until it is needed. @param {boolean} closed */
+  const folded = (closed) => {
+    host.toggleAttribute("data-folded", closed);
+    fold.ariaExpanded = String(!closed);
+    fold.replaceChildren(h("h2", {}, "Stretch test"), icon(closed ? "up" : "down"));
+  };
+  folded(matchMedia("(max-width: 900px)").matches);
+
   host.append(
     h(
       "div",
       { class: "stretch-set line gap-10" },
-      h("h2", {}, "Stretch test"),
+      h("h2", { class: "stretch-title" }, "Stretch test"),
+      fold,
       choices.element,
       h("div", { class: "line gap-6" }, amount, unit),
       options.element,
@@ -219,6 +233,7 @@ export function stretchdrawer(host, studio, stretcher) {
     else note.append("Pull the chart along its rows or columns and see where it gives.");
     run.disabled = !busy && tooLarge();
     host.classList.toggle("busy", busy);
+    if (busy) folded(false);
   };
   const waiting = () => stretcher.progress.value === null;
   const tooLarge = () => {

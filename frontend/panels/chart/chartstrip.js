@@ -10,6 +10,7 @@ import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
 import { segmented } from "../../widgets/fields.js";
 import { actionButton } from "../../widgets/buttons.js";
+import { fullButton } from "../../widgets/full.js";
 
 /** @type {Record<Symbols, string>} */
 const SYMBOLS = { dots: "dots", dashes: "dashes", japanese: "Japanese" };
@@ -108,6 +109,7 @@ export function chartstrip(host, context) {
       ]),
       look,
       h("div", { class: "group flex gap-2" }, small("zoom-out"), small("zoom-in"), small("fit")),
+      fullButton("chart", "strip-button bare centred rounded"),
     ),
   );
 }

@@ -9,6 +9,7 @@ import { POSES } from "../../state/seeing.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { segmented } from "../../widgets/fields.js";
+import { fullButton } from "../../widgets/full.js";
 import { menu } from "../../widgets/menu.js";
 
 /** @type {{side: CameraSide, label: string, hint: string}[]} */
@@ -74,6 +75,7 @@ export function toolbar(studio, look, request) {
     poses.element,
     root,
     shareMenu(studio, request),
+    fullButton("cloth", "button icon-only"),
   );
 }
 
