@@ -11,7 +11,7 @@
  * @typedef {{each: (index: number) => number}} StitchColours pixel of each stitch
  * @typedef {KindColours | StitchColours} Colouring
  *
- * @typedef {{kind: "swatches", items: {label: string, colour: string, dot?: boolean}[]}} SwatchLegend
+ * @typedef {{kind: "swatches", items: {label: string, colour: string}[]}} SwatchLegend
  * @typedef {{kind: "scale", map: ColourMap, low: number, high: number, unit: string, log: boolean,
  *   label: string}} ScaleLegend
  *
@@ -28,7 +28,7 @@
 
 import { along } from "../core/directions.js";
 import { FABRICS, QUARTERS } from "../grid/segments.js";
-import { batlow, part, vik } from "./colormaps.js";
+import { batlow, part, taut, vik } from "./colormaps.js";
 import { pixel } from "./palette.js";
 
 const always = () => true;
@@ -80,7 +80,7 @@ const fabrics = {
   legend: (_, palette) => {
     const colours = palette.fabrics.map(css);
     const fabrics = FABRICS.map((label, i) => ({ label, colour: colours[i] }));
-    return { kind: "swatches", items: [...fabrics, { label: "purl", colour: "transparent", dot: true }] };
+    return { kind: "swatches", items: fabrics };
   },
 };
 
@@ -174,14 +174,14 @@ const utilisation = {
   id: "utilisation",
   label: "Lock-up",
   short: "Lock-up",
-  hint: "How much of its stretch each stitch has used; at 100 % its yarn is taut",
+  hint: "How much of its stretch each stitch has used; red where its yarn is taut",
   view: "utilisation",
   available: (studio) => studio.field("utilisation") !== null,
   colouring: (studio) => {
     const values = studio.field("utilisation") ?? [];
-    return { each: (i) => pixel(batlow.at(values[i])) };
+    return { each: (i) => pixel(taut.at(values[i])) };
   },
-  legend: () => scale(batlow, [0, 100], "%", "Stretch used before lock-up"),
+  legend: () => scale(taut, [0, 100], "%", "Stretch used; red: run out"),
 };
 
 /** @type {Overlay[]} */

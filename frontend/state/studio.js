@@ -13,8 +13,8 @@
  *   StretchResult} from "../types.js"
  *
  * @typedef {{value: PredictResult | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
- * @typedef {{value: StretchResult | null, direction: Direction, busy: boolean, stale: boolean,
- *   problem: Problem | null}} StretchState
+ * @typedef {{value: StretchResult | null, direction: Direction, busy: boolean, stale: string,
+ *   problem: Problem | null}} StretchState `stale` says why the test does not count any more; "" if it does
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
@@ -80,7 +80,7 @@ export class Studio {
         value: null,
         direction: "wale",
         busy: false,
-        stale: false,
+        stale: "",
         problem: null,
       }),
     );
@@ -128,7 +128,7 @@ export class Studio {
     this.selection.value = null;
     this.materialId.value = design.material;
     this.document.open(design, history);
-    this.stretch.value = { ...this.stretch.value, value: null, stale: false, problem: null };
+    this.stretch.value = { ...this.stretch.value, value: null, stale: "", problem: null };
   }
 
   /**

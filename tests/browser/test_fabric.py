@@ -83,8 +83,8 @@ def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
     assert min(still[:2]) > 0.3
     view = "views/" + _design(page)
     for pose, caption, below in (
-        ("flat", "Relaxed, held flat", 0),
-        ("lying", "As it lies, without friction", 50),
+        ("flat", "Relaxed, pinned flat", 0),
+        ("lying", "Unpinned, lying without friction", 50),
     ):
         page.click(f"#fabric-{pose}")
         expect(page.locator(".fabric-caption")).to_contain_text(caption)
@@ -272,7 +272,9 @@ def test_a_fabric_that_was_stretched_is_also_shown_as_it_lies(flat_studio: Page)
     with sent_view(flat_studio, '"curl":{') as shown:
         flat_studio.click("#fabric-lying")
     assert shown.value.ok, shown.value.text()
-    expect(flat_studio.locator(".fabric-caption")).to_contain_text("As it lies, without friction")
+    expect(flat_studio.locator(".fabric-caption")).to_contain_text(
+        "Unpinned, lying without friction"
+    )
 
 
 @pytest.mark.slow
@@ -306,7 +308,7 @@ def test_the_chart_is_worn_on_a_limb_of_the_girths_given(flat_studio: Page) -> N
     with sent_view(flat_studio, '"colour":"pressure"') as shown:
         flat_studio.click("#limb-wear")
     assert shown.value.ok, shown.value.text()
-    expect(flat_studio.locator(".fabric-caption")).to_contain_text("On the body: 0 to")
+    expect(flat_studio.locator(".fabric-caption")).to_contain_text("Pressure on the body")
     expect(flat_studio.locator(".pressure-plot")).to_be_attached()
 
 

@@ -116,7 +116,7 @@ class FillRequest(LawsRequest):
     )
 
     def check_parts(self, context: Context) -> None:
-        """Refuse maps or targets of parts that do not go together, or are too large for the service."""
+        """Refuse maps or targets that do not go together, or are too large for the service."""
         size = _targets(self)[0].size
         if size > MAX_STITCHES and not context.local:
             raise InputError(

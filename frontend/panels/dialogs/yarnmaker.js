@@ -71,7 +71,7 @@ export function yarnMaker(studio, made) {
     bending.value = milli(traced.bending_modulus_n_mm2);
     measured = { ...measured, bending_modulus_sd_n_mm2: spread };
     const words = `${milli(traced.bending_modulus_n_mm2)}${spread ? ` ± ${milli(spread)}` : ""} mN·mm² from ${counted(traced.photos.length, "photo")}`;
-    evidence.set("bending", `Bending modulus ${words}.`);
+    evidence.set("bending", `Bending stiffness ${words}.`);
     bent.textContent = [`${words}.`, ...traced.notes].join(" ");
   };
 
@@ -218,8 +218,8 @@ export function yarnMaker(studio, made) {
     h(
       "div",
       { class: "yarn-facts" },
-      labelled("Bending modulus", bending, "mN·mm²"),
-      labelled("Yarn in a stitch", loop, "mm: unravel ten, divide by ten"),
+      labelled("Bending stiffness (EI)", bending, "mN·mm², optional"),
+      labelled("Yarn per stitch", loop, "mm (unravel 10 stitches, divide by 10)"),
     ),
     h(
       "details",
