@@ -107,7 +107,9 @@ export function create(studio, context) {
               "aria-pressed": String(studio.tool.value === placeRepeat),
               title: "Then drag in the chart (P)",
             }),
-            textButton("fill", selection.value ? "Repeat over the selection" : "Repeat over the chart", fill, { id: `${id}-fill` }),
+            textButton("fill", selection.value ? "Repeat over the selection" : "Repeat over the chart", fill, {
+              id: `${id}-fill`,
+            }),
           ),
           placements.length
             ? h("ul", { class: "plain-list" }, ...placements.map((place, at) => copy(repeat, place, at)))
