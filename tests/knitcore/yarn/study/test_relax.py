@@ -292,7 +292,7 @@ def test_bending_may_press_weak_shells_together():
 
 def test_strands_that_nothing_keeps_apart_are_refused_with_a_remedy():
     yarn = YarnModel(0.0244, 1.62e-4, 1.914, 0.375, 0.0273)
-    with pytest.raises(UnravelledError, match=r"a core of \.25 to \.6 of the radius"):
+    with pytest.raises(UnravelledError, match=r"a core of 0.25 to 0.6 of the radius"):
         relax(StitchChart.parse("KKP"), yarn, 9.583)
 
 
