@@ -27,7 +27,13 @@ from knitcore.measure.stretch_test import (
     misread_forces,
     until_unloaded,
 )
-from knitcore.measure.table_reading import Doubt, DoubtError, TableReading, doubt_of_width
+from knitcore.measure.table_reading import (
+    Doubt,
+    DoubtError,
+    OtherReading,
+    TableReading,
+    doubt_of_width,
+)
 from knitcore.measure.tables import numbers, read_table, rows_by_label
 from knitcore.measure.tester_tables import Specimen, has_units, in_unit, read_specimens
 from knitcore.measure.workbooks import Worksheet, is_workbook, read_workbook
@@ -151,6 +157,14 @@ def _pulls(
                 "Give length_mm, the distance of the clamps at rest: strain is extension/length."
             )
             raise InputError(specimen.name, "has an extension, but no length at rest.", remedy)
+        if len(specimen.lengths_mm) > 1 and "length_mm" not in reading.sure | {*columns}:
+            raise DoubtError.of(
+                specimen.name,
+                f"names several lengths at rest: {', '.join(f'{v:g}' for v in specimen.lengths_mm)}"
+                " mm.",
+                "Give the one over which the extension is measured, as length_mm.",
+                *(OtherReading(f"{v:g} mm", {"length_mm": v}) for v in specimen.lengths_mm),
+            )
         along = columns["extension_mm"] / length
         if -along.min() > along.max() and -columns["force_n"].min() > columns["force_n"].max():
             along = -along

@@ -11,7 +11,7 @@ that comes again in the line of names. Numbers without a line of names have colu
 import csv
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -94,12 +94,14 @@ class Specimen:
     columns : by our names (:data:`QUANTITIES`), (readings,) in mm, N and as fractions.
     constants : such as ``width_mm``, from lines above the readings.
     labels : of the rows, where a column says to which run they belong.
+    lengths_mm : all lengths at rest that the lines just above the readings name.
     """
 
     name: str
     columns: dict[str, Array]
     constants: dict[str, float] = field(default_factory=dict)
     labels: tuple[str, ...] = ()
+    lengths_mm: tuple[float, ...] = ()
 
 
 def read_specimens(path: Path, reading: TableReading) -> tuple[list[Specimen], list[str]]:
@@ -232,6 +234,7 @@ def _specimens(
 ) -> Iterator[Specimen]:
     """Specimens of a sheet, in the order of their readings."""
     constants: dict[str, float] = {}
+    lengths: list[float] = []
     title = sheet
     nameless = _first_numbers(rows)
     row = 0
@@ -240,7 +243,10 @@ def _specimens(
         heads = nameless.titles if is_nameless else rows[row]
         groups = _heads(heads, reading.columns)
         if not groups:
+            before = constants
             title, constants = _about(rows[row], title, constants)
+            if constants is not before and "length_mm" in constants:
+                lengths.append(constants["length_mm"])
             row += 1
             continue
         first = row if is_nameless else row + 1
@@ -261,8 +267,9 @@ def _specimens(
             for place, group in enumerate(groups):
                 name = title or "readings"
                 name = f"{name} {place + 1}" if len(groups) > 1 else name
-                yield _specimen(f"{file}, {name}", group, readings, constants, reading.units)
-            title = sheet
+                made = _specimen(f"{file}, {name}", group, readings, constants, reading.units)
+                yield replace(made, lengths_mm=tuple(dict.fromkeys(lengths)))
+            title, lengths = sheet, []
         row = max(end, first)
 
 

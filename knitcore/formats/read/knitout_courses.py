@@ -85,7 +85,12 @@ def fabric_of(loops: Sequence[Loop], stitches: Sequence[Loop]) -> Fabric:
     wale = _Wales(passes)
     courses = _without_tag(_courses(passes), ends_it=stitches[-1].number == _last_knit(loops))
     notes: list[str] = []
-    for trimmed in (_without_other_needles, _without_slipped_edges, _without_unfinished_start):
+    for trimmed in (
+        _without_tubular_start,
+        _without_other_needles,
+        _without_slipped_edges,
+        _without_unfinished_start,
+    ):
         courses, trimmings = trimmed(courses, wale)
         notes += trimmings
     reading = _Reading(courses, wale)
@@ -191,6 +196,34 @@ def _without_tag(courses: list[Course], *, ends_it: bool) -> list[Course]:
     wide_below = len(courses) > tag and sum(map(len, courses[-tag - 1])) > 1
     is_tag = ends_it and wide_below and len(needles) == 1 and stitches == tag
     return courses[:-tag] if is_tag else courses
+
+
+def _without_tubular_start(courses: list[Course], wale: _Wales) -> tuple[list[Course], list[str]]:
+    """Remove first courses that go around: one bed there, the other bed back, no wale in common."""
+    first = 0
+    while first < len(courses) and _is_around(courses[first], wale):
+        first += 1
+    above = courses[first] if first < len(courses) else []
+    if not first or len(above) != 1 or len({loop.bed for loop in above[0]}) < 2:
+        return courses, []
+    lines = f"lines {courses[0][0][0].line} to {courses[first - 1][-1][-1].line}"
+    note = f"A tubular start ({lines}) is left out as part of the cast-on."
+    return courses[first:], [note]
+
+
+def _is_around(course: Course, wale: _Wales) -> bool:
+    beds = [{loop.bed for loop in run} for run in course]
+    wales = [{wale(loop) for loop in run} for run in course]
+    return (
+        len(course) == 2
+        and [*map(len, beds)] == [1, 1]
+        and beds[0] != beds[1]
+        and (
+            not wales[0] & wales[1]
+            and min(wales[1]) < max(wales[0])
+            and min(wales[0]) < max(wales[1])
+        )
+    )
 
 
 def _without_slipped_edges(courses: list[Course], wale: _Wales) -> tuple[list[Course], list[str]]:

@@ -25,6 +25,8 @@ MAX_SIDE = 1600
 """Pixels along a side to which larger pictures are reduced."""
 MIN_CELL_PIXELS = 8
 """Least side of a cell that is taken as a stitch; smaller blocks are stitches of a pixel each."""
+MOST_LONG = 2.5
+"""Height over width of a cell, or width over height, beyond which it is several stitches."""
 MAX_UNTOLD = 64
 """Side up to which nobody asks whether a pixel is a stitch."""
 _LINE = 0.75
@@ -183,7 +185,7 @@ def _size_shown(colours: Array, *, is_own: bool, is_drawn: bool) -> tuple[int, i
     if columns and rows:
         wide, high = width / columns, height / rows
         longer = max(wide, high) / min(wide, high)
-        if longer > 1.5 and abs(longer - round(longer)) < _WHOLE:  # blocks of stitches
+        if longer > MOST_LONG and abs(longer - round(longer)) < _WHOLE:  # blocks of stitches
             columns, rows = (round(side / min(wide, high)) for side in (width, height))
         if min(wide, high) >= MIN_CELL_PIXELS:
             note = (

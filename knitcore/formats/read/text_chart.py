@@ -336,7 +336,7 @@ class _Reader:
         knits = {sign for sign, purl in purls.items() if not purl}
         if BLANK in signs and BLANK not in purls and True in purls.values() and knits <= set("|"):
             purls[BLANK] = False
-        elif BLANK in signs and BLANK not in purls and signs - {BLANK} <= _MARKED:
+        elif BLANK in signs and BLANK not in purls and signs - {BLANK} <= _MARKED | {"."}:
             purls |= {s: s != BLANK for s in signs}
         open_signs = signs - set(purls)
         if len(open_signs) == 1 and len(set(purls.values())) == 1:

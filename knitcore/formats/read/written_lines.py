@@ -76,7 +76,7 @@ _AGAIN = re.compile(
     _I,
 )
 _LAST = re.compile(
-    r"(?:repeat|rep|work) (?:these|those|the last|last|the previous) (\w+) (?:rows?|rnds?|rounds?)"
+    r"(?:repeat|rep|work) (?:these|those|(?:the )?(?:last|previous))( \w+)? (?:rows?|rnds?|rounds?)"
     r"\b(.*)",
     _I,
 )
@@ -225,7 +225,8 @@ def _plainly(raw: str) -> str:
 
 
 def _number(word: str) -> int:
-    return int(word) if word.isdigit() else NUMBER_WORDS.get(word.lower(), 0)
+    word = word.strip().lower()
+    return int(word) if word.isdigit() else NUMBER_WORDS.get(word, 0)
 
 
 def _row_begins(text: str, at: int = 0) -> re.Match[str] | None:
@@ -333,8 +334,8 @@ class _Reader:
         latest = _LAST.fullmatch(line.text.rstrip(". "))
         if repeat is not None and pattern.rows:
             self._repeat(line, *repeat)
-        elif latest is not None and pattern.rows and _number(latest[1]):
-            self._repeat(line, -_number(latest[1]), -1, latest[2])
+        elif latest is not None and pattern.rows and (back := _number(latest[1] or "one")):
+            self._repeat(line, -back, -1, latest[2])
         elif end is not None and pattern.rows:
             pattern.bound_off = line, int(end["count"]) if end["count"] else None
         elif pattern.rows and _GOES_ON.fullmatch(line.text):

@@ -178,6 +178,17 @@ def test_titles_and_numbers_in_other_forms(tmp_path: Path, content: bytes) -> No
     assert stress == pytest.approx(expected, rel=2e-3)
 
 
+def test_several_lengths_at_rest_are_a_question(tmp_path: Path) -> None:
+    content = stated("Extension (mm),Load (N)", "Width,70\nGauge length,50", "Grip separation,100")
+    with pytest.raises(DoubtError, match="several lengths at rest: 50, 100 mm") as error:
+        read(tmp_path / "test.csv", content)
+    changes = [dict(reading.changes) for reading in error.value.doubt.readings]
+    assert changes == [{"length_mm": 50.0}, {"length_mm": 100.0}]
+    assert read(tmp_path / "test.csv", content, length_mm=100.0).largest_strain == pytest.approx(
+        0.6
+    )
+
+
 def test_of_two_extensions_the_first_is_read_and_told(tmp_path: Path) -> None:
     rows = [f"{LENGTH_MM * e:.4f},{f:.4f},0" for e, f in zip(STRAIN, FORCE, strict=True)]
     content = "\n".join(["Crosshead (mm),Load (N),Extension (mm)", *rows]).encode()

@@ -114,6 +114,15 @@ def test_the_start_of_a_rib_on_other_needles_is_left_out() -> None:
     assert any("knitted on other needles before the piece" in note for note in knitted.notes)
 
 
+@pytest.mark.parametrize("rounds", [1, 3])
+def test_a_tubular_start_belongs_to_the_cast_on(rounds: int) -> None:
+    lines = ["in 1", *(f"tuck - {bed}{n} 1" for n, bed in reversed(list(enumerate(RIB, 1))))]
+    around = [f"knit + f{n} 1" for n in (2, 4, 6)] + [f"knit - b{n} 1" for n in (5, 3, 1)]
+    knitted = read(*lines, *around * rounds, *courses("1", RIB, 4, first=1))
+    assert knitted.chart.text == "\n".join(["PKPKPK"] * 4)
+    assert "tubular start" in knitted.notes[0]
+
+
 def test_a_first_course_that_closes_the_cast_on() -> None:
     lines = ["in 1", *(f"tuck - f{n} 1" for n in (4, 3, 2, 1))]
     lines += [f"knit + f{n} 1" for n in (2, 3, 4)]

@@ -13,6 +13,7 @@ from knitcore.formats.read.text_chart import read_text_chart
         ("- - -\n - - -\n", "PKPKPK/KPKPKP", "The 6 blank squares are read as knits"),
         ("--\n  --", "PPKK/KKPP", "The 4 blank squares"),
         ("●\u3000●\n\u3000●", "PKP/KPK", "The 3 blank squares"),
+        (". .\n . ", "PKP/KPK", "Signs are read: . as purl"),
         ("-,,-\n,-,", "PKP/KPK", "The 3 blank squares"),
         ("-\t\t-\n-\t-\t-", "PKP/PPP", "The blank square is read as a knit"),
         ("ー|ー\n| |", "PKP/KKK", "The blank square"),

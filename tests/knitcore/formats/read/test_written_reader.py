@@ -81,6 +81,7 @@ from knitcore.formats.read.written_reader import looks_written, read_noted_rows
         ("Row 1: k2\nRow 2: k2\nRep rows 1 & 2 one more time.", "PP\nKK\nPP\nKK"),
         ("Row 1: k2\nRow 2: k2\nRepeat these two rows once more.", "PP\nKK\nPP\nKK"),
         ("Row 1: p2\nRow 2: k2\nRow 3: k2\nRep last 2 rows twice.", "KK\nPP\n" * 3 + "PP"),
+        ("Row 1: k2, p2\nRep the last row once.", "PPKK\nPPKK"),
         ("Row 1: k2\nRow 2: k2\nWork rows 1 and 2 once more.", "PP\nKK\nPP\nKK"),
         ("Row 1: k2\nRow 2: k2\nRows 3-6: Rep rows 1 - 2 twice.", "PP\nKK\nPP\nKK\nPP\nKK"),
         ("Row 1: k4\nRow 2: As row 1.", "PPPP\nKKKK"),
