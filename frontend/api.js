@@ -7,6 +7,8 @@
  *   ViewResult} from "./types.js"
  */
 
+import { plainly } from "./core/plainly.js";
+
 /**
  * @typedef {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
  *   keepalive?: boolean}} CallOptions
@@ -18,7 +20,7 @@ export class ApiError extends Error {
   constructor(problem, passing = false) {
     super(problem.detail || problem.title);
     this.name = "ApiError";
-    this.problem = problem;
+    this.problem = plainly(problem);
     this.passing = passing;
   }
 

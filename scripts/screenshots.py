@@ -202,7 +202,7 @@ def visit(browser: Browser, url: str, theme: Literal["light", "dark"], *, flat: 
     if flat:
         page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
     page.goto(url)
-    page.click("#tour-offer [aria-label='No tour']")
+    page.click("#tour-offer [aria-label='Dismiss']")
     page.locator("#stretch-slider:enabled").wait_for(timeout=300_000)
     page.wait_for_timeout(1500)
     return page

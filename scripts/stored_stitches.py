@@ -86,12 +86,12 @@ def build(
         for chart, name in names.items():
             label = _label(material_id, chart, Branch.MIRRORED)
             key = f"{material_id}/{chart.key}"
-            document = _found(batch, label, tasks[label])
+            document = _document_of(batch, label, tasks[label])
             provenance = yarn_for(material(material_id), chart).provenance
             entries[key] = _entry(document, tasks[label], provenance, name)
             free = _label(material_id, chart, Branch.FREE)
             if free in tasks:
-                entries[key]["free"] = _free(_found(batch, free, tasks[free]))
+                entries[key]["free"] = _free(_document_of(batch, free, tasks[free]))
             if "controls" in document:
                 controls[key] = np.asarray(document["controls"], dtype=np.float32)
     write_store(folder, entries, controls)
@@ -127,7 +127,7 @@ def _label(material_id: str, chart: StitchChart, branch: Branch) -> str:
     return f"{material_id}.{chart.key.replace('/', '-')}.{branch}"
 
 
-def _found(batch: BatchResult, label: str, task: RepeatTask) -> Document:
+def _document_of(batch: BatchResult, label: str, task: RepeatTask) -> Document:
     key = f"{label}.{task.key}"
     return batch.results.get(key) or {"failure": batch.failures[key]}
 

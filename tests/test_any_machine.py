@@ -60,7 +60,6 @@ SUMMED = {
     "yarn/solve/fronts.py": "whole numbers",
     "yarn/paper/bezier_relax.py": "whole numbers",
     "yarn/model/relaxed_cell.py": "seconds",
-    "yarn/study/rs_geometry.py": "two numbers each",
     "yarn/solve/search.py": "whole numbers",
 }
 """Files of these rooms that use Python's sum, and why they may."""
@@ -69,7 +68,6 @@ LINEAR = {
     "yarn/study/yarn_tube.py": "the same",
     "yarn/solve/clasps.py": "logarithms of determinants, compared with a margin",
     "yarn/study/sweep.py": "a measure of what was found",
-    "yarn/study/rs_geometry.py": "the same",
     "yarn/study/whole_chart.py": "the force that is left",
     "cloth/space/curl.py": "turns what was found",
     "cloth/space/surface.py": "draws what was found",

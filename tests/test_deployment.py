@@ -214,7 +214,7 @@ def test_the_script_checks_the_files_where_no_engine_answers(tmp_path: Path) -> 
 
 
 def test_images_are_pinned_by_digest_and_not_published_without(tmp_path: Path) -> None:
-    """With an engine that knows one digest, and cannot build."""
+    """The engine knows one digest, and cannot build."""
     digest = "sha256:" + "0a" * 32
     engine = tmp_path / "engine"
     engine.write_text(

@@ -8,6 +8,7 @@ import ast
 import contextlib
 import importlib.util
 import io
+import json
 import pkgutil
 import re
 import shlex
@@ -17,6 +18,7 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -219,23 +221,37 @@ def _send(client: TestClient, command: str) -> Response:
     )
 
 
-def test_the_requests_of_the_quickstart_run(tmp_path: Path) -> None:
+SHOWN = re.compile(r"^(curl .*?)(?=^curl |^```$)|^```json\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+"""A request of the quickstart, or the response to it."""
+
+
+def test_the_requests_of_the_quickstart_get_the_responses_that_it_shows(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "http.md").read_text().replace("\\\n", " ")
-    commands = [
-        command.replace("$API", "/api/v1")
-        for block in SHELL.findall(text)
-        for command in re.split(r"^(?=curl )", block, flags=re.MULTILINE)
-        if command.startswith("curl ")
-    ]
-    assert len(commands) >= 8
+    responses: list[Response] = []
     app = create_app(Settings(data_dir=tmp_path))
     with TestClient(app, base_url="http://127.0.0.1") as client:
         job = ""
-        for command in commands:
-            response = _send(client, command.replace("JOB", job))
+        for command, response in SHOWN.findall(text.replace("$API", "/api/v1")):
+            if response:
+                _compare(json.loads(response), responses[-1].json())
+                continue
+            responses.append(_send(client, command.replace("JOB", job)))
             accepted = {200, 202, 204, 409} if "/jobs/" in command else {200, 202}
-            assert response.status_code in ({422} if "acryllic" in command else accepted), command
-            job = response.headers.get("location", job).rsplit("/", 1)[-1]
+            status = responses[-1].status_code
+            assert status in ({422} if "acryllic" in command else accepted), command
+            job = responses[-1].headers.get("location", job).rsplit("/", 1)[-1]
+    assert len(responses) >= 8
+
+
+def _compare(shown: dict[str, Any], answered: dict[str, Any]) -> None:
+    """Compare fields that a page shows with the response; dots stand for what it leaves out."""
+    for name, value in shown.items():
+        if name == "…" or value == ["…"]:
+            continue
+        if isinstance(value, str):
+            assert answered[name].startswith(value.rstrip("…")), name
+        else:
+            assert answered[name] == pytest.approx(value, rel=5e-3), name
 
 
 @cache

@@ -1,7 +1,6 @@
 """A design in the 3D view."""
 
 import math
-from collections.abc import Callable
 from enum import StrEnum
 
 import numpy as np
@@ -19,7 +18,7 @@ from knitcore.formats.designs.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
 from knitcore.materials import Material
 
-from ..context import Context, Supplies
+from ..context import Context
 from ..requests.base import RequestModel
 from ..requests.charts import (
     ChartInput,
@@ -31,7 +30,7 @@ from ..requests.charts import (
     to_chart,
 )
 from .computed import PosedView, StretchView
-from .fabric import Drawing, FabricScene
+from .fabric import FabricScene
 from .stitch_colours import Colour, FieldColours, Palette, region_labels, stitch_colours
 
 MAX_REGIONS = 200
@@ -115,13 +114,6 @@ def is_large(request: ViewRequest) -> bool:
     Such a chart is not drawn whole, and no stretch test is as large.
     """
     return size_of_chart(request.chart) > MAX_LETTERS
-
-
-def build_drawing(
-    request: ViewRequest, supplies: Supplies, *, cancelled: Callable[[], bool]
-) -> Drawing:
-    """Make the drawing of a large chart, which has no stretch test or shape; runs in a worker."""
-    return build_scene(request, None, supplies.context(cancelled=cancelled)).drawing()
 
 
 def build_scene(

@@ -187,12 +187,7 @@ class FabricScene:
 
     def drawing(self) -> Drawing:
         """Make the drawing that a view shows and keeps."""
-        part, picture = self.window(), self.colours
-        if part is self:
-            return Drawing(self, self.ground)
-        if self.drawn is not None:
-            picture = np.dstack([picture, 255 * self.drawn.astype(np.uint8)])
-        return Drawing(part, self.ground, picture)
+        return Drawing(self.window(), self.ground)
 
     def window(self, most: int = MAX_STITCHES) -> FabricScene:
         """The part drawn as yarn: all of it, or as many stitches as a browser can draw."""
@@ -228,13 +223,15 @@ class Drawing:
     ----------
     part : drawn as yarn.
     ground : where all stitches lie.
-    picture : (rows, columns, 3 or 4) uint8 of the whole fabric, behind the part; None if that is
-        all of it.
     """
 
     part: FabricScene
     ground: Ground
-    picture: Colours | None = None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all stitches are drawn as yarn."""
+        return self.part.shapes.index.shape == self.ground.shape
 
     @property
     def weight(self) -> int:

@@ -12,6 +12,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction, Fabric
 from knitcore.chart.phases import surroundings
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.cloth.flat.strip_results import TAUT
 from knitcore.formats.designs.layout import Colour as HexColour
 from knitcore.formats.designs.layout import DesignRegion
 from knitcore.materials import Material
@@ -23,6 +24,11 @@ from .colours import FABRIC_COLOURS, diverging, fabric_mix, named_colour, rgb, s
 from .computed import StretchView
 
 Colours = NDArray[np.uint8]
+
+TAUT_SCALE = 0.7
+"""Share of the colour map up to which a stitch that has stretch left is coloured: to orange."""
+TAUT_COLOUR = (214, 30, 36)
+"""A warning; the page has the same."""
 
 
 class Colour(StrEnum):
@@ -127,7 +133,10 @@ def _stretched(colour: Colour, stretch: StretchView | None, step: int) -> Colour
     if stretch is None:
         raise InputError("colour", "needs a stretch test.", "Run one and name its step.")
     if colour is Colour.UTILISATION:
-        return sequential(stretch.utilisation[step], 0.0, 1.0)
+        used = stretch.utilisation[step]
+        colours = sequential(used, 0.0, 1.0 / TAUT_SCALE)
+        colours[used >= TAUT] = TAUT_COLOUR
+        return colours
     along = stretch.strain[..., stretch.direction.axis]
     return diverging(along[step], float(np.abs(along).max()))
 

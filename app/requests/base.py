@@ -157,7 +157,7 @@ Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
 """An interval is [low, high] everywhere, each end in the shape and the unit of its value, and its
 field is named after that of the value: ``force_interval_n`` belongs to ``force_n``."""
 EndsOfList = Annotated[tuple[Floats, Floats], BeforeValidator(_ends)]
-"""The same of a list of values: the list of low ends, and that of high ends."""
+"""Intervals of a list of values: the list of low ends, and that of high ends."""
 Known = Annotated[float | None, BeforeValidator(_known)]
 """A number, null where the library's is not finite."""
 KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]

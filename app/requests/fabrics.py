@@ -91,7 +91,7 @@ class GaugeInput(RequestModel):
         return replace(size, log_sd=self.log_sd, known_by=self.known_by)
 
 
-class FoundGauge(ResultModel):
+class RelaxedGauge(ResultModel):
     """The gauge that a relaxation found; other requests take it as it is."""
 
     stitches_per_10_cm: float

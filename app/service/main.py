@@ -78,6 +78,7 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.large_bodies = FairLock()
     app.state.light_work = FairLock()
     app.state.drawing = FairLock()
+    app.state.backs = set()  # tasks that draw the backs of cloths
     app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
     app.state.recent = RecentResults()
     app.state.answers = Answers(
@@ -96,8 +97,8 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
         ending = _end_jobs_of_the_revoked(tokens, app.state.jobs)
         janitors.append(asyncio.create_task(ending))
     yield
-    for janitor in janitors:
-        janitor.cancel()
+    for task in (*janitors, *app.state.backs):
+        task.cancel()
     await app.state.jobs.close()
     app.state.compute.close()
     await asyncio.to_thread(app.state.views.close)

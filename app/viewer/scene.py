@@ -12,6 +12,7 @@ from knitcore.draw.instances import level_of
 
 from ..drawing.colours import SKIN
 from ..drawing.fabric import Box, Drawing, FabricScene, Ground
+from .balls import Picture
 from .camera import CameraSide, place_camera
 from .cloth import UNITS_PER_MM, ShownStitches
 
@@ -27,6 +28,8 @@ SCALE_BELOW = (1.8, 0.045)
 """The scale lies this many stitches below the fabric, and this share of its height at least."""
 PAPER = (255, 252, 246)
 UNSHADED: dict[str, Any] = {"cast_shadow": False, "receive_shadow": False}
+SHEETS = {"face": ((1.0, 0.0, 0.0, 0.0), 0.0), "back": ((0.0, 0.0, 1.0, 0.0), 0.2)}
+"""Rotation, and depth below the middle plane over the yarn's height, of pictures of a cloth."""
 COARSE_WINDOW = 10_000
 """Stitches drawn as yarn without a GPU, of a chart that is too large to be drawn whole."""
 
@@ -55,15 +58,22 @@ class SceneWriter:
         """The fabric shown."""
         return self._drawing
 
-    def write(self, drawing: Drawing) -> int:
-        """Show a fabric to everybody who looks; returns the number of stitches drawn as yarn."""
+    def write(self, drawing: Drawing, face: Picture | None = None) -> int:
+        """Show a fabric to everybody who looks; returns the number of stitches drawn as yarn.
+
+        Parameters
+        ----------
+        face : picture of a cloth of many stitches, for the eye that is far away.
+        """
         part, ground = drawing.part, drawing.ground
         with self._lock:
             self._drawing = drawing
             stitches = self._lay(exact=not self._server.get_clients())
             self._draw_rectangles(part, ground.middle_mm)
             self._draw_body(part, ground.middle_mm)
-            self._draw_sheet(drawing)
+            self._draw_sheet("face", ground, face)
+            if face is None:  # the back that is there is replaced by the next
+                self._draw_sheet("back", ground, None)
             self._draw_scale(ground)
             room = _room(ground)
             if room != self._framed:
@@ -112,7 +122,7 @@ class SceneWriter:
             if self._drawing is None:
                 return 0
             part, self._laid_coarse = self._drawing.part, self.coarse
-            if self.coarse and self._drawing.picture is not None:
+            if self.coarse and not self._drawing.is_whole:
                 part = part.window(COARSE_WINDOW)
             stitches = int(part.shapes.index.size if part.drawn is None else part.drawn.sum())
             middle = self._drawing.ground.middle_mm
@@ -153,24 +163,25 @@ class SceneWriter:
         vertices = _units(scene.body.sunk_mm(scene.top_mm) - np.append(middle, 0.0))
         self._put_mesh("body", vertices, scene.body.faces, SKIN)
 
-    def _draw_sheet(self, drawing: Drawing) -> None:
-        """All of a chart that is too large, as a picture behind the part that is drawn."""
-        if drawing.picture is None:
-            self._put("sheet", None)
+    def show_back(self, drawing: Drawing, picture: Picture | None) -> None:
+        """Show the picture of a cloth's back, unless the cloth was changed meanwhile."""
+        with self._lock:
+            if drawing is self._drawing:
+                self._draw_sheet("back", drawing.ground, picture)
+
+    def _draw_sheet(self, side: str, ground: Ground, picture: Picture | None) -> None:
+        """A picture of the cloth in its middle plane; browsers show it from afar
+        (frontend/viser/yarn.js)."""
+        if picture is None:
+            self._put(side, None)
             return
-        width, height = drawing.ground.extent_mm
-        self._put(
-            "sheet",
-            self._server.scene.add_image(
-                "/sheet",
-                drawing.picture[::-1],
-                render_width=UNITS_PER_MM * float(width),
-                render_height=UNITS_PER_MM * float(height),
-                format="png",
-                position=(0.0, 0.0, -2.0 * UNITS_PER_MM * drawing.ground.top_mm),
-                **UNSHADED,
-            ),
-        )
+        turned, depth = SHEETS[side]
+        width, height = UNITS_PER_MM * ground.extent_mm
+        image = self._server.scene.add_image(
+            f"/{side}", picture, float(width), float(height), format="png", wxyz=turned,
+            position=(0.0, 0.0, -depth * UNITS_PER_MM * ground.top_mm), **UNSHADED,
+        )  # fmt: skip
+        self._put(side, image)
 
     def _draw_scale(self, ground: Ground) -> None:
         """A line of round length below the fabric, at its right."""

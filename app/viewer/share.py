@@ -17,6 +17,7 @@ from ..requests.charts import to_chart
 from ..service.problems import ServiceError
 from .incoming import WantedPicture
 from .relay import with_scripts
+from .sheet import sheet_picture
 from .still import still_png
 from .views import View, new_view
 
@@ -142,7 +143,7 @@ def shared_still(
 ) -> bytes:
     """A picture without background, with this many pixels: a PNG."""
     scene = build_scene(request, computed, supplies.context(cancelled=cancelled))
-    return still_png(scene.drawing(), width, height)
+    return still_png(scene, width, height)
 
 
 @contextmanager
@@ -151,7 +152,13 @@ def _recorded(request: SharedViewRequest, computed: Computed, context: Context) 
     view = new_view()
     try:
         scenes = _scenes(request, computed, context)
-        view.show(next(scenes).drawing())
+        first = next(scenes)
+        drawing = first.drawing()
+        if request.animated:
+            view.show(drawing)
+        else:
+            view.show(drawing, sheet_picture(first))
+            view.writer.show_back(drawing, sheet_picture(first, back=True))
         serializer = view.server.get_scene_serializer()
         played = False  # over and over, unless it has no length
         for scene in scenes:

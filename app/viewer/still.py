@@ -7,7 +7,6 @@ import io
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from knitcore.base.arrays import Array
@@ -16,45 +15,50 @@ from knitcore.draw.placing import placed_lines
 from knitcore.draw.tubes import resampled
 
 from ..drawing.colours import SKIN, linear
-from ..drawing.fabric import Drawing
+from ..drawing.fabric import FabricScene
+from .balls import Balls, Picture, drawn, lit, points_along
 from .camera import FIELD_OF_VIEW, CameraSide, stand
+from .sheet import sheet_picture
 
-SPACING = 0.5
-"""Distance between the balls that draw a yarn, over its radius."""
-CLOSEST = 1.0
-"""Least distance between balls, pixels."""
 FINE = 1_000_000
 """A picture with fewer dots than this is drawn twice as large and reduced, for smooth edges."""
-LIGHT = np.array([-70.0, 100.0, 90.0]) / np.linalg.norm([-70.0, 100.0, 90.0])
-"""Direction of the light: from the upper left, as in the view."""
-FROM_AROUND, FROM_LIGHT = 0.42, 1.05
-"""Light of the sky and of the lamp, over what the yarn throws back of it."""
-BURIED = 0.35
-"""Darkening of yarn at the back of the fabric, 0 to 1."""
 
 
-def still_png(drawing: Drawing, width: int, height: int) -> bytes:
+def still_png(scene: FabricScene, width: int, height: int) -> bytes:
     """The face of a fabric as a view of this size frames it, on nothing: a PNG with transparency.
-
-    The yarn is drawn as balls along its line, the nearer over the farther ones, and hides what the
-    fabric rests on, or is hidden by it.
 
     Parameters
     ----------
-    drawing : of a fabric that is drawn whole.
+    scene : the fabric; its yarn hides what it rests on, or is hidden by it.
     width, height : pixels.
     """
-    for fine in (2, 1):
-        eye = _Eye.of(drawing, width * fine, height * fine)
-        balls = _balls(drawing, eye)
-        if len(balls.x) * (2 * balls.radius + 1) ** 2 < FINE:
-            break
-    picture = Image.fromarray(_drawn(balls, _body(drawing, eye), eye), "RGBA")
-    if fine > 1:
-        picture = picture.reduce(fine)
+    sheet = sheet_picture(scene)
+    picture = _yarn(scene, width, height) if sheet is None else _sheet(scene, sheet, width, height)
     out = io.BytesIO()
     picture.save(out, "PNG", compress_level=1)
     return out.getvalue()
+
+
+def _sheet(scene: FabricScene, sheet: Picture, width: int, height: int) -> Image.Image:
+    """A cloth from afar."""
+    eye, half = _Eye.of(scene, width, height), 0.5 * scene.ground.extent_mm
+    corners = eye.middle_mm + np.array([[-half[0], half[1], 0.0], [half[0], -half[1], 0.0]])
+    (left, top, _), (right, bottom, _) = eye.seen(corners).round().astype(int).tolist()
+    size = (max(right - left, 1), max(bottom - top, 1))
+    seen = Image.fromarray(sheet, "RGBA").convert("RGBa").resize(size, Image.Resampling.LANCZOS)
+    picture = Image.new("RGBA", (width, height))
+    picture.paste(seen.convert("RGBA"), (left, top))
+    return picture
+
+
+def _yarn(scene: FabricScene, width: int, height: int) -> Image.Image:
+    for fine in (2, 1):
+        eye = _Eye.of(scene, width * fine, height * fine)
+        balls = _balls(scene, eye)
+        if balls.x.size * (2 * balls.radius + 1) ** 2 < FINE:
+            break
+    picture = Image.fromarray(drawn(balls, _body(scene, eye)), "RGBA")
+    return picture.reduce(fine) if fine > 1 else picture
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -77,14 +81,14 @@ class _Eye:
     focal: float
 
     @classmethod
-    def of(cls, drawing: Drawing, width: int, height: int) -> _Eye:
-        place, aim, up = stand(CameraSide.FACE, drawing.ground.framed_mm)
+    def of(cls, scene: FabricScene, width: int, height: int) -> _Eye:
+        place, aim, up = stand(CameraSide.FACE, scene.ground.framed_mm)
         towards = (place - aim) / np.linalg.norm(place - aim)
         right = np.cross(up, towards)
         right /= np.linalg.norm(right)
         axes = np.stack([right, np.cross(towards, right), towards], axis=1)
         focal = height / 2 / math.tan(FIELD_OF_VIEW / 2)
-        return cls(width, height, np.append(drawing.ground.middle_mm, 0.0), place, axes, focal)
+        return cls(width, height, np.append(scene.ground.middle_mm, 0.0), place, axes, focal)
 
     def seen(self, points_mm: Array) -> Array:
         """Points (n, 3), from the left, from the top and towards the eye, pixels."""
@@ -95,56 +99,27 @@ class _Eye:
         return np.stack([x, y, scale * places[:, 2]], axis=1)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class _Balls:
-    """Balls of one radius, the farthest first; places and radius in pixels.
-
-    Attributes
-    ----------
-    x, y, z : (balls,) from the left, from the top, towards the eye.
-    along : (balls, 3) unit vectors along the yarn.
-    colours : (balls, 3) uint8, in proportion to light.
-    """
-
-    x: Array
-    y: Array
-    z: Array
-    along: Array
-    radius: float
-    colours: NDArray[np.uint8]
-
-
-def _balls(drawing: Drawing, eye: _Eye) -> _Balls:
-    scene = drawing.part
+def _balls(scene: FabricScene, eye: _Eye) -> Balls:
     radius = scene.shapes.yarn_radius_mm * eye.focal / float(np.linalg.norm(eye.place_mm))
-
-    steps = np.diff(scene.shapes.lines, axis=1) * [*scene.shapes.lattice.sizes_mm[0, 0], 1.0]
-    longest = float(np.linalg.norm(steps, axis=2).sum(axis=1).max())
-    spacing = max(SPACING * radius, CLOSEST) * scene.shapes.yarn_radius_mm / radius
-    number = min(scene.shapes.lines.shape[1], max(4, math.ceil(longest / spacing)))
+    number = points_along(scene, radius / scene.shapes.yarn_radius_mm)
     shapes = dataclasses.replace(scene.shapes, lines=resampled(scene.shapes.lines, number))
     lines = placed_lines(shapes, scene.placement)
-    along = np.gradient(lines, axis=2) @ eye.axes
-    colours = linear(scene.colours)
-    if scene.drawn is not None:
-        lines, along = lines[scene.drawn], along[scene.drawn]
-        colours = colours[scene.drawn]
-    along = along.reshape(-1, 3)
-    seen = eye.seen(lines.reshape(-1, 3))
-    order = np.argsort(seen[:, 2])
-    x, y, z = seen[order].T
-    along = along[order]
-    return _Balls(
-        x=x,
-        y=y,
-        z=z,
-        along=along / np.linalg.norm(along, axis=1, keepdims=True),
+    shown = slice(None) if scene.drawn is None else scene.drawn
+    lines = lines[shown].reshape(-1, number, 3)
+    along = np.gradient(lines, axis=1) @ eye.axes
+    seen = eye.seen(lines.reshape(-1, 3)).astype(np.float32).reshape(lines.shape)
+    return Balls(
+        x=seen[..., 0],
+        y=seen[..., 1],
+        z=seen[..., 2],
+        along=along / np.linalg.norm(along, axis=-1, keepdims=True),
+        shape=np.arange(len(lines)),
         radius=radius,
-        colours=colours.reshape(-1, 3)[order // number],
+        colours=linear(scene.colours)[shown].reshape(-1, 3),
     )
 
 
-def _body(drawing: Drawing, eye: _Eye) -> tuple[Floats, Array]:
+def _body(scene: FabricScene, eye: _Eye) -> tuple[Floats, Array]:
     """Picture of the body on which the fabric rests.
 
     Returns
@@ -153,10 +128,10 @@ def _body(drawing: Drawing, eye: _Eye) -> tuple[Floats, Array]:
     that the body's pixels send, (pixels, 3) of 0 to 1.
     """
     depth = np.full((eye.height, eye.width), -np.inf, np.float32)
-    body = drawing.part.body
+    body = scene.body
     if body is None:
         return depth, np.empty((0, 3))
-    points_mm = body.sunk_mm(drawing.part.top_mm).astype(float)
+    points_mm = body.sunk_mm(scene.top_mm).astype(float)
     seen = eye.seen(points_mm)
     triangles = seen[body.faces]
     facing = np.cross(*(points_mm[body.faces[:, k]] - points_mm[body.faces[:, 0]] for k in (1, 2)))
@@ -182,65 +157,10 @@ def _body(drawing: Drawing, eye: _Eye) -> tuple[Floats, Array]:
     depth[rows, columns] = np.einsum("ij,ij->i", shares, seen[corners, 2])
     normal = np.einsum("ij,ijk->ik", shares, normals[corners]) @ eye.axes
     normal *= np.where(in_front[shown], 1.0, -1.0)[:, None]  # both sides are lit
-    return depth, linear(np.array([SKIN], np.uint8)) / 255 * _lit(normal)[:, None]
+    return depth, linear(np.array([SKIN], np.uint8)) / 255 * lit(normal)[:, None]
 
 
 def _twice(at: Array, b: Array, c: Array) -> Array:
     """Twice the area of triangles with their first corner at some places, with its sign."""
     (x, y), (u, v) = (b[:, :2] - at).T, (c[:, :2] - at).T
     return np.asarray(x * v - y * u)
-
-
-def _lit(normal: Array) -> Array:
-    """Light that falls on a surface, from its normals (n, 3) to the right, up, and to the eye."""
-    normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
-    lit = FROM_AROUND * (0.75 + 0.25 * normal[:, 1])
-    return np.asarray(lit + FROM_LIGHT * np.clip(normal @ LIGHT, 0.0, None))
-
-
-def _drawn(balls: _Balls, body: tuple[Floats, Array], eye: _Eye) -> NDArray[np.uint8]:
-    """(height, width, 4) uint8."""
-    width, height = eye.width, eye.height
-    reach = math.ceil(balls.radius)
-    margin = 2 * reach  # balls beyond the edge reach as far beyond it again
-    stride = width + 2 * margin
-    near = (balls.x > -reach) & (balls.x < width + reach)
-    near &= (balls.y > -reach) & (balls.y < height + reach)
-    x, y, z = balls.x[near], balls.y[near], balls.z[near].astype(np.float32)
-    column, row = np.floor(x).astype(np.intp), np.floor(y).astype(np.intp)
-    at = (row + margin) * stride + column + margin
-    depth = np.full(stride * (height + 2 * margin), -np.inf, np.float32)
-    whose = np.full(depth.shape, -1, np.int32)
-    number = np.arange(len(at), dtype=np.int32)
-    radius = max(balls.radius, 0.75)
-    aside = (column + 0.5 - x).astype(np.float32)
-    below = (row + 0.5 - y).astype(np.float32)
-    for down in range(-reach, reach + 1):
-        for across in range(-reach, reach + 1):
-            left = radius**2 - (aside + across) ** 2 - (below + down) ** 2
-            hit = np.flatnonzero(left > 0)
-            pixel = at[hit] + (down * stride + across)
-            top = z[hit] + np.sqrt(left[hit])
-            over = top > depth[pixel]
-            hit, pixel = hit[over], pixel[over]
-            depth[pixel] = top[over]  # of several on one pixel the last counts, the nearest
-            whose[pixel] = number[hit]
-    inside = (slice(margin, margin + height), slice(margin, margin + width))
-    depth = depth.reshape(-1, stride)[inside]
-    whose = whose.reshape(-1, stride)[inside]
-    behind, skin = body
-    shown = (whose >= 0) & (depth > behind)
-    ball, (rows, columns) = whose[shown], np.nonzero(shown)
-    normal = np.stack([columns + 0.5 - x[ball], y[ball] - rows - 0.5, depth[shown] - z[ball]], -1)
-    along = balls.along[near][ball]
-    normal -= along * np.einsum("ij,ij->i", along, normal)[:, None]
-    lit = _lit(normal)
-    deepest, highest = np.percentile(z, [2, 98])
-    lit *= 1 - BURIED * np.clip((highest - z[ball]) / max(highest - deepest, 1e-6), 0.0, 1.0)
-    light = np.zeros((height, width, 3))
-    light[np.isfinite(behind)] = skin
-    light[shown] = balls.colours[near][ball] / 255 * lit[:, None]
-    picture = np.zeros((height, width, 4), np.uint8)
-    picture[..., :3] = np.round(255 * np.clip(light, 0.0, 1.0) ** (1 / 2.2))
-    picture[..., 3] = 255 * (shown | np.isfinite(behind))
-    return picture

@@ -4,7 +4,7 @@
  * @import {Action, ActionContext} from "./action.js"
  */
 
-import { TOOLS } from "../tools/registry.js";
+import { TOOLS } from "../tools/tools.js";
 import { redo, undo } from "./history.js";
 import { DESIGNS, INVERSE } from "./designs.js";
 import { LOOK, STRETCH } from "./look.js";

@@ -10,9 +10,7 @@ import { MAX_ITEMS, MAX_MOTIF } from "../design/design.js";
 import { motifText } from "../grid/grid.js";
 import { ownInk } from "../design/shelf.js";
 import { selectedCells, selectionOf } from "../design/selection.js";
-import { move } from "../tools/move.js";
-import { repeat as placeTool } from "../tools/repeat.js";
-import { stamp } from "../tools/stamp.js";
+import { move, placeRepeat, stamp } from "../tools/tools.js";
 import { nextRegionColour } from "../state/palette.js";
 
 const action = actionsOf("Selection");
@@ -147,7 +145,7 @@ export const SELECTION = [
       const name = `Repeat ${document.repeats.length + 1}`;
       editing.repeatId.value = document.addRepeat({ name, motif, placements: [place] });
       studio.selection.value = null;
-      studio.tool.value = placeTool;
+      studio.tool.value = placeRepeat;
       open("repeats");
       studio.tell(`${name}: drag to place copies. Paint one, and all follow.`);
     },

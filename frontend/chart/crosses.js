@@ -29,7 +29,7 @@ export function drawCrosses(context, viewport, studio, box) {
   const { grid, shaped, outline } = studio.document;
   const { cellWidth: w, cellHeight: h } = viewport;
   const size = Math.max(1, Math.ceil(MIN_PX / Math.min(w, h)));
-  const longest = largest(fields.strain_course, fields.strain_wale);
+  const longest = largestStrain(fields);
   const paths = { [STRETCHED]: new Path2D(), [NARROWED]: new Path2D() };
   for (let row0 = box.row0 - (box.row0 % size); row0 < box.row1; row0 += size) {
     for (let column0 = box.column0 - (box.column0 % size); column0 < box.column1; column0 += size) {
@@ -68,10 +68,10 @@ export function drawCrosses(context, viewport, studio, box) {
   }
 }
 
-/** @param {...number[][]} fields */
-function largest(...fields) {
+/** What the longest arm of a test stands for. @param {{strain_course: number[][], strain_wale: number[][]}} fields */
+export function largestStrain({ strain_course, strain_wale }) {
   let most = 1e-6;
-  for (const steps of fields)
+  for (const steps of [strain_course, strain_wale])
     for (const step of steps) for (const value of step) most = Math.max(most, Math.abs(value));
   return most;
 }

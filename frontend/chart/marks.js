@@ -14,14 +14,14 @@ import { lightness } from "../state/palette.js";
 const MIN_SYMBOL = 7;
 
 /**
- * A dot on every purl (the chart's symbol), or every stitch as it looks in the cloth.
+ * The symbols of knits and purls, or every stitch as it looks in the cloth.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {Viewport} view
  * @param {Grid} grid
  * @param {ColourLayer} layer
  * @param {Box} box
- * @param {"symbols" | "loops"} style
+ * @param {import("../state/editing.js").Symbols | "loops"} style
  * @param {boolean} back
  */
 export function drawSymbols(context, view, grid, layer, box, style, back) {
@@ -30,17 +30,21 @@ export function drawSymbols(context, view, grid, layer, box, style, back) {
   const onLight = new Path2D();
   const onDark = new Path2D();
   const radius = Math.min(w, h) * 0.15;
+  const thick = Math.max(1, Math.min(w, h) * 0.12);
   const turned = back ? 1 : 0;
   for (let row = box.row0; row < box.row1; row++) {
     const y = view.y + (grid.rows - 1 - row) * h;
     for (let column = box.column0; column < box.column1; column++) {
       const purl = grid.purl[row * grid.columns + column] !== turned;
-      if (!purl && style === "symbols") continue;
+      if (!purl && (style === "dots" || style === "dashes")) continue;
       const x = view.x + column * w;
       const path = lightness(layer.pixelAt(grid, row, column)) > 0.5 ? onLight : onDark;
-      if (style === "symbols") {
+      if (style === "dots") {
         path.moveTo(x + w / 2 + radius, y + h / 2);
         path.arc(x + w / 2, y + h / 2, radius, 0, 2 * Math.PI);
+      } else if (style !== "loops") {
+        if (purl) path.rect(x + 0.22 * w, y + (h - thick) / 2, 0.56 * w, thick);
+        else path.rect(x + (w - thick) / 2, y + 0.22 * h, thick, 0.56 * h);
       } else if (purl) {
         path.moveTo(x + 0.12 * w, y + 0.62 * h);
         path.bezierCurveTo(x + 0.2 * w, y + 0.2 * h, x + 0.8 * w, y + 0.2 * h, x + 0.88 * w, y + 0.62 * h);
@@ -54,7 +58,7 @@ export function drawSymbols(context, view, grid, layer, box, style, back) {
       }
     }
   }
-  if (style === "symbols") {
+  if (style !== "loops") {
     context.fillStyle = "rgb(20 16 12 / 0.62)";
     context.fill(onLight);
     context.fillStyle = "rgb(255 252 246 / 0.8)";

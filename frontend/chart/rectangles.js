@@ -25,7 +25,7 @@ export function drawRectangles(context, viewport, studio, box) {
   const kinds = studio.kinds();
   const { grid, codes } = studio.document;
   const { cellWidth: w, cellHeight: h } = viewport;
-  const largest = Math.max(...kinds.flatMap((k) => [k.extensibility_course_mm_per_n, k.extensibility_wale_mm_per_n]));
+  const largest = largestExtensibility(kinds);
   const path = new Path2D();
   for (const { box: place, cells, count } of groups(studio, box, Math.min(w, h))) {
     const { course, wale } = meanExtensibility(kinds, codes, cells, count);
@@ -42,6 +42,10 @@ export function drawRectangles(context, viewport, studio, box) {
   context.strokeStyle = "rgb(24 18 14 / 0.85)";
   context.stroke(path);
 }
+
+/** What a rectangle as wide as its stitch stands for, mm/N. @param {StitchKind[]} kinds */
+export const largestExtensibility = (kinds) =>
+  Math.max(...kinds.flatMap((k) => [k.extensibility_course_mm_per_n, k.extensibility_wale_mm_per_n]));
 
 /**
  * The group of stitches that one rectangle stands for, at a stitch; null where there is none.

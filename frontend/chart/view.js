@@ -72,6 +72,7 @@ export class ChartView {
     const { groups, block, crosses } = studio.seeing;
     for (const signal of [studio.rectangles, groups, block, crosses, round]) signal.listen(() => this.redraw());
     look.listen(() => this.recolour());
+    studio.editing.symbols.listen(() => this.recolour());
     back.watch((turned) => {
       this.viewport.mirrored = turned;
       this.recolour();
@@ -275,7 +276,7 @@ export class ChartView {
     if (overlay?.id === "segments" && look !== "symbols") {
       drawSegments(context, viewport, grid, around, palette);
     } else if (!studio.rectangles.value && look !== "colours") {
-      const style = look === "loops" ? "loops" : "symbols";
+      const style = look === "loops" ? look : studio.editing.symbols.value;
       drawSymbols(context, viewport, grid, this.#layer, around, style, viewport.mirrored);
     }
     if (studio.rectangles.value && studio.kinds().length) {

@@ -16,6 +16,22 @@ export function range(interval) {
   return `${figure(low, 2)} – ${figure(high, 2)}`;
 }
 
+/** An interval of which one end is more than this times the other says no more than that it is wide. */
+const WIDE = 3;
+
+/**
+ * An interval by its ends; one that is too wide to be of use as numbers, in words.
+ *
+ * @param {readonly number[]} interval
+ * @returns {{text: string, wide: boolean}}
+ */
+export function spread([low, high]) {
+  const times = high / low;
+  if (!(low > 0) || times <= WIDE) return { text: range([low, high]), wide: false };
+  const either = Math.sqrt(times);
+  return { text: `${either.toFixed(either < 3 ? 1 : 0)}× less or more`, wide: true };
+}
+
 /**
  * The ends of a share's interval in percent; "" if not known.
  *

@@ -1,26 +1,26 @@
 /**
- * What a strip test says beside its curve: where the first stitch locks; its steps as a table.
+ * What a strip test says beside its curve: its lock-up in one sentence; its steps as a table.
  *
  * @import {StretchResult} from "../types.js"
- *
- * @typedef {{strain: number[], force_n: number[], stitch_fields?: {utilisation?: number[][]}}} Test from
- *   small to large strains; it begins at rest
  */
 
-/** Share of its stretch from which a stitch counts as taut. */
-const TAUT = 0.95;
+import { figure, percent, spread } from "./format.js";
 
 /**
- * Where the first stitch locks.
+ * Where the tightest stitches run out of stretch, or how near they come.
  *
- * @param {Test} test
- * @returns {{strain: number, force: number} | null} null if none does
+ * @param {Pick<StretchResult, "strain" | "force_n" | "force_interval_n" | "first_taut" | "tightest">} test
  */
-export function firstLock({ strain, force_n, stitch_fields }) {
-  const used = stitch_fields?.utilisation?.map(most);
-  const at = used && crossing(used, TAUT, strain);
-  if (!used || at === null || at === undefined) return null;
-  return { strain: at, force: /** @type {number} */ (crossing(used, TAUT, force_n)) };
+export function lockUpInWords({ strain, force_n, force_interval_n, first_taut: taut, tightest }) {
+  if (!taut)
+    return tightest > 0 ? `No stitch runs out of stretch: the tightest has used ${percent(tightest)} of it.` : "";
+  const after = Math.max(
+    0,
+    strain.findIndex((value) => value >= taut.strain),
+  );
+  const [low, high] = force_interval_n.map((ends) => (ends[after] / force_n[after]) * taut.force_n);
+  const known = spread([low, high]);
+  return `The tightest stitches run out of stretch at ${percent(taut.strain)} (${figure(taut.force_n)} N${known.wide ? `, very uncertain: ${known.text}` : ""}).`;
 }
 
 /**
@@ -41,21 +41,4 @@ export function table(test) {
   };
   const rows = test.strain.map((_, k) => Object.values(columns).map((values) => values[k]));
   return [Object.keys(columns), ...rows].map((row) => `${row.join(",")}\n`).join("");
-}
-
-/** @param {readonly number[]} values */
-export const most = (values) => values.reduce((high, value) => Math.max(high, value), 0);
-
-/**
- * Where values that begin at 0 first reach a level, on a scale that begins at 0, too.
- *
- * @param {readonly number[]} values
- * @param {number} level
- * @param {readonly number[]} scale
- */
-function crossing(values, level, scale) {
-  const after = values.findIndex((value) => value >= level);
-  if (after < 0) return null;
-  const [low, from] = after ? [values[after - 1], scale[after - 1]] : [0, 0];
-  return from + ((scale[after] - from) * (level - low)) / (values[after] - low);
 }

@@ -50,6 +50,7 @@ const PATHS = {
   import: "M10 3.5v9M6.5 9L10 12.5 13.5 9M4 12v4h12v-4",
   resize: "M4 4h6M4 4v6M4 4l12 12M16 16h-6M16 16v-6",
   fit: "M4 8V4h4M12 4h4v4M16 12v4h-4M8 16H4v-4",
+  full: "M3.5 7.5v-4h4M12.5 3.5h4v4M16.5 12.5v4h-4M7.5 16.5h-4v-4M3.5 3.5l4.5 4.500M16.5 3.5L12 8M16.5 16.5L12 12M3.5 16.5L8 12",
   plus: "M10 4v12M4 10h12",
   minus: "M4 10h12",
   close: "M5 5l10 10M15 5L5 15",

@@ -3,12 +3,12 @@
  *
  * @import {Studio} from "../state/studio.js"
  * @import {Stretcher} from "../services/stretcher.js"
- * @import {Direction, Problem, StretchResult} from "../types.js"
+ * @import {Direction, Problem} from "../types.js"
  */
 
 import { along } from "../core/directions.js";
-import { figure, percent, percentRange, range } from "../core/format.js";
-import { firstLock, most } from "../core/striptest.js";
+import { figure, percent, percentRange, spread } from "../core/format.js";
+import { lockUpInWords } from "../core/striptest.js";
 import { h } from "../elements/dom.js";
 import { REST } from "../state/studio.js";
 import { icon } from "../elements/icons.js";
@@ -17,8 +17,15 @@ import { numberField, segmented, selectField } from "../widgets/fields.js";
 
 /** @typedef {"%" | "N"} Unit of a pull */
 
+/** The largest chart that the service pulls. */
+const MAX_STITCHES = 40_000;
+const TOO_LARGE =
+  "This chart is too large for a stretch test, which takes up to 40,000 stitches, such as 200 × 200. Try a part of it as a design of its own.";
+
 /** What the field says in each unit at first. */
 const DEFAULTS = { "%": "30", N: "2" };
+/** What the service pulls at most. */
+const MOST = { "%": 500, N: 10_000 };
 
 /** @param {HTMLElement} host @param {Studio} studio @param {Stretcher} stretcher */
 export function stretchdrawer(host, studio, stretcher) {
@@ -37,7 +44,6 @@ export function stretchdrawer(host, studio, stretcher) {
   const amount = numberField({
     id: "stretch-amount",
     min: "1",
-    max: "400",
     step: "1",
     value: "30",
     "aria-label": "How far or how hard to pull",
@@ -57,13 +63,14 @@ export function stretchdrawer(host, studio, stretcher) {
   const start = () => {
     const pull = Number(amount.value);
     const toForce = unit.value === "N";
-    if (!(pull > 0)) {
+    const most = MOST[toForce ? "N" : "%"];
+    if (!(pull > 0 && pull <= most)) {
       studio.tellProblem({
         type: "input",
         status: 422,
-        title: "The pull cannot be used",
-        detail: `“${amount.value}” is not a ${toForce ? "force" : "percentage"} above 0.`,
-        remedy: `Enter for example ${DEFAULTS[toForce ? "N" : "%"]}.`,
+        title: toForce ? `Enter a force of up to ${most.toLocaleString("en")} N` : `Enter a stretch of up to ${most} %`,
+        detail: "",
+        remedy: `For example ${DEFAULTS[toForce ? "N" : "%"]}.`,
       });
       amount.focus();
       return;
@@ -122,12 +129,27 @@ export function stretchdrawer(host, studio, stretcher) {
   });
   const figures = h("dl", { class: "stretch-figures figures stack gap-2", id: "stretch-figures" });
   const player = h("div", { class: "player line gap-12" }, play, slider, figures, save);
+  stretcher.belonging.marks(player, "stretch");
+
+  const fold = h("button", {
+    class: "stretch-fold bare line gap-6",
+    id: "stretch-fold",
+    onclick: () => folded(host.dataset.folded === undefined),
+  });
+  /** On small screens the drawer is closed until it is needed. @param {boolean} closed */
+  const folded = (closed) => {
+    host.toggleAttribute("data-folded", closed);
+    fold.ariaExpanded = String(!closed);
+    fold.replaceChildren(h("h2", {}, "Stretch test"), icon(closed ? "up" : "down"));
+  };
+  folded(matchMedia("(max-width: 900px)").matches);
 
   host.append(
     h(
       "div",
       { class: "stretch-set line gap-10" },
-      h("h2", {}, "Stretch test"),
+      h("h2", { class: "stretch-title" }, "Stretch test"),
+      fold,
       choices.element,
       h("div", { class: "line gap-6" }, amount, unit),
       options.element,
@@ -144,8 +166,8 @@ export function stretchdrawer(host, studio, stretcher) {
     slider.value = String(value ? i : REST);
     if (!value) return figures.replaceChildren();
     if (i === REST) {
-      slider.setAttribute("aria-valuetext", "at rest");
-      figures.replaceChildren(h("div", {}, h("dt", {}, "At rest"), h("dd", {}, "as the clamps find it")));
+      slider.setAttribute("aria-valuetext", "unstretched");
+      figures.replaceChildren(h("div", {}, h("dt", {}, "Unstretched"), h("dd", {}, "in the clamps")));
       return;
     }
     slider.setAttribute("aria-valuetext", `stretched by ${percent(value.strain[i])}`);
@@ -167,12 +189,12 @@ export function stretchdrawer(host, studio, stretcher) {
       );
     figures.replaceChildren(
       pair("Stretch", percent(value.strain[i]), "Clamp to clamp, along the pull"),
-      pair("Force", `${figure(value.force_n[i])} N`, "On the clamp, for this many stitches", range([low, high])),
+      pair("Force", `${figure(value.force_n[i])} N`, "On the clamp, for this many stitches", spread([low, high]).text),
       pair(
         "Stress",
         `${figure(value.stress_n_per_mm[i])} N/mm`,
         "Force per relaxed width",
-        range([widths * low, widths * high]),
+        spread([widths * low, widths * high]).text,
       ),
       pair(
         "Waist",
@@ -198,16 +220,27 @@ export function stretchdrawer(host, studio, stretcher) {
     if (problem) {
       note.append(icon("warning"), refused(problem, pullBy));
     } else if (busy) note.append(waiting() ? "Waiting for its turn …" : "Pulling the cloth between two clamps …");
-    else if (value && stale) note.append("The chart has changed since this test.");
+    else if (value && stale) note.append(`${stale}. Pull again to see what it does now.`);
     else if (value) {
       const outcome = value.converged
         ? `Simulated strip test in ${value.seconds.toFixed(1)} s; not a certified test.`
         : `Stopped early at ${percent(value.strain[value.strain.length - 1] ?? 0)}.`;
-      note.append([locking(value), outcome, ...(value.messages ?? [])].join(" "));
-    } else note.append("Pull the chart along its rows or columns and see where it gives.");
+      const lockUp = lockUpInWords(value);
+      const rest = ` ${[outcome, ...(value.messages ?? [])].join(" ")}`;
+      const warned = value.first_taut && h("span", { class: "warned" }, icon("warning"), lockUp);
+      note.append(h("span", {}, warned ?? lockUp, rest));
+    } else if (tooLarge()) note.append(icon("info"), TOO_LARGE);
+    else note.append("Pull the chart along its rows or columns and see where it gives.");
+    run.disabled = !busy && tooLarge();
     host.classList.toggle("busy", busy);
+    if (busy) folded(false);
   };
   const waiting = () => stretcher.progress.value === null;
+  const tooLarge = () => {
+    const { rows, columns } = studio.document.grid;
+    return rows * columns > MAX_STITCHES;
+  };
+  studio.document.onChange(({ resized }) => resized && show());
   studio.stretch.watch(show);
   studio.step.listen(showStep);
   stretcher.progress.watch((share) => {
@@ -225,14 +258,6 @@ export function stretchdrawer(host, studio, stretcher) {
   stretcher.pause();
 }
 
-/** Where the first stitch locks, in words. @param {StretchResult} test */
-function locking(test) {
-  const lock = firstLock(test);
-  if (lock) return `First stitch locks at ${percent(lock.strain)}, ${figure(lock.force)} N.`;
-  const used = most(test.stitch_fields.utilisation.at(-1) ?? []);
-  return used > 0 ? `No stitch locks: the tightest has used ${percent(used)} of its stretch.` : "";
-}
-
 /** How the ends are held, what is computed and shown; the usual choice is made. @param {Studio} studio */
 function stretchOptions(studio) {
   const clamps = selectField(
@@ -245,11 +270,11 @@ function stretchOptions(studio) {
   const model = selectField(
     { class: "select shrinks-x", id: "stretch-model" },
     {
-      full: "with lock-up",
-      published: "as published, without lock-up",
+      full: "runs out of stretch, as yarn does",
+      published: "as published, never runs out",
     },
   );
-  const shear = numberField({ id: "stretch-shear", min: "0.0001", max: "10", step: "0.001", placeholder: "assumed" });
+  const shear = numberField({ id: "stretch-shear", min: "0.0001", max: "10", step: "0.001", placeholder: "unknown" });
   const curling = h("input", {
     type: "checkbox",
     id: "stretch-curling",
@@ -266,11 +291,7 @@ function stretchOptions(studio) {
     row("Law", model),
     row("Shear modulus", shear, "N/mm"),
     row("Free edges curl in 3D", curling),
-    h(
-      "p",
-      { class: "muted small" },
-      "Stretch tests hardly determine the shear modulus. Left empty, that of the law is used.",
-    ),
+    h("p", { class: "muted small" }, "Leave the shear modulus empty unless you have measured it."),
   );
   const button = h(
     "button",

@@ -14,18 +14,20 @@ import { isComplete } from "../state/studio.js";
 import { saveState } from "./savestate.js";
 import { menu } from "../widgets/menu.js";
 
+/** Characters of a design's name at most. */
+const NAME_LENGTH = 80;
+
 /** @param {HTMLElement} host @param {Studio} studio @param {ActionContext} context */
 export function topbar(host, studio, context) {
   const name = h("input", {
     class: "design-name rounded",
     type: "text",
     value: studio.name.value,
-    maxLength: 80,
     size: 18,
     spellcheck: false,
     "aria-label": "Name of the design",
     onchange: () => {
-      studio.name.value = name.value.trim() || "Untitled";
+      studio.name.value = shortName(studio, name.value) || "Untitled";
       name.value = studio.name.value;
     },
     onkeydown: (/** @type {KeyboardEvent} */ { key }) => {
@@ -33,7 +35,10 @@ export function topbar(host, studio, context) {
     },
   });
 
-  studio.name.listen((value) => (name.value = value));
+  studio.name.watch((value) => {
+    name.value = value;
+    name.title = value; // a long one does not fit
+  });
 
   /** @param {string} id @param {string} [text] */
   const button = (id, text) => {
@@ -83,6 +88,14 @@ export function topbar(host, studio, context) {
   );
 }
 
+/** A name as the service keeps it; what is cut off is said. @param {Studio} studio @param {string} text */
+function shortName(studio, text) {
+  const whole = text.trim();
+  const name = whole.slice(0, NAME_LENGTH).trimEnd();
+  if (name !== whole) studio.tell(`The name is cut to ${NAME_LENGTH} characters: “${name}”.`);
+  return name;
+}
+
 /**
  * Who is signed in; nothing where the service asks for no login.
  *
@@ -127,7 +140,7 @@ export function offerTour(host, { open }) {
       h("span", { class: "wide" }, "New here?"),
       "Take the tour",
     ),
-    iconButton("close", "No tour", () => offer.remove()),
+    iconButton("close", "Dismiss", () => offer.remove()),
   );
   host.querySelector(".spacer")?.before(offer);
 }
@@ -144,7 +157,10 @@ function materialMenu(studio, context) {
   const show = () => {
     const all = studio.materials.value;
     label.textContent = studio.yarn?.name ?? studio.materialId.value;
+    label.title = label.textContent;
     setItems([
+      item(action("yarns"), context), // first: the list is longer than a small screen
+      null,
       ...all.map((material) => ({
         id: `material-${material.id}`,
         content: materialItem(material),
@@ -152,8 +168,6 @@ function materialMenu(studio, context) {
         disabled: !isComplete(material),
         perform: () => (studio.materialId.value = material.id),
       })),
-      null,
-      item(action("yarns"), context),
     ]);
   };
   studio.materials.watch(show);
@@ -177,7 +191,7 @@ function materialItem({ name, description, fabrics }) {
       { class: "muted figures" },
       isComplete({ fabrics })
         ? [description, stitches].filter(Boolean).join(" · ")
-        : "Not all four fabrics were measured: cannot be mixed in a chart",
+        : `Only ${Object.keys(fabrics).join(", ")} known: open Own yarns and add bending stiffness and yarn per stitch, or tests of the other fabrics`,
     ),
   );
 }

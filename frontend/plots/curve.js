@@ -9,6 +9,7 @@
  */
 
 import { api } from "../api.js";
+import { Belonging, clothOf } from "../services/belonging.js";
 import { Latest } from "../services/latest.js";
 import { paced } from "../core/paced.js";
 import { FABRICS } from "../grid/segments.js";
@@ -30,6 +31,12 @@ export function curvePlot(host, studio) {
   let height = 0;
   /** @type {{key: string, curve: CurveResult} | null} */
   let answer = null;
+  const belonging = new Belonging(studio, () => {
+    const cloth = clothOf(studio);
+    const gauge = studio.gauges.of({ chart: cloth.chart, material: cloth.yarn });
+    return { ...cloth, gauge, direction: studio.seeing.pull.value };
+  });
+  belonging.marks(host, "curve");
   const latest = new Latest(DELAY_MS);
 
   const draw = async () => {
@@ -57,11 +64,18 @@ export function curvePlot(host, studio) {
         const cloth = { chart: grid.text, material: studio.materialId.value };
         const body = { ...cloth, direction, gauge: studio.gauges.of(cloth) };
         const key = JSON.stringify(body);
-        if (answer?.key === key) return;
-        answer = { key, curve: await api.run("curve", body, signal) };
+        const { basis } = belonging;
+        if (answer?.key !== key) {
+          answer = { key, curve: await api.run("curve", body, signal) };
+          void draw();
+        }
+        belonging.show(basis);
+      },
+      () => {
+        answer = null; // the inspector's numbers say why
+        belonging.clear();
         void draw();
       },
-      () => (answer = null), // the inspector's numbers say why
     );
   };
   // In a task of its own: drawing takes too long for the end of a stroke, which changes the test.
@@ -148,7 +162,8 @@ function traces(studio, own) {
       x: stretch ? [0, ...stretch.strain.map((strain) => 100 * strain)] : [],
       y: stretch ? [0, ...stretch.stress_n_per_mm] : [],
       mode: "lines",
-      line: { color: colour("accent"), width: 3, dash: stale ? "dot" : "solid" },
+      line: { color: colour("accent"), width: stale ? 1.5 : 3, dash: stale ? "dot" : "solid" },
+      opacity: stale ? 0.4 : 1,
       hovertemplate: "%{x:.0f} %, %{y:.3g} N/mm<extra>stretch test</extra>",
     },
     {

@@ -11,6 +11,7 @@ import { api } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "./latest.js";
 import { figure, percent } from "../core/format.js";
+import { POSES } from "../state/seeing.js";
 import { REST } from "../state/studio.js";
 
 const DELAY_MS = 25;
@@ -33,7 +34,9 @@ export function startPoser(studio) {
     const { rows, columns } = studio.document.grid;
     const old = posed.value;
     const fits = old?.pose === now && old.rows === rows && old.columns === columns;
-    posed.value = fits && old ? { ...old, converged: false } : null;
+    // What was said of it in numbers does not hold any more.
+    const words = now === "pulled" ? "Stretched" : POSES[now];
+    posed.value = fits && old ? { ...old, words, converged: false } : null;
     if (!shapes) return;
     latest.run(
       async (signal) => {
@@ -57,7 +60,10 @@ export function startPoser(studio) {
     else if (poseToShow() !== "flat") ask();
   };
   pose.listen((now) => now !== "tested" && ask());
-  studio.weight.listen(() => pose.value === "hung" && ask());
+  studio.weight.listen(() => {
+    if (pose.value === "tested") again();
+    else if (pose.value === "hung") ask();
+  });
   limb.listen(() => pose.value === "worn" && ask());
   studio.step.listen((step) => {
     if (step !== REST) pose.value = "flat"; // it is pulled
@@ -72,7 +78,7 @@ export function startPoser(studio) {
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* lying(studio, signal) {
   for await (const shape of curled(studio, signal, null)) {
-    yield { ...shape, pose: "lying", words: "As it lies, without friction" };
+    yield { ...shape, pose: "lying", words: "Unpinned, lying without friction" };
   }
 }
 
@@ -123,18 +129,38 @@ async function* worn(studio, signal) {
   const hand = gloveOf(studio);
   if (hand) {
     const { id, parts, notes } = await api.run("glove", hand, signal);
-    yield { pose: "worn", id, rows, columns, converged: true, words: pressed(parts, "On the hand"), note: notes[1] };
+    yield {
+      pose: "worn",
+      id,
+      rows,
+      columns,
+      converged: true,
+      note: notes.at(-1) ?? "",
+      ...pressed(parts, notes, "hand"),
+    };
     return;
   }
   const { id, places, notes } = await api.run("limb", { ...studio.request, ...studio.limb }, signal);
   if (!id) return;
-  yield { pose: "worn", id, rows, columns, converged: true, words: pressed(places, "On the body"), note: notes[0] };
+  const note = notes.find((words) => !isWarning(words)) ?? "";
+  yield { pose: "worn", id, rows, columns, converged: true, note, ...pressed(places, notes, "body") };
 }
 
-/** @param {{mmhg: [number, number] | null}[]} places @param {string} where */
-function pressed(places, where) {
+/** Whether a note of the service warns of a pressure that can stop the blood. @param {string} note */
+export const isWarning = (note) => note.includes("stop the blood");
+
+/**
+ * What to say of a garment that is worn; its brightest stitches have the middle of the range of pressures.
+ *
+ * @param {{mmhg: [number, number] | null}[]} places
+ * @param {string[]} notes
+ * @param {string} where
+ * @returns {Pick<Posed, "words" | "pressure">}
+ */
+function pressed(places, notes, where) {
   const most = Math.max(0, ...places.map(({ mmhg }) => (mmhg ? (mmhg[0] + mmhg[1]) / 2 : 0)));
-  return most ? `${where}: 0 to ${figure(most, 2)} mmHg, dark to light` : `${where}: loose`;
+  if (!most) return { words: `On the ${where}: loose` };
+  return { words: `Pressure on the ${where}`, pressure: { most, warning: notes.filter(isWarning).join(" ") } };
 }
 
 /** The hand that the chart is a glove for, in the material of the design. @param {Studio} studio */

@@ -9,6 +9,7 @@
  */
 
 import { ApiError, api, isAbort } from "../api.js";
+import { Belonging } from "./belonging.js";
 import { OVERLAYS } from "../state/overlays.js";
 import { Signal } from "../core/signal.js";
 import { runJob } from "./jobs.js";
@@ -32,17 +33,26 @@ export class Stretcher {
   /** @param {Studio} studio */
   constructor(studio) {
     this.studio = studio;
-    const outdate = () => {
-      this.cancel();
-      const { stretch } = studio;
-      if (stretch.value.value && !stretch.value.stale) {
-        this.pause();
-        stretch.value = { ...stretch.value, stale: true };
-      }
+    const { stretch } = studio;
+    this.belonging = new Belonging(studio, () => ({
+      chart: [studio.request.chart, studio.document.outlineText],
+      yarn: studio.materialId.value,
+      gauge: studio.gauges.of(studio.request),
+    }));
+    const pullSoon = () => {
       clearTimeout(this.#soon);
       if (stretch.value.stale && (stretch.value.value?.seconds ?? Infinity) < FAST_S) {
         this.#soon = setTimeout(() => void this.#pullAgain(), AGAIN_MS);
       }
+    };
+    this.belonging.stale.listen((stale) => {
+      if (stale) this.pause();
+      stretch.value = { ...stretch.value, stale };
+      pullSoon();
+    });
+    const outdate = () => {
+      this.cancel();
+      pullSoon();
     };
     studio.document.onSettle(outdate);
     studio.materialId.listen(outdate);
@@ -75,6 +85,7 @@ export class Stretcher {
     this.progress.value = null;
     const outline = studio.document.outlineText;
     const gauge = studio.gauges.of(studio.request);
+    const { basis } = this.belonging;
     const request = { ...studio.request, gauge, outline, direction, ...pull, steps: STEPS, ...options };
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
@@ -88,7 +99,8 @@ export class Stretcher {
       if (controller.signal.aborted) return null;
       this.#request = request;
       this.#design = studio.designId;
-      studio.stretch.value = { value, direction, busy: false, stale: false, problem: null };
+      studio.stretch.value = { value, direction, busy: false, stale: "", problem: null };
+      this.belonging.show(basis);
       studio.online.value = true;
       studio.step.value = value.strain.length - 1;
       const overlay = OVERLAYS.find(({ id }) => id === "strain");

@@ -103,8 +103,13 @@ export const openQuestions = ({ missing, doubts }) => [
 /** Doubts that may be answered, of a test or of both. @param {DoubtResult[]} doubts */
 export const answerable = (doubts) => doubts.filter(({ readings }) => readings.length);
 
-/** Heads of a table, by which its kind is known again; empty for our own tables. @param {TableResult} test */
-const headsOf = ({ columns }) => columns.map(({ title }) => title).join("\n");
+/**
+ * Heads of a table, by which its kind is known again; empty for our own tables, and where no line names the columns.
+ *
+ * @param {TableResult} test
+ */
+const headsOf = ({ columns }) =>
+  columns.every(({ title }) => /^column \d+$/.test(title)) ? "" : columns.map(({ title }) => title).join("\n");
 
 /** @returns {[heads: string, template: Template][]} the last one first */
 function kept() {

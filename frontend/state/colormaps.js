@@ -47,4 +47,12 @@ function colourMap(stops) {
 }
 
 export const batlow = colourMap(BATLOW);
+/** Share of its stretch from which a stitch is taut. */
+export const TAUT = 0.95;
+const WARNING = /** @type {[number, number, number]} */ ([214, 30, 36]);
+/** For the share of its stretch that a stitch has used: batlow up to orange, and a warning for what is taut. */
+export const taut = {
+  at: (/** @type {number} */ t) => (t >= TAUT ? WARNING : batlow.at(0.7 * t)),
+  css: (/** @type {number} */ t) => `rgb(${taut.at(t).join(" ")})`,
+};
 export const vik = colourMap(VIK);

@@ -8,12 +8,18 @@
  *
  * @typedef {"both" | "colours" | "symbols" | "loops"} Look colours with symbols, either, or stitches as
  *   they look in the cloth
+ * @typedef {"dots" | "dashes" | "japanese"} Symbols of knits and purls, on the page and in print
  */
 
 import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../design/store.js";
 
-const SETTINGS = { look: /** @type {Look} */ ("both"), back: false, round: false };
+const SETTINGS = {
+  look: /** @type {Look} */ ("both"),
+  symbols: /** @type {Symbols} */ ("dots"),
+  back: false,
+  round: false,
+};
 
 export class Editing {
   /** @type {{floating: Floating, selection: Selection, step: unknown} | null} */ #held = null;
@@ -27,6 +33,7 @@ export class Editing {
     this.#selection = selection;
     /** @type {Signal<Look>} */
     this.look = new Signal(settings.look);
+    this.symbols = new Signal(settings.symbols);
     /** Whether the cloth's back is seen. */
     this.back = new Signal(settings.back);
     /** Knitted in the round: every row is a right-side row. */
@@ -38,6 +45,7 @@ export class Editing {
     /** Which panel is open beside the chart. */
     this.panel = new Signal(/** @type {string | null} */ (null));
     this.look.listen((look) => saveSettings({ look }));
+    this.symbols.listen((symbols) => saveSettings({ symbols }));
     this.back.listen((back) => saveSettings({ back }));
     this.round.listen((round) => saveSettings({ round }));
   }

@@ -11,7 +11,7 @@
  * @typedef {{each: (index: number) => number}} StitchColours pixel of each stitch
  * @typedef {KindColours | StitchColours} Colouring
  *
- * @typedef {{kind: "swatches", items: {label: string, colour: string, dot?: boolean}[]}} SwatchLegend
+ * @typedef {{kind: "swatches", items: {label: string, colour: string}[]}} SwatchLegend
  * @typedef {{kind: "scale", map: ColourMap, low: number, high: number, unit: string, log: boolean,
  *   label: string}} ScaleLegend
  *
@@ -28,7 +28,7 @@
 
 import { along } from "../core/directions.js";
 import { FABRICS, QUARTERS } from "../grid/segments.js";
-import { batlow, part, vik } from "./colormaps.js";
+import { batlow, part, taut, vik } from "./colormaps.js";
 import { pixel } from "./palette.js";
 
 const always = () => true;
@@ -61,7 +61,7 @@ const stitches = {
   label: "Stitches",
   short: "Stitches",
   hint: "Knits and purls alone",
-  view: "fabric",
+  view: "yarn",
   available: always,
   colouring: (_, { knit, purl }) => byKind((_code, _quarter, p) => pixel(p ? purl : knit)),
   legend: () => swatches(), // the key above the chart shows it
@@ -73,19 +73,14 @@ const fabrics = {
   label: "Fabrics",
   short: "Fabrics",
   hint: "Which of the four fabrics each quarter of a stitch behaves like",
-  view: "fabric",
+  view: "yarn",
   available: always,
   colouring: (_, palette) =>
     byKind((code, quarter, p) => pixel(palette.fabrics[QUARTERS[code][quarter]], p ? PURL_SHADE : 1)),
   legend: (_, palette) => {
     const colours = palette.fabrics.map(css);
-    const mixed = `linear-gradient(90deg, ${colours[0]}, ${colours[2]})`;
     const fabrics = FABRICS.map((label, i) => ({ label, colour: colours[i] }));
-    const others = [
-      { label: "mixed (in 3D)", colour: mixed },
-      { label: "purl", colour: "transparent", dot: true },
-    ];
-    return { kind: "swatches", items: [...fabrics, ...others] };
+    return { kind: "swatches", items: fabrics };
   },
 };
 
@@ -95,7 +90,7 @@ const segments = {
   label: "Segments",
   short: "Segments",
   hint: "Symmetry of the yarn between neighbours: even joins like stitches, odd unlike ones",
-  view: "fabric",
+  view: "yarn",
   available: always,
   colouring: stitches.colouring,
   legend: (_, { even, odd }) => swatches(["even (K–K, P–P)", even], ["odd (K–P)", odd]),
@@ -179,14 +174,14 @@ const utilisation = {
   id: "utilisation",
   label: "Lock-up",
   short: "Lock-up",
-  hint: "How much of its stretch each stitch has used; at 100 % its yarn is taut",
+  hint: "How much of its stretch each stitch has used; red where its yarn is taut",
   view: "utilisation",
   available: (studio) => studio.field("utilisation") !== null,
   colouring: (studio) => {
     const values = studio.field("utilisation") ?? [];
-    return { each: (i) => pixel(batlow.at(values[i])) };
+    return { each: (i) => pixel(taut.at(values[i])) };
   },
-  legend: () => scale(batlow, [0, 100], "%", "Stretch used before lock-up"),
+  legend: () => scale(taut, [0, 100], "%", "Stretch used; red: run out"),
 };
 
 /** @type {Overlay[]} */

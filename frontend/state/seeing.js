@@ -9,8 +9,9 @@
  * @typedef {"flat" | "lying" | "worn" | "hung" | "tested"} Pose of the fabric in 3D: held flat, as it lies, on
  *   the body, hanging from its top edge, a piece of it over an edge or a disc
  * @typedef {{pose: Pose | "pulled", id: string, rows: number, columns: number, converged: boolean, words: string,
- *   note: string, piece?: {chart: string, outline: string}}} Posed a shape that was computed, and what to say
- *   of it; the piece is another than the chart
+ *   note: string, piece?: {chart: string, outline: string}, pressure?: {most: number, warning: string}}} Posed a
+ *   shape that was computed, and what to say of it; the piece is another than the chart; the pressure, mmHg, is
+ *   that of its brightest stitches
  * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb
  * @typedef {{request: import("../types.js").GloveRequest, outline: string}} PlannedGlove the hand for which
  *   a glove was made, and the glove's outline
@@ -22,7 +23,7 @@ import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../design/store.js";
 
 /** Names of the poses. @type {Record<Pose, string>} */
-export const POSES = { flat: "Flat", lying: "As it lies", worn: "On the body", hung: "Hanging", tested: "In a test" };
+export const POSES = { flat: "Flat", lying: "Unpinned", worn: "On the body", hung: "Hanging", tested: "In a test" };
 
 /** What to say of a shape: one that is not at rest, or of a chart that was changed, is a preview. @param {Posed} posed */
 export function wordsOf({ words, converged }) {

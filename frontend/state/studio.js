@@ -13,8 +13,8 @@
  *   StretchResult} from "../types.js"
  *
  * @typedef {{value: PredictResult | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
- * @typedef {{value: StretchResult | null, direction: Direction, busy: boolean, stale: boolean,
- *   problem: Problem | null}} StretchState
+ * @typedef {{value: StretchResult | null, direction: Direction, busy: boolean, stale: string,
+ *   problem: Problem | null}} StretchState `stale` says why the test does not count any more; "" if it does
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
@@ -26,7 +26,7 @@ import { Editing } from "./editing.js";
 import { OVERLAYS } from "./overlays.js";
 import { Seeing } from "./seeing.js";
 import { Gauges } from "./gauges.js";
-import { TOOLS } from "../tools/registry.js";
+import { TOOLS, pencil } from "../tools/tools.js";
 
 const SETTINGS = { overlay: "fabrics", rectangles: false, tool: "pencil", size: 1, weight: 0.5 };
 
@@ -80,7 +80,7 @@ export class Studio {
         value: null,
         direction: "wale",
         busy: false,
-        stale: false,
+        stale: "",
         problem: null,
       }),
     );
@@ -128,7 +128,7 @@ export class Studio {
     this.selection.value = null;
     this.materialId.value = design.material;
     this.document.open(design, history);
-    this.stretch.value = { ...this.stretch.value, value: null, stale: false, problem: null };
+    this.stretch.value = { ...this.stretch.value, value: null, stale: "", problem: null };
   }
 
   /**
@@ -245,6 +245,12 @@ export class Studio {
     const fields = this.currentStretch()?.stitch_fields;
     if (name === "utilisation") return fields?.utilisation_interval;
     return fields?.[this.stretchDirection() === "course" ? "strain_course_interval" : "strain_wale_interval"];
+  }
+
+  /** Paint with an ink; with the pencil if the tool does not paint. @param {Ink} ink */
+  paintWith(ink) {
+    this.ink.value = ink;
+    if (!["stroke", "shape", "once"].includes(this.tool.value.mode)) this.tool.value = pencil;
   }
 
   /** Show a message to the user. @param {Problem} problem */

@@ -20,6 +20,12 @@
   const FUZZY_PIXELS = 8;
   const BETWEEN_FIBRES = 0.65;
 
+  /** Cloth whose yarn has a smaller radius in pixels is its picture where the service sends one, seen from the front or
+   * from behind: single loops and pixels would beat. */
+  const PICTURED_PIXELS = 2;
+  /** Cosine of the angle from which cloth is seen by its edge, where a picture has no thickness. */
+  const BY_THE_EDGE = 0.5;
+
   /** Parts of a step in z tell the light that reaches a corner between other yarn; so many are a millimetre. */
   const STEPS = 256;
   /** Light where none comes from around, and where all does. */
@@ -32,9 +38,12 @@
 
   /** Corners of a tube, turns of its plies from ring to ring, radius in the scene's unit. */
   const yarn = new Float32Array(3);
+  /** Whether there is a picture of the face, and of the back. */
+  const pictured = new Float32Array(2);
 
   const DECLARED = `
     uniform vec3 yarn;
+    uniform vec2 pictured;
     uniform float yarnPixels; // radius, over half the picture's height in the scene's unit at distance 1
     varying vec3 vYarn; // cosine and sine of the place around the yarn, turns of the plies up to here; 0 far away
     varying vec2 vLight; // from all around that reaches this place; how much of their shape loops show
@@ -47,6 +56,12 @@
       float yarnSides = max( yarn.x, 1.0 ), yarnRing = floor( ( float( gl_VertexID ) + 0.5 ) / yarnSides );
       float yarnAngle = 6.2831853 * ( float( gl_VertexID ) / yarnSides - yarnRing );
       vYarn = vec3( cos( yarnAngle ), sin( yarnAngle ), ( yarnRing - 1.0 ) * yarn.y );
+    }
+    if ( yarnWide < ${PICTURED_PIXELS}.0 ) {
+      vec3 yarnUp = normalize( ( modelViewMatrix * vec4( 0.0, 0.0, 1.0, 0.0 ) ).xyz );
+      float yarnSeen = dot( yarnUp, normalize( vViewPosition ) );
+      float yarnHidden = yarnSeen > 0.0 ? pictured.x : pictured.y;
+      if ( abs( yarnSeen ) > ${BY_THE_EDGE} && yarnHidden > 0.5 ) gl_Position = vec4( 2.0, 2.0, 2.0, 1.0 );
     }
     vLight = vec2( fract( position.z * ${STEPS}.0 ), smoothstep( ${EVEN_PIXELS.join(", ")}, yarnWide ) );
   `;
@@ -119,12 +134,13 @@
     if (!uniforms)
       places.set(
         program,
-        (uniforms = ["yarn", "yarnPixels", "ink"].map((name) => this.getUniformLocation(program, name))),
+        (uniforms = ["yarn", "yarnPixels", "ink", "pictured"].map((name) => this.getUniformLocation(program, name))),
       );
-    const [place, pixels, words] = uniforms;
+    const [place, pixels, words, pictures] = uniforms;
     if (words) this.uniform3fv(words, ink());
     if (!place) return;
     this.uniform3fv(place, yarn);
+    this.uniform2fv(pictures, pictured);
     this.uniform1f(pixels, (yarn[2] * this.drawingBufferHeight) / 2);
   };
 
@@ -150,8 +166,13 @@
     constructor(url, options) {
       super(url, options);
       this.addEventListener("message", ({ data }) => {
-        /** @type {{type: string, props: Tubes}[]} */
+        /** @type {{type: string, name: string, props: Tubes}[]} */
         const messages = data.type === "message_batch" ? data.messages : [];
+        for (const { type, name } of messages) {
+          const side = ["/face", "/back"].indexOf(name);
+          if (side >= 0)
+            pictured[side] = type === "ImageMessage" ? 1 : type === "RemoveSceneNodeMessage" ? 0 : pictured[side];
+        }
         const tubes = messages.filter(({ type }) => type === "BatchedMeshesMessage").map(({ props }) => props);
         if (tubes.length) measure(tubes);
       });

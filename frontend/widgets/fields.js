@@ -70,8 +70,10 @@ export function sizeFields(prefix, most, changed) {
 
 /** A field for a length that can change its unit. */
 export class LengthField {
-  /** @param {string} label @param {number} mm @param {() => void} changed */
-  constructor(label, mm, changed) {
+  /** @param {string} label @param {number} mm @param {[least: number, most: number]} bounds mm @param {() => void} changed */
+  constructor(label, mm, bounds, changed) {
+    this.label = label;
+    this.bounds = bounds;
     this.mm = mm;
     this.unit = "mm";
     this.input = numberField({
@@ -86,6 +88,14 @@ export class LengthField {
       },
     });
     this.#show();
+  }
+
+  /** What is wrong with it, in its own unit; "" if nothing is. */
+  get fault() {
+    const [least, most] = this.bounds;
+    if (this.mm >= least && this.mm <= most) return "";
+    const shown = this.bounds.map((mm) => (this.unit === "in" ? (mm / MM_PER_INCH).toFixed(1) : String(mm)));
+    return `${this.label}: enter ${shown[0]} to ${shown[1]} ${this.unit === "in" ? "inches" : "mm"}.`;
   }
 
   /** @param {string} unit */

@@ -47,7 +47,7 @@ class _Watch(event.Listener):
     def __init__(self) -> None:
         self._depth = 0  # functions compile those that they call
         self._begun = self._spent_s = 0.0
-        self._collects = self._told = False
+        self._collects = self._announced = False
 
     def on_start(self, event: Any) -> None:
         """Note that a function is about to be compiled; numba compiles in one thread at a time."""
@@ -69,8 +69,8 @@ class _Watch(event.Listener):
 
     def _tell(self, event: Any) -> None:
         spent_s = self._spent_s + time.perf_counter() - self._begun
-        if spent_s > TELL_AFTER_S and not self._told:
-            self._told = True
+        if spent_s > TELL_AFTER_S and not self._announced:
+            self._announced = True
             log.debug(COMPILING, extra={"compiling": event.data["dispatcher"].py_func.__module__})
 
 

@@ -49,7 +49,7 @@ def _names(result: Result) -> list[str]:
 
 
 def _plain(value: object) -> Any:  # noqa: PLR0911
-    """The same value as JSON can hold it."""
+    """A value as JSON can hold it."""
     match value:
         case None | bool() | int():
             return value

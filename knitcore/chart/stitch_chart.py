@@ -359,7 +359,7 @@ def as_chart(chart: StitchChart | str) -> StitchChart:
     if not isinstance(chart, str):
         raise InputError(
             "chart",
-            f"a {type(chart).__name__} is not a chart.",
+            f"is of type {type(chart).__name__}.",
             "Give a StitchChart, rows of K and P such as 'KP/PK', or a fabric such as 'garter'.",
         )
     name = chart.strip().lower()

@@ -25,7 +25,7 @@ from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import entry_of, predict_repeat
 from knitcore.design.explain import OFF, Patch, left_alone, unreached
 from knitcore.design.mixtures import Mixer
-from knitcore.design.part_targets import PartAnswer, PartsNow, PartTarget, target_parts
+from knitcore.design.part_targets import FilledPart, PartsNow, PartTarget, target_parts
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patch_placing import placed
 from knitcore.design.readback import EXACT, deviation, nearest_chart
@@ -79,7 +79,7 @@ class FilledField:
     regions: tuple[Patch, ...]
     local: LocalModuli
     off_share: float
-    parts: tuple[PartAnswer, ...]
+    parts: tuple[FilledPart, ...]
     messages: tuple[str, ...]
 
 
@@ -485,7 +485,7 @@ class _Fill:
             tuple(regions),
             local_moduli(trial.chart, self._material),
             self._off_share(now - self._target_map),
-            self._parts.answers(predicted, repainted),
+            self._parts.filled(predicted, repainted),
             tuple(messages),
         )
 

@@ -16,7 +16,7 @@ from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.materials import Interval, Laws
 from knitcore.materials.library import INCONSISTENT
 
-__all__ = ["Candidate", "FoundFabrics", "Quantity", "Target", "WornTube", "find_fabric"]
+__all__ = ["Candidate", "FabricMatches", "Quantity", "Target", "WornTube", "find_fabric"]
 
 _LONG = 24
 """Most characters of a repeat that a sentence spells out."""
@@ -55,7 +55,7 @@ class Candidate(Result):
 
 
 @dataclass(frozen=True, repr=False)
-class FoundFabrics(Result):
+class FabricMatches(Result):
     """The result of a search.
 
     Attributes
@@ -78,7 +78,7 @@ def find_fabric(
     *,
     count: int = 10,
     limits: CostLimits | None = None,
-) -> FoundFabrics:
+) -> FabricMatches:
     """Rank all repeats by how surely they meet the targets.
 
     Repeats are sorted by their chance to the nearest per cent, then by the weighted rms of their
@@ -144,7 +144,7 @@ def find_fabric(
     }
     reached = bool(np.any(worst <= 1))
     message = _most_surely(candidates[0]) if reached else _nothing(candidates[0], targets, ranges)
-    return FoundFabrics(candidates, reached, ranges, message)
+    return FabricMatches(candidates, reached, ranges, message)
 
 
 def _doubtful(atlas: Atlas, index: int, targets: Sequence[Target]) -> bool:

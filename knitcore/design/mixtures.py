@@ -1,7 +1,7 @@
 """Fabrics between those of an atlas: stripes of two repeats.
 
 The moduli of two sheets side by side follow from theirs (stress common across the joint, strain
-along it; docs/answer.md). This estimate ranks all stripes at once. The best are then predicted as
+along it; docs/predict.md). This estimate ranks all stripes at once. The best are then predicted as
 repeats, and the errors that the estimate makes at the joints are corrected on the way. If none is
 near, single stitches, rows and columns of the nearest charts are turned.
 """

@@ -80,7 +80,7 @@ def target_parts(targets: Sequence[PartTarget], rows: int, columns: int) -> Indi
 
 
 @dataclass(frozen=True)
-class PartAnswer:
+class FilledPart:
     """Moduli of a part in a filled chart, beside those that it had.
 
     Attributes
@@ -139,7 +139,7 @@ class PartsNow:
         for target, cells in zip(self.targets, self.cells, strict=True):
             if not cells.any():
                 raise InputError(
-                    "wishes",
+                    "targets",
                     f"“{target.name}” lies outside the outline.",
                     "Draw it inside, or leave it out.",
                 )
@@ -151,8 +151,8 @@ class PartsNow:
     @cached_property
     def log_target(self) -> Array:
         """(parts, 2) logarithms of the target moduli; NaN where any value will do."""
-        wished = [(t.course_n_per_mm, t.wale_n_per_mm) for t in self.targets]
-        logarithms: Array = np.log(np.array(wished, dtype=float))
+        moduli = [(t.course_n_per_mm, t.wale_n_per_mm) for t in self.targets]
+        logarithms: Array = np.log(np.array(moduli, dtype=float))
         return logarithms
 
     @cached_property
@@ -168,8 +168,8 @@ class PartsNow:
         for part, cells in enumerate(self.cells):
             if cells.any():
                 inside = StitchChart(chart.purl[largest_rectangle(cells)])
-                answer = predict(inside, self.material)
-                moduli[part] = [answer.modulus_n_per_mm(direction) for direction in Direction]
+                predicted = predict(inside, self.material)
+                moduli[part] = [predicted.modulus_n_per_mm(direction) for direction in Direction]
         logarithms: Array = np.log(moduli)
         return logarithms
 
@@ -186,7 +186,7 @@ class PartsNow:
         )
         return nearer
 
-    def answers(self, log_moduli: Array, repainted: Mask) -> tuple[PartAnswer, ...]:
+    def filled(self, log_moduli: Array, repainted: Mask) -> tuple[FilledPart, ...]:
         """Compare each part of a filled chart with what it was.
 
         Parameters
@@ -196,7 +196,7 @@ class PartsNow:
         """
         before, after = np.exp(self.log_now).tolist(), np.exp(log_moduli).tolist()
         return tuple(
-            PartAnswer(target.name, int(cells.sum()), bool(is_new), *then, *now)
+            FilledPart(target.name, int(cells.sum()), bool(is_new), *then, *now)
             for target, cells, is_new, then, now in zip(
                 self.targets, self.cells, repainted, before, after, strict=True
             )
@@ -208,7 +208,7 @@ def _cells(target: PartTarget, rows: int, columns: int) -> Mask:
     for row, first, length in target.runs:
         if not (0 <= row < rows and first >= 0 and length >= 1 and first + length <= columns):
             raise InputError(
-                "wishes",
+                "targets",
                 f"“{target.name}” reaches row {row + 1}, columns {first + 1} to {first + length}: "
                 f"the chart has {columns} columns and {rows} rows.",
                 "Draw it inside the chart.",
@@ -216,12 +216,12 @@ def _cells(target: PartTarget, rows: int, columns: int) -> Mask:
         cells[row, first : first + length] = True
     if not cells.any():
         raise InputError(
-            "wishes", f"“{target.name}” covers no stitch.", "Draw it, or leave it out."
+            "targets", f"“{target.name}” covers no stitch.", "Draw it, or leave it out."
         )
     values = (target.course_n_per_mm, target.wale_n_per_mm)
     if any(v is not None and not (math.isfinite(v) and v > 0) for v in values):
         problem = f"“{target.name}” has a target stiffness that is not positive."
-        raise InputError("wishes", problem, "Give N/mm above 0.")
+        raise InputError("targets", problem, "Give N/mm above 0.")
     return cells
 
 
@@ -229,7 +229,7 @@ def _refuse(target: PartTarget, other: PartTarget, cells: Mask, axis: int) -> No
     row, column = np.argwhere(cells)[0] + 1
     values = [(w.course_n_per_mm, w.wale_n_per_mm)[axis] for w in (other, target)]
     raise InputError(
-        "wishes",
+        "targets",
         f"“{other.name}” and “{target.name}” contradict each other in {int(cells.sum())} stitches "
         f"(the first in row {row}, column {column}): {values[0]:g} and {values[1]:g} N/mm "
         f"{('course', 'wale')[axis]}-wise.",

@@ -3,13 +3,13 @@
 import math
 import re
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import Self
 
 import numpy as np
 from scipy.special import ndtr
 
 from knitcore.base.arrays import Array
+from knitcore.base.choice import Choice
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.design.atlas import Atlas
@@ -23,7 +23,7 @@ MAX_LOAD_N_PER_MM = 0.5
 _UNIT = re.compile(r"_(n_per_mm|mm_per_n|mmhg)$")
 
 
-class Quantity(StrEnum):
+class Quantity(Choice):
     """A quantity that a fabric can be searched for."""
 
     MODULUS_COURSE = "modulus_course_n_per_mm"
@@ -52,10 +52,8 @@ class Quantity(StrEnum):
         >>> Quantity.parse("modulus_course") is Quantity.MODULUS_COURSE
         True
         """
-        for quantity in cls:
-            if name in (quantity, _UNIT.sub("", quantity)):
-                return quantity
-        raise InputError("quantity", f"{name!r} is not known.", f"Use {', '.join(cls)}.")
+        by_name = {_UNIT.sub("", quantity): quantity for quantity in cls}
+        return by_name[name] if name in by_name else super().parse(name)
 
     @property
     def direction(self) -> Direction:

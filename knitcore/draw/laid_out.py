@@ -25,17 +25,17 @@ class SizeAtRest:
     height_interval_mm: Interval
 
 
-def size_at_rest(shaped: ShapedChart, material: Material, answer: Prediction) -> SizeAtRest:
+def size_at_rest(shaped: ShapedChart, material: Material, prediction: Prediction) -> SizeAtRest:
     """Width and height of a piece at rest.
 
     A rectangle is as many mean stitches wide and high as it has columns and rows. A piece with an
-    outline is as large as its laid stitches together; its size is as uncertain as the answer's.
+    outline is as large as its laid stitches together; its size is as uncertain as the prediction's.
 
     Parameters
     ----------
     shaped : the piece.
     material : a yarn at one setting.
-    answer : of the chart, or of the largest rectangle inside the outline
+    prediction : of the chart, or of the largest rectangle inside the outline
         (:meth:`ShapedChart.rectangle_inside`); with a gauge if one was counted.
 
     Raises
@@ -53,11 +53,11 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Prediction) ->
     >>> round(size.width_mm), round(size.height_mm)
     (119, 81)
     """
-    stitch = _stitch_mm(answer)
+    stitch = _stitch_mm(prediction)
     if shaped.is_rectangle:
         sides = stitch * (shaped.chart.columns, shaped.chart.rows)
     else:
-        known = RelaxedSize(*stitch.tolist()) if answer.size_is_known else None
+        known = RelaxedSize(*stitch.tolist()) if prediction.size_is_known else None
         corners = laid_corners_mm(shaped, material, known)
         cells = np.pad(shaped.stitch, 1)
         reached = cells[1:, 1:] | cells[1:, :-1] | cells[:-1, 1:] | cells[:-1, :-1]
@@ -66,8 +66,8 @@ def size_at_rest(shaped: ShapedChart, material: Material, answer: Prediction) ->
     return SizeAtRest(
         width,
         height,
-        log_interval(width, answer.course.relaxed_log_sd),
-        log_interval(height, answer.wale.relaxed_log_sd),
+        log_interval(width, prediction.course.relaxed_log_sd),
+        log_interval(height, prediction.wale.relaxed_log_sd),
     )
 
 
@@ -76,8 +76,8 @@ def mean_stitch_mm(
 ) -> Array:
     """Width and height of the mean stitch at rest, (2,).
 
-    The gauge gives them if it is known; else the answer for a rectangle, and the resting lattice
-    for a piece with an outline.
+    The gauge gives them if it is known; else the prediction for a rectangle, and the resting
+    lattice for a piece with an outline.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def laid_corners_mm(
     """Corners of all cells in the plane, (rows + 1, columns + 1, 2), the lowest x and y at 0.
 
     They are the corners of the resting lattice. Its scale is that of the gauge if it is known, and
-    else, for a rectangle, that of the answer's stitch.
+    else, for a rectangle, that of the prediction's stitch.
 
     Raises
     ------
@@ -113,5 +113,5 @@ def laid_corners_mm(
     return np.asarray(corners - corners.min(axis=(0, 1)))
 
 
-def _stitch_mm(answer: Prediction) -> Array:
-    return np.array([answer.along(direction).relaxed_mm for direction in Direction])
+def _stitch_mm(prediction: Prediction) -> Array:
+    return np.array([prediction.along(direction).relaxed_mm for direction in Direction])

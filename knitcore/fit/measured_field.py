@@ -65,7 +65,7 @@ class MeasuredField:
         return float((frame.top[:, 2].mean() - frame.bottom[:, 2].mean()) / self.length)
 
     def only(self, numbers: set[int]) -> MeasuredField:
-        """The same test with some of its pictures.
+        """Keep some of the test's pictures.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class MeasuredField:
         return MeasuredField(self.width, self.length, kept)
 
     def thinned(self, points: int) -> MeasuredField:
-        """The same test with at most this many points per frame, evenly chosen."""
+        """Keep at most this many points per frame, evenly chosen."""
         frames = []
         for frame in self.frames:
             step = slice(None, None, max(1, -(-len(frame.points) // points)))

@@ -303,10 +303,10 @@ def _residual(strip: MeasuredStrip, law: ConstitutiveLaw, cells: int) -> tuple[A
     if failed.any():
         even = uniaxial_response(law, strip.direction, strip.strain[failed])
         stress[failed], waist[failed] = even.stress, even.transverse_strain
-    wanted_stress, wanted_waist = strip.means
-    force = (stress - wanted_stress) / force_noise(wanted_stress)
-    flat = flattening(waist, wanted_waist)
-    narrowing = np.nan_to_num((waist + flat - wanted_waist) / WAIST_NOISE)  # 0 where not measured
+    measured_stress, measured_waist = strip.means
+    force = (stress - measured_stress) / force_noise(measured_stress)
+    flat = flattening(waist, measured_waist)
+    narrowing = np.nan_to_num((waist + flat - measured_waist) / WAIST_NOISE)  # 0 where not measured
     return np.concatenate([force + STOPPED_SHORT * failed, narrowing]), flat / FLATTENING
 
 

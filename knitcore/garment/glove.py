@@ -91,7 +91,7 @@ class Hand:
         ):
             raise InputError("fingers", "four fingers are needed.", "Give lengths and girths.")
         if self.thumb_crotch_mm >= self.palm_mm:
-            problem = "the thumb's crotch lies beyond the fingers'."
+            problem = "the base of the thumb lies beyond that of the fingers."
             remedy = f"Give less than palm_mm, {self.palm_mm:g} mm."
             raise InputError("thumb_crotch_mm", problem, remedy)
 

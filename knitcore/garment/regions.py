@@ -152,8 +152,8 @@ def region_numbers(
         cells = region.cells & shaped.stitch
         if not cells.any():
             continue
-        answer = predict(region.fill, material)
-        course, wale = answer.modulus_course_n_per_mm, answer.modulus_wale_n_per_mm
+        predicted = predict(region.fill, material)
+        course, wale = predicted.modulus_course_n_per_mm, predicted.modulus_wale_n_per_mm
         numbers.append(
             RegionNumbers(region.name, int(cells.sum()), 1 / course, 1 / wale, course, wale)
         )

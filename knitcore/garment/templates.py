@@ -17,6 +17,8 @@ from knitcore.materials import Material
 MAX_CHANGE = 2
 """Largest number of stitches that a row gains or loses: one at each edge."""
 SNUG = Fit()
+KEEPS = 0.2
+"""How far a ribbing may be off the target, as a share, and still keep to it."""
 PLACES = 5
 """Number of positions along a limb at which the pressure is given, besides those measured."""
 
@@ -49,7 +51,7 @@ def limb_tube(
     name : of the garment.
     profile : circumferences along the limb, from where the knitting begins.
     material : gives the laws for the pressure.
-    fit : ease, or a target pressure of the body.
+    fit : ease, or a target pressure of the body, which may change along the limb.
     gauges : the knitter's; by default the material's own. Sizes follow the body's fabric.
     body, hem : fabrics of the middle, and of the first and last ``hem_mm``.
     notes : added to the plan's own.
@@ -67,9 +69,21 @@ def limb_tube(
     rows = gauge.rows_for(length)
     at = (np.arange(rows) + 0.5) * length / rows
     places = [g.at_mm - profile[0].at_mm for g in profile]
-    rests = [fit.rest_mm(g.circumference_mm, material, body, Direction.COURSE) for g in profile]
+    girths = [g.circumference_mm for g in profile]
+    bends = [at - profile[0].at_mm for at in fit.places_mm]
+    sized = sorted({*places, *(at for at in bends if 0 < at < length)})
+    rests = [
+        fit.rest_mm(
+            float(np.interp(along, places, girths)),
+            material,
+            body,
+            Direction.COURSE,
+            at_mm=along + profile[0].at_mm,
+        )
+        for along in sized
+    ]
     # Even counts: shaping is symmetrical, and 1x1 rib closes around the limb.
-    counts = [gauge.stitches_for(float(c), multiple=2) for c in np.interp(at, places, rests)]
+    counts = [gauge.stitches_for(float(c), multiple=2) for c in np.interp(at, sized, rests)]
     shaped = _limit_changes(counts)
     columns = max(shaped)
     column = np.arange(columns)
@@ -78,9 +92,9 @@ def limb_tube(
     hem_rows = min(gauge.rows_for(hem_mm), rows // 3) if hem_mm > 0 else 0
     row = np.broadcast_to(np.arange(rows)[:, None], stitch.shape)
     parts = (
-        Part("first hem", row < hem_rows, hem),
+        Part("lower ribbing", row < hem_rows, hem),
         Part("body", (row >= hem_rows) & (row < rows - hem_rows), body),
-        Part("last hem", row >= rows - hem_rows, hem),
+        Part("upper ribbing", row >= rows - hem_rows, hem),
     )
 
     def place(along: float) -> Worn:
@@ -92,11 +106,14 @@ def limb_tube(
             part.fabric,
             Direction.COURSE,
             rest,
-            float(np.interp(along, places, [g.circumference_mm for g in profile])),
+            float(np.interp(along, places, girths)),
             at_mm=along,
             part=part.name,
         )
 
+    pressed = [place(along) for along in sorted({*sized, *np.linspace(0, length, PLACES).tolist()})]
+    ribbed = [w for w in (pressed[0], pressed[-1]) if w.part != "body"]
+    off = [n for w in ribbed if (n := _off_target(w, fit.mmhg_at(w.at_mm + profile[0].at_mm)))]
     return make_plan(
         name,
         stitch,
@@ -104,13 +121,26 @@ def limb_tube(
         material,
         gauges,
         around=Direction.COURSE,
-        worn=tuple(
-            place(along) for along in sorted({*places, *np.linspace(0, length, PLACES).tolist()})
-        ),
+        worn=tuple(pressed),
         closing="work in the round, or work flat and seam the edges",
-        notes=(*notes, *_too_fast(counts, shaped)),
+        notes=(*notes, *_too_fast(counts, shaped), *off),
         linear_density_tex=linear_density_tex,
     )
+
+
+def _off_target(place: Worn, mmhg: float | None) -> str:
+    """A note if a ribbing, which has the stitches of the body, misses its target pressure."""
+    if mmhg is None:
+        return ""
+    wish = f"The {place.part} does not keep to the {mmhg:.0f} mmHg of the body"
+    remedy = "Knit it in the fabric of the body to keep to it."
+    if place.pressure is None:
+        return f"{wish}: {place.problem} {remedy}"
+    low, high = place.pressure.mmhg.low, place.pressure.mmhg.high
+    if low / (1 + KEEPS) <= mmhg <= high * (1 + KEEPS):
+        return ""
+    ends = dict.fromkeys((f"{low:.0f}", f"{high:.0f}"))
+    return f"{wish}: it presses by {' to '.join(ends)} mmHg. {remedy}"
 
 
 def _too_fast(counts: list[int], shaped: list[int]) -> list[str]:
@@ -132,9 +162,11 @@ def sock_leg(
     *,
     fit: Fit = SNUG,
     gauges: GaugeSet | None = None,
+    body: Fabric = Fabric.STOCKINETTE,
+    hem: Fabric = Fabric.RIB,
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
-    """The leg of a sock from the ankle up to the calf, with rib at both ends."""
+    """The leg of a sock from the ankle up to the calf, with ribbing at both ends."""
     profile = (Girth(0.0, ankle_mm), Girth(length_mm / 3, ankle_mm), Girth(length_mm, calf_mm))
     return limb_tube(
         "sock leg",
@@ -142,6 +174,8 @@ def sock_leg(
         material,
         fit=fit,
         gauges=gauges,
+        body=body,
+        hem=hem,
         notes=(
             "The leg only: a heel is turned with short rows and a foot is a tube of its own, which "
             "a chart of whole rows cannot show. Knit them from the stitches at the ankle.",
@@ -158,6 +192,8 @@ def wrist_brace(
     fit: Fit = SNUG,
     gauges: GaugeSet | None = None,
     edge_mm: float = 15.0,
+    support: Fabric = Fabric.STOCKINETTE,
+    edge: Fabric = Fabric.GARTER,
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
     """A brace knitted sideways and grafted, so that wales, stockinette's stiff direction, go
@@ -170,26 +206,27 @@ def wrist_brace(
     material : gives the law for the pressure.
     fit : ease, or a target pressure.
     gauges : the knitter's; by default the material's own.
-    edge_mm : width of the garter edges, which stretch around the arm.
+    edge_mm : width of the edges, which stretch around the arm.
+    support, edge : fabrics of the middle and of the edges.
     linear_density_tex : for the mass of yarn.
     """
     _check_length("wrist_mm", wrist_mm)
     _check_length("length_mm", length_mm)
     gauges = gauges or GaugeSet.of_material(material)
-    gauge = gauges[Fabric.STOCKINETTE]
-    rest = fit.rest_mm(wrist_mm, material, Fabric.STOCKINETTE, Direction.WALE)
+    gauge = gauges[support]
+    rest = fit.rest_mm(wrist_mm, material, support, Direction.WALE, at_mm=length_mm / 2)
     rows = gauge.rows_for(rest, multiple=2)
     columns = gauge.stitches_for(length_mm)
-    edge = min(gauge.stitches_for(edge_mm), columns // 3) if edge_mm > 0 else 0
+    wide = min(gauge.stitches_for(edge_mm), columns // 3) if edge_mm > 0 else 0
     column = np.broadcast_to(np.arange(columns), (rows, columns))
     parts = (
-        Part("edge at the forearm", column < edge, Fabric.GARTER),
-        Part("support", (column >= edge) & (column < columns - edge), Fabric.STOCKINETTE),
-        Part("edge at the hand", column >= columns - edge, Fabric.GARTER),
+        Part("edge at the forearm", column < wide, edge),
+        Part("support", (column >= wide) & (column < columns - wide), support),
+        Part("edge at the hand", column >= columns - wide, edge),
     )
     pressed = worn(
         material,
-        Fabric.STOCKINETTE,
+        support,
         Direction.WALE,
         rows * gauge.stitch_wale_mm,
         wrist_mm,

@@ -106,7 +106,7 @@ def glove_on_hand(
     return GloveOnHand(plan, corners, mmhg, parts, tuple(loop.skin() for loop in loops))
 
 
-def answer_of(fabric: Fabric, material: Material) -> Prediction:
+def prediction_of(fabric: Fabric, material: Material) -> Prediction:
     """Predict a part of one fabric."""
     return predict(StitchChart.of_fabric(fabric, 2, 2), material)
 
@@ -123,8 +123,8 @@ def _fits(material: Material) -> Callable[[Fabric, float, float, float], LimbPla
 
     @cache
     def along(fabric: Fabric) -> Callable[[float, float], LimbPlace]:
-        answer = answer_of(fabric, material).along(Direction.WALE)
-        return cache(lambda girth, rest: place_on(answer, 0.0, girth, rest))
+        prediction = prediction_of(fabric, material).along(Direction.WALE)
+        return cache(lambda girth, rest: place_on(prediction, 0.0, girth, rest))
 
     def fitted(fabric: Fabric, at_mm: float, girth_mm: float, rest_mm: float) -> LimbPlace:
         return replace(along(fabric)(girth_mm, rest_mm), at_mm=at_mm)

@@ -1,13 +1,20 @@
 """The pressure of a garment where it is worn, and the width that gives a target pressure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from numbers import Real
+
+import numpy as np
 
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import Material
 from knitcore.mechanics.pressure import LimbPressure, limb_pressure, rest_circumference
+
+Profile = Sequence[tuple[float, float]]
+"""Pressure along a limb: pairs of a place in mm and a pressure in mmHg."""
 
 
 @dataclass(frozen=True)
@@ -61,21 +68,47 @@ class Fit:
     Parameters
     ----------
     ease : rest circumference over the limb's, minus one; negative is tighter.
-    mmhg : target pressure; takes precedence over the ease.
+    mmhg : target pressure; takes precedence over the ease. For graded pressure a profile of pairs
+        (mm along the limb, mmHg) in rising order, even between them.
     """
 
     ease: float = -0.15
-    mmhg: float | None = None
+    mmhg: float | Profile | None = None
 
     def __post_init__(self) -> None:
-        for name, value in (("ease", self.ease), ("mmhg", self.mmhg or 0.0)):
-            if not isinstance(value, Real):
-                problem = f"a {type(value).__name__} is not one number."
-                raise InputError(name, problem, "Give one number for the whole garment.")
+        if not isinstance(self.ease, Real):
+            problem = f"is of type {type(self.ease).__name__}."
+            raise InputError("ease", problem, "Give one number for the whole garment.")
         check_range("ease", self.ease, -0.6, 1, what="an ease")
+        if self.mmhg is None or isinstance(self.mmhg, Real):
+            return
+        pairs = tuple(self.mmhg) if isinstance(self.mmhg, Sequence) else ()
+        if not pairs or not all(isinstance(p, Sequence) and len(p) == 2 for p in pairs):
+            problem = f"is of type {type(self.mmhg).__name__}, no pressure and no profile of pairs."
+            raise InputError("mmhg", problem, "Give one number, or pairs of a place and mmHg.")
+        if any(after[0] <= before[0] for before, after in pairwise(pairs)):
+            problem = "the places of the profile do not increase."
+            raise InputError("mmhg", problem, "Give them in rising order.")
+
+    @property
+    def places_mm(self) -> tuple[float, ...]:
+        """Places along the limb at which a profile of pressure bends; none without a profile."""
+        return tuple(at for at, _ in self.mmhg) if isinstance(self.mmhg, Sequence) else ()
+
+    def mmhg_at(self, at_mm: float) -> float | None:
+        """The target pressure at a place along the limb; None if the fit is by ease."""
+        if not isinstance(self.mmhg, Sequence):
+            return self.mmhg
+        return float(np.interp(at_mm, self.places_mm, [mmhg for _, mmhg in self.mmhg]))
 
     def rest_mm(
-        self, worn_mm: float, material: Material, fabric: Fabric, around: Direction
+        self,
+        worn_mm: float,
+        material: Material,
+        fabric: Fabric,
+        around: Direction,
+        *,
+        at_mm: float = 0.0,
     ) -> float:
         """The rest circumference for a limb; for a pressure, the middle of the interval of sizes.
 
@@ -84,7 +117,8 @@ class Fit:
         InputError
             If the pressure or the circumference cannot be used.
         """
-        if self.mmhg is None:
+        mmhg = self.mmhg_at(at_mm)
+        if mmhg is None:
             return worn_mm * (1 + self.ease)
-        sizes = rest_circumference(material.law(fabric), around, worn_mm, self.mmhg)
+        sizes = rest_circumference(material.law(fabric), around, worn_mm, mmhg)
         return (sizes.low + sizes.high) / 2

@@ -61,28 +61,8 @@ def uniaxial_response(
     return UniaxialCurve(strain=axial, transverse_strain=across, stress=stress)
 
 
-def strain_at_stress(
-    law: ConstitutiveLaw,
-    direction: Direction,
-    stress: float,
-    *,
-    transverse: Transverse = Transverse.FREE,
-) -> float:
-    """Axial strain at which the full law carries a stress (N/mm) of at least 0.
-
-    Raises
-    ------
-    InputError
-        If the stress is negative or not a number.
-    """
-    solve = free_strains_at_stress if transverse is Transverse.FREE else held_strains_at_stress
-    return float(solve(law, direction, stress))
-
-
 def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
-    """Axial strains of the full law at many stresses (N/mm, at least 0), transversely free.
-
-    The vectorised form of :func:`strain_at_stress`.
+    """Axial strains of the full law at stresses (N/mm, at least 0) of any shape, transversely free.
 
     Raises
     ------
@@ -100,9 +80,7 @@ def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
 
 
 def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
-    """Axial strains of the full law at many stresses (N/mm, at least 0), the width held.
-
-    The same as :func:`strain_at_stress` with ``Transverse.FIXED``, all at once.
+    """Axial strains of the full law at stresses (N/mm, at least 0) of any shape, the width held.
 
     Raises
     ------

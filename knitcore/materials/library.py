@@ -129,7 +129,7 @@ def as_material(of: Material | str) -> Material:
         return of
     if not isinstance(of, str):
         remedy = "Give a Material, or the identifier of one such as 'acrylic'."
-        raise InputError("material", f"a {type(of).__name__} is not a material.", remedy)
+        raise InputError("material", f"is of type {type(of).__name__}.", remedy)
     return material(of)
 
 

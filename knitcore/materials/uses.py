@@ -11,7 +11,7 @@ ROUGH_LOG_STRESS = 0.25
 """Standard deviation of the logarithm of a stress beyond which sizes under load are rough: 90 %
 intervals of a factor of 1.5."""
 ROUGH_LOG_BENDING = 0.25
-"""The same of the bending modulus: a factor of 1.5."""
+"""Standard deviation of the logarithm of a bending modulus beyond which it is rough."""
 
 
 class Serves(Choice):

@@ -5,7 +5,8 @@ names (``Standard force``, ``Strain``: the probe's depth) and a row of units (mN
 ``Yarn Diameters`` with one column per yarn and one row per sample.
 
 CSV: a header line with ``depth_mm, force_n`` and, where there are several tests, ``sample``
-(``yarn-number``); the diameter may be a column ``diameter_mm``.
+(``yarn-number``); the diameter may be a column ``diameter_mm``. Other text is read as
+:mod:`knitcore.measure.tester_tables` does, in any of its units.
 """
 
 import re
@@ -14,7 +15,9 @@ from pathlib import Path
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.measure.table_reading import TableReading
 from knitcore.measure.tables import numbers, read_table, rows_by_label
+from knitcore.measure.tester_tables import read_specimens, table_heads
 from knitcore.measure.workbooks import MAX_BYTES, Cell, Worksheet, is_workbook, read_workbook
 
 
@@ -154,13 +157,15 @@ def _diameter_of(diameters: dict[tuple[str, int], float], yarn: str, number: int
 
 
 def _read_csv(path: Path) -> list[CompressionTest]:
+    with path.open("rb") as file:
+        head = file.readline(10_000).decode("utf-8-sig", "replace").lower()
+    if not {"depth_mm", "force_n"} <= {name.strip() for name in head.split(",")}:
+        return _of_tester(path)
     table = read_table(path, "depth_mm, force_n")
     table.columns = [str(c).strip().lower() for c in table.columns]
-    missing = [c for c in ("depth_mm", "force_n") if c not in table.columns]
-    if missing or table.empty:
-        problem = f"has no column {', '.join(missing)}." if missing else "has no rows."
+    if table.empty:
         remedy = "Give a header line depth_mm,force_n and one row per reading."
-        raise InputError(path.name, problem, remedy)
+        raise InputError(path.name, "has no rows.", remedy)
     columns = {
         name: numbers(f"{path.name}, column {name}", table[name])
         for name in ("depth_mm", "force_n", "diameter_mm")
@@ -178,4 +183,21 @@ def _read_csv(path: Path) -> list[CompressionTest]:
                 diameter_mm=None if diameter is None else float(diameter),
             )
         )
+    return tests
+
+
+def _of_tester(path: Path) -> list[CompressionTest]:
+    """Tests of a tester's table: its path is the depth."""
+    heads = table_heads(path, TableReading())
+    if heads is None or not {"extension_mm", "force_n"} <= {*heads.quantities}:
+        has = f" (it has {', '.join(filter(None, heads.titles[:8]))})" if heads else ""
+        problem = f"has no column of a depth beside one of a force{has}."
+        remedy = "Give a header line depth_mm,force_n and one row per reading."
+        raise InputError(path.name, problem, remedy)
+    specimens, _ = read_specimens(path, TableReading())
+    tests = []
+    for specimen in specimens:
+        name = specimen.name.removeprefix(f"{path.name}, ") if len(specimens) > 1 else path.stem
+        depth, force = specimen.columns["extension_mm"], specimen.columns["force_n"]
+        tests.append(CompressionTest(name, _yarn(name), depth, force, None))
     return tests

@@ -20,7 +20,7 @@ from knitcore.measure.table_reading import (
     TableReading,
     doubt_of_width,
 )
-from knitcore.measure.tester_tables import UNITS
+from knitcore.measure.tester_tables import RATIO, UNITS
 
 STIFF_N_PER_MM = (0.002, 2.0)
 """Force per width over strain, half-way up a pull, that knitted fabric usually has: from lace to a
@@ -37,6 +37,9 @@ MIN_SLACK = 0.008
 """Smallest strain that counts as slack."""
 WIDENS = 0.1
 """Widening over strain at the end of a pull, beyond which the sign is wrong."""
+_NEAR_ONE = 0.05
+MOST_STRAIN = 3.0
+"""Strain that no knitted fabric reaches before it locks; ribs reach about 2."""
 _WINDOW = 0.25
 """Force over the largest one up to which the beginning of a pull is looked at."""
 _CLEARER = 3.0
@@ -72,7 +75,11 @@ def plausible(
             )
             return run
         run = _from(run, first)
-        notes.append(f"{run.name}: strains are counted from the first reading, {first:.3f}.")
+        longer = "longer" if first > 0 else "shorter"
+        notes.append(
+            f"{run.name}: strains are counted from the first reading, {first:.3f}, as if the strip"
+            f" was {abs(first):.1%} {longer} at rest."
+        )
     start = slack(run)
     if start > 0:
         doubts.append(_slack_doubt(run, start))
@@ -143,15 +150,18 @@ def _from(run: StretchRun, start: float) -> StretchRun:
 
 
 def _check_ratio(run: StretchRun) -> None:
-    along, across = float(run.strain_along[0]), float(run.strain_across[0])
-    if abs(along - 1) < 0.05 and (not np.isfinite(across) or abs(across - 1) < 0.05):
-        problem = f"begins at {along:.3g}, so it looks like a stretch ratio, length over length."
-        remedy = "Subtract 1: strain is change of length over length at rest."
-        top = float(run.strain_along.max())
-        ratio = dict.fromkeys(("strain_along", "strain_across"), "ratio")
-        words = f"stretch ratio: {top:.3g} is a strain of {top - 1:.3g}"
-        answer = OtherReading(words, {"units": ratio})
-        raise DoubtError.of(f"{run.name}, strain_along", problem, remedy, answer)
+    """Refuse strains that begin at 1: each may be a length over the length at rest."""
+    strains = {"strain_along": run.strain_along, "strain_across": run.strain_across}
+    ratios = [name for name, values in strains.items() if abs(float(values[0]) - 1) < _NEAR_ONE]
+    if not ratios:
+        return
+    values = strains[ratios[0]]
+    last = float(values[np.argmax(np.abs(values - 1))])
+    problem = f"begins at {values[0]:.3g}, so it looks like a stretch ratio, length over length."
+    remedy = "Subtract 1: strain is change of length over length at rest."
+    words = f"stretch ratio: {last:.3g} is a strain of {last - 1:.3g}"
+    answer = OtherReading(words, {"units": dict.fromkeys(ratios, RATIO)})
+    raise DoubtError.of(f"{run.name}, {ratios[0]}", problem, remedy, answer)
 
 
 def _check_waist(run: StretchRun) -> None:
@@ -181,6 +191,12 @@ def check_units(course: StretchTest, wale: StretchTest) -> list[str]:
             if doubt.is_open:
                 raise DoubtError.about(doubt)
             notes.append(doubt.note)
+    notes += [
+        f"{test.source}: the strip is shorter ({test.length_mm:g} mm) than wide "
+        f"({min(test.width_mm):g} mm), so its clamps keep it from narrowing."
+        for test in (course, wale)
+        if test.length_mm is not None and test.length_mm < min(test.width_mm)
+    ]
     return notes
 
 
@@ -193,7 +209,7 @@ def unit_doubts(course: StretchTest, wale: StretchTest) -> dict[Direction, list[
     doubts: dict[Direction, list[Doubt]] = {}
     for direction, test in tests.items():
         sizes = [_size_doubt(test, tests[direction.other], name) for name in _SIZES]
-        known = [doubt for doubt in sizes if doubt is not None]
+        known = [doubt for doubt in (*sizes, _strain_doubt(test)) if doubt is not None]
         doubts[direction] = known or [*_stiffness_doubts(test, tests[direction.other])]
     return doubts
 
@@ -208,6 +224,22 @@ def _size_doubt(test: StretchTest, other: StretchTest, name: str) -> Doubt | Non
     if of is None or beside is None or name in test.sure:
         return None
     return doubt_of_width(test.source, of, beside_mm=(beside,), name=name)
+
+
+def _strain_doubt(test: StretchTest) -> Doubt | None:
+    """The doubt about a strain that is too large, which may be in per cent or another column."""
+    largest = test.largest_strain
+    if largest <= MOST_STRAIN or "strain_along" in test.sure:
+        return None
+    percent = dict.fromkeys(("strain_along", "strain_across"), "%")
+    in_percent = OtherReading(f"per cent: {largest / 100:.3g}", {"units": percent})
+    stands = OtherReading(f"{largest:.3g}, as it stands", {"units": {"strain_along": "1"}})
+    return Doubt(
+        f"{test.source}, strain_along",
+        f"reaches {largest:.3g}; no knitted fabric becomes {1 + largest:.3g} times as long.",
+        "Give strain as change of length over length at rest; are force and strain exchanged?",
+        (stands,) if "length_mm" in test.sure else (in_percent, stands),
+    )
 
 
 def _stiffness_doubts(test: StretchTest, other: StretchTest) -> Iterator[Doubt]:
@@ -272,8 +304,8 @@ def order_doubt(course: StretchTest, wale: StretchTest, fabric: Fabric) -> Doubt
     words = {Direction.COURSE: "rows", Direction.WALE: "columns"}
     return Doubt(
         f"{course.source} and {wale.source}",
-        f"say that this {fabric} is {stiffness[softer] / stiffness[softer.other]:.1f} times stiffer"
-        f" along its {words[softer]}; of other yarns it is softer there.",
+        f"say that this {fabric} is {stiffness[softer] / stiffness[softer.other]:.3g} times stiffer"
+        f" along its {words[softer]}; that of other yarns is softer there.",
         "Are the two files exchanged?",
         (OtherReading("exchange them", exchanges=True), OtherReading("they stand as they are")),
         is_open=False,

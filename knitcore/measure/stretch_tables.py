@@ -29,8 +29,8 @@ from knitcore.measure.stretch_test import (
 )
 from knitcore.measure.table_reading import Doubt, DoubtError, TableReading, doubt_of_width
 from knitcore.measure.tables import numbers, read_table, rows_by_label
-from knitcore.measure.tester_tables import Specimen, in_unit, read_specimens
-from knitcore.measure.workbooks import is_workbook, read_workbook
+from knitcore.measure.tester_tables import Specimen, has_units, in_unit, read_specimens
+from knitcore.measure.workbooks import Worksheet, is_workbook, read_workbook
 
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
 TABLE_LENGTHS = {"length_mm": "the clamps", "across_mm": "the points tracked across"}
@@ -60,15 +60,17 @@ def read_stretch_table(path: Path, reading: TableReading | None = None) -> Stret
 
 
 def is_own_table(path: Path) -> bool:
-    """Tell whether the first line has names of our own columns, between commas."""
+    """Tell whether the first line has names of our own columns, between commas, in our units."""
     if is_workbook(path):
-        names = [str(name) for name in next(iter(read_workbook(path).values()), [[]])[0]]
+        rows: Worksheet = [*next(iter(read_workbook(path).values()), []), [], []]
+        names, below = ([str(cell) for cell in row] for row in rows[:2])
     else:
         with path.open("rb") as file:
-            first = file.readline(10_000).decode("utf-8-sig", "replace")
-        names = first.split(",")
+            lines = [file.readline(10_000).decode("utf-8-sig", "replace") for _ in range(2)]
+        names, below = (line.strip().split(",") for line in lines)
     own = {_column_name(name) for name in names} & {*CSV_COLUMNS}
-    return len(own) >= 2 and "strain_along" in own
+    is_ours = len(own) >= 2 and "strain_along" in own
+    return is_ours and not has_units(names, below, {"n", "mm", "-", "1"})
 
 
 # -- testers' tables -------------------------------------------------------------------------------
@@ -88,10 +90,7 @@ def _of_specimens(path: Path, reading: TableReading) -> StretchTest:
             _check_width(specimen.name, width)
         pulls = [*_pulls(specimen, width, reading, notes)]
         if len(pulls) > 1 and not specimen.labels:
-            notes.append(
-                f"{specimen.name}: of {len(pulls)} pulls the first conditions the specimen and is"
-                " left out."
-            )
+            notes.append(f"{specimen.name}: {_conditioned(len(pulls))}")
             pulls = pulls[1:]
         widths |= dict.fromkeys((pull.name for pull in pulls), width)
         runs += pulls
@@ -109,6 +108,10 @@ def _of_specimens(path: Path, reading: TableReading) -> StretchTest:
         path.name, "", tuple(sound), sizes, tuple(notes), length, across,
         tuple(doubts[:1]), reading.sure,
     )  # fmt: skip
+
+
+def _conditioned(pulls: int) -> str:
+    return f"of {pulls} pulls the first conditions the specimen and is left out."
 
 
 def _check_width(name: str, width_mm: float) -> None:
@@ -149,6 +152,9 @@ def _pulls(
             )
             raise InputError(specimen.name, "has an extension, but no length at rest.", remedy)
         along = columns["extension_mm"] / length
+        if -along.min() > along.max() and -columns["force_n"].min() > columns["force_n"].max():
+            along = -along
+            notes.append(f"{specimen.name}: extensions are negative, and are read as stretching.")
         doubt = doubt_of_width(specimen.name, length, name="length_mm")
         if along.max() > FAR and "length_mm" not in reading.sure and doubt is not None:
             raise DoubtError.about(doubt)
@@ -193,13 +199,17 @@ def sound_runs(runs: list[StretchRun], notes: list[str]) -> list[StretchRun]:
             refused = error
             notes.append(f"{run.name} is left out: {error.problem}")
             continue
-        if run.length < whole.length:
-            after = whole.length - run.length
-            notes.append(f"{run.name}: {after} readings after the largest force are left out.")
+        _note_unloading(run, whole, notes)
         sound.append(run)
     if refused is not None and not sound:
         raise refused
     return sound
+
+
+def _note_unloading(run: StretchRun, whole: StretchRun, notes: list[str]) -> None:
+    if run.length < whole.length:
+        after = whole.length - run.length
+        notes.append(f"{run.name}: {after} readings after the largest force are left out.")
 
 
 # -- our own table ---------------------------------------------------------------------------------
@@ -225,10 +235,16 @@ def _read_table(path: Path, reading: TableReading) -> StretchTest:
         values["strain_across"] = np.full(len(table), np.nan)
     elif reading.narrowing_is_positive:
         values["strain_across"] = -values["strain_across"]
-    labelled = rows_by_label(table, "run", "").items()
-    runs_and_widths = [_run(path.name, label, rows, values) for label, rows in labelled]
     notes: list[str] = []
     doubts: list[Doubt] = []
+    labelled = rows_by_label(table, "run", "")
+    if "run" not in table and len(pulls := _growing(values["strain_along"])) > 1:
+        notes.append(f"{path.name}: {_conditioned(len(pulls))}")
+        labelled = {f"pull {n + 1}": rows for n, rows in enumerate(pulls)}
+        del labelled["pull 1"]
+    runs_and_widths = [
+        _run(path.name, label, rows, values, notes) for label, rows in labelled.items()
+    ]
     runs = tuple(plausible(run, reading, notes, doubts) for run, _ in runs_and_widths)
     widths = tuple(width for _, width in runs_and_widths)
     lengths = {
@@ -275,7 +291,7 @@ def _check_header(name: str, columns: list[str]) -> None:
 
 
 def _run(
-    name: str, label: str, rows: Indices, values: dict[str, Array]
+    name: str, label: str, rows: Indices, values: dict[str, Array], notes: list[str]
 ) -> tuple[StretchRun, float]:
     title = f"{name}, run {label}" if label else name
     width = values["width_mm"][rows]
@@ -287,11 +303,13 @@ def _run(
         raise InputError(f"{title}, column width_mm", problem, remedy)
     force = values["force_n"][rows]
     good = ~misread_forces(force)
-    run = StretchRun(
+    whole = StretchRun(
         name=title,
         strain_along=values["strain_along"][rows][good],
         strain_across=values["strain_across"][rows][good],
         stress=force[good] / width[0],
     )
+    run = until_unloaded(whole)
     check_run(run, first_row=int(rows[0]) + 2)
+    _note_unloading(run, whole, notes)
     return run, float(width[0])

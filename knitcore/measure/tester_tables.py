@@ -4,7 +4,8 @@ Testers write what they measured as text (commas, semicolons or tabs; decimal po
 line ``sep=;``; UTF-8, UTF-16 or Windows' letters) or as a workbook with a sheet for each specimen.
 Lines about the test come first, such as ``Width;25 mm``; then a line of names, often a line of
 units, and the readings. Either line starts a new specimen when it comes again; so does a quantity
-that comes again in the line of names.
+that comes again in the line of names. Numbers without a line of names have columns called
+``column 1``, ``column 2`` and so on, until a user says what they are.
 """
 
 import csv
@@ -23,20 +24,29 @@ from knitcore.measure.workbooks import MAX_COLUMNS, MAX_ROWS, is_workbook, read_
 QUANTITIES = {
     "strain_across": r"strain_across|(transverse|lateral|width(wise)?) strain|dehnung quer"
     r"|querdehnung|strain (2|trans\w*|lat\w*)",
-    "strain_along": r"strain_along|((tensile|axial|longitudinal|nominal|engineering) )?strain( 1)?"
-    r"|(längs|standard)?dehnung( längs)?|strain (axial|longitudinal)",
-    "extension_mm": r"((tensile|compressive) )?(extension|displacement)( mm)?|elongation"
-    r"|cross ?head( (travel|position|displacement|separation))?|stroke|position"
-    r"|(standard|traversen)?weg|verlängerung",
-    "force_n": r"force_n|(standard ?)?(force|kraft)|(tensile )?load( cell)?|(standard)?last",
-    "width_mm": r"((specimen|sample|clamped|initial) )?(width|breite)|width_mm|proben?breite|b0",
-    "length_mm": r"((initial|original) )?(gauge length|grip separation|clamp distance)|length_mm"
-    r"|((specimen|sample) )?length|einspannlänge|messlänge|(grip|clamp)(ing)? length|l0",
+    "strain_along": r"strain_along|strain (1|axial|longitudinal)"
+    r"|((tensile|axial|longitudinal|nominal|engineering|stroke) )?strain"
+    r"|(längs|standard)?dehnung( längs)?",
+    "extension_mm": r"((tensile|compressive|machine|axial|corrected) )?"
+    r"(extension|displacement|elongation|position|travel)( mm| from preload)?"
+    r"|standard travel|deformation|stroke|depth(_mm)?"
+    r"|cross ?head( (travel|position|displacement|separation|extension))?"
+    r"|(standard|traversen)?weg|verlängerung|allongement|déplacement|desplazamiento"
+    r"|alargamiento|spostamento|allungamento|corsa",
+    "force_n": r"force_n|((standard|axial|tensile) ?)?(force|kraft|load)( cell)?|(standard)?last"
+    r"|fuerza|carga|forza|carico",
+    "width_mm": r"((specimen|sample|clamped|initial) )?(width|breite)( [bw]0)?|width_mm"
+    r"|proben?breite( b0)?|b0|largeur|ancho|larghezza",
+    "length_mm": r"((initial|original) )?gau?ge length( l0)?|length_mm|((initial|original) )?grip"
+    r"( to grip)? separation( at .*)?|clamp distance|((specimen|sample|initial) )?length( l0)?"
+    r"|(einspann|mess|proben)?länge( l0| bei .*)?|(grip|clamp)(ing)? length|l0|longueur|longitud"
+    r"|lunghezza",
     "across_mm": r"across_mm",
     "run": r"run|specimen( (no\.?|number|id))?|sample( (no\.?|number))?|probe(n?nummer)?",
-    "time": r"time|zeit|prüfzeit|test time",
+    "time": r"((test|running|elapsed) )?time|(prüf)?zeit|temps|tiempo|tempo",
 }
-"""Titles of testers' columns, in English and German, by the names that we use."""
+"""Titles of testers' columns, in English and German, and the usual ones in French, Spanish and
+Italian, by the names that we use."""
 UNITS = {
     "force": {
         "n": 1.0, "kn": 1e3, "mn": 1e-3, "cn": 1e-2, "g": 9.80665e-3, "gf": 9.80665e-3,
@@ -58,6 +68,15 @@ MIN_READINGS = 5
 _UNIT = re.compile(
     r"\s*[(\[]\s*([^)\]]*?)\s*[)\]]\s*$|[\s_](%|percent|cn|mn|kn|kgf|gf|lbf|cm|in)$", re.IGNORECASE
 )
+_STATED = re.compile(r"(?P<name>[^\d:=]*[^\d:=\s])\s*[:=]?\s+(?P<value>\d.*)")
+"""A quantity and its value in one cell: ``Width : 50 mm``."""
+_SPACED = re.compile(
+    r" *[+-]?\d+(?:[.,]\d+)?(?:e[+-]?\d+)?(?: +[+-]?\d+(?:[.,]\d+)?(?:e[+-]?\d+)?)+ *", re.I
+)
+_GROUPED = re.compile(
+    r"[+-]?\d{1,3}(?:,\d{3})+\.\d+|[+-]?\d{1,3}(?:[ \u00a0\u2009\u202f]\d{3})+[.,]?\d*"
+)
+"""Thousands in groups, where nothing else can be meant."""
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d{1,3}(\.\d{3})+|\d+),\d*(e[+-]?\d+)?", re.IGNORECASE)
 
 _STRETCHES = {"strain_along", "extension_mm"}
@@ -106,7 +125,7 @@ def read_specimens(path: Path, reading: TableReading) -> tuple[list[Specimen], l
     heads: list[str] = []
     for sheet, rows in _sheets(path, notes):
         specimens += _specimens(path.name, sheet, rows, reading, notes)
-        heads = heads or [cell for cell in _names_line(rows)[0] if cell]
+        heads = heads or [cell for cell in _first_numbers(rows).titles if cell]
     if not specimens:
         has = f" (it has {', '.join(heads[:8])})" if heads else ""
         raise InputError(
@@ -132,17 +151,36 @@ def _sheets(path: Path, notes: list[str]) -> Iterator[tuple[str, Rows]]:
     if lines and (named := re.fullmatch(r'"?sep=(.)"?', lines[0].strip(), re.IGNORECASE)):
         separator, lines[0] = named.group(1), ""
     separator = separator or _separator(lines)
-    try:
-        rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
-    except csv.Error as error:
-        raise InputError(path.name, f"is not CSV ({error}).", "Save it as CSV again.") from None
+    if separator:
+        try:
+            rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
+        except csv.Error as error:
+            raise InputError(path.name, f"is not CSV ({error}).", "Save it as CSV again.") from None
+    else:
+        rows = [re.split(r"\s{2,}", line.strip()) for line in lines]
+        if max(map(len, rows), default=0) < 2:
+            rows = [line.split() for line in lines]
     if max(map(len, rows), default=0) > MAX_COLUMNS:
         raise InputError(path.name, f"has more than {MAX_COLUMNS} columns.", "Give the test only.")
-    stripped = [[cell.strip() for cell in row] for row in rows]
-    if separator != "," and any(_DECIMAL_COMMA.fullmatch(c) for row in stripped for c in row):
+    stripped = [[_ungrouped(cell.strip()) for cell in row] for row in rows]
+    if _has_decimal_commas(stripped, separator):
         notes.append(f"{path.name}: commas are read as decimal commas.")
         stripped = [[_with_point(cell) for cell in row] for row in stripped]
     yield "", stripped
+
+
+def _has_decimal_commas(rows: Rows, separator: str) -> bool:
+    """Say whether commas are decimal ones; in quotes between commas 1,234 may be a thousand."""
+    with_comma = [cell for row in rows for cell in row if _DECIMAL_COMMA.fullmatch(cell)]
+    if separator != ",":
+        return bool(with_comma)
+    return any(re.search(r"^[+-]?0,|,(?!\d{3}$)", cell) for cell in with_comma)
+
+
+def _ungrouped(cell: str) -> str:
+    if _GROUPED.fullmatch(cell) is None:
+        return cell
+    return re.sub(r"[ \u00a0\u2009\u202f]|,(?=.*\.)", "", cell)
 
 
 def _decoded(path: Path, notes: list[str]) -> str:
@@ -160,8 +198,10 @@ def _decoded(path: Path, notes: list[str]) -> str:
 
 
 def _separator(lines: list[str]) -> str:
-    """The character that most lines have most often, outside decimal commas."""
+    """The character that most lines have most often; "" where spaces stand between numbers."""
     some = [line for line in lines[:400] if line.strip()]
+    if sum(_SPACED.fullmatch(line) is not None for line in some) > len(some) / 2:
+        return ""
 
     def columns(separator: str) -> tuple[int, int]:
         counts = [line.count(separator) for line in some]
@@ -193,23 +233,31 @@ def _specimens(
     """Specimens of a sheet, in the order of their readings."""
     constants: dict[str, float] = {}
     title = sheet
+    nameless = _first_numbers(rows)
     row = 0
     while row < len(rows):
-        groups = _heads(rows[row], reading.columns)
+        is_nameless = not nameless.has_names and row == nameless.first
+        heads = nameless.titles if is_nameless else rows[row]
+        groups = _heads(heads, reading.columns)
         if not groups:
             title, constants = _about(rows[row], title, constants)
             row += 1
             continue
-        first = row + 1
-        if first < len(rows) and _is_units(rows[first]):
-            groups = [[_with_unit(c, rows[first]) for c in group] for group in groups]
-            first += 1
+        first = row if is_nameless else row + 1
+        units = nameless.units
+        if not is_nameless:
+            units = rows[first] if first < len(rows) and _is_units(rows[first]) else []
+            first += bool(units)
+        groups = [[_with_unit(c, units) for c in group] for group in groups]
         end = first
         while end < len(rows) and _is_reading(rows[end], groups):
             end += 1
+        while end > first and not _is_numeric(rows[end - 1], groups):  # results below the readings
+            end -= 1
         readings = [(at, rows[at]) for at in range(first, end) if any(rows[at])]
         if len(readings) >= MIN_READINGS:
-            _tell_unread(file, rows[row], groups, reading.columns, notes)
+            _check_width(file, [head for head in heads if head], *readings[0])
+            _tell_unread(file, heads, groups, reading.columns, notes)
             for place, group in enumerate(groups):
                 name = title or "readings"
                 name = f"{name} {place + 1}" if len(groups) > 1 else name
@@ -218,14 +266,48 @@ def _specimens(
         row = max(end, first)
 
 
-def _names_line(rows: Rows) -> tuple[list[str], list[str], int]:
-    """The line above the first rows of numbers, that of their units, and the first row's place."""
+def _check_width(file: str, heads: list[str], at: int, row: list[str]) -> None:
+    """Refuse numbers that a decimal comma cuts in two."""
+    if len(row) >= 2 * len(heads):
+        problem = f"row {at + 1} has {len(row)} numbers under {len(heads)} names: its decimals are"
+        remedy = "Save it with semicolons between columns, or with decimal points."
+        raise InputError(file, f"{problem} commas between commas.", remedy)
+
+
+@dataclass(frozen=True)
+class _FirstNumbers:
+    """Where the first numbers of a sheet begin, and what stands above them.
+
+    ``titles`` are ``column 1``, ``column 2`` and so on if no line of names does.
+    """
+
+    titles: list[str]
+    units: list[str]
+    first: int
+    has_names: bool
+
+
+def _first_numbers(rows: Rows) -> _FirstNumbers:
     numeric = [sum(_number(cell) is not None for cell in row) >= 2 for row in rows]
-    for at in range(1, len(rows) - MIN_READINGS + 1):
-        if all(numeric[at : at + MIN_READINGS]):
-            has_units = at > 1 and _is_units(rows[at - 1])
-            return rows[at - 2 if has_units else at - 1], rows[at - 1] if has_units else [], at
-    return [], [], 0
+    starts = range(len(rows) - MIN_READINGS + 1)
+    first = next((at for at in starts if all(numeric[at : at + MIN_READINGS])), None)
+    if first is None:
+        return _FirstNumbers([], [], len(rows), has_names=True)
+    above = [row for row in rows[:first] if any(row)]
+    units = above.pop() if above and _is_units(above[-1]) else []
+    if above and _is_names(above[-1]):
+        return _FirstNumbers(above[-1], units, first, has_names=True)
+    width = max(map(len, rows[first : first + MIN_READINGS]))
+    return _FirstNumbers(
+        [f"column {number + 1}" for number in range(width)], units, first, has_names=False
+    )
+
+
+def _is_names(row: list[str]) -> bool:
+    """Tell whether a line may name columns: it has two texts, and no number or constant."""
+    cells = [cell for cell in row if cell]
+    has_numbers = any(_number(cell) is not None for cell in cells) or _about(row, "", {})[1]
+    return len(cells) > 1 and not has_numbers
 
 
 @dataclass(frozen=True)
@@ -247,7 +329,7 @@ class TableHeads:
 
 
 def table_heads(path: Path, reading: TableReading, *, most: int = 4) -> TableHeads | None:
-    """Heads and first rows of a table; None if no line stands above its numbers.
+    """Heads and first rows of a table; None if it has no numbers.
 
     Raises
     ------
@@ -255,11 +337,12 @@ def table_heads(path: Path, reading: TableReading, *, most: int = 4) -> TableHea
         If the file is not text, or too large.
     """
     for _, rows in _sheets(path, []):
-        titles, units, first = _names_line(rows)
+        numbers = _first_numbers(rows)
+        titles, units, first = numbers.titles, numbers.units, numbers.first
         if not titles:
             continue
         constants: dict[str, float] = {}
-        for row in rows[: rows.index(titles)]:
+        for row in rows[:first]:
             _, constants = _about(row, "", constants)
         width = max(map(len, (titles, *rows[first : first + most])))
         named = {c.place: _with_unit(c, units) for c in _named(titles, reading.columns)}
@@ -341,6 +424,11 @@ def _is_units(row: list[str]) -> bool:
     return 2 * named > len(cells) and not any(_number(cell) is not None for cell in cells)
 
 
+def has_units(names: list[str], below: list[str], ours: set[str]) -> bool:
+    """Tell whether a line of names, or the one below, gives other units than ours, or all units."""
+    return _is_units(below) or any((_unit(name) or "1").lower() not in ours for name in names)
+
+
 def _with_unit(column: _Column, units: list[str]) -> _Column:
     unit = units[column.place].strip("()[] ") if column.place < len(units) else ""
     share = column.name == "extension_mm" and unit.lower() in ("%", "percent", "mm/mm", "m/m")
@@ -353,6 +441,17 @@ def _is_reading(row: list[str], groups: list[list[_Column]]) -> bool:
         return True
     cells = [row[c.place] for group in groups for c in group if c.place < len(row)]
     return any(_number(cell) is not None for cell in cells)
+
+
+def _is_numeric(row: list[str], groups: list[list[_Column]]) -> bool:
+    """Tell whether a row has numbers in our columns and nothing else, or the columns are empty."""
+    cells = [
+        row[c.place]
+        for group in groups
+        for c in group
+        if c.name not in ("time", "run") and c.place < len(row)
+    ]
+    return any(cells) and all(_number(cell) is not None for cell in cells if cell)
 
 
 def _number(cell: str) -> float | None:
@@ -368,6 +467,8 @@ def _about(row: list[str], title: str, constants: dict[str, float]) -> tuple[str
     cells = [cell for cell in row if cell]
     if not cells:
         return title, constants
+    if len(cells) == 1 and (stated := _STATED.fullmatch(cells[0])):
+        cells = [stated["name"], stated["value"]]
     name = _quantity(cells[0])
     if name in ("width_mm", "length_mm") and len(cells) > 1:
         value, _, behind = cells[1].partition(" ")
@@ -450,10 +551,15 @@ def _tell_unread(
     notes: list[str],
 ) -> None:
     used = {column.place for group in groups for column in group}
-    unread = [
-        cell
-        for place, cell in enumerate(heads)
-        if cell and place not in used and (_quantity(cell) is None or _quantity(cell) in called)
-    ]
+    left = [(place, cell) for place, cell in enumerate(heads) if cell and place not in used]
+    unread = [cell for _, cell in left if _quantity(cell) is None or _quantity(cell) in called]
     if unread:
         notes.append(f"{file}: not used: {', '.join(unread[:8])}.")
+    beside = [cell for _, cell in left if _quantity(cell) in {*_STRETCHES, "force_n"} - {*called}]
+    if beside:
+        taken = [
+            heads[c.place] for group in groups for c in group if c.name in (*_STRETCHES, "force_n")
+        ]
+        notes.append(
+            f"{file}: {', '.join(taken[:4])} are read, and {', '.join(beside[:4])} is not."
+        )

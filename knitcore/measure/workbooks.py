@@ -95,15 +95,16 @@ def _xlsx_sheets(path: Path) -> Iterator[tuple[str, Iterable[Sequence[Any]]]]:
                     tags += chunk.count(b"<")
                     if tags > MAX_TAGS:
                         raise _too_large(path)
-    book = load_workbook(path, read_only=True, data_only=True, keep_links=False)
-    try:
-        for sheet in book.worksheets[:MAX_SHEETS]:
-            yield (
-                sheet.title,
-                sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS, values_only=True),
-            )
-    finally:
-        book.close()
+    with path.open("rb") as file:  # which has another name than a workbook's, at times
+        book = load_workbook(file, read_only=True, data_only=True, keep_links=False)
+        try:
+            for sheet in book.worksheets[:MAX_SHEETS]:
+                yield (
+                    sheet.title,
+                    sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS, values_only=True),
+                )
+        finally:
+            book.close()
 
 
 def _cells(row: Sequence[Any]) -> list[Cell]:

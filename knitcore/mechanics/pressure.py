@@ -32,6 +32,9 @@ TESTED_SHARE = 0.7
 MAX_CIRCUMFERENCE_MM = 5000.0
 MIN_LENGTH = 0.05
 """Least share of its length that an axially free tube keeps; laws do not apply beyond."""
+CAPILLARY_MMHG = 32.0
+"""Mean pressure at which blood enters the capillaries of a finger's nail fold: E. M. Landis, Heart
+15 (1930) 209-228. A garment that presses harder can stop it."""
 ELASTIC_MEAN = (
     "A mean over the circumference from an elastic law: pressure is higher where the limb curves "
     "more, and no relaxation, friction or posture is included."
@@ -122,7 +125,21 @@ def limb_pressure(
         tension_n_per_mm=tensions,
         axial_strain_free=axial,
         utilisation=utilisation,
-        warnings=tuple(_warnings(law, direction, strain, tested_strain)),
+        warnings=(
+            *too_tight(MMHG_PER_KPA * kpa.high),
+            *_warnings(law, direction, strain, tested_strain),
+        ),
+    )
+
+
+def too_tight(mmhg: float, where: str = "It") -> tuple[str, ...]:
+    """A warning of a pressure that can stop the blood, in a sentence; none below."""
+    if mmhg <= CAPILLARY_MMHG:
+        return ()
+    return (
+        f"{where} may press by up to {mmhg:.0f} mmHg. Above {CAPILLARY_MMHG:.0f} mmHg, at which "
+        "blood enters the capillaries of a finger, it can stop the blood: make it looser, or ask "
+        "a doctor.",
     )
 
 

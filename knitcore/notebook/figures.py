@@ -36,7 +36,7 @@ def figure(of: object) -> Any:
         If plotly is not installed.
     """
     raise TypeError(
-        f"a {type(of).__name__} has no stress-strain curve; "
+        f"{type(of).__name__} has no stress-strain curve; "
         "give a prediction, a curve, a sweep or a strip test"
     )
 
@@ -110,7 +110,7 @@ def view(of: object) -> Any:
         For anything else.
     """
     raise TypeError(
-        f"a {type(of).__name__} has no shape in space; give a relaxed cell or a curled piece"
+        f"{type(of).__name__} has no shape in space; give a relaxed cell or a curled piece"
     )
 
 

@@ -65,7 +65,7 @@ def predict(
     chart, material = as_chart(chart), as_material(material)
     if not isinstance(size, RelaxedSize | None):
         remedy = "Give a RelaxedSize, such as RelaxedSize.from_gauge(22, 30)."
-        raise InputError("size", f"a {type(size).__name__} is not a relaxed size.", remedy)
+        raise InputError("size", f"is of type {type(size).__name__}.", remedy)
     fabric = pure_fabric(chart)
     if fabric is not None:
         pure = predict_pure(fabric, material)

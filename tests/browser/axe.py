@@ -33,3 +33,12 @@ def violations(page: Page, within: str = "body") -> list[str]:
         if violation["impact"] in ("serious", "critical")
         for where in violation["where"]
     ]
+
+
+def violations_in_both_themes(page: Page, within: str) -> list[str]:
+    """Serious and critical violations in each theme; the light one is left on."""
+    faults = []
+    for theme in reversed(THEMES):
+        page.emulate_media(color_scheme=theme)
+        faults += [f"{theme}: {wrong}" for wrong in violations(page, within)]
+    return faults

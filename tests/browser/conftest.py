@@ -38,6 +38,11 @@ def bundle() -> None:
     subprocess.run(["make", "--silent", "page"], cwd=ROOT, check=True)
 
 
+COLOURED_CLOTH = """if (parent === window) // the frame of the view has no storage
+    localStorage['knitcore.settings'] ??= '{"yarnColours": "fabric"}'"""
+"""Cloth in the fabrics' colours, which tests find in a picture; a yarn may be as pale as paper."""
+
+
 @pytest.fixture(scope="session")
 def service(bundle: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Address of a running service, with the data folder of the tests."""
@@ -62,6 +67,7 @@ def visitor(browser: Browser) -> Iterator[Page]:
     """A page in a browser that was never here before; scripts of ours must not fail."""
     context = browser.new_context(viewport={"width": 1280, "height": 720}, reduced_motion="reduce")
     context.set_default_timeout(TIMEOUT_MS)
+    context.add_init_script(COLOURED_CLOTH)
     page = context.new_page()
     failures: list[str] = []
     page.on("pageerror", lambda error: failures.append(f"{error.message}\n{error.stack}"))
@@ -79,7 +85,7 @@ def studio(visitor: Page, service: str) -> Page:
 
 @pytest.fixture
 def flat_studio(visitor: Page, service: str) -> Page:
-    """The same with an empty 3D view."""
+    """The page with a small chart and an empty 3D view."""
     return open_small_chart(flat(visitor), service)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pytest
 from PIL import Image
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, ViewportSize, expect
 
 from tests.browser.axe import THEMES, violations
 from tests.browser.page import drop, kept_chart, purls, settle
@@ -158,7 +158,7 @@ def test_the_palette_finds_what_is_meant(flat_studio: Page) -> None:
         "pressure": "Pressure on a limb",
         "strain": "Stress–strain curves",
         "colour fabrics": "Colour the chart by: fabrics",
-        "rest": "Show the cloth: as it lies",
+        "rest": "Show the cloth: unpinned",
     }
     page.keyboard.press("Control+k")
     for typed, label in meant.items():
@@ -214,6 +214,27 @@ def test_parts_and_targets_leave_the_chart_in_sight_on_a_phone(flat_studio: Page
     page.focus("#chart")
     page.keyboard.press("Shift+W")
     expect(page.locator("#part-add")).to_be_in_viewport()
+
+
+def test_chart_and_cloth_have_the_whole_screen_of_a_phone(flat_studio: Page) -> None:
+    """Their drawer is closed until it is needed."""
+    page = flat_studio
+    phone: ViewportSize = {"width": 390, "height": 844}
+    page.set_viewport_size(phone)
+    page.reload()
+    settle(page)
+    expect(page.locator("#stretch-run")).to_be_hidden()
+    page.click("#stretch-fold")
+    expect(page.locator("#stretch-run")).to_be_visible()
+    page.click("#stretch-fold")
+    for part, whole in (("chart", ".studio"), ("cloth", "#fabric")):
+        page.click(f"#full-{part}")
+        expect(page.locator(f"#full-{part}")).to_have_attribute("aria-pressed", "true")
+        box = page.locator(whole).bounding_box()
+        assert box
+        assert (box["width"], box["height"]) == (phone["width"], phone["height"])
+        page.click(f"#full-{part}")
+        expect(page.locator("#action-undo")).to_be_in_viewport()
 
 
 CUT_OFF = """(id) => {

@@ -13,11 +13,12 @@ from tests.browser.page import exported, kept_design
 
 def _plan(page: Page, template: str) -> None:
     page.keyboard.press("Control+Shift+G")
+    _plan_again(page, template)
+
+
+def _plan_again(page: Page, template: str) -> None:
     page.locator(f"input[name=planner-template][value={template}]").check(force=True)
-    page.wait_for_function(
-        """() => !document.querySelector('#planner-facts').classList.contains('busy')
-             && !document.querySelector('#planner-make').disabled"""
-    )
+    page.wait_for_function("() => !document.querySelector('#planner-make').disabled")
 
 
 @pytest.mark.slow
@@ -55,9 +56,36 @@ def test_a_brace_for_a_pressure_shows_its_pressure(flat_studio: Page) -> None:
         page.locator("input[name=planner-fit][value=ease]").check(force=True)
     expect(support).to_contain_text("−14 %")
     assert support.inner_text() != by_pressure
-    page.get_by_label("Around the wrist").fill("-3")
-    expect(page.locator("#planner-dialog .problem")).to_contain_text("wrist_mm")
+    page.get_by_label("Around the wrist").fill("5000")
+    problem = page.locator("#planner-dialog .problem")
+    expect(problem).to_contain_text("Around the wrist: enter 80 to 350 mm.")
     expect(page.locator("#planner-make")).to_be_disabled()
+
+
+@pytest.mark.slow
+def test_a_sleeve_has_graded_pressure_fabrics_and_sizes(flat_studio: Page) -> None:
+    """Measurements are still there after a look at another garment."""
+    page = flat_studio
+    _plan(page, "wrist-brace")
+    page.get_by_label("Around the wrist").fill("181")
+    _plan_again(page, "limb")
+    page.get_by_label("Body", exact=True).select_option("garter")
+    with page.expect_request(
+        lambda sent: "/garment" in sent.url and "mmhg_profile" in (sent.post_data or "")
+    ) as planned:
+        page.fill("#planner-target", "15")
+        page.fill("#planner-graded", "8")
+    garment = planned.value.post_data_json["garment"]
+    assert garment["body"] == "garter"
+    assert [mmhg for _, mmhg in garment["mmhg_profile"]][-1] == 8
+    expect(page.locator("#planner-facts")).to_contain_text("does not keep to")
+    page.locator("#planner-facts summary", has_text="Table of sizes").click()
+    page.click("#planner-sizes-run")
+    rows = page.locator("#planner-sizes tbody tr")
+    expect(rows).to_have_count(5)
+    assert rows.first.inner_text() != rows.last.inner_text()
+    _plan_again(page, "wrist-brace")
+    expect(page.get_by_label("Around the wrist")).to_have_value("181")
 
 
 def test_knitout_is_checked_before_it_is_given(flat_studio: Page) -> None:

@@ -52,7 +52,7 @@ def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
     flat_studio.click("#find-run")
     first = flat_studio.locator(".candidate").first
     expect(first).to_contain_text("garter")
-    expect(first).to_contain_text("% sure")
+    expect(first).to_contain_text("% chance of meeting")
     assert not violations(flat_studio, "#inverse")
     first.get_by_role("button", name="Fill with garter").click()
     assert len(set(kept_chart(flat_studio).split("\n"))) == 2
@@ -121,7 +121,7 @@ def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:
     )
     flat_studio.click("#ink-rib-2-2")
     flat_studio.click("#fill-all")
-    expect(flat_studio.locator("#provenance")).to_have_text("learned")
+    expect(flat_studio.locator("#provenance")).to_contain_text("Estimated from simulations")
     open_atlas(flat_studio)
     flat_studio.wait_for_function("() => 'this chart' in window.names")
     (x, y, wide), (x1, y1, wide1) = flat_studio.evaluate(

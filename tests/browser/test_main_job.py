@@ -103,7 +103,7 @@ def test_a_change_marks_the_stretch_as_old_until_it_is_pulled_again(flat_studio:
     flat_studio.select_option("#stretch-unit", "N")
     slider = stretched(flat_studio, "0.5")
     expect(flat_studio.locator("#stretch-figures")).to_contain_text("0.5")
-    expect(flat_studio.locator("#stretch-note")).to_contain_text("No stitch locks")
+    expect(flat_studio.locator("#stretch-note")).to_contain_text("No stitch runs out of stretch")
     flat_studio.evaluate("() => { window.fetch = () => new Promise(() => {}) }")
     drag(flat_studio, 30, 0)
     expect(flat_studio.locator("#stretch")).to_have_class(re.compile("busy"))

@@ -16,6 +16,7 @@ from tests.browser.conftest import flat, open_small_chart
 from tests.browser.page import Chart, kept_chart
 
 NUMBER = r"−?\d+(\.\d+)?"
+LEARNED = "How sure? Estimated from simulations"
 INTERVAL = rf"{NUMBER} – {NUMBER}"
 WAISTED = "\n".join(["x" * 12] * 3 + ["..xxxxxxxx.."] * 4 + ["x" * 12] * 3)
 RIBBED = "\n".join(["KPKPKPKKKKKK"] * 5 + ["KKKKKKKPKPKP"] * 5)
@@ -65,13 +66,13 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     """Painting leaves it behind, undoing brings it back; stretch tests and files have its size."""
     page = open_design(visitor, service)
     source, size = page.locator("#provenance"), page.locator("#size-course .value")
-    expect(source).to_have_text("learned")
+    expect(source).to_have_text(LEARNED)
     guessed = size.inner_text()
     source.click()
     page.fill("#own-gauge-stitches", "25")
     page.fill("#own-gauge-rows", "36")
     page.press("#own-gauge-rows", "Enter")
-    expect(source).to_have_text("learned with known size")
+    expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(size).to_have_text("4.80")  # 12 stitches
     with page.expect_request("**/api/v1/jobs") as sent:
         page.click("#stretch-run")
@@ -83,10 +84,10 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     assert exported.value.post_data_json["gauge"] == counted
     page.keyboard.press("Escape")
     page.mouse.click(*Chart(page).at(4, 4))
-    expect(source).to_have_text("learned")
+    expect(source).to_have_text(LEARNED)
     expect(page.locator("#own-gauge-stitches")).to_have_value("")
     page.keyboard.press("Control+z")
-    expect(source).to_have_text("learned with known size")
+    expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(page.locator("#own-gauge-stitches")).to_have_value("25")
     for field in ("stitches", "rows"):
         page.fill(f"#own-gauge-{field}", "")
@@ -102,11 +103,11 @@ def test_a_repeat_of_a_simulated_material_is_relaxed_while_painting_pauses(
     chart = "\n".join(["KPPKK", "KKPPK", "PPPKP"])
     page = open_design(visitor, service, chart=chart, material="acrylic:simulation")
     source = page.locator("#provenance")
-    expect(source).to_have_text("learned, relaxing …")
+    expect(source).to_have_text(f"{LEARNED}, relaxing …")
     guessed = page.locator("#hand-course .interval").inner_text()
     with page.expect_request(lambda sent: sent.method == "DELETE" and "/jobs/" in sent.url):
         page.click("#stretch-run")
-    expect(source).to_have_text("learned with known size")
+    expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(page.locator("#hand-course .interval")).not_to_have_text(guessed)
     source.click()
     expect(page.locator(".source .notes")).to_contain_text("relaxation of this chart")

@@ -30,7 +30,7 @@ def inside(page: Page, part: str, whole: str) -> bool:
 
 
 def comes_inside(page: Page, part: str, whole: str) -> bool:
-    """The same within a minute, for what is still being laid out."""
+    """Return whether a part comes to lie within another in a minute."""
     for _ in range(600):
         if inside(page, part, whole):
             return True

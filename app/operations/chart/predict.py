@@ -1,6 +1,6 @@
 """The mechanics of a chart."""
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -109,34 +109,18 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
             f"{chart.columns} x {chart.rows} stitches."
         )
     predicted = predict_chart(chart, material, request.relaxed_size)
-    by_direction: dict[str, Any] = {}
-    for direction in Direction:
-        along = predicted.along(direction)
-        by_direction |= {
-            f"modulus_{direction}_n_per_mm": along.modulus_n_per_mm,
-            f"modulus_{direction}_interval_n_per_mm": along.modulus_interval_n_per_mm,
-            f"modulus_{direction}_bounds_n_per_mm": along.bounds_n_per_mm,
-            f"extensibility_{direction}_mm_per_n": 1.0 / along.modulus_n_per_mm,
-            f"relaxed_{direction}_mm": along.relaxed_mm,
-            f"relaxed_{direction}_interval_mm": along.relaxed_interval_mm,
-        }
     segments = segment_map(chart)
     to_relax = worth_relaxing(chart, material, predicted)
-    return PredictResult.of(
-        predicted,
-        rows=chart.rows,
-        columns=chart.columns,
-        **by_direction,
-        **vars(size_at_rest(shaped, material, predicted)),
-        segments={direction: segments.counts(direction) for direction in Direction},
-        poisson_yx=predicted.course.poisson,
-        poisson_xy=predicted.wale.poisson,
-        poisson_yx_interval=predicted.course.poisson_interval,
-        poisson_xy_interval=predicted.wale.poisson_interval,
-        worth_relaxing=None if to_relax is None else to_relax.text,
-        notes=[*notes, *predicted.notes],
-        hand=hand_pulls(chart, material, predicted) if request.hand else [],
-    )
+    given = {
+        "rows": chart.rows,
+        "columns": chart.columns,
+        "segments": {direction: segments.counts(direction) for direction in Direction},
+        "worth_relaxing": None if to_relax is None else to_relax.text,
+        "notes": [*notes, *predicted.notes],
+        "hand": hand_pulls(chart, material, predicted) if request.hand else [],
+    }
+    whole_piece = vars(size_at_rest(shaped, material, predicted))
+    return PredictResult.model_validate(predicted.to_dict() | whole_piece | given)
 
 
 def _lines(r: PredictResult) -> list[str]:

@@ -41,7 +41,6 @@ MAX_STITCHES = 40_000
 """Largest chart of a test over REST, in stitches; the command line accepts larger ones."""
 MAX_VALUES = 60 * MAX_STITCHES
 """Largest number of stitches times steps over REST: the answer has seven numbers for each."""
-NEAR_LOCK_UP = 0.95
 
 
 class StretchRequest(GaugedRequest):
@@ -125,6 +124,13 @@ class NearestLockUp(ResultModel):
     fabric: str
 
 
+class FirstTaut(ResultModel):
+    """Where the tightest cloth has used 95 % of its stretch."""
+
+    strain: float
+    force_n: float
+
+
 class StretchCurve(IntervalResult):
     """A simulated strip test (geometry after ISO 20932-1), not a certified test."""
 
@@ -146,6 +152,12 @@ class StretchCurve(IntervalResult):
         description="True if C_xyxy is the paper's assumption, not measured."
     )
     nearest_lock_up: NearestLockUp | None
+    first_taut: FirstTaut | None = Field(
+        description="Where the tightest cloth first runs out of stretch; null where none does."
+    )
+    tightest: float = Field(
+        description="Share of its stretch that the tightest cloth has used at the last step."
+    )
     messages: list[str]
 
 
@@ -216,6 +228,8 @@ def _curve(request: StretchRequest, test: StripTest, margins: StretchMargins) ->
         waist_strain_interval=_around(test.waist_strain, margins.waist),
         shear_modulus_assumed=request.shear_modulus_n_per_mm is None,
         nearest_lock_up=_nearest(test),
+        first_taut=_first_taut(test),
+        tightest=test.tightest() if test.steps else 0.0,
         messages=_messages(test),
     )
 
@@ -228,8 +242,8 @@ def _messages(test: StripTest) -> list[str]:
     if full and test.steps and test.is_past_the_law():
         first = next(step for step in range(test.steps) if test.is_past_the_law(step))
         messages.append(
-            f"Beyond a stretch of {100 * test.strain[first]:.0f} % some cloth has used more than "
-            f"{100 * EXTENSION_START:.0f} % of what it has until it locks: its law is extrapolated "
+            f"Beyond a stretch of {100 * test.strain[first]:.0f} % the tightest cloth has used "
+            f"more than {100 * EXTENSION_START:.0f} % of its stretch: its law is extrapolated "
             "there; do not rely on the force."
         )
     elif used >= 1:
@@ -237,8 +251,6 @@ def _messages(test: StripTest) -> list[str]:
             f"alpha times strain reaches {used:.2f}, and the cloth locks at 1. The published model "
             "leaves out the lock-up, so it continues where real cloth cannot."
         )
-    elif used >= NEAR_LOCK_UP:
-        messages.append(f"Some stitches are at {100 * used:.0f} % of their lock-up.")
     return messages
 
 
@@ -286,6 +298,11 @@ def _around(
     return values - margin, values + margin
 
 
+def _first_taut(test: StripTest) -> FirstTaut | None:
+    taut = test.first_taut
+    return None if taut is None else FirstTaut(strain=taut[0], force_n=taut[1])
+
+
 def _nearest(test: StripTest) -> NearestLockUp | None:
     spot = test.nearest_lock_up
     if spot is None:
@@ -317,6 +334,11 @@ def _lines(curve: StretchCurve) -> list[str]:
         f"{e:8.3f} {f:9.3f} {low:8.3f}-{high:<8.3f} {s:8.4f} {w:8.3f}"
         for e, f, low, high, s, w in rows
     ]
+    if curve.first_taut is not None:
+        taut = curve.first_taut
+        lines.append(
+            f"the tightest stitches run out of stretch at {taut.strain:.0%} ({taut.force_n:.3g} N)"
+        )
     if curve.nearest_lock_up is not None:
         spot = curve.nearest_lock_up
         lines.append(

@@ -16,7 +16,7 @@ from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
 from knitcore.design.part_targets import PartTarget, target_maps
 from knitcore.design.shape import fill_shape
-from knitcore.formats.read.stitch_maps import read_wanted_moduli
+from knitcore.formats.read.stitch_maps import read_target_moduli
 from knitcore.garment.shaped import outline_marks
 
 from ...cli.options import atlas_option, design_option, resolve_chart, write_design_of
@@ -40,7 +40,7 @@ Maps = tuple[NDArray[np.float64], NDArray[np.float64], tuple[PartTarget, ...]]
 MAPS = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
 MAX_STITCHES = 40_000
 """Largest map over REST, in stitches; the command line accepts larger ones."""
-MAX_WISHES = 200
+MAX_TARGETS = 200
 MAX_RUNS = 40_000
 
 Modulus = Annotated[float, Field(gt=0, le=1000)] | None
@@ -55,8 +55,8 @@ Gaps = Annotated[list[Known], BeforeValidator(list)]
 Width = Annotated[float, Field(gt=0.05, lt=3)] | None
 
 
-class WishInput(RequestModel):
-    """Stiffness wanted in one part of the chart."""
+class PartTargetInput(RequestModel):
+    """Target stiffness of one part of the chart."""
 
     name: str = Field("part", min_length=1, max_length=80)
     runs: list[StitchRun] = Field(
@@ -75,7 +75,7 @@ class WishInput(RequestModel):
 
 
 class FillRequest(LawsRequest):
-    """Wanted moduli, stitch by stitch or part by part."""
+    """Target moduli, stitch by stitch or part by part."""
 
     material: MaterialName
     modulus_course_n_per_mm: Map | None = Field(
@@ -84,13 +84,13 @@ class FillRequest(LawsRequest):
     )
     modulus_wale_n_per_mm: Map | None = None
     rows: int | None = Field(
-        None, ge=1, le=1000, description="Rows of the chart, if wishes are given."
+        None, ge=1, le=1000, description="Rows of the chart, if targets of parts are given."
     )
     columns: int | None = Field(None, ge=1, le=1000)
-    wishes: list[WishInput] | None = Field(
+    targets: list[PartTargetInput] | None = Field(
         None,
         min_length=1,
-        max_length=MAX_WISHES,
+        max_length=MAX_TARGETS,
         description="Targets of parts, in place of the two maps.",
     )
     chart: ChartText | None = Field(
@@ -116,11 +116,11 @@ class FillRequest(LawsRequest):
     )
 
     def check_parts(self, context: Context) -> None:
-        """Refuse maps or wishes that do not go together, or are too large for the service."""
-        size = _wanted(self)[0].size
+        """Refuse maps or targets that do not go together, or are too large for the service."""
+        size = _targets(self)[0].size
         if size > MAX_STITCHES and not context.local:
             raise InputError(
-                "rows" if self.wishes else MAPS[0],
+                "rows" if self.targets else MAPS[0],
                 f"{size} stitches are too many here.",
                 f"Use at most {MAX_STITCHES}, or the command line.",
             )
@@ -129,7 +129,7 @@ class FillRequest(LawsRequest):
 class PatchResult(ResultModel):
     """A region of one repeat."""
 
-    part: str = Field(description="Name of the wish that it fills; empty if maps were given.")
+    part: str = Field(description="Name of the target that it fills; empty if maps were given.")
     repeat: RepeatText
     stitches: int
     row: Row = Field(description="Row of its first stitch, counted from 0 at the bottom.")
@@ -180,7 +180,7 @@ class FillResult(IntervalResult):
         description="Share of the stitches with a target that miss it by more than 10 %."
     )
     patches: list[PatchResult]
-    parts: list[PartResult] = Field(description="One for each wish; none if maps were given.")
+    parts: list[PartResult] = Field(description="One for each target; none if maps were given.")
     messages: list[str]
 
 
@@ -221,7 +221,7 @@ class ShapeResult(ResultModel):
     chart: ChartLines
     bands: list[BandResult]
     width: Rounded = Field(description="Width in the finite swatch, to compare with the target.")
-    wanted: Gaps
+    target: Gaps = Field(description="Width that was asked for; null where any will do.")
     rms: float = Field(description="Rms of the differences, over the width at rest.")
     largest: float
     force_n: float
@@ -235,10 +235,10 @@ def fill(request: FillRequest, context: Context) -> FillResult:
     Raises
     ------
     InputError
-        If the maps or wishes cannot be used, or are too large here.
+        If the maps or the targets of parts cannot be used, or are too large here.
     """
     request.check_parts(context)
-    targets = _wanted(request)
+    targets = _targets(request)
     atlas = context.within(0.0, 0.3).atlas(request.material, request.repeats)
     return _filled(request, targets, atlas, context.within(0.3, 0.7))
 
@@ -267,24 +267,24 @@ def _filled(request: FillRequest, targets: Maps, atlas: Atlas, context: Context)
     )
 
 
-def _wanted(request: FillRequest) -> Maps:
+def _targets(request: FillRequest) -> Maps:
     maps = {name: getattr(request, name) for name in MAPS}
-    if request.wishes is None:
+    if request.targets is None:
         course, wale = (_array(rows, name) for name, rows in maps.items())
         return course, wale, ()
     if any(rows is not None for rows in maps.values()):
         raise InputError(
-            "wishes", "are given together with maps.", "Give maps or wishes, not both."
+            "targets", "are given together with maps.", "Give maps or targets of parts, not both."
         )
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
-    targets = tuple(wish.target() for wish in request.wishes)
+    targets = tuple(part.target() for part in request.targets)
     return *request.pass_to(target_maps, targets), targets
 
 
 def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float64]:
     if rows is None:
-        raise InputError(name, "is missing.", "Give both maps, or wishes for parts of the chart.")
+        raise InputError(name, "is missing.", "Give both maps, or targets of parts.")
     if len({len(row) for row in rows}) > 1 or not rows[0]:
         raise InputError(
             name, "the rows differ in length.", "Give a number or null for each stitch."
@@ -306,7 +306,7 @@ def _fill_command(
     atlas: Path | None,
     out: Path | None,
 ) -> FillResult:
-    targets = *read_wanted_moduli(target), ()
+    targets = *read_target_moduli(target), ()
     if kept is not None:
         request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
     table = context.atlas(request.material, request.repeats, atlas)
@@ -342,7 +342,7 @@ def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResul
         rows=shaped.chart.rows,
         columns=shaped.chart.columns,
         chart=shaped.chart.text,
-        wanted=shaped.target,
+        target=shaped.target,
     )
 
 
@@ -396,7 +396,7 @@ FILL = Operation(
     command=Command(
         _fill_lines,
         more="TARGET is a CSV of row, column and target moduli, such as `export --to csv` writes.",
-        names=dict.fromkeys((*MAPS, "rows", "columns", "wishes", "chart")),
+        names=dict.fromkeys((*MAPS, "rows", "columns", "targets", "chart")),
         run=_fill_command,
     ),
 )

@@ -206,7 +206,7 @@ _SHORT = {
     metavar="QUANTITY[@LOAD|@REST/WORN]=VALUE[~TOLERANCE%][*WEIGHT]",
     help="Such as course=0.1~10%, stretch_wale@0.05=0.4 or pressure_course@180/240=20~15%*2.",
 )
-def _asked(
+def _search_fields(
     materials: tuple[str, ...], targets: tuple[str, ...], atlases: tuple[Path, ...]
 ) -> dict[str, Any]:
     searched = [*(load_atlas(file).material for file in atlases), *materials]
@@ -293,7 +293,7 @@ OPERATION = Operation(
             "crossings_per_stitch": "--most-crossings",
             "curl": "--most-curl",
         },
-        fields=_asked,
+        fields=_search_fields,
         run=_command,
     ),
 )

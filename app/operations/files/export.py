@@ -10,6 +10,7 @@ from knitcore.base.extensions import IDENTIFIER
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart, check_stitches, size_in_words
 from knitcore.formats.designs.layout import DesignLayout
+from knitcore.formats.write.chart_key import Symbols
 from knitcore.formats.write.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.formats.write.knitout import Finish
 
@@ -46,6 +47,10 @@ class ExportRequest(DesignLayout, LawsRequest):
     construction: Construction = Construction.FLAT
     first_side: Side = Field(Side.RS, description="The side of row 1, in flat knitting.")
     finish: Finish = Field(Finish.WASTE, description="The end of a knitout program.")
+    symbols: Symbols = Field(
+        Symbols.DOTS,
+        description="Symbols of printed charts: a dot or a dash for a purl, or the Japanese ones.",
+    )
     gauge: GaugeInput | None = Field(
         None, description="Known gauge of the chart; its relaxed size is estimated if left out."
     )

@@ -42,7 +42,7 @@ class ImportRequest(RequestModel):
     )
 
 
-class FoundDesign(DesignLayout, ResultModel):
+class ImportedDesign(DesignLayout, ResultModel):
     """A design, or the parts of one that a file of another kind holds."""
 
     chart: ChartLines
@@ -51,7 +51,7 @@ class FoundDesign(DesignLayout, ResultModel):
     note: str | None = None
 
 
-class ImportResult(FoundDesign):
+class ImportResult(ImportedDesign):
     """The content of a file."""
 
     rows: int
@@ -94,7 +94,9 @@ def _scale(request: ImportRequest, context: Context) -> PictureScale | None:
     return PictureScale(request.columns, request.rows, request.aspect, ratio)
 
 
-def design_in(path: Path, scale: PictureScale | None = None) -> tuple[FoundDesign, tuple[str, ...]]:
+def design_in(
+    path: Path, scale: PictureScale | None = None
+) -> tuple[ImportedDesign, tuple[str, ...]]:
     """The parts of a design that a file holds, and the notes of its reader.
 
     Raises
@@ -103,14 +105,14 @@ def design_in(path: Path, scale: PictureScale | None = None) -> tuple[FoundDesig
         If it holds no chart.
     """
     if path.suffix.lower() == ".json":
-        return FoundDesign.of(read_design(path), chart=read_chart(path).text), ()
+        return ImportedDesign.of(read_design(path), chart=read_chart(path).text), ()
     content = read_noted_piece(path, scale)
     piece, notes = content.piece, content.notes
     if not piece.is_plain:
         outline = "" if piece.is_rectangle else "an outline, and "
         yarns = ", ".join(yarn.name for yarn in piece.yarns)
         notes = (*notes, f"Beside the chart it holds {outline}the yarns: {yarns}.")
-    return FoundDesign.of(layout_of(piece), chart=piece.chart.text), notes
+    return ImportedDesign.of(layout_of(piece), chart=piece.chart.text), notes
 
 
 class DesignSchema(RootModel[dict[str, Any]]):

@@ -28,8 +28,18 @@ from ...requests.charts import CellLines, ChartLines, MaterialName, RepeatText
 from ...requests.fabrics import Extensibility, LawsRequest, Moduli
 from ..registry import Command, Operation
 
-Length = Annotated[float, Field(gt=0, le=5000)]
+Length = Annotated[float, Field(gt=0, le=2000)]
+OfHand = Annotated[float, Field(gt=0, le=500)]
 Ease = Annotated[float, Field(ge=-0.6, le=1)]
+TargetProfile = Annotated[
+    list[tuple[float, Annotated[float, Field(gt=0, le=300)]]] | None,
+    Field(
+        min_length=1,
+        max_length=100,
+        description="Graded target pressure: pairs [position_mm, mmHg] along the limb; takes "
+        "precedence over one target.",
+    ),
+]
 TargetPressure = Annotated[
     float | None,
     Field(gt=0, le=300, description="Target pressure; takes precedence over the ease."),
@@ -75,13 +85,28 @@ class WristBrace(Template):
     wrist_mm: Length
     length_mm: Length
     edge_mm: Annotated[float, Field(ge=0, le=500)] = 15.0
+    support: Fabric = Fabric.STOCKINETTE
+    edge: Fabric = Fabric.GARTER
 
     def plan(self, **yarn: Any) -> GarmentPlan:
         """The garment's plan, for a material, gauges and a linear density."""
         return self.pass_to(wrist_brace, fit=self.fit, **yarn)
 
 
-class SockLeg(Template):
+class Graded(Template):
+    """A tube along a limb, whose pressure may change along it."""
+
+    mmhg_profile: TargetProfile = None
+    body: Fabric = Fabric.STOCKINETTE
+    hem: Fabric = Fabric.RIB
+
+    @property
+    def fit(self) -> Fit:
+        """The fit as an object of the library."""
+        return Fit(self.ease, self.mmhg_profile or self.target_mmhg)
+
+
+class SockLeg(Graded):
     """The leg of a sock."""
 
     template: Literal["sock-leg"]
@@ -94,7 +119,7 @@ class SockLeg(Template):
         return self.pass_to(sock_leg, fit=self.fit, **yarn)
 
 
-class Limb(Template):
+class Limb(Graded):
     """A sleeve for any limb."""
 
     template: Literal["limb"]
@@ -103,8 +128,6 @@ class Limb(Template):
         max_length=200,
         description="Pairs [position_mm, circumference_mm] along the limb.",
     )
-    body: Fabric = Fabric.STOCKINETTE
-    hem: Fabric = Fabric.RIB
     hem_mm: Annotated[float, Field(ge=0, le=500)] = 40.0
 
     def plan(self, **yarn: Any) -> GarmentPlan:
@@ -116,8 +139,8 @@ class Limb(Template):
 class FingerSize(RequestModel):
     """Measurements of one finger."""
 
-    length_mm: Length
-    circumference_mm: Length
+    length_mm: OfHand
+    circumference_mm: OfHand
 
 
 _HAND = Hand()
@@ -127,12 +150,12 @@ class Glove(Template):
     """The therapeutic glove; measurements default to an adult's hand."""
 
     template: Literal["glove"]
-    cuff_mm: Length = _HAND.cuff_mm
-    wrist_mm: Length = _HAND.wrist_mm
-    wrist_circumference_mm: Length = _HAND.wrist_circumference_mm
-    palm_mm: Length = _HAND.palm_mm
-    thumb_crotch_mm: Length = _HAND.thumb_crotch_mm
-    palm_circumference_mm: Length = _HAND.palm_circumference_mm
+    cuff_mm: OfHand = _HAND.cuff_mm
+    wrist_mm: OfHand = _HAND.wrist_mm
+    wrist_circumference_mm: OfHand = _HAND.wrist_circumference_mm
+    palm_mm: OfHand = _HAND.palm_mm
+    thumb_crotch_mm: OfHand = _HAND.thumb_crotch_mm
+    palm_circumference_mm: OfHand = _HAND.palm_circumference_mm
     gusset_mm: Annotated[float, Field(ge=0, le=200)] = _HAND.gusset_mm
     gusset_girth_mm: Annotated[float, Field(ge=0, le=100)] = _HAND.gusset_girth_mm
     thumb: FingerSize | None = None
@@ -376,7 +399,7 @@ def read_measured(
 
 @click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))
 @measured_options
-def _asked(
+def _garment_fields(
     template: str, settings: tuple[str, ...], gauge: str | None, per: str
 ) -> dict[str, object]:
     return read_measured(template, settings, gauge, per)
@@ -427,7 +450,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         names={"garment": None, "gauge": None, "linear_density_tex": "--tex"},
-        fields=_asked,
+        fields=_garment_fields,
         run=_command,
     ),
 )

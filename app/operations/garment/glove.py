@@ -8,9 +8,9 @@ from pydantic import Field
 
 from knitcore.chart.fabric import Fabric
 from knitcore.draw.body import Body
-from knitcore.garment.worn_glove import GloveOnHand, answer_of, glove_on_hand
+from knitcore.garment.worn_glove import GloveOnHand, glove_on_hand, prediction_of
 from knitcore.materials.law_uncertainty import in_a_sentence
-from knitcore.mechanics.pressure import ELASTIC_MEAN
+from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA, too_tight
 
 from ...cli.options import out_option
 from ...context import Context
@@ -67,15 +67,26 @@ def glove(request: GloveRequest, context: Context) -> Viewed[GloveResult]:
 
 def _result(worn: GloveOnHand, request: GloveRequest, context: Context) -> GloveResult:
     rows, columns = worn.mmhg.shape
-    support = answer_of(Fabric.STOCKINETTE, context.material(request.material))
+    support = prediction_of(Fabric.STOCKINETTE, context.material(request.material))
     return GloveResult(
         interval_source=in_a_sentence(support.stretch_errors),
         id=OPERATION.key(request),
         rows=rows,
         columns=columns,
         parts=[GlovePart.of_place(place, name=name) for name, place in worn.parts.items()],
-        notes=[ELASTIC_MEAN, SIMPLE],
+        notes=[*_too_tight(worn), ELASTIC_MEAN, SIMPLE],
     )
+
+
+def _too_tight(worn: GloveOnHand) -> tuple[str, ...]:
+    """A warning that names the parts that press too hard."""
+    highest = {
+        name: MMHG_PER_KPA * place.pressure.kpa.high
+        for name, place in worn.parts.items()
+        if place.pressure is not None
+    }
+    tight = [name for name, mmhg in highest.items() if too_tight(mmhg)]
+    return too_tight(max(highest.values(), default=0.0), f"Too tight: {', '.join(tight)}")
 
 
 def _worn(request: GloveRequest, context: Context) -> GloveOnHand:

@@ -23,7 +23,7 @@ from knitcore.garment.limb import (
     on_limb,
 )
 from knitcore.materials.law_uncertainty import in_a_sentence
-from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
+from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA, too_tight
 from knitcore.prediction.patches import SIDE
 from knitcore.prediction.predict import predict
 
@@ -173,7 +173,9 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
     )
     length = places[-1].at_mm - places[0].at_mm
     fit = _fit(places, places, length)
-    return Viewed(LimbResult(**fit, interval_source=source, notes=[ELASTIC_MEAN]), None)
+    return Viewed(
+        LimbResult(**fit, interval_source=source, notes=[*_too_tight(places), ELASTIC_MEAN]), None
+    )
 
 
 def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
@@ -193,8 +195,19 @@ def _of_tube(tube: TubeOnLimb, request: LimbRequest, source: str) -> LimbResult:
         **_fit([tube.places[k] for k in listed], tube.places, tube.length_mm),
         interval_source=source,
         id=OPERATION.key(request),
-        notes=[ELASTIC_MEAN, FREE_ALONG, *([BY_PATCHES] if patched else [])],
+        notes=[
+            *_too_tight(tube.places),
+            ELASTIC_MEAN,
+            FREE_ALONG,
+            *([BY_PATCHES] if patched else []),
+        ],
     )
+
+
+def _too_tight(places: Sequence[LimbPlace]) -> tuple[str, ...]:
+    """A warning if the tube presses too hard somewhere."""
+    pressed = [place.pressure.kpa.high for place in places if place.pressure is not None]
+    return too_tight(MMHG_PER_KPA * max(pressed, default=0.0))
 
 
 def _view(tube: TubeOnLimb, around: Direction) -> PosedView:

@@ -78,7 +78,7 @@ def compression(request: CompressionRequest, context: Context) -> CompressionRes
 def _command(
     request: CompressionRequest, context: Context, more_files: tuple[Path, ...]
 ) -> CompressionResult:
-    """The same for any number of files.
+    """Fit the contact law to any number of files.
 
     Raises
     ------

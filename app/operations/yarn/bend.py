@@ -25,7 +25,7 @@ from ..registry import Command, Operation
 
 _FRICTIONLESS = (
     "Friction and set are left out, so these values are qualitative: measured knits of 187 to "
-    "284 g/m² have rigidities of .007 to .10 N·mm."
+    "284 g/m² have rigidities of 0.007 to 0.10 N·mm."
 )
 
 

@@ -69,7 +69,10 @@ class FabricDetail(ElasticConstants, FabricSummary):
     """A pure fabric of a material in full."""
 
     law: LawResult
-    lock_up_strain_course: float
+    lock_up_strain_course: float = Field(
+        description="Strain at which the loops are taut while the width is held; cloth that may "
+        "narrow stretches farther."
+    )
     lock_up_strain_wale: float
     setting: str
     origin: str
@@ -260,7 +263,7 @@ def _lines(listed: Materials | MaterialDetail) -> list[str]:
             f"wale {record.modulus_wale_n_per_mm:.4f} N/mm",
             f"  Poisson's ratio   yx {record.poisson_yx:.3f}   xy {record.poisson_xy:.3f}",
             f"  lock-up strain    course {record.lock_up_strain_course:.2f}   "
-            f"wale {record.lock_up_strain_wale:.2f}",
+            f"wale {record.lock_up_strain_wale:.2f} at a held width",
             f"  stitch            {record.stitch_course_mm:.2f} x {record.stitch_wale_mm:.2f} mm",
         ]
         lines += [

@@ -24,7 +24,7 @@ from knitcore.yarn.study.whole_chart import WINDOWS_FROM
 from ...cli.options import loop_lengths
 from ...context import Context
 from ...requests.base import Ends, IntervalResult, Known, Positive, ResultModel
-from ...requests.fabrics import FoundGauge
+from ...requests.fabrics import RelaxedGauge
 from ...requests.yarn_level import (
     HISTORIES,
     RestSizeResult,
@@ -169,7 +169,7 @@ class RelaxResult(IntervalResult):
         description="Width and height of a stitch in other shapes that were found, whose energy is "
         "the same within 0.1 %. Which one is shown is a rule; the intervals cover all.",
     )
-    gauge: FoundGauge | None = Field(
+    gauge: RelaxedGauge | None = Field(
         None,
         description="Gauge for other requests about this chart and material, which makes their "
         "answers more certain. Null unless the material is simulated, and for pure fabrics, "
@@ -260,7 +260,7 @@ def _unmirrored(cell: RelaxedCell, context: Context) -> tuple[RelaxedCell, Relax
     return replace(cell, minimum=False, notes=(*cell.notes, note)), lower
 
 
-def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> FoundGauge | None:
+def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> RelaxedGauge | None:
     """The gauge of a simulated material's cloth: its pure fabrics are relaxed in the same way.
 
     It is that of the mirrored shape, as learned answers are.
@@ -287,14 +287,14 @@ def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> Foun
             return None
         pure_mm[fabric] = (pure.cell_course_mm, pure.cell_wale_mm)
     cell_mm = known.cell_course_mm, known.cell_wale_mm
-    return FoundGauge.of(size_from_relaxation(repeat, material, cell_mm, pure_mm))
+    return RelaxedGauge.of(size_from_relaxation(repeat, material, cell_mm, pure_mm))
 
 
 def _between(ends: tuple[float, float] | None) -> str:
     return "" if ends is None else f" ({ends[0]:.2f} to {ends[1]:.2f})"
 
 
-def _gauge_line(gauge: FoundGauge | None) -> list[str]:
+def _gauge_line(gauge: RelaxedGauge | None) -> list[str]:
     if gauge is None:
         return []
     return [

@@ -102,7 +102,7 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
         "used": asdict(used),
         "asked": request.model_dump(mode="json", include={"flat", "convention"}),
     }
-    before = context.kept.found(KeptSheet, inputs)
+    before = context.kept.stored(KeptSheet, inputs)
     relaxed = request.pass_to(
         relax_whole, chart, used.yarn, used.loop_length_mm,
         resume=None if before is None else before.sheet(),

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextvars
+import logging
 from collections.abc import AsyncGenerator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -10,15 +11,17 @@ from typing import Annotated, Any, TypeVar
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import Field
+from starlette.datastructures import State
 
 from ...drawing.computed import PosedView, StretchView
-from ...drawing.design_view import ViewRequest, ViewResult, build_drawing, build_scene, is_large
+from ...drawing.design_view import ViewRequest, ViewResult, build_scene, is_large
 from ...drawing.fabric import Box, Drawing
 from ...operations.perform import Reply
 from ...requests.base import RequestModel
 from ...requests.charts import size_of_chart
+from ...viewer.balls import Picture
 from ...viewer.camera import CameraSide
-from ...viewer.scene import round_length_mm
+from ...viewer.scene import STILL_S, round_length_mm
 from ...viewer.share import (
     Computed,
     SharedViewRequest,
@@ -28,17 +31,20 @@ from ...viewer.share import (
     shared_solid,
     shared_still,
 )
-from ...viewer.views import View
+from ...viewer.sheet import build_back, build_drawing, sheet_picture
+from ...viewer.views import View, Views
 from ..compute.compute import Compute
 from ..designs.parameters import DesignId, private_name
 from ..identity import current_user
 from ..limits.fair_queue import FairLock
 from ..limits.user_limits import ConcurrencyLimit
-from ..problems import NotFoundError, Problem
+from ..problems import NotFoundError, Problem, ServiceError
 from ..web.bodies import BoundedRoute
 from ..web.events import abandoned, event_stream, stream_of
 from ..web.passes import ViewPasses
 from ..web.security import OPENED_BY
+
+log = logging.getLogger("knitcore.app")
 
 EVENT_PERIOD_S = 0.5
 MISSING: dict[int | str, dict[str, Any]] = {
@@ -86,23 +92,61 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     context = state.answers.context()
     passes: ViewPasses = state.passes
     code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
-    large: Drawing | None = None
+    made: tuple[Drawing, Picture | None] | None = None
     if computed is None and is_large(body):
         supplies = await state.answers.supplies(body)
-        large = await _by_worker(request, build_drawing, body, supplies)
+        made = await _by_worker(request, build_drawing, body, supplies)
 
-    def draw() -> ViewResult:
-        drawing = large or build_scene(body, computed, context).drawing()
-        return ViewResult(
-            stitches=state.views.open(name, drawing.weight).show(drawing),
-            source=drawing.part.shapes.source,
-            scale_mm=round_length_mm(float(drawing.ground.extent_mm[0])),
-            url=f"/view/{design}/#{code}",
+    def draw() -> tuple[Drawing, Picture | None, ViewResult]:
+        if made is None:
+            scene = build_scene(body, computed, context)
+            drawing, face = scene.drawing(), sheet_picture(scene)
+        else:
+            drawing, face = made
+        return (
+            drawing,
+            face,
+            ViewResult(
+                stitches=state.views.open(name, drawing.weight).show(drawing, face),
+                source=drawing.part.shapes.source,
+                scale_mm=round_length_mm(float(drawing.ground.extent_mm[0])),
+                url=f"/view/{design}/#{code}",
+            ),
         )
 
     lock: FairLock = state.drawing
     async with lock.turn(current_user.get()):
-        return await _in(_drawing, draw)
+        drawing, face, result = await _in(_drawing, draw)
+    if face is not None:
+        back = asyncio.create_task(_show_back(state, name, body, computed, drawing))
+        state.backs.add(back)
+        back.add_done_callback(state.backs.discard)
+    return result
+
+
+async def _show_back(
+    state: State, name: str, body: ViewRequest, computed: Computed, drawing: Drawing
+) -> None:
+    """Show the picture of a cloth's back once the cloth keeps still."""
+    views: Views = state.views
+
+    async def changed() -> bool:
+        view = views.get(name)
+        return view is None or view.writer.drawing is not drawing
+
+    await asyncio.sleep(STILL_S)
+    if await changed():
+        return
+    compute: Compute = state.compute
+    try:
+        supplies = await state.answers.supplies(body)
+        picture = await compute.run(changed, build_back, body, computed, supplies, background=True)
+    except ServiceError as error:  # its tubes are shown from behind
+        log.info("the back of a cloth is not drawn: %s", error)
+        return
+    view = views.get(name)
+    if view is not None:
+        await _in(_drawing, view.writer.show_back, drawing, picture)
 
 
 @router.put("/views/{design}/mark", status_code=204, summary="Outline stitches")

@@ -126,7 +126,7 @@ class JobStore:
             _make_room(connection, owner, len(request))
             connection.execute(insert(jobs).values(values))
             connection.execute(insert(job_requests).values(job_id=values["id"], request=request))
-            return _status(_one(connection, owner, str(values["id"])))
+            return _status(_job(connection, owner, str(values["id"])))
 
         return once(self._database, retry, JobStatus, action)
 
@@ -138,12 +138,12 @@ class JobStore:
     def get(self, owner: str, job: str) -> JobStatus:
         """A job."""
         with self._database.read() as connection:
-            return _status(_one(connection, owner, job))
+            return _status(_job(connection, owner, job))
 
     def request_of(self, owner: str, job: str) -> tuple[str, str]:
         """Kind and request of a job."""
         with self._database.read() as connection:
-            kind = _one(connection, owner, job).kind
+            kind = _job(connection, owner, job).kind
             request = select(job_requests.c.request).where(job_requests.c.job_id == job)
             return kind, connection.execute(request).scalar_one()
 
@@ -189,7 +189,7 @@ class JobStore:
         return self._take(jobs.c.process == self.process)
 
     def adopt_orphans(self) -> list[tuple[str, str]]:
-        """The same for jobs of processes that are gone."""
+        """Mark running jobs of processes that are gone as interrupted; return the waiting ones."""
         return self._take(jobs.c.seen_at < self._database.clock - ORPHANED_S)
 
     def _take(self, which: ColumnElement[bool]) -> list[tuple[str, str]]:
@@ -243,7 +243,7 @@ class JobStore:
     def result(self, owner: str, job: str) -> StoredResult | None:
         """The result of a job, or None if it is not stored."""
         with self._database.read() as connection:
-            key = _one(connection, owner, job).key
+            key = _job(connection, owner, job).key
             size = select(results.c.size_bytes).where(results.c.key == key)
             size_bytes: int | None = connection.execute(size).scalar()
         if size_bytes is None:
@@ -330,7 +330,7 @@ def _make_room(connection: Connection, owner: str, more: int) -> None:
         )
 
 
-def _one(connection: Connection, owner: str, job: str) -> Row[Any]:
+def _job(connection: Connection, owner: str, job: str) -> Row[Any]:
     mine = select(jobs).where(jobs.c.id == job, jobs.c.owner == owner)
     row = connection.execute(mine).one_or_none()
     if row is None:

@@ -58,13 +58,13 @@ class KeptResults:
         -------
         The result, and whether it had been kept.
         """
-        if not fresh and (kept := self.found(kind, inputs)) is not None:
+        if not fresh and (kept := self.stored(kind, inputs)) is not None:
             return kept, True
         result = make()
         self.keep(inputs, result)
         return result, False
 
-    def found(self, kind: type[Result], inputs: Mapping[str, Any]) -> Result | None:
+    def stored(self, kind: type[Result], inputs: Mapping[str, Any]) -> Result | None:
         """The kept result of these inputs."""
         file = self._file(kind, inputs)
         try:

@@ -208,7 +208,7 @@ class Database:
             return self._hand_in(action).result()
 
     async def written(self, action: Callable[[Connection], T]) -> T:
-        """The same for the event loop, without a thread that waits for the disk.
+        """Write from the event loop, without a thread that waits for the disk.
 
         Raises
         ------

@@ -2,17 +2,25 @@
  * Above the chart: its key, which side of the cloth is seen, how it is knitted and drawn, and zoom.
  *
  * @import {ActionContext} from "../../actions/action.js"
- * @import {Look} from "../../state/editing.js"
+ * @import {Look, Symbols} from "../../state/editing.js"
  * @import {Signal} from "../../core/signal.js"
  */
 
 import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
-import { segmented, selectField } from "../../widgets/fields.js";
+import { segmented } from "../../widgets/fields.js";
 import { actionButton } from "../../widgets/buttons.js";
+import { fullButton } from "../../widgets/full.js";
 
-/** @type {Record<Look, string>} */
-const LOOKS = { both: "Dots", colours: "Colours", symbols: "Symbols", loops: "Loops" };
+/** @type {Record<Symbols, string>} */
+const SYMBOLS = { dots: "dots", dashes: "dashes", japanese: "Japanese" };
+/** What a purl has, and a knit. @type {Record<Symbols, string>} */
+const SAID = { dots: "a purl has a dot", dashes: "a purl has a dash", japanese: "a knit is upright, a purl is a dash" };
+/** The looks that have symbols come in each kind. */
+const LOOKS = {
+  "Colours with": /** @type {const} */ ("both"),
+  "Paper with": /** @type {const} */ ("symbols"),
+};
 
 /** @param {HTMLElement} host @param {ActionContext} context */
 export function chartstrip(host, context) {
@@ -21,7 +29,7 @@ export function chartstrip(host, context) {
   const key = h("div", { class: "chart-key flex gap-12", role: "img" });
   const showKey = () => {
     const look = editing.look.value;
-    const drawn = look === "loops" ? "loops" : look === "colours" ? "plain" : "dots";
+    const drawn = look === "loops" ? look : look === "colours" ? "plain" : editing.symbols.value;
     /** @param {string} kind @param {string} label */
     const entry = (kind, label) =>
       h(
@@ -35,27 +43,48 @@ export function chartstrip(host, context) {
       entry("purl", "purl"),
       ...(chart.shaped ? [entry("none", "no stitch")] : []),
     );
-    const symbol = drawn === "dots" ? "a purl has a dot" : drawn === "loops" ? "stitches drawn as loops" : "no symbols";
+    const symbol = drawn === "loops" ? "stitches drawn as loops" : drawn === "plain" ? "no symbols" : SAID[drawn];
     key.ariaLabel = `Key: ${symbol}${chart.shaped ? "; outside the outline there is no stitch" : ""}`;
   };
   editing.look.watch(showKey);
+  editing.symbols.listen(showKey);
   let shaped = chart.shaped;
   chart.onSettle(() => {
     if (shaped !== chart.shaped) showKey();
     shaped = chart.shaped;
   });
 
-  const look = selectField(
+  const look = h(
+    "select",
     {
       class: "strip-select raised shrinks-x rounded",
       id: "look",
-      title: "How stitches are drawn (V)",
+      title: "How stitches are drawn, also in print (V)",
       "aria-label": "How stitches are drawn",
-      onchange: () => (editing.look.value = /** @type {Look} */ (look.value)),
+      onchange: () => {
+        const [chosen, symbols] = look.value.split(" ");
+        if (symbols) editing.symbols.value = /** @type {Symbols} */ (symbols);
+        editing.look.value = /** @type {Look} */ (chosen);
+      },
     },
-    LOOKS,
+    ...Object.entries(LOOKS).map(([label, drawn]) =>
+      h(
+        "optgroup",
+        { label: `${label} …` },
+        ...Object.entries(SYMBOLS).map(([symbols, words]) =>
+          h("option", { value: `${drawn} ${symbols}` }, `${label.split(" ")[0]}, ${words}`),
+        ),
+      ),
+    ),
+    h("option", { value: "colours" }, "Colours alone"),
+    h("option", { value: "loops" }, "Loops"),
   );
-  editing.look.watch((value) => (look.value = value));
+  const showLook = () => {
+    const { look: chosen, symbols } = editing;
+    look.value = ["both", "symbols"].includes(chosen.value) ? `${chosen.value} ${symbols.value}` : chosen.value;
+  };
+  editing.look.watch(showLook);
+  editing.symbols.listen(showLook);
   // Colours were asked for: show them.
   studio.overlay.listen(() => {
     if (editing.look.value === "symbols") editing.look.value = "both";
@@ -80,6 +109,7 @@ export function chartstrip(host, context) {
       ]),
       look,
       h("div", { class: "group flex gap-2" }, small("zoom-out"), small("zoom-in"), small("fit")),
+      fullButton("chart", "strip-button bare centred rounded"),
     ),
   );
 }

@@ -8,7 +8,8 @@
  */
 
 import { OVERLAYS, shownOverlay } from "../../state/overlays.js";
-import { groupAt, meanExtensibility } from "../../chart/rectangles.js";
+import { largestStrain } from "../../chart/crosses.js";
+import { groupAt, largestExtensibility, meanExtensibility } from "../../chart/rectangles.js";
 import { LINES } from "../../core/directions.js";
 import { figure, percent, percentRange, range } from "../../core/format.js";
 import { paced } from "../../core/paced.js";
@@ -17,7 +18,9 @@ import { h } from "../../elements/dom.js";
 /** Sides of the blocks that rectangles may stand for. */
 const BLOCKS = [2, 4, 8, 16];
 const READ_MS = 80;
-const IDLE = "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.";
+const IDLE = matchMedia("(pointer: coarse)").matches
+  ? "Tap or drag to paint. Two fingers move and zoom."
+  : "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.";
 
 /**
  * @param {HTMLElement} host
@@ -58,6 +61,7 @@ export function overlaybar(host, studio, view) {
     "+ Strain",
   );
   crossing.watch((on) => crosses.setAttribute("aria-pressed", String(on)));
+  crossing.listen(() => show());
   const grouping = h(
     "select",
     {
@@ -99,8 +103,8 @@ export function overlaybar(host, studio, view) {
     legend.replaceChildren(
       ...(content.kind === "scale"
         ? scale(content)
-        : content.items.map(({ label, colour, dot }) => {
-            const key = h("span", { class: dot ? "key dot" : "key" });
+        : content.items.map(({ label, colour }) => {
+            const key = h("span", { class: "key" });
             key.style.background = colour;
             return h("span", { class: "legend-item gap-5" }, key, label);
           })),
@@ -111,8 +115,30 @@ export function overlaybar(host, studio, view) {
           "label",
           { class: "legend-item gap-5" },
           h("span", { class: "chip-rectangle" }),
-          h("span", { class: "wide", title: "Sides grow as the square root of the extensibility" }, "extensibility of"),
+          h("span", { class: "wide" }, "how far it gives:"),
           grouping,
+        ),
+        h(
+          "span",
+          { class: "muted figures", title: "The sides grow as the square root of the extensibility" },
+          `widest: ${figure(largestExtensibility(studio.kinds()), 2)} mm/N`,
+        ),
+      );
+    }
+    const { stitch_fields: fields } = studio.currentStretch() ?? {};
+    if (crossing.value && pulled && fields) {
+      legend.append(
+        h(
+          "span",
+          { class: "legend-item gap-5", id: "legend-crosses" },
+          h("span", { class: "key-cross", "aria-hidden": "true" }),
+          `stretch along rows and columns, longest arm ${percent(largestStrain(fields))}`,
+        ),
+        h(
+          "span",
+          { class: "legend-item gap-5" },
+          h("span", { class: "key-cross narrowed", "aria-hidden": "true" }),
+          "narrower",
         ),
       );
     }
@@ -148,8 +174,7 @@ export function overlaybar(host, studio, view) {
         h("span", { class: "chip-divider", "aria-hidden": "true" }),
         ...chips.slice(6),
       ),
-      rectangles,
-      crosses,
+      h("div", { class: "chips line gap-2" }, rectangles, crosses),
     ),
     legend,
     readout,

@@ -9,8 +9,14 @@ import { SIZES } from "../../actions/look.js";
 import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
-import { TOOLS } from "../../tools/registry.js";
+import { TOOLS } from "../../tools/tools.js";
 import { actionButton } from "../../widgets/buttons.js";
+
+/** What a tool is called, on screens that are wide enough. @param {string} text */
+const words = (text) => h("span", { class: "tool-words nowrap clipped", "aria-hidden": "true" }, text);
+
+/** Tools with longer names. @type {Record<string, string>} */
+const SHORT = { repeat: "Repeat", pan: "Pan" };
 
 const SYMMETRY_NAMES = { none: "off", across: "left and right", up: "top and bottom", both: "both ways" };
 
@@ -28,6 +34,7 @@ export function rail(host, studio, context) {
         onclick: () => (studio.tool.value = tool),
       },
       icon(tool.icon),
+      words(SHORT[tool.id] ?? tool.label),
     ),
   );
   studio.tool.watch((chosen) =>
@@ -44,7 +51,7 @@ export function rail(host, studio, context) {
   studio.size.watch((value) => {
     const dot = h("span", { class: "size-dot" });
     dot.style.width = dot.style.height = `${4 + 1.4 * value}px`;
-    size.replaceChildren(dot, h("span", { class: "figures" }, value));
+    size.replaceChildren(dot, h("span", { class: "figures" }, value), words("Brush"));
     size.title = `Brush: ${value} × ${value} stitches ([ and ])`;
     size.setAttribute("aria-label", `Brush size ${value}; next size`);
   });
@@ -60,12 +67,20 @@ export function rail(host, studio, context) {
     symmetry.replaceChildren(
       icon(value === "up" ? "flip" : "mirror"),
       value === "both" ? h("span", { class: "badge small" }, "2") : "",
+      words("Symmetry"),
     );
   });
 
   /** @param {"regions" | "repeats"} name @param {"regions" | "link"} sign */
   const panel = (name, sign) => {
-    const button = actionButton(action(name), context, "tool relative rounded", { id: `open-${name}` }, icon(sign));
+    const button = actionButton(
+      action(name),
+      context,
+      "tool relative rounded",
+      { id: `open-${name}` },
+      icon(sign),
+      words(name === "regions" ? "Regions" : "Repeats"),
+    );
     studio.editing.panel.watch((open) => button.setAttribute("aria-pressed", String(open === name)));
     return button;
   };
@@ -78,6 +93,6 @@ export function rail(host, studio, context) {
     h("hr"),
     panel("regions", "regions"),
     panel("repeats", "link"),
-    small("open-atlas"),
+    actionButton(action("open-atlas"), context, "tool relative rounded", {}, words("Atlas")),
   );
 }

@@ -114,6 +114,10 @@ export function create(studio, { keeper }) {
       },
       ({ problem }) => {
         element.classList.remove("busy");
+        compared = []; // the numbers on show are of other pieces
+        for (const shown of [table, rectangles, ...sides.map(({ picture }) => picture)]) shown.replaceChildren();
+        for (const { size } of sides) size.textContent = "";
+        void drawPair(plot, []);
         status.replaceChildren(problemBox(problem, load));
       },
     );
@@ -287,7 +291,7 @@ function fill(table, pair) {
   );
 }
 
-const note = () => h("span", { class: "interval" }, "intervals meet");
+const note = () => h("span", { class: "interval" }, "no clear difference");
 
 /** Rectangles of both pieces on one scale, one in the other. @param {HTMLElement} host @param {PredictResult[]} pair */
 function drawRectangles(host, pair) {

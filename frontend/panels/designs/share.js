@@ -108,7 +108,7 @@ export function create(_studio, { keeper }) {
       icon("share"),
       MODES[share.mode][0],
       `made ${ago(share.created_at)}`,
-      textButton(null, "Take back", async () => {
+      textButton(null, "Revoke", async () => {
         const id = keeper.remoteId;
         if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();
       }),

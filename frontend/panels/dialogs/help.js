@@ -3,7 +3,7 @@
 import { ACTIONS, shown } from "../../actions/registry.js";
 import { api } from "../../api.js";
 import { h, remark } from "../../elements/dom.js";
-import { TOOLS } from "../../tools/registry.js";
+import { TOOLS } from "../../tools/tools.js";
 import { dialog } from "../../widgets/dialog.js";
 
 export function create() {

@@ -89,15 +89,9 @@ export function create(studio) {
       h("div", { class: "anchor-grid stack" }, ...anchors),
     ),
     remark("Regions, outline and linked repeats move along. All three can be undone."),
-    h(
-      "button",
-      { class: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) },
-      "New, all knit",
-    ),
-    h(
-      "button",
-      { class: "button", onclick: () => apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")) },
-      "Repeat to this size",
+    textButton(null, "New, all knit", () => apply((r, c) => document.replace(new Grid(r, c), "New chart"))),
+    textButton(null, "Repeat to this size", () =>
+      apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")),
     ),
   ];
   const [anchoring, note, anew, repeating] = forContent;

@@ -6,6 +6,7 @@
  * @import {Fabric, PhotosResult, SwatchRequest, SwatchResult} from "../../types.js"
  */
 
+import { percent } from "../../core/format.js";
 import { FABRICS } from "../../grid/segments.js";
 import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
@@ -111,7 +112,7 @@ export function swatchWay(studio, made) {
       if (!result) return seen.replaceChildren();
       const points = result.points.map(
         (point) =>
-          `${point.force_n_per_mm.toFixed(3)} N/mm: ${percent(point.strain_along)} ± ${percent(point.strain_along_sd)} longer, ${percent(-point.strain_across)} narrower`,
+          `${point.force_n_per_mm.toFixed(3)} N/mm: ${percent(point.strain_along, 1)} ± ${percent(point.strain_along_sd, 1)} longer, ${percent(-point.strain_across, 1)} narrower`,
       );
       seen.textContent = [...points, ...result.notes.map(inKnittersWords)].join(". ");
     };
@@ -319,6 +320,3 @@ const figure = (id) => numberField({ id, min: "0", step: "any" });
 
 /** @param {HTMLInputElement} field @returns {number | null} */
 const given = (field) => (field.valueAsNumber > 0 ? field.valueAsNumber : null);
-
-/** @param {number} strain */
-const percent = (strain) => `${(100 * strain).toFixed(1)} %`;

@@ -155,13 +155,12 @@ export function testReader(fabric, pickers) {
 
   /** @param {Direction} direction @param {TableResult} test */
   const columnTable = (direction, test) => {
-    const template = templates[direction];
     const what = test.columns.map(({ title, quantity }) => {
       const choice = selectField(
         {
           "aria-label": `${title} holds`,
           class: quantity ? "" : "unused",
-          onchange: () => void say(direction, withColumn(template, test, title, choice.value)),
+          onchange: () => void say(direction, withColumn(templates[direction], test, title, choice.value)),
         },
         QUANTITIES,
       );
@@ -180,7 +179,7 @@ export function testReader(fabric, pickers) {
         {
           "aria-label": `Unit of ${title}`,
           class: unit ? "" : "asked",
-          onchange: () => void say(direction, changed(template, { units: { [quantity]: choice.value } })),
+          onchange: () => void say(direction, changed(templates[direction], { units: { [quantity]: choice.value } })),
         },
         { ...silent, ...own, ...Object.fromEntries(known.map((word) => [word, word === "-" ? "fraction" : word])) },
       );

@@ -48,14 +48,14 @@ export function yarnMaker(studio, made) {
   const say = (title, detail) => run.say({ title, detail, remedy: null });
 
   const name = h("input", { class: "text-field grows shrinks-x rounded", id: "yarn-name", maxLength: 80 });
-  const bending = figure("yarn-bending", { min: ".01", max: "10000" });
+  const bending = figure("yarn-bending", { min: "0.01", max: "10000" });
   const loop = figure("yarn-loop", { min: "1", max: "200" });
-  const stiffness = figure("yarn-stiffness", { min: ".0001", max: "100000" });
+  const stiffness = figure("yarn-stiffness", { min: "0.0001", max: "100000" });
   const exponent = figure("yarn-exponent", { min: "1.01", max: "20" });
 
   // Bending, from photos.
   const photos = picker("yarn-photos", "image/*", true);
-  const weight = figure("yarn-weight", { min: ".005", max: "20" });
+  const weight = figure("yarn-weight", { min: "0.005", max: "20" });
   const hanging = figure("yarn-hanging", { min: "10", max: "1000" });
   const bent = h("p", { class: "muted", role: "status" });
   const bend = async () => {
@@ -71,13 +71,13 @@ export function yarnMaker(studio, made) {
     bending.value = milli(traced.bending_modulus_n_mm2);
     measured = { ...measured, bending_modulus_sd_n_mm2: spread };
     const words = `${milli(traced.bending_modulus_n_mm2)}${spread ? ` ± ${milli(spread)}` : ""} mN·mm² from ${counted(traced.photos.length, "photo")}`;
-    evidence.set("bending", `Bending modulus ${words}.`);
+    evidence.set("bending", `Bending stiffness ${words}.`);
     bent.textContent = [`${words}.`, ...traced.notes].join(" ");
   };
 
   // Contact, from squeezing.
   const squeezes = picker("yarn-squeezes", TABLES);
-  const diameter = figure("yarn-diameter", { min: ".01", max: "50" });
+  const diameter = figure("yarn-diameter", { min: "0.01", max: "50" });
   const which = h("select", {
     id: "yarn-which",
     hidden: true,
@@ -98,7 +98,7 @@ export function yarnMaker(studio, made) {
     measured = { ...measured, diameter_mm: diameters.reduce((sum, mm) => sum + mm, 0) / diameters.length };
     const words = `k ${stiffness.value} mN/mm³, p ${exponent.value} from ${counted(mean.samples, "sample")} of ${squeezes.files?.[0]?.name}`;
     evidence.set("contact", `Contact law ${words}.`);
-    squeezed.textContent = `${words}.`;
+    squeezed.textContent = [`${words}.`, ...compression.notes].join(" ");
   };
   const squeeze = async () => {
     const [file] = squeezes.files ?? [];
@@ -218,8 +218,8 @@ export function yarnMaker(studio, made) {
     h(
       "div",
       { class: "yarn-facts" },
-      labelled("Bending modulus", bending, "mN·mm²"),
-      labelled("Yarn in a stitch", loop, "mm: unravel ten, divide by ten"),
+      labelled("Bending stiffness (EI)", bending, "mN·mm², optional"),
+      labelled("Yarn per stitch", loop, "mm (unravel 10 stitches, divide by 10)"),
     ),
     h(
       "details",

@@ -154,6 +154,7 @@ export function create(studio, { view }) {
       version: undefined,
       ...chosen,
       to: kind.to,
+      symbols: studio.editing.symbols.value,
       gauge: studio.gauges.of({ chart: scopeIn(studio.document, null).grid.text, material: studio.materialId.value }),
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
       photo: isPattern(kind.to) ? await photo() : null,

@@ -57,7 +57,7 @@ export const KINDS = [
       "PDF: the 3D view as it is now, materials, gauge, parts, written rows, finishing, evidence, chart",
       PAPER,
     ],
-    ["pattern-svg", "The same as a drawing", "SVG, its pages one below the other", PAPER],
+    ["pattern-svg", "The same, as SVG", "one long page", PAPER],
     ["written", "Written rows", "as knitters write them, with shaping and colours", ["worked"], true],
     ["pdf", "Chart to print", "PDF with key, row numbers, repeat and notes", PAPER],
     ["svg", "Chart as a drawing", "SVG", PAPER, true],

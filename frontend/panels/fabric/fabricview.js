@@ -11,6 +11,8 @@ import { ApiError, api } from "../../api.js";
 import { atRest, shownOverlay } from "../../state/overlays.js";
 import { onTheme, readPalette } from "../../state/palette.js";
 import { along } from "../../core/directions.js";
+import { figure } from "../../core/format.js";
+import { batlow } from "../../state/colormaps.js";
 import { h, nextTask } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { ViewLink } from "./link.js";
@@ -48,7 +50,7 @@ export function fabricview(host, studio, view) {
   // Without our origin it may have a process of its own; then its frames do not keep the page waiting.
   frame.setAttribute("sandbox", "allow-scripts");
   const status = h("div", { class: "fabric-status raised line rounded gap-10", role: "status" });
-  const caption = h("div", { class: "fabric-caption small" });
+  const caption = h("div", { class: "fabric-caption small", "data-result": "fabric" });
   const still = new Still(frame);
   const drawing = { slow: false, held: false };
   /** @param {{pass: string} | {hold: boolean} | {ink: string}} message */
@@ -182,7 +184,11 @@ export function fabricview(host, studio, view) {
     const scene = request();
     const sceneWords = words();
     const text = JSON.stringify(scene);
-    if (text === sent) return;
+    const until = changes;
+    if (text === sent) {
+      [confirmed, changesShown] = [sceneWords, until];
+      return describe();
+    }
     sending = true;
     host.toggleAttribute("data-sending", true);
     if (!live) beStill();
@@ -194,7 +200,7 @@ export function fabricview(host, studio, view) {
       if (problem) status.replaceChildren();
       problem = false;
       source = answer.source;
-      confirmed = sceneWords;
+      [confirmed, changesShown] = [sceneWords, until];
       describe();
       studio.online.value = true;
       pass = answer.url.slice(answer.url.indexOf("#") + 1);
@@ -223,6 +229,7 @@ export function fabricview(host, studio, view) {
         return;
       }
       problem = true;
+      describe();
       status.replaceChildren(icon("warning"), problemText(error.problem));
     } finally {
       sending = false;
@@ -233,7 +240,11 @@ export function fabricview(host, studio, view) {
       }
     }
   };
+  /** How often something changed that the view shows, and up to which change it shows it. */
+  let changes = 0;
+  let changesShown = 0;
   const soon = () => {
+    outdate();
     clearTimeout(timer);
     timer = setTimeout(() => {
       if (studio.document.painting) soon();
@@ -241,11 +252,16 @@ export function fabricview(host, studio, view) {
     }, DELAY_MS);
   };
   const now = () => {
+    outdate();
     clearTimeout(timer);
     void send();
   };
+  const outdate = () => {
+    changes += 1;
+    caption.toggleAttribute("data-stale", confirmed !== "");
+  };
 
-  /** What the service said last that it shows; the cloth keeps it while the service cannot be reached. */
+  /** What the cloth on show is: it keeps that until another one is there. */
   let confirmed = "";
   const words = () => {
     const strain = studio.seeing.pose.value !== "flat" ? 0 : studio.currentStrain();
@@ -254,8 +270,14 @@ export function fabricview(host, studio, view) {
       : poseText(studio);
   };
   const describe = () => {
+    const stale = changes !== changesShown && confirmed !== "";
+    const left = stale && (problem || !studio.online.value); // no other one will come for now
+    caption.toggleAttribute("data-stale", stale);
+    host.toggleAttribute("data-left", left);
+    const { pressure } = (!stale && studio.seeing.posed.value) || {};
     caption.replaceChildren(
-      (!studio.online.value && confirmed) || words(),
+      pressure ? pressureBar(pressure) : "",
+      stale ? `${confirmed}${left ? ", before the change" : ""}` : words(),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
     caption.title = studio.seeing.posed.value?.note ?? (source && `Yarn: ${source}`);
@@ -296,6 +318,18 @@ export function fabricview(host, studio, view) {
   };
 }
 
+/** The colours of pressure, and a warning where it is too much. @param {{most: number, warning: string}} pressure */
+function pressureBar({ most, warning }) {
+  const bar = h("span", { class: "gradient" });
+  bar.style.backgroundImage = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => batlow.css(i / 16))})`;
+  return h(
+    "div",
+    { class: "fabric-pressure stack gap-2", id: "fabric-pressure" },
+    warning && h("strong", { class: "problem-text", role: "alert" }, warning),
+    h("span", { class: "line gap-6 figures" }, "0", bar, `${figure(most, 2)} mmHg`),
+  );
+}
+
 /** What the view is to show. @param {Studio} studio @param {ChartView} view @returns {ViewRequest} */
 export function viewRequest(studio, view) {
   const { document: chart, seeing } = studio;
@@ -309,7 +343,7 @@ export function viewRequest(studio, view) {
   const { written: palette } = readPalette();
   const seen = view.viewport.visible(chart.grid);
   if (posed?.piece) {
-    return { ...studio.request, ...posed.piece, colour: "fabric", palette, curl: { id: posed.id } };
+    return { ...studio.request, ...posed.piece, colour: "yarn", palette, curl: { id: posed.id } };
   }
   return {
     ...studio.request,
@@ -341,6 +375,6 @@ function poseText(studio) {
   const { pose, posed } = studio.seeing;
   const { value } = pose;
   if (posed.value) return wordsOf(posed.value);
-  if (value === "flat") return "Relaxed, held flat";
+  if (value === "flat") return "Relaxed, pinned flat";
   return `${POSES[value]}: being computed`;
 }

@@ -9,6 +9,7 @@ import { POSES } from "../../state/seeing.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { segmented } from "../../widgets/fields.js";
+import { fullButton } from "../../widgets/full.js";
 import { menu } from "../../widgets/menu.js";
 
 /** @type {{side: CameraSide, label: string, hint: string}[]} */
@@ -21,15 +22,15 @@ const SIDES = [
 
 /** @type {[import("../../state/seeing.js").Pose, string][]} */
 const HINTS = [
-  ["flat", "The fabric held flat"],
-  ["lying", "Curled and folded, as it lies on its own"],
+  ["flat", "Pinned out flat"],
+  ["lying", "Unpinned: curls and folds as it wants"],
   ["worn", 'Closed to a tube on a limb, its girths under "Limb"; a glove that was planned here on its hand'],
 ];
 
 /** @type {[import("../../state/seeing.js").YarnColours, string][]} */
 const COLOURS = [
-  ["chart", "Colours of the chart"],
-  ["yarn", "The yarn's own colour"],
+  ["chart", "The yarn's own; stiffness and stretch as on the chart"],
+  ["yarn", "Always the yarn's own colour"],
   ["region", "Colours of the regions"],
   ["fabric", "The four fabrics, mixed within a stitch"],
   ["phase", "The main fabric of each stitch"],
@@ -74,6 +75,7 @@ export function toolbar(studio, look, request) {
     poses.element,
     root,
     shareMenu(studio, request),
+    fullButton("cloth", "button icon-only"),
   );
 }
 
@@ -105,8 +107,8 @@ function shareMenu(studio, request) {
       picture("picture", "Picture (.png)", 1600),
       picture("picture-large", "Large picture (.png)", 3200),
       null,
-      file("page", "Page to turn it in (.html)", "page", false),
-      file("animation", "Page with the stretch (.html)", "page", true),
+      file("page", "Rotatable 3D page (.html)", "page", false),
+      file("animation", "Rotatable 3D page with the stretch (.html)", "page", true),
       file("recording", "Recording of the stretch (.viser)", "recording", true),
       null,
       file("solid", "Solid with colours (.glb)", "solid", false),

@@ -7,6 +7,7 @@
 import { figure, percent } from "../../core/format.js";
 import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
+import { isWarning } from "../../services/poser.js";
 import { table, tableRow } from "../../widgets/table.js";
 
 const MAX_PLACES = 9;
@@ -68,8 +69,10 @@ function regions({ regions: all }, unit) {
 function pressure({ worn }, unit) {
   if (!worn.length) return [];
   const shown = worn.slice(0, MAX_PLACES);
-  const warned = [...new Set(shown.flatMap(({ warnings }) => warnings))];
+  const all = [...new Set(shown.flatMap(({ warnings }) => warnings))];
+  const [tight, warned] = [all.filter(isWarning), all.filter((words) => !isWarning(words))];
   return [
+    ...tight.map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
     table(
       { class: "planner-table figures full-width small", id: "planner-pressure" },
       ["Where it is worn", "Garment", "Limb", "Ease", "Pressure"],

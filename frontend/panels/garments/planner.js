@@ -9,6 +9,7 @@
 
 import { api } from "../../api.js";
 import { FABRICS } from "../../grid/segments.js";
+import { Belonging } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
@@ -17,7 +18,8 @@ import { table, tableRow } from "../../widgets/table.js";
 import { LengthField, choice, labelled, numberField, sameWords, selectField } from "../../widgets/fields.js";
 import { drawGarment } from "./preview.js";
 import { facts } from "./facts.js";
-import { DIGITS, TEMPLATES } from "./templates.js";
+import { DIGITS, FINGER, LIMB, TEMPLATES } from "./templates.js";
+import { sizes } from "./sizes.js";
 import { problemBox } from "../../widgets/problem.js";
 
 const TYPING_MS = 250;
@@ -38,16 +40,31 @@ export function create(studio, { keeper }) {
   let hand = null;
   const latest = new Latest(TYPING_MS);
   const changed = () => {
+    belonging.check();
     make.disabled = true; // until the new plan is there, the old one must not be made
-    latest.run(plan, ({ problem }) => {
-      garment = null;
-      status.replaceChildren(problemBox({ ...problem, title: "This garment cannot be planned" }));
-      planned();
-    });
+    const fault = lengths.map((field) => field.fault).find(Boolean);
+    if (fault) {
+      latest.cancel();
+      refuse({ detail: fault });
+    } else latest.run(plan, ({ problem }) => refuse(problem));
+  };
+  /** @param {{detail: string, remedy?: string | null}} problem */
+  const refuse = (problem) => {
+    garment = null;
+    result.replaceChildren();
+    canvas.hidden = true;
+    belonging.clear();
+    status.replaceChildren(problemBox({ ...problem, title: "This garment cannot be planned" }));
+    planned();
   };
 
   // --- what is asked ----------------------------------------------------------------------------
   const measures = h("div", { class: "stack gap-6" });
+  const fabrics = h("div", { class: "stack gap-6", id: "planner-fabrics" });
+  /** What was entered for parts of the body and other measures, in mm, for the next template that needs it. @type {Map<string, number>} */
+  const kept = new Map();
+  /** @type {() => Record<string, string>} */
+  let ofParts = () => ({});
   const about = h("p", { class: "muted" });
   const ease = numberField({
     id: "planner-ease",
@@ -66,9 +83,19 @@ export function create(studio, { keeper }) {
     "aria-label": "Target pressure in mmHg",
     oninput: changed,
   });
+  const graded = numberField({
+    id: "planner-graded",
+    min: "1",
+    max: "300",
+    step: "1",
+    placeholder: "the same",
+    "aria-label": "Pressure at the upper end in mmHg",
+    oninput: changed,
+  });
   let byPressure = true;
   const easeRow = labelled("Ease, %", ease, "negative is tighter");
   const targetRow = labelled("Target pressure, mmHg", target);
+  const gradedRow = labelled("At the upper end, mmHg", graded, "falls or rises evenly");
   const fit = choice("planner-fit", "How tight", { ease: "by ease", pressure: "by pressure" }, "pressure", (value) => {
     byPressure = value === "pressure";
     showFit();
@@ -162,6 +189,8 @@ export function create(studio, { keeper }) {
         h("div", { class: "planner-heading line spread gap-10" }, h("h3", {}, "Fit"), fit),
         easeRow,
         targetRow,
+        gradedRow,
+        fabrics,
         h("h3", {}, "Yarn and gauge"),
         labelled("Material", yarn),
         labelled("Yarn, tex (g/km)", tex, "for its mass"),
@@ -183,6 +212,7 @@ export function create(studio, { keeper }) {
   function showFit() {
     easeRow.hidden = byPressure && template.id !== "glove";
     targetRow.hidden = !byPressure;
+    gradedRow.hidden = !byPressure || !template.graded;
   }
 
   function showTemplate() {
@@ -192,28 +222,44 @@ export function create(studio, { keeper }) {
     const chosen = yarn.value;
     showMaterials(template.id === "glove" || !chosen ? template.material : chosen);
     lengths = [];
-    /** @param {string} label @param {number} mm */
-    const length = (label, mm) => {
-      const field = new LengthField(label, mm, changed);
+    /** @param {string} label @param {number} mm @param {import("./templates.js").Bounds} bounds @param {string} [key] */
+    const length = (label, mm, bounds, key = `${template.id} ${label}`) => {
+      const field = new LengthField(label, kept.get(key) ?? mm, bounds, () => {
+        kept.set(key, field.mm);
+        changed();
+      });
       field.show(unit);
       lengths.push(field);
       return field;
     };
-    const fields = template.measures.map(({ key, label, value, hint }) => ({
+    const fields = template.measures.map(({ key, label, value, of: bounds, hint, body }) => ({
       key,
       label,
       hint,
-      field: length(label, value),
+      field: length(label, value, bounds, body),
     }));
+    const ofFabric = template.fabrics.map((part) => {
+      const fabric = select(part.label, FABRICS);
+      fabric.value = part.fabric;
+      return { ...part, select: fabric };
+    });
+    fabrics.replaceChildren(
+      ...(ofFabric.length
+        ? [h("h3", {}, "Fabrics"), ...ofFabric.map(({ label, select: fabric }) => labelled(label, fabric))]
+        : []),
+    );
+    ofParts = () => Object.fromEntries(ofFabric.map(({ key, select: fabric }) => [key, fabric.value]));
     const parts = fields.map(({ label, hint, field }) => labelled(label, field.input, hint));
     const digits = template.fingers
       ? DIGITS.map(([name, long, around]) => ({
           name,
-          long: length(`${name}: length`, long),
-          around: length(`${name}: around`, around),
+          long: length(`${name}: length`, long, FINGER.long),
+          around: length(`${name}: around`, around, FINGER.around),
         }))
       : [];
-    const profile = template.profile ? profileTable(template.profile, length) : null;
+    const profile = template.profile
+      ? profileTable(girthsOf.get(template.id) ?? template.profile, (places) => girthsOf.set(template.id, places))
+      : null;
     measures.replaceChildren(
       ...(profile ? [profile.element] : []),
       ...parts,
@@ -240,20 +286,38 @@ export function create(studio, { keeper }) {
     return { thumb, fingers: rest };
   }
 
-  /** @param {[number, number][]} start @param {(label: string, mm: number) => LengthField} length */
-  function profileTable(start, length) {
+  /** Girths along a limb, by template. @type {Map<string, [number, number][]>} */
+  const girthsOf = new Map();
+
+  /** @param {[number, number][]} start @param {(places: [number, number][]) => void} keep */
+  function profileTable(start, keep) {
+    const entered = () => {
+      keep(places.map(({ at, around }) => [at.mm, around.mm]));
+      changed();
+    };
+    /** @param {string} label @param {number} mm @param {import("./templates.js").Bounds} bounds */
+    const length = (label, mm, bounds) => {
+      const field = new LengthField(label, mm, bounds, entered);
+      field.show(unit);
+      lengths.push(field);
+      return field;
+    };
     /** @type {{at: LengthField, around: LengthField}[]} */
     const places = [];
     const body = h("tbody", {});
     /** @param {[number, number]} place */
     const add = ([at, around]) => {
-      const place = { at: length("Distance along the limb", at), around: length("Circumference there", around) };
+      const place = {
+        at: length("Distance along the limb", at, LIMB.at),
+        around: length("Circumference there", around, LIMB.around),
+      };
       places.push(place);
-      const remove = iconButton("close", "Remove this place", () => {
+      const remove = iconButton("close", "Remove this measurement", () => {
         if (places.length <= 2) return;
         places.splice(places.indexOf(place), 1);
+        lengths = lengths.filter((field) => field !== place.at && field !== place.around);
         row.remove();
-        changed();
+        entered();
       });
       const row = tableRow(null, place.at.input, place.around.input, remove);
       body.append(row);
@@ -265,11 +329,11 @@ export function create(studio, { keeper }) {
       table({ class: "planner-table full-width small" }, ["Along the limb", "Around it", ""], body),
       textButton(
         "plus",
-        "Add a place",
+        "Add a measurement",
         () => {
           const last = places[places.length - 1];
           add([last.at.mm + 40, last.around.mm]);
-          changed();
+          entered();
         },
         { id: "planner-add" },
       ),
@@ -286,24 +350,49 @@ export function create(studio, { keeper }) {
     yarn.replaceChildren(...all.map(({ id, name }) => h("option", { value: id, selected: id === chosen }, name)));
   }
 
+  /** One target, or one at each end. */
+  const pressures = () => {
+    if (!byPressure) return { target_mmhg: null };
+    const [first, last] = [target.valueAsNumber, graded.valueAsNumber];
+    if (!template.graded || !Number.isFinite(last)) return { target_mmhg: first };
+    const ends = [Math.min, Math.max].map((end) => end(...(along() ?? [0, 0])));
+    return {
+      target_mmhg: null,
+      mmhg_profile: [
+        [ends[0], first],
+        [ends[1], last],
+      ],
+    };
+  };
+  /** Where a garment along a limb begins and ends, mm. @returns {number[] | null} */
+  const along = () => {
+    const { profile, length_mm } = /** @type {{profile?: [number, number][], length_mm?: number}} */ (measured());
+    return profile ? profile.map(([at]) => at) : length_mm ? [0, length_mm] : null;
+  };
+  /** What is asked for. */
+  const request = () => ({
+    garment: {
+      template: template.id,
+      ...measured(),
+      ...ofParts(),
+      ...pressures(),
+      ease: ease.valueAsNumber / 100,
+    },
+    material: yarn.value,
+    gauge: own.checked
+      ? { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber, per: per.value, fabric: of.value }
+      : null,
+    linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
+    intarsia: intarsia.checked,
+  });
+  const belonging = new Belonging(studio, () => ({ wish: request() }));
+  belonging.marks(result, "planner");
+
   /** @param {AbortSignal} signal */
   async function plan(signal) {
-    const body = {
-      garment: {
-        template: template.id,
-        ...measured(),
-        ease: ease.valueAsNumber / 100,
-        target_mmhg: byPressure ? target.valueAsNumber : null,
-      },
-      material: yarn.value,
-      gauge: own.checked
-        ? { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber, per: per.value, fabric: of.value }
-        : null,
-      linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
-      intarsia: intarsia.checked,
-    };
-    result.classList.add("busy");
+    const [body, { basis }] = [request(), belonging];
     garment = await api.run("garment", /** @type {GarmentRequest} */ (body), signal);
+    belonging.show(basis);
     hand = { garment: body.garment, material: body.material, gauge: body.gauge };
     status.replaceChildren();
     show(garment);
@@ -311,19 +400,19 @@ export function create(studio, { keeper }) {
   }
 
   function planned() {
-    result.classList.remove("busy");
     make.disabled = garment === null;
   }
 
   /** @param {GarmentResult} fitted */
   function show(fitted) {
     const gauge = fitted.gauges.find(({ fabric }) => fabric === "stockinette") ?? fitted.gauges[0];
+    canvas.hidden = false;
     drawGarment(canvas, fitted.design, gauge.stitches_per_10_cm / gauge.rows_per_10_cm);
     canvas.setAttribute(
       "aria-label",
       `${fitted.name}: ${fitted.columns} stitches by ${fitted.rows} rows, with ${fitted.regions.map(({ name }) => name).join(", ")}`,
     );
-    result.replaceChildren(...facts(fitted, unit));
+    result.replaceChildren(...facts(fitted, unit), sizes(request, fitted));
   }
 
   showTemplate();

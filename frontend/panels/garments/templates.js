@@ -1,10 +1,30 @@
 /**
  * The garments that can be planned, and what is measured for each. Lengths are in mm.
  *
- * @typedef {{key: string, label: string, value: number, hint?: string}} Measure
- * @typedef {{id: string, name: string, note: string, material: string, ease: number,
- *   measures: Measure[], profile?: [number, number][], fingers?: boolean}} Template
+ * @typedef {[least: number, most: number]} Bounds of a body
+ * @typedef {{key: string, label: string, value: number, of: Bounds, hint?: string, body?: string}} Measure `body`:
+ *   the part of the body, where several garments need it
+ * @typedef {{key: string, label: string, fabric: Fabric}} FabricOfPart
+ * @typedef {{id: string, name: string, note: string, material: string, ease: number, measures: Measure[],
+ *   fabrics: FabricOfPart[], profile?: [number, number][], graded?: boolean, fingers?: boolean}} Template
+ *
+ * @import {Fabric} from "../../types.js"
  */
+
+/** @type {Bounds} */
+const WRIST = [80, 350];
+/** @type {Bounds} */
+const AROUND = [60, 1500];
+/** @type {Bounds} */
+const LONG = [10, 1200];
+/** @type {Bounds} */
+const OF_HAND = [5, 250];
+/** @type {Bounds} */
+const BAND = [0, 300];
+/** Of any limb. */
+export const LIMB = { around: AROUND, at: /** @type {Bounds} */ ([0, 1500]) };
+/** Of fingers. */
+export const FINGER = { around: /** @type {Bounds} */ ([25, 130]), long: /** @type {Bounds} */ ([10, 150]) };
 
 /** @type {Template[]} */
 export const TEMPLATES = [
@@ -15,15 +35,22 @@ export const TEMPLATES = [
     material: "glove-wool:glove",
     ease: -0.1,
     fingers: true,
+    fabrics: [],
     measures: [
-      { key: "wrist_circumference_mm", label: "Around the wrist", value: 165 },
-      { key: "palm_circumference_mm", label: "Around the knuckles", value: 205, hint: "without the thumb" },
-      { key: "cuff_mm", label: "Cuff", value: 12 },
-      { key: "wrist_mm", label: "Wrist support", value: 55 },
-      { key: "thumb_crotch_mm", label: "Support to thumb's crotch", value: 45 },
-      { key: "palm_mm", label: "Support to fingers' crotch", value: 80 },
-      { key: "gusset_mm", label: "Thumb gusset, height", value: 22, hint: "0 for none" },
-      { key: "gusset_girth_mm", label: "Thumb gusset, girth", value: 22 },
+      { key: "wrist_circumference_mm", label: "Around the wrist", value: 165, of: WRIST, body: "wrist" },
+      {
+        key: "palm_circumference_mm",
+        label: "Around the knuckles",
+        value: 205,
+        of: [100, 400],
+        hint: "without the thumb",
+      },
+      { key: "cuff_mm", label: "Cuff", value: 12, of: OF_HAND },
+      { key: "wrist_mm", label: "Wrist support", value: 55, of: OF_HAND },
+      { key: "thumb_crotch_mm", label: "Wrist to the base of the thumb", value: 45, of: OF_HAND },
+      { key: "palm_mm", label: "Wrist to the base of the fingers", value: 80, of: OF_HAND },
+      { key: "gusset_mm", label: "Thumb gusset, height", value: 22, of: [0, 100], hint: "0 for none" },
+      { key: "gusset_girth_mm", label: "Thumb gusset, girth", value: 22, of: [0, 100] },
     ],
   },
   {
@@ -32,24 +59,33 @@ export const TEMPLATES = [
     note: "Knitted sideways and grafted, so that stockinette's stiff direction goes around the wrist; garter edges.",
     material: "acrylic",
     ease: -0.15,
+    fabrics: [
+      { key: "support", label: "Support", fabric: "stockinette" },
+      { key: "edge", label: "Edges", fabric: "garter" },
+    ],
     measures: [
-      { key: "wrist_mm", label: "Around the wrist", value: 170 },
-      { key: "length_mm", label: "Along the arm", value: 90 },
-      { key: "edge_mm", label: "Garter edges", value: 15 },
+      { key: "wrist_mm", label: "Around the wrist", value: 170, of: WRIST, body: "wrist" },
+      { key: "length_mm", label: "Along the arm", value: 90, of: LONG },
+      { key: "edge_mm", label: "Edges", value: 15, of: BAND },
     ],
   },
   {
     id: "limb",
-    name: "Limb sleeve",
+    name: "Sleeve (arm or leg)",
     note: "A tube that follows the limb's circumference, with rib at both ends.",
     material: "acrylic",
     ease: -0.15,
+    graded: true,
+    fabrics: [
+      { key: "body", label: "Body", fabric: "stockinette" },
+      { key: "hem", label: "Ribbing at the ends", fabric: "rib" },
+    ],
     profile: [
       [0, 180],
       [120, 240],
       [220, 265],
     ],
-    measures: [{ key: "hem_mm", label: "Rib at each end", value: 40 }],
+    measures: [{ key: "hem_mm", label: "Ribbing at each end", value: 40, of: BAND }],
   },
   {
     id: "sock-leg",
@@ -57,10 +93,15 @@ export const TEMPLATES = [
     note: "From the ankle up to the calf, with rib at both ends; heel and foot are knitted on by hand.",
     material: "acrylic",
     ease: -0.15,
+    graded: true,
+    fabrics: [
+      { key: "body", label: "Body", fabric: "stockinette" },
+      { key: "hem", label: "Ribbing at the ends", fabric: "rib" },
+    ],
     measures: [
-      { key: "ankle_mm", label: "Around the ankle", value: 220 },
-      { key: "calf_mm", label: "Around the calf", value: 340 },
-      { key: "length_mm", label: "Length", value: 200 },
+      { key: "ankle_mm", label: "Around the ankle", value: 220, of: [120, 500], body: "ankle" },
+      { key: "calf_mm", label: "Around the calf", value: 340, of: [180, 800], body: "calf" },
+      { key: "length_mm", label: "Length", value: 200, of: LONG },
     ],
   },
 ];

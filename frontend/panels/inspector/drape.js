@@ -7,6 +7,7 @@
 
 import { api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
+import { Belonging, clothOf } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
 import { scopeOf } from "../../services/scope.js";
@@ -55,10 +56,11 @@ const TESTS = [
     compute: async (request, signal) => {
       const draped = await api.run("drape", request, signal);
       const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, converged, piece } = draped;
-      const states = ends.map((end) => percent(end)).join(" to ");
+      const states = [...new Set(ends.map((end) => percent(end)))];
+      const others = states.length > 1 ? ` (it comes to rest in several ways: ${states.join(" to ")})` : "";
       return {
         words: [
-          `Drape coefficient ${percent(coefficient)} (states of rest found: ${states}), ${folds} folds.`,
+          `Drape coefficient ${percent(coefficient)}, ${folds} folds${others}.`,
           `Falls by ${figure(fall_mm / 10, 2)} cm. Soft cloth drapes more than this.`,
         ],
         notes,
@@ -87,6 +89,8 @@ const TESTS = [
 export function drape(host, studio) {
   const latest = new Latest(0);
   const answer = h("div", { role: "status", id: "drape-answer" });
+  const belonging = new Belonging(studio, () => ({ ...clothOf(studio), weight: studio.weight.value }));
+  belonging.marks(answer, "drape");
   const weight = numberField({ id: "drape-weight", min: "0.005", max: "20", step: "0.01", value: studio.weight.value });
   weight.addEventListener("change", () => {
     if (weight.valueAsNumber > 0) studio.weight.value = weight.valueAsNumber;
@@ -114,6 +118,8 @@ export function drape(host, studio) {
       material: studio.materialId.value,
       linear_density_g_per_m: studio.weight.value,
     };
+    const { basis } = belonging;
+    belonging.clear();
     answer.replaceChildren(h("span", { class: "spinner" }), `${label}: being computed`);
     latest.run(
       async (signal) => {
@@ -123,6 +129,7 @@ export function drape(host, studio) {
           ...words.map((text) => h("p", { class: "figures" }, text)),
           ...notes.map((text) => h("p", { class: "muted" }, text)),
         );
+        belonging.show(basis);
       },
       ({ problem }) => answer.replaceChildren(problemText(problem)),
     );

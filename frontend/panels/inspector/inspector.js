@@ -9,6 +9,7 @@
 import { DIRECTIONS, LINES, along } from "../../core/directions.js";
 import { figure, percent, percentRange, percents, range } from "../../core/format.js";
 import { paced } from "../../core/paced.js";
+import { sourceInWords } from "../../core/plainly.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
 import { scopeOf, sizeAtRest } from "../../services/scope.js";
 import { h } from "../../elements/dom.js";
@@ -57,7 +58,7 @@ export function inspector(host, studio) {
   const shares = h("div", { class: "shares stack gap-6" });
   const segments = h("div", { class: "shares stack gap-6" });
   const { handPull, details: detailed } = studio.seeing;
-  const hands = segmented("Pull at which the stretch is told", PULLS, handPull.value, (at) => (handPull.value = at), {
+  const hands = segmented("How hard you pull", PULLS, handPull.value, (at) => (handPull.value = at), {
     class: "segmented small",
     id: "hand-pull",
   });
@@ -128,25 +129,26 @@ export function inspector(host, studio) {
     draw[id]();
   };
 
-  host.append(
+  const numbers = h(
+    "div",
+    { class: "inspector-numbers", "data-result": "numbers" },
     h(
       "div",
-      { class: "inspector-numbers" },
-      h(
-        "div",
-        { class: "inspector-head stack" },
-        h("div", { class: "inspector-title line gap-8 spread" }, title, scopes),
-        source,
-      ),
-      problem,
-      h("div", { class: "line gap-8 spread small" }, h("span", { class: "muted" }, "At a pull of"), hands.element),
-      felt,
-      rank,
-      gauge.element,
-      compared,
-      shares,
-      details,
+      { class: "inspector-head stack" },
+      h("div", { class: "inspector-title line gap-8 spread" }, title, scopes),
+      source,
     ),
+    problem,
+    h("div", { class: "line gap-8 spread small" }, h("span", { class: "muted" }, "At a pull of"), hands.element),
+    felt,
+    rank,
+    gauge.element,
+    compared,
+    shares,
+    details,
+  );
+  host.append(
+    numbers,
     h(
       "div",
       { class: "inspector-plots stack shrinks-x shrinks-y relative" },
@@ -162,6 +164,7 @@ export function inspector(host, studio) {
   const show = () => {
     const { value, busy, problem: wrong, scope } = studio.prediction.value;
     host.classList.toggle("busy", busy);
+    numbers.toggleAttribute("data-stale", busy && value !== null);
     if (busy && shown === value) return; // asked again: the old numbers stay, greyed, until the answer comes
     shown = value;
     const part = scopeOf(studio);
@@ -175,11 +178,11 @@ export function inspector(host, studio) {
     fill(table, ofScope);
     feel(ofScope, part);
     source.hidden = !value;
+    gauge.show(value);
     if (value) {
       const lines = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
       name();
       notes.replaceChildren(...lines.map((note) => h("li", {}, note)));
-      gauge.show(value);
     }
   };
   /** What a hand feels, and how wide the cloth lies. @param {PredictResult | null} value @param {Scope} part */
@@ -202,8 +205,8 @@ export function inspector(host, studio) {
           }),
         ),
         row(
-          "Size at rest",
-          "cm",
+          "Size, cm",
+          "",
           "Width and height of the cloth when nothing pulls at it",
           ...DIRECTIONS.map((way) =>
             cell(`size-${way}`, figure(inCm(size?.[way].value)), range(size && cmOf(size[way].interval))),
@@ -228,7 +231,7 @@ export function inspector(host, studio) {
   });
   const name = () => {
     const { value } = studio.prediction.value;
-    provenance.textContent = `${value?.provenance}${studio.relaxing.value ? ", relaxing …" : ""}`;
+    provenance.textContent = `How sure? ${sourceInWords(value?.provenance ?? "")}${studio.relaxing.value ? ", relaxing …" : ""}`;
   };
   const count = () => {
     const { document: chart } = studio;
@@ -357,7 +360,7 @@ function fill(table, value) {
       row(
         "Extensibility",
         "mm/N",
-        "One over the modulus: the stretch of 1 mm under 1 N per mm of width",
+        "How far it gives: mm of stretch per newton, for a square of cloth (1 over its stiffness)",
         number(
           "extensibility-course",
           value?.extensibility_course_mm_per_n,

@@ -8,7 +8,9 @@
 
 import { api } from "../../api.js";
 import { percent, range } from "../../core/format.js";
+import { Belonging, clothOf } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
+import { isWarning } from "../../services/poser.js";
 import { h, remark } from "../../elements/dom.js";
 import { pressurePlot } from "../../plots/pressure.js";
 import { scopeOf } from "../../services/scope.js";
@@ -35,19 +37,27 @@ export function limb(host, studio) {
     const rest_mm = tube.valueAsNumber > 0 ? tube.valueAsNumber : null;
     const sized = rest_mm ? girths.map((girth) => ({ ...girth, rest_mm })) : girths;
     const chart = rest_mm || kind !== "chart" ? grid.text : studio.request.chart;
+    belonging.check(); // the tube may be another
+    const { basis } = belonging;
     latest.run(
-      async (signal) => show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal)),
-      ({ problem }) => answer.replaceChildren(problemText(problem)),
+      async (signal) => {
+        show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal));
+        belonging.show(basis);
+      },
+      ({ problem }) => {
+        answer.replaceChildren(problemText(problem));
+        belonging.clear();
+      },
     );
   };
   const tube = numberField({ id: "limb-tube", min: "10", max: "3000", placeholder: "chart", oninput: ask });
   const around = selectField(
     {
-      class: "select shrinks-x",
+      class: "select",
       id: "limb-around",
       onchange: () => (chosen.value = { ...chosen.value, direction: /** @type {Direction} */ (around.value) }),
     },
-    { course: "rows", wale: "columns" },
+    { course: "rows go around", wale: "columns go around" },
   );
   around.value = chosen.value.direction;
 
@@ -98,6 +108,8 @@ export function limb(host, studio) {
   showGirths(chosen.value.girths ?? []);
 
   const answer = h("div", { role: "status", id: "limb-answer" });
+  const belonging = new Belonging(studio, () => ({ ...clothOf(studio), limb: [studio.limb, tube.value] }));
+  belonging.marks(answer, "limb");
   /** @param {LimbResult} fit */
   const show = (fit) => {
     const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm, interval_source } = fit;
@@ -129,6 +141,7 @@ export function limb(host, studio) {
             )
           : "",
       ),
+      ...fit.notes.filter(isWarning).map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
       pressurePlot(places),
       h("p", { class: "muted figures" }, words.filter(Boolean).join(" ")),
       problem ? h("p", { class: "muted" }, problem) : "",
@@ -145,7 +158,7 @@ export function limb(host, studio) {
         { class: "limb-more flex wrap gap-6" },
         h("button", { class: "button", id: "limb-add", onclick: add }, "Add a girth"),
         labelled("Tube at rest", tube, "mm"),
-        labelled("Around it run the", around),
+        labelled("Which way round?", around),
         h(
           "button",
           { class: "button", id: "limb-wear", onclick: () => (studio.seeing.pose.value = "worn") },

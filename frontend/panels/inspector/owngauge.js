@@ -17,7 +17,7 @@ const COUNTED = 0.05;
  * `show` fills in what is known, and says what a count would bring.
  *
  * @param {Studio} studio
- * @returns {{element: HTMLElement, show: (predicted: PredictResult) => void}}
+ * @returns {{element: HTMLElement, show: (predicted: PredictResult | null) => void}}
  */
 export function ownGauge(studio) {
   const cloth = () => ({ chart: scopeOf(studio).grid.text, material: studio.materialId.value });
@@ -44,8 +44,8 @@ export function ownGauge(studio) {
     rows,
     brings,
   );
-  const show = (/** @type {PredictResult} */ predicted) => {
-    brings.textContent = gain(predicted);
+  const show = (/** @type {PredictResult | null} */ predicted) => {
+    brings.textContent = predicted ? gain(predicted) : "";
     if (element.contains(document.activeElement)) return;
     const known = studio.gauges.changes.value ? studio.gauges.of(cloth()) : null;
     const counted = known?.known_by === "relaxation" ? null : known;

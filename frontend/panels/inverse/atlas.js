@@ -7,11 +7,11 @@
  * @import {Point} from "./scatter.js"
  */
 
+import { sourceInWords } from "../../core/plainly.js";
 import { figure, percent, range } from "../../core/format.js";
 import { Ink } from "../../design/ink.js";
 import { motifGrid } from "../../grid/grid.js";
 import { h, remark } from "../../elements/dom.js";
-import { pencil } from "../../tools/pencil.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { Run } from "../../widgets/jobrun.js";
 import { inWords, scatter } from "./scatter.js";
@@ -153,7 +153,7 @@ export function atlasTab(studio, context) {
         ],
         [
           "To knit, a stitch",
-          `${figure(table.transfers_per_stitch[k], 2)} transfers, ${figure(table.crossings_per_stitch[k], 2)} crossings; ${curlInWords(table.curl[k])}`,
+          `${knittingInWords(table.transfers_per_stitch[k], table.crossings_per_stitch[k])}; ${curlInWords(table.curl[k])}`,
         ],
       ]),
     );
@@ -206,26 +206,18 @@ export function atlasTab(studio, context) {
 
 /** @param {Studio} studio @param {string} key */
 export function paintWith(studio, key) {
-  studio.ink.value = new Ink(`atlas-${key}`, nameOf(key), motifGrid(key), "From the atlas");
-  if (!["stroke", "shape", "once"].includes(studio.tool.value.mode)) studio.tool.value = pencil;
+  studio.paintWith(new Ink(`atlas-${key}`, nameOf(key), motifGrid(key), "From the atlas"));
   studio.tell(`You are painting with ${nameOf(key)}.`);
 }
 
-/** @param {string} source */
-export function sourceInWords(source) {
-  /** @type {Record<string, string>} */
-  const words = {
-    measured: "Measured fabric",
-    estimated: "Estimated fabric",
-    swept: "Stretched at the yarn level, carried to the measured yarn",
-    learned: "Learned from yarn-level simulations of mixed charts",
-    "learned with known size": "Learned from yarn-level simulations, with your gauge",
-  };
-  return words[source] ?? source;
-}
+/** What a repeat takes to knit. @param {number} transfers by machine, a stitch @param {number} crossings by hand, a stitch */
+export const knittingInWords = (transfers, crossings) =>
+  transfers || crossings
+    ? `${figure(transfers, 2)} moves between beds a stitch by machine, ${figure(crossings, 2)} changes from knit to purl by hand`
+    : "easy to knit";
 
 /** @param {number} curl */
 export function curlInWords(curl) {
-  if (Math.abs(curl) < 0.15) return "balanced, lies flat";
+  if (Math.abs(curl) < 0.15) return "lies flat";
   return `${percent(Math.abs(curl))} more ${curl > 0 ? "knits" : "purls"}: ${Math.abs(curl) > 0.5 ? "curls" : "may curl"}`;
 }

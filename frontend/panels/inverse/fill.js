@@ -12,6 +12,7 @@
 
 import { ApiError, api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
+import { Belonging } from "../../services/belonging.js";
 import { Grid } from "../../grid/grid.js";
 import { largestRectangle } from "../../grid/inscribed.js";
 import { FABRICS } from "../../grid/segments.js";
@@ -39,10 +40,18 @@ export function fromStiffness(studio) {
   const run = new Run();
   const list = h("ol", { class: "plain-list stack gap-6", id: "parts" });
   const answer = h("div", { class: "inverse-answer", id: "fill-answer" });
+  const belonging = new Belonging(studio, () => ({
+    chart: [chart.grid.text, chart.outlineText],
+    yarn: studio.materialId.value,
+    wish: parts.map(({ name, course, wale }) => [name, course, wale]),
+  }));
+  belonging.marks(answer, "fill");
   /** @type {Part[]} */
   let parts = [];
   /** Size of the chart that the parts were drawn on. */
   let size = "";
+  /** Whose parts these are. */
+  let designId = studio.designId;
 
   const sizeNow = () => `${chart.grid.rows} ${chart.grid.columns}`;
   /** What is known of the yarn's pure fabrics. */
@@ -82,6 +91,11 @@ export function fromStiffness(studio) {
     for (const each of parts) each.show?.(); // another part may wait for these numbers
   };
   const measureAll = async () => {
+    if (designId !== studio.designId) {
+      designId = studio.designId;
+      parts = [];
+      show();
+    }
     if (parts.length && element.checkVisibility()) await Promise.all(parts.map(measure));
   };
 
@@ -105,6 +119,7 @@ export function fromStiffness(studio) {
     const now = AXES.map(({ axis }) => h("span", { class: "figures", id: `part-${at}-${axis}-now` }, "…"));
     const verdicts = AXES.map(() => h("span", { class: "muted part-verdict" }));
     part.show = () => {
+      belonging.check();
       const numbers = part.wish?.();
       if (numbers) {
         for (const { axis } of AXES) part[axis] = Number(numbers[axis].toPrecision(3));
@@ -227,6 +242,7 @@ export function fromStiffness(studio) {
       return;
     }
     answer.replaceChildren();
+    belonging.clear();
     /** @type {FillResult | null} */
     const fillResult = await run.run(
       "fill",
@@ -236,7 +252,7 @@ export function fromStiffness(studio) {
         columns,
         chart: chart.grid.text,
         outline: chart.outlineText,
-        wishes: targeted.map(({ name, cells, course, wale }) => ({
+        targets: targeted.map(({ name, cells, course, wale }) => ({
           name,
           runs: runsOf(cells, columns),
           modulus_course_n_per_mm: course,
@@ -294,7 +310,7 @@ export function fromStiffness(studio) {
     });
     const changed = fillResult.parts.some(({ repainted }) => repainted);
     answer.replaceChildren(
-      verdict(fillResult.off_share <= 0.05, inWords(fillResult)),
+      verdict(fillResult.off_share <= 0.05, inWords(fillResult, targeted)),
       partList(fillResult, targeted),
       h("div", { class: "inverse-buttons" }, changed && keep, changed && back, other),
       h(
@@ -305,6 +321,7 @@ export function fromStiffness(studio) {
         ...fillResult.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
       ),
     );
+    belonging.show(belonging.basis);
     (changed ? keep : other).focus();
   };
 
@@ -325,8 +342,8 @@ export function fromStiffness(studio) {
         { class: "inverse-more small" },
         h("summary", {}, "Options"),
         h("label", { class: "check" }, "No patch narrower than", smallest, "stitches"),
-        h("label", { class: "check" }, scattered, "Scattered purls, too, where they come nearer: hard to knit by hand"),
-        h("label", { class: "check" }, large, "Larger patterns, too (the first time takes up to a minute)"),
+        h("label", { class: "check" }, scattered, "Allow irregular patterns (closer match, harder to knit by hand)"),
+        h("label", { class: "check" }, large, "Allow larger patterns (the first time takes up to a minute)"),
       ),
       h(
         "div",
@@ -342,14 +359,26 @@ export function fromStiffness(studio) {
   return { element, opened: measureAll };
 }
 
-/** @param {FillResult} fillResult */
-function inWords({ off_share: off, parts }) {
-  const left = parts.filter(({ repainted }) => !repainted).map(({ name }) => name);
+/** Each part by its name. @param {FillResult} fillResult @param {Part[]} targeted */
+function inWords({ off_share: off, parts }, targeted) {
   if (off <= 0.05) return `On the chart now, as wanted: ${percent(1 - off)} of it is within 10 %.`;
-  if (left.length === parts.length) return "The chart stays as it is: nothing in this yarn comes nearer.";
-  const share = off >= 1 ? "none" : percent(1 - off);
-  const stays = left.length ? ` ${left.join(", ")} ${left.length > 1 ? "stay as they are" : "stays as it is"}.` : "";
-  return `On the chart now, the nearest that was found: ${share} of it is within 10 % of what was wanted.${stays}`;
+  if (parts.every(({ repainted }) => !repainted))
+    return "The chart stays as it is: no pattern in this yarn comes nearer to what you asked for.";
+  return `On the chart now, as near as this yarn comes. ${parts.map((part, i) => partInWords(part, targeted[i])).join(" ")}`;
+}
+
+/** @param {FillResult["parts"][number]} part @param {Part} wish */
+function partInWords(part, wish) {
+  const off = AXES.flatMap(({ axis, label }) => {
+    const [now, target] = [part[`${axis}_n_per_mm`], wish[axis]];
+    if (now === null || target === null) return [];
+    const words = against(now, target);
+    return words === "as wanted" ? [] : [`${words} along ${label}`];
+  });
+  const how = off.length ? off.join(", ") : "as wanted";
+  return part.repainted
+    ? `${part.name}: ${how}.`
+    : `${part.name}: nothing comes nearer, so it was left as it was (${how}).`;
 }
 
 /** What each part has now, beside what it had and what was wanted. @param {FillResult} fillResult @param {Part[]} targeted */
@@ -362,7 +391,7 @@ function partList({ parts }, targeted) {
         "li",
         {},
         h("strong", {}, part.name),
-        !part.repainted && h("span", { class: "muted" }, " stays as it is"),
+        !part.repainted && h("span", { class: "muted" }, " left as it was"),
         ...AXES.map(({ axis, label }) => {
           const [before, now, target] = [part[`${axis}_before_n_per_mm`], part[`${axis}_n_per_mm`], targeted[i][axis]];
           const change = part.repainted ? `${figure(before)} → ${figure(now)}` : figure(now);

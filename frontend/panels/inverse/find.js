@@ -7,11 +7,13 @@
  */
 
 import { figure, percent } from "../../core/format.js";
+import { sourceInWords } from "../../core/plainly.js";
+import { Belonging } from "../../services/belonging.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
-import { curlInWords, paintWith, sourceInWords } from "./atlas.js";
+import { curlInWords, knittingInWords, paintWith } from "./atlas.js";
 import { field, form, verdict } from "./form.js";
 import { Run } from "../../widgets/jobrun.js";
 import { sameWords, selectField } from "../../widgets/fields.js";
@@ -140,11 +142,31 @@ export function findTab(studio, context) {
 
   const across = h("input", { type: "checkbox", id: "find-all-yarns" });
   const large = h("input", { type: "checkbox", id: "find-large" });
-  const transfers = limit("Transfers", { any: null, none: 0, "≤ ¼ a stitch": 0.25, "≤ ½ a stitch": 0.5 });
+  const transfers = limit("Moves between beds", { any: null, none: 0, "≤ ¼ a stitch": 0.25, "≤ ½ a stitch": 0.5 });
   const curl = limit("Curl", { any: null, "lies flat": 0.15, little: 0.5 });
 
-  const search = async () => {
+  const request = () => {
     const targets = readers.map((read) => read()).filter((target) => target !== null);
+    const all = studio.completeYarns.map(({ id }) => id);
+    const { value: own } = studio.materialId;
+    return {
+      materials: across.checked ? [own, ...all.filter((id) => id !== own)] : [own],
+      targets,
+      repeats: large.checked ? "all" : "small",
+      limits: { transfers_per_stitch: transfers.most(), curl: curl.most() },
+      count: COUNT,
+      elsewhere: false,
+    };
+  };
+  const belonging = new Belonging(studio, () => {
+    const { materials, ...wish } = request();
+    return { yarn: across.checked || materials, wish };
+  });
+  belonging.marks(answer, "find");
+
+  const search = async () => {
+    const wish = request();
+    const { materials, targets } = wish;
     if (targets.length < readers.length || !targets.length) {
       run.say({
         title: "A target is incomplete",
@@ -153,25 +175,15 @@ export function findTab(studio, context) {
       });
       return;
     }
-    const all = studio.completeYarns.map(({ id }) => id);
-    const materials = across.checked
-      ? [studio.materialId.value, ...all.filter((id) => id !== studio.materialId.value)]
-      : [studio.materialId.value];
-    const request = {
-      materials,
-      targets,
-      repeats: large.checked ? "all" : "small",
-      limits: { transfers_per_stitch: transfers.most(), curl: curl.most() },
-      count: COUNT,
-      elsewhere: false,
-    };
+    const { basis } = belonging;
     /** @type {FindResult | null} */
-    const findResult = await run.run("find", request, "Searching");
+    const findResult = await run.run("find", wish, "Searching");
     if (!findResult) return;
     show(findResult, targets);
-    if (findResult.reached || materials.length === all.length) return;
+    belonging.show(basis);
+    if (findResult.reached || materials.length === studio.completeYarns.length) return;
     /** @type {FindResult | null} */
-    const more = await run.run("find", { ...request, repeats: "small", elsewhere: true }, "Searching the other yarns");
+    const more = await run.run("find", { ...wish, repeats: "small", elsewhere: true }, "Searching the other yarns");
     if (more) show({ ...findResult, elsewhere: more.elsewhere }, targets);
   };
 
@@ -213,7 +225,7 @@ export function findTab(studio, context) {
               title: "Probability that all targets are met within their tolerances, from the 90 % intervals",
             },
             candidate.reached && icon("check"),
-            `${percent(candidate.chance)} sure`,
+            `${percent(candidate.chance)} chance of meeting ${Object.keys(candidate.values).length > 1 ? "all targets" : "the target"}`,
           ),
         ),
         h(
@@ -224,7 +236,7 @@ export function findTab(studio, context) {
         h(
           "div",
           { class: "muted" },
-          `${figure(candidate.transfers_per_stitch, 2)} transfers, ${figure(candidate.crossings_per_stitch, 2)} crossings a stitch; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`,
+          `${knittingInWords(candidate.transfers_per_stitch, candidate.crossings_per_stitch)}; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`,
         ),
       ),
       h(
@@ -262,12 +274,14 @@ export function findTab(studio, context) {
         "label",
         { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute per yarn" },
         large,
-        "Larger patterns, too",
+        "Larger patterns",
       ),
       h("span", { class: "spacer" }),
       h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find"),
     ),
   );
+  // A row that is added or taken away is clicked.
+  for (const event of ["input", "change", "click"]) targetForm.addEventListener(event, () => belonging.check());
   const element = h("div", { class: "inverse-tab scrolls column shrinks-y gap-8" }, targetForm, run.element, answer);
   return { element, open: () => {}, retheme: () => {} };
 }

@@ -7,6 +7,7 @@
  */
 
 import { figure, percent } from "../../core/format.js";
+import { Belonging } from "../../services/belonging.js";
 import { Grid } from "../../grid/grid.js";
 import { drawing, h } from "../../elements/dom.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
@@ -31,6 +32,12 @@ export function fromOutline(studio) {
   const answer = h("div", { class: "inverse-answer", id: "outline-answer" });
   /** @type {Direction} */ let direction = "wale";
   const widths = [0.98, 0.95, 0.92, 0.91, 0.92, 0.95, 0.98];
+  const belonging = new Belonging(studio, () => ({
+    chart: [studio.document.grid.rows, studio.document.grid.columns], // its stitches are replaced
+    yarn: studio.materialId.value,
+    wish: [direction, widths, strain.value, band.value],
+  }));
+  belonging.marks(answer, "outline");
   /** @type {number[] | null} */ let reached = null;
   const strain = field("Stretch in percent", 30, { min: "1", max: "200", step: "any", id: "outline-strain" });
   const band = field("Narrowest band, lines", 4, { min: "1", max: "100", step: "1" });
@@ -109,6 +116,7 @@ export function fromOutline(studio) {
   const set = (k, width) => {
     widths[k] = Math.round(100 * Math.min(HIGH, Math.max(LOW, width))) / 100;
     reached = null;
+    belonging.check();
     draw();
   };
   /** @param {PointerEvent} down @param {number} k */
@@ -142,6 +150,8 @@ export function fromOutline(studio) {
     answer.replaceChildren();
     reached = null;
     draw();
+    belonging.clear();
+    const { basis } = belonging;
     /** @type {ShapeResult | null} */
     const shapeResult = await run.run(
       "shape",
@@ -156,7 +166,9 @@ export function fromOutline(studio) {
       },
       "Pulling swatches",
     );
-    if (shapeResult) show(shapeResult);
+    if (!shapeResult) return;
+    show(shapeResult);
+    belonging.show(basis);
   };
   /** @param {ShapeResult} shapeResult */
   const show = (shapeResult) => {
@@ -219,9 +231,11 @@ export function fromOutline(studio) {
     (way) => {
       direction = /** @type {Direction} */ (way);
       reached = null;
+      belonging.check();
       draw();
     },
   );
+  for (const input of [strain, band]) input.addEventListener("input", () => belonging.check());
   draw();
   const element = h(
     "div",

@@ -17,8 +17,6 @@ import { selectedCells, selectionOf } from "../../design/selection.js";
 import { ownPatterns } from "../../design/shelf.js";
 import { loadShelf } from "../../design/store.js";
 import { h } from "../../elements/dom.js";
-import { icon } from "../../elements/icons.js";
-import { pencil } from "../../tools/pencil.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { textLine } from "../../widgets/fields.js";
 import { docked, refreshed } from "../../widgets/dock.js";
@@ -39,16 +37,10 @@ export function create(studio, context) {
       if (!hasRoom(studio, "regions", "regions")) return;
       const name = `Region ${chart.regions.length + 1}`;
       const region = chart.region(chart.addRegion({ name, colour: nextRegionColour(chart.regions) }));
-      if (region) paint(region);
+      if (region) studio.paintWith(regionInk(region));
     },
     { id: "region-new", title: "A new region, to be painted" },
   );
-
-  /** @param {Region} region */
-  const paint = (region) => {
-    ink.value = regionInk(region);
-    if (!["stroke", "shape", "once"].includes(studio.tool.value.mode)) studio.tool.value = pencil;
-  };
 
   /** @param {Region} region @param {number} at */
   const item = (region, at) => {
@@ -59,7 +51,7 @@ export function create(studio, context) {
       iconButton(picture, `${label}: ${name}`, perform, { id: `${id}-${what}`, title: label, ...more });
     /** @param {string} what @param {IconName} picture @param {string} label @param {() => void} perform @param {Record<string, unknown>} [more] */
     const wide = (what, picture, label, perform, more = {}) =>
-      h("button", { class: "button", id: `${id}-${what}`, onclick: perform, ...more }, icon(picture), label);
+      textButton(picture, label, perform, { id: `${id}-${what}`, ...more });
     /** @param {number} value */
     const selected = (value) => {
       if (!selection.value) return;
@@ -132,7 +124,7 @@ export function create(studio, context) {
               "paint",
               "pencil",
               painting ? "Painting it" : "Paint it",
-              () => (painting ? (ink.value = KNIT) : paint(region)),
+              () => (painting ? (ink.value = KNIT) : studio.paintWith(regionInk(region))),
               { "aria-pressed": String(painting), title: "With any tool; the right button takes stitches out" },
             ),
             wide("select", "select", "Select it", () => (selection.value = selectionOf(region.cells, chart.grid)), {

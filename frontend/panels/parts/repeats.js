@@ -4,7 +4,7 @@
  * @import {ActionContext} from "../../actions/action.js"
  * @import {PlacementItem} from "../../design/design.js"
  * @import {Repeat} from "../../design/repeats.js"
- * @import {IconName} from "../../elements/icons.js"
+ * @import {Box} from "../../grid/grid.js"
  * @import {Studio} from "../../state/studio.js"
  */
 
@@ -13,8 +13,7 @@ import { boxOf, filledBox } from "../../chart/placing.js";
 import { MAX_ITEMS } from "../../design/design.js";
 import { withPlace } from "../../design/repeats.js";
 import { h, remark } from "../../elements/dom.js";
-import { icon } from "../../elements/icons.js";
-import { repeat as placeTool } from "../../tools/repeat.js";
+import { placeRepeat } from "../../tools/tools.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { docked, refreshed } from "../../widgets/dock.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
@@ -33,9 +32,15 @@ export function create(studio, context) {
   const item = (repeat) => {
     const { id, name, motif, placements, edgeColumns, edgeRows } = repeat;
     const open = !closed && editing.repeat?.id === id;
-    /** @param {string} what @param {IconName} picture @param {string} label @param {() => void} perform @param {Record<string, unknown>} [more] */
-    const wide = (what, picture, label, perform, more = {}) =>
-      h("button", { class: "button", id: `${id}-${what}`, onclick: perform, ...more }, icon(picture), label);
+    const begin = () => {
+      editing.repeatId.value = id;
+      studio.tool.value = placeRepeat;
+    };
+    const fill = () => {
+      const box = filledBox(repeat, selection.value ?? chart.grid.box);
+      if (!box) return studio.tell(`${name} does not fit: it is a ${repeat.rule}.`);
+      lay(repeat, withPlace(repeat, placed(box)), "Place a repeat");
+    };
     /** @param {"edgeColumns" | "edgeRows"} field @param {string} label @param {number} value */
     const edge = (field, label, value) =>
       h(
@@ -97,30 +102,12 @@ export function create(studio, context) {
           h(
             "div",
             { class: "flex wrap gap-5" },
-            wide(
-              "place",
-              "repeat",
-              "Place",
-              () => {
-                editing.repeatId.value = id;
-                studio.tool.value = placeTool;
-              },
-              { "aria-pressed": String(studio.tool.value === placeTool), title: "Then drag in the chart (P)" },
-            ),
-            wide("fill", "fill", selection.value ? "Fill selection" : "Fill chart", () => {
-              const box = filledBox(repeat, selection.value ?? chart.grid.box);
-              if (!box) {
-                studio.tell(`${name} does not fit: it is a ${repeat.rule}.`);
-                return;
-              }
-              const place = {
-                row: box.row0,
-                column: box.column0,
-                rows: box.row1 - box.row0,
-                columns: box.column1 - box.column0,
-              };
-              lay(repeat, withPlace(repeat, place), "Place a repeat");
+            textButton("repeat", "Place", begin, {
+              id: `${id}-place`,
+              "aria-pressed": String(studio.tool.value === placeRepeat),
+              title: "Then drag in the chart (P)",
             }),
+            textButton("fill", selection.value ? "Repeat over the selection" : "Repeat over the chart", fill, { id: `${id}-fill` }),
           ),
           placements.length
             ? h("ul", { class: "plain-list" }, ...placements.map((place, at) => copy(repeat, place, at)))
@@ -160,32 +147,27 @@ export function create(studio, context) {
       lay(repeat, placements.with(at, next), "Resize a repeat");
     };
     /** @param {"rows" | "columns"} axis @param {string} word */
-    const stepper = (axis, word) =>
-      h(
+    const stepper = (axis, word) => {
+      /** @param {"less" | "more"} which @param {number} by @param {string} sign */
+      const step = (which, by, sign) =>
+        h(
+          "button",
+          {
+            class: "step bare",
+            id: `${id}-${at}-${axis}-${which}`,
+            "aria-label": `One motif ${which} ${word}`,
+            onclick: () => resize(axis, by),
+          },
+          sign,
+        );
+      return h(
         "span",
         { class: "stepper inline", role: "group", "aria-label": `Motifs ${word}` },
-        h(
-          "button",
-          {
-            class: "step bare",
-            id: `${id}-${at}-${axis}-less`,
-            "aria-label": `One motif less ${word}`,
-            onclick: () => resize(axis, -1),
-          },
-          "−",
-        ),
+        step("less", -1, "−"),
         h("span", { class: "figures" }, Math.floor(place[axis] / motif[axis])),
-        h(
-          "button",
-          {
-            class: "step bare",
-            id: `${id}-${at}-${axis}-more`,
-            "aria-label": `One motif more ${word}`,
-            onclick: () => resize(axis, 1),
-          },
-          "+",
-        ),
+        step("more", 1, "+"),
       );
+    };
     return h(
       "li",
       { class: "copy line muted" },
@@ -245,5 +227,10 @@ export function create(studio, context) {
  */
 function fitted(repeat, place) {
   const box = filledBox(repeat, boxOf(place));
-  return box ? { ...place, rows: box.row1 - box.row0, columns: box.column1 - box.column0 } : place;
+  return box ? placed(box) : place;
+}
+
+/** A box as a place of a repeat. @param {Box} box @returns {PlacementItem} */
+function placed({ row0, column0, row1, column1 }) {
+  return { row: row0, column: column0, rows: row1 - row0, columns: column1 - column0 };
 }

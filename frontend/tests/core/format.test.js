@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { figure, percent, percentRange, percents, range } from "../../core/format.js";
+import { figure, percent, percentRange, percents, range, spread } from "../../core/format.js";
 
 test("three figures, with the zeros that count", () => {
   assert.equal(figure(0.223147), "0.223");
@@ -27,4 +27,10 @@ test("shares in percent add up, and what is there is never nothing", () => {
   assert.deepEqual(percents([0.525, 0.475]), ["53 %", "47 %"]);
   assert.deepEqual(percents([1 / 3, 1 / 3, 1 / 3]), ["34 %", "33 %", "33 %"]);
   assert.deepEqual(percents([0.998, 0.002, 0, 0]), ["100 %", "< 1 %", "0 %", "0 %"]);
+});
+
+test("an interval that is too wide is said in words", () => {
+  assert.deepEqual(spread([100, 300]), { text: "100 – 300", wide: false });
+  assert.deepEqual(spread([24, 1656]), { text: "8× less or more", wide: true });
+  assert.deepEqual(spread([0, 2]), { text: "0 – 2.0", wide: false });
 });

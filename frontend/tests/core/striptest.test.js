@@ -1,28 +1,33 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { firstLock, table } from "../../core/striptest.js";
+import { lockUpInWords, table } from "../../core/striptest.js";
 
+/** @type {Parameters<typeof lockUpInWords>[0]} */
 const TEST = {
-  strain: [0.1, 0.2, 0.3],
-  force_n: [1, 2, 4],
-  stitch_fields: {
-    utilisation: [
-      [0.2, 0.3],
-      [0.5, 0.75],
-      [0.7, 1.15],
-    ],
-  },
+  strain: [0.5, 1.2],
+  force_n: [10, 200],
+  force_interval_n: [
+    [8, 24],
+    [12, 1656],
+  ],
+  first_taut: { strain: 1.11, force_n: 148 },
+  tightest: 0.97,
 };
-/** @param {number | null} value @param {number} expected */
-const near = (value, expected) =>
-  assert.ok(value !== null && Math.abs(value - expected) < 1e-12, `${value}, not ${expected}`);
 
-test("the first stitch locks at a strain and a force, if one does", () => {
-  const lock = firstLock(TEST);
-  near(lock && lock.strain, 0.25);
-  near(lock && lock.force, 3);
-  assert.equal(firstLock({ ...TEST, stitch_fields: { utilisation: [[0.2], [0.4], [0.9]] } }), null);
-  assert.equal(firstLock({ strain: [0.1], force_n: [1] }), null);
+test("one sentence says where the first stitch runs out of stretch, and how well the force is known", () => {
+  assert.equal(
+    lockUpInWords(TEST),
+    "The tightest stitches run out of stretch at 111 % (148 N, very uncertain: 8× less or more).",
+  );
+  const taut = { strain: 0.4, force_n: 8 };
+  assert.equal(
+    lockUpInWords({ ...TEST, first_taut: taut }),
+    "The tightest stitches run out of stretch at 40 % (8.00 N).",
+  );
+  assert.equal(
+    lockUpInWords({ ...TEST, first_taut: null, tightest: 0.82 }),
+    "No stitch runs out of stretch: the tightest has used 82 % of it.",
+  );
 });
 
 test("a test is a table of its steps with their intervals", () => {

@@ -182,7 +182,7 @@ class QuarterGrid:
 
     @property
     def at_rest_as_laid_out(self) -> QuarterGrid:
-        """The same grid with its laid-out sizes as natural sizes, so that no gauges misfit."""
+        """Take the laid-out sizes as natural sizes, so that no gauges misfit."""
         plain = QuarterGrid.between(self.column_lines, self.row_lines, self.law_of_cell)
         return replace(plain, cloth=self.cloth)
 

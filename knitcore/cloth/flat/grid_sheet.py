@@ -108,7 +108,7 @@ class Sheet:
         return Sheet(grid, self.laws, self.model, self._log_sd)
 
     def with_model(self, model: SheetModel) -> Sheet:
-        """The same grid and laws (symmetric already) under another model."""
+        """Put the grid and its laws (symmetric already) under another model."""
         return Sheet(self.grid, self.laws, model, self._log_sd)
 
     @cached_property
@@ -120,7 +120,7 @@ class Sheet:
 
     @property
     def at_rest(self) -> Sheet:
-        """The same sheet without misfit of gauges: stable as laid out."""
+        """Take away the misfit of gauges: the sheet is stable as laid out."""
         return self.with_grid(self.grid.at_rest_as_laid_out)
 
     @property

@@ -22,6 +22,9 @@ from knitcore.cloth.flat.fields import (
 from knitcore.cloth.flat.grid_sheet import Sheet, State
 from knitcore.law.stiffening import EXTENSION_START
 
+TAUT = 0.95
+"""Share of its stretch from which cloth counts as taut."""
+
 
 @dataclass(frozen=True, repr=False)
 class LockUp(Result):
@@ -140,8 +143,12 @@ class SwatchTest(Result):
         """True if some triangle of a quarter cell is past 98 % of its lock-up, where ``full`` only
         extrapolates its law: force and strains are then not physical.
         """
+        return bool(self.tightest(step) > EXTENSION_START + 1e-6)
+
+    def tightest(self, step: int = -1) -> float:
+        """Largest alpha * strain of any triangle of a quarter cell after a load step."""
         used = triangle_utilisation(self.sheet, cell_strains(self.sheet, self.states[step]))
-        return bool(used.max() > EXTENSION_START + 1e-6)
+        return float(used.max())
 
     @property
     def nearest_lock_up(self) -> LockUp | None:
@@ -205,6 +212,24 @@ class StripTest(SwatchTest):
     waist_strain: Array
     width_mm: float
     length_mm: float
+
+    @property
+    def first_taut(self) -> tuple[float, float] | None:
+        """Strain and force in N at which the tightest cloth has used 95 % of its stretch.
+
+        Between steps the strain is linear in the share that is used and the force exponential,
+        since it diverges at the lock-up. None where no cloth gets there.
+        """
+        used, strain, force = 0.0, 0.0, 0.0
+        for step in range(self.steps):
+            before = used, strain, force
+            used, strain, force = self.tightest(step), self.strain[step], self.force_n[step]
+            if used >= TAUT:
+                share = (TAUT - before[0]) / (used - before[0])
+                at = before[1] + share * (strain - before[1])
+                there = before[2] ** (1 - share) * force**share if step else share * force
+                return float(at), float(there)
+        return None
 
     def __repr__(self) -> str:
         size = f"{self.width_mm:.3g} x {self.length_mm:.3g} mm"

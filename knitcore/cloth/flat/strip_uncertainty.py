@@ -14,7 +14,7 @@ parameters add up. The parameters are
   as uncertain as the curve at the test's stress;
 - each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
 - the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
-- the model's own error, where fabrics are mixed: for the force that of the chart's answer
+- the model's own error, where fabrics are mixed: for the force that of the chart's prediction
   (:mod:`knitcore.prediction.quarter_laws`), for strains one for each fabric separately.
 
 The lock-up (1 / alpha) is itself uncertain, and its utilisation with it.
@@ -203,7 +203,7 @@ class StripSpread:
         )
 
     def _force_model_sd(self, step: int) -> float:
-        """The model's own error of the log force: by the chart's answer, at the step's stress."""
+        """The model's own error of the log force: by the prediction, at the step's stress."""
         spread = self.test.sheet.stress_log_sd
         if spread is None:
             return self._model_sd
@@ -285,7 +285,7 @@ def _codes(sheet: Sheet) -> list[int]:
 
 
 def _record(material: Material, code: int) -> FabricRecord:
-    """The pure fabric whose law, perhaps fitted to an answer, has this code."""
+    """The pure fabric whose law, perhaps fitted to a prediction, has this code."""
     return material.record(PHASES[code % len(PHASES)])
 
 

@@ -2,7 +2,7 @@
 
 A sheet of stitches (:mod:`knitcore.cloth.space.stitch_sheet`) is for pieces whose stitches differ.
 Tests of a fabric are made on hundreds of equal repeats; here a rectangle of the sheet stands for
-several stitches. Its size and stiffness come from the answer, its bending from the yarn level.
+several stitches. Its size and stiffness come from the prediction, its bending from the yarn level.
 """
 
 from __future__ import annotations
@@ -81,11 +81,11 @@ class EvenCloth:
         return 0.5 * self.thickness_mm * max(map(abs, self.curvature_per_mm)) >= ROLLS_FROM
 
     def flat(self) -> EvenCloth:
-        """The same cloth without its curvature at rest."""
+        """The cloth without its curvature at rest."""
         return replace(self, curvature_per_mm=(0.0, 0.0))
 
     def turned(self) -> EvenCloth:
-        """The same cloth with rows and columns exchanged."""
+        """The cloth with rows and columns exchanged."""
         c11, c22, c12, shear = self.membrane_n_per_mm
         return replace(
             self,
@@ -146,8 +146,8 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
         If it does not relax at the yarn level, or folds by itself.
     """
     repeat = chart.repeat()
-    answer = predict(repeat, material)
-    course, wale = answer.along(Direction.COURSE), answer.along(Direction.WALE)
+    prediction = predict(repeat, material)
+    course, wale = prediction.along(Direction.COURSE), prediction.along(Direction.WALE)
     poisson = np.sqrt(max(course.poisson * wale.poisson, 0.0)).clip(max=_MAX_POISSON)
     stiff = [along.modulus_n_per_mm / (1.0 - poisson**2) for along in (course, wale)]
     coupling = float(poisson) * math.sqrt(stiff[0] * stiff[1])
@@ -156,7 +156,7 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     weight = float(stitch_weights_n(repeat, material, linear_density_g_per_m, periodic=True).mean())
     return EvenCloth(
         stitch_mm=stitch,
-        membrane_n_per_mm=(*stiff, coupling, answer.shear_modulus_n_per_mm),
+        membrane_n_per_mm=(*stiff, coupling, prediction.shear_modulus_n_per_mm),
         rigidity_n_mm=rigidity,
         twist_n_mm=TWIST * math.sqrt(rigidity[0] * rigidity[1]),
         curvature_per_mm=curvature,

@@ -1,4 +1,4 @@
-"""Turn and size of the stitches of a sheet at rest, so that folded cloth is as wide as the answer.
+"""Turn and size of the stitches of a sheet at rest, so that folded cloth is as wide as predicted.
 
 Where nothing opposes it, stockinette turns by more than a radian from stitch to stitch. Between
 opposite folds it cannot: a row of n like stitches between others turns only until the cloth is as
@@ -23,9 +23,9 @@ from knitcore.materials import Material
 from knitcore.prediction.neighbourhood import sizes_and_folds
 
 MIN_FOLD = 0.2
-"""Least share of its length by which a row of opposed runs folds if nothing else holds it. The
-answer gives baskets about the size of flat cloth, but they pillow, about as much as baskets that
-are relaxed at the yarn level."""
+"""Least share of its length by which a row of opposed runs folds if nothing else holds it. Baskets
+are predicted about as large as flat cloth, but they pillow, about as much as baskets that are
+relaxed at the yarn level."""
 NO_STITCH = 2
 """Mark for a place without a stitch among the sides to which stitches turn."""
 

@@ -1,7 +1,7 @@
 """A piece closed to a tube and worn on a limb whose girth changes along its length.
 
 Around the limb a line of stitches (a row, or a column) is as long as the limb's girth there, or as
-at rest where that is more. Along the limb nothing holds it, so that it shortens as the answer says
+at rest where that is more. Along the limb nothing holds it, so that it shortens as predicted
 of a strip free to narrow (:mod:`knitcore.garment.limb`). Sizes at rest are those of every stitch's
 surroundings, and so is the law (:meth:`knitcore.prediction.patches.Patches.lines`).
 """

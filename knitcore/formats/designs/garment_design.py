@@ -47,7 +47,7 @@ def _notes(plan: GarmentPlan) -> Iterator[str]:
     if plan.around is Direction.COURSE:
         yield "Knit from the bottom row up; the rows run around the limb."
     else:
-        yield "Knit from the bottom row up; the rows run along the limb, the columns around it."
+        yield "Knit sideways: the rows run along the limb, so the knitting closes around it."
     gauges = []
     for fabric in dict.fromkeys(plan.fabrics):
         stitches, rows = plan.gauges[fabric].counts()

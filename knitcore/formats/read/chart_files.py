@@ -9,6 +9,7 @@ from pathlib import Path
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import read_design
+from knitcore.formats.read.knitout_machine import looks_like_program
 from knitcore.formats.read.text_chart import read_text_chart
 from knitcore.formats.read.written_reader import looks_written, read_noted_rows
 from knitcore.garment.piece import Piece
@@ -132,7 +133,7 @@ def _checked(file: Path) -> Path:
 
 def _read_text(file: Path) -> PieceInFile:
     text, notes = _text(file)
-    if text.startswith(";!knitout"):
+    if looks_like_program(text):
         return _read_knitout(file)
     if text.lstrip().startswith("{"):
         return _read_design(file)

@@ -18,7 +18,7 @@ from itertools import pairwise
 
 from knitcore.base.errors import InputError
 from knitcore.formats.read.knitout_machine import Loop
-from knitcore.formats.read.knitout_parts import is_chained, named
+from knitcore.formats.read.knitout_parts import named, stitches_of
 from knitcore.formats.write.knitout import TAG_STITCHES
 
 MOST_LEFT_OUT = 0.25
@@ -108,7 +108,7 @@ Course = list[Pass]
 
 
 def _last_knit(loops: Sequence[Loop]) -> int:
-    return next((o.number for o in reversed(loops) if o.parents and not is_chained(o)), -1)
+    return stitches_of(loops)[-1].number
 
 
 def _passes(loops: Sequence[Loop], stitches: Sequence[Loop]) -> list[Pass | None]:
@@ -318,7 +318,7 @@ class _Reading:
         self._courses, self._wale = courses, wale
         self._by_wale: list[dict[int, Loop]] = []
         self._row: dict[Loop, int] = {}
-        self._told_colours = False
+        self._colours_noted = False
         for row, course in enumerate(courses):
             self._by_wale.append({wale(o): o for run in course for o in run})
             self._row.update((o, row) for run in course for o in run)
@@ -409,12 +409,12 @@ class _Reading:
             raise self._refused(row, twice[1], StitchKind.TWO_BEDS)
 
     def _tell_colours(self, row: int) -> None:
-        if not self._told_colours:
+        if not self._colours_noted:
             self.notes.append(
                 f"From course {row + 1} on yarns float behind each other's stitches (stranded "
                 "colours); the floats are left out."
             )
-        self._told_colours = True
+        self._colours_noted = True
 
     def _gaps(self, row: int) -> Iterator[int]:
         course = self._by_wale[row]

@@ -21,6 +21,7 @@ _HEADERS = {"machine", "gauge", "carriers", "position", "width"}
 _MACHINES = {"swg091n2", "swg061n2", "swgn2", "kniterate"}
 _NEEDLE = re.compile(r"([fb]s?)(-?\d{1,6})")
 _COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
+_PROGRAM = re.compile(r"^[ \t]*(?:;!knitout|(?:knit|tuck)[ \t]+[+-][ \t]+[fb]s?-?\d)", re.MULTILINE)
 
 
 @dataclass(eq=False, slots=True, repr=False)
@@ -78,6 +79,11 @@ class Knitting:
     loops: tuple[Loop, ...]
     colours: dict[str, str]
     notes: tuple[str, ...]
+
+
+def looks_like_program(text: str) -> bool:
+    """Say whether a text is a program, whatever its file is called."""
+    return _PROGRAM.search(text) is not None
 
 
 def knitting_of(program: str) -> Knitting:

@@ -10,9 +10,10 @@ smaller are stripes, and so is what lies between two sections of the piece.
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Literal
 
 from knitcore.base.errors import InputError
 from knitcore.formats.read.knitout_machine import Loop
@@ -45,29 +46,71 @@ class _Section:
         """Number of stitches, more or less by what they are."""
         return self.factor * len(self.stitches)
 
-    def told(self) -> str:
+    def in_words(self) -> str:
         lines = f"lines {self.stitches[0].line} to {self.stitches[-1].line}"
         number = len(self.stitches)
         return f"{number} {'stitch' if number == 1 else 'stitches'}, {lines}"
 
 
-def is_chained(loop: Loop) -> bool:
-    """Say whether a loop is a link of a bind-off chain, rather than a stitch."""
-    before, after = loop.before, loop.after
+def bound_off_by(loops: Iterable[Loop]) -> set[Loop]:
+    """Loops that bind off: the links of each chain, and the tag that is knitted onto its last one.
+
+    A link is pulled through the one before it, which was moved to its needle. The last link of a
+    chain is a stitch if its yarn knits on along the course.
+    """
+    links: set[Loop] = set()
+    for loop in loops:
+        if _is_linked(loop) or _begins_chain(loop):
+            links.add(loop)
+        elif (before := _neighbour(loop, "before")) in links and before in loop.parents:
+            tag = [loop, *_following(loop)]
+            if len({(o.bed, o.needle) for o in tag}) == 1:
+                links.update(tag)
+    return links
+
+
+def _is_linked(loop: Loop) -> bool:
+    before, after = _neighbour(loop, "before"), _neighbour(loop, "after")
     return (
         before is not None
         and after is not None
         and before in loop.parents
         and before.needle != loop.needle
         and loop.child is after
-        and after.number == loop.number + 1
         and after.needle != loop.needle
     )
 
 
+def _begins_chain(loop: Loop) -> bool:
+    """Say whether a loop is the first link: knitted where the yarn turns, and moved at once."""
+    before, after = loop.before, _neighbour(loop, "after")
+    return (
+        after is not None
+        and loop.child is after
+        and after.needle != loop.needle
+        and after.rightwards == loop.rightwards
+        and bool(loop.parents)
+        and (before is None or (before in loop.parents and before.needle == loop.needle))
+    )
+
+
+def _neighbour(loop: Loop, side: Literal["before", "after"]) -> Loop | None:
+    """The next stitch on the strand: some bind-offs tuck between two links."""
+    beside: Loop | None = getattr(loop, side)
+    while beside is not None and beside.kind == "tuck":
+        beside = getattr(beside, side)
+    return beside
+
+
+def _following(loop: Loop) -> Iterator[Loop]:
+    while loop.after is not None:
+        loop = loop.after
+        yield loop
+
+
 def part_knitted_by(loops: Sequence[Loop], carriers: Collection[Carriers]) -> Part:
     """The stitches of carriers that the program itself names; others are waste."""
-    stitches = tuple(loop for loop in _stitches(loops) if loop.carriers in carriers)
+    stitches = tuple(loop for loop in stitches_of(loops) if loop.carriers in carriers)
     others = dict.fromkeys(loop.carriers for loop in loops if loop.carriers not in carriers)
     return Part(
         stitches, tuple(f"Yarn of carrier {named(other)} counts as waste yarn." for other in others)
@@ -82,14 +125,10 @@ def main_part(loops: Sequence[Loop]) -> Part:
     InputError
         If it knits two pieces of similar size that are not joined.
     """
-    knitted = _stitches(loops)
-    number = Counter(loop.strand for loop in knitted)
-    # A strand brought in to bind off begins its chain with what looks like a stitch.
-    knitted = [o for o in knitted if number[o.strand] > 1 or not _begins_chain(o)]
-    stitches, notes = _joined(knitted, loops)
+    stitches, notes = _joined(stitches_of(loops), loops)
     if not stitches:
         return Part((), ())
-    bound_off = {parent for loop in loops if is_chained(loop) for parent in loop.parents}
+    bound_off = {parent for loop in bound_off_by(loops) for parent in loop.parents}
     sections = _sections(stitches, bound_off)
     first, last = _span_of_piece(sections, bound_off)
     inside = sections[first : last + 1]
@@ -103,7 +142,7 @@ def main_part(loops: Sequence[Loop]) -> Part:
                 else f"what {name} knits after the piece hangs from it"
             )
             left_out = [section for section in side if section.carriers == carriers]
-            sizes = "; ".join(section.told() for section in left_out)
+            sizes = "; ".join(section.in_words() for section in left_out)
             alike = max(section.factor for section in left_out) == likeliest
             notes.append(
                 f"Waste{', by its size alone' if alike else ''}: {relation} ({sizes}). It is left "
@@ -118,12 +157,10 @@ def named(carriers: Carriers) -> str:
     return " and ".join(carriers)
 
 
-def _stitches(loops: Iterable[Loop]) -> list[Loop]:
-    return [loop for loop in loops if loop.parents and not is_chained(loop)]
-
-
-def _begins_chain(loop: Loop) -> bool:
-    return loop.child is not None and loop.child is loop.after
+def stitches_of(loops: Iterable[Loop]) -> list[Loop]:
+    """Loops that were pulled through others, without bind-offs."""
+    links = bound_off_by(loops)
+    return [loop for loop in loops if loop.parents and loop not in links]
 
 
 def _joined(stitches: list[Loop], loops: Sequence[Loop]) -> tuple[list[Loop], list[str]]:
@@ -176,9 +213,7 @@ def _sections(stitches: Sequence[Loop], bound_off: Collection[Loop]) -> list[_Se
             sections.append(_Section(turn.carriers, []))
         sections[-1].stitches += turn.stitches
         end = max(end, last_of[index])
-    inside = _without_surroundings(sections)
-    for place, section in enumerate(sections):
-        section.factor = _factor(section.stitches, bound_off) if place in inside else 0.0
+    _weigh(sections, bound_off)
     return sections
 
 
@@ -204,21 +239,46 @@ def _ends_of_turns(carriers: Sequence[Carriers]) -> list[int]:
     ]
 
 
-def _factor(stitches: Sequence[Loop], bound_off: Collection[Loop]) -> float:
+def _weigh(sections: Sequence[_Section], bound_off: Collection[Loop]) -> None:
+    """Give each section its factor: 0 outside what surrounds the piece, and for yarn from there."""
+    inside = _without_surroundings(sections, bound_off)
+    outer = {section.carriers for section in sections[: inside.start]}
+    outer -= {sections[inside.start].carriers}
+    sizes = [len(sections[place].stitches) for place in inside]
+    are_stripes = (
+        len(sizes) > 2
+        and min(sizes) >= CLEARLY_SMALLER * max(sizes)
+        and all(_has_two_beds(sections[place].stitches) for place in inside)
+    )
+    for place, section in enumerate(sections):
+        is_inside = place in inside and section.carriers not in outer
+        section.factor = _factor(section.stitches, bound_off) if is_inside else 0.0
+        if are_stripes and section.factor == 1.0:
+            section.factor = PATTERNED
+
+
+def _factor(
+    stitches: Sequence[Loop], bound_off: Collection[Loop], *, start_counts: bool = True
+) -> float:
     """How much a stitch of a section counts: by its edge, shape or pattern, or by its two beds."""
     if is_on_two_beds(stitches):
         return TWO_BEDS
     inside = set(stitches)
     links = [(loop, parent) for loop in stitches for parent in loop.parents]
-    begun = all(parent in inside or not parent.parents for _, parent in links)
+    begun = start_counts and all(parent in inside or not parent.parents for _, parent in links)
+    has_two_beds = _has_two_beds(stitches)
     changed = any(
-        (parent.parents and parent.bed != loop.bed)
+        (parent.parents and parent.bed != loop.bed and has_two_beds)
         or (parent in inside and parent.needle != loop.needle)
         for loop, parent in links
     )
     ended = any(loop in bound_off for loop in stitches)
-    patterned = changed or ended or (begun and len({loop.bed for loop in stitches}) > 1)
+    patterned = changed or ended or (begun and has_two_beds)
     return PATTERNED if patterned else 1.0
+
+
+def _has_two_beds(stitches: Iterable[Loop]) -> bool:
+    return len({loop.bed for loop in stitches}) > 1
 
 
 def _is_cast_on(stitches: Sequence[Loop]) -> bool:
@@ -247,15 +307,51 @@ def is_on_two_beds(stitches: Sequence[Loop]) -> bool:
     return over > alone
 
 
-def _without_surroundings(sections: Sequence[_Section]) -> range:
-    """Places of sections between two courses of a draw thread, or from the last cast-on on."""
+def _without_surroundings(sections: Sequence[_Section], bound_off: Collection[Loop]) -> range:
+    """Places of sections between courses of a draw thread, or from the last cast-on on."""
     width = len({loop.needle for section in sections for loop in section.stitches})
     threads = [i for i, section in enumerate(sections) if _is_course(section.stitches, width)]
     for begin, end in pairwise(threads):
         if end > begin + 1 and sections[begin].carriers == sections[end].carriers:
             return range(begin + 1, end)
-    begun = (i for i, section in enumerate(sections) if _is_cast_on(section.stitches))
-    return range(max(begun, default=0), len(sections))
+    if len(threads) == 1 and 0 < (thread := threads[0]) < len(sections) - 1:
+        around = {sections[place].carriers for place in (thread - 1, thread, thread + 1)}
+        if len(around) == 3:
+            return _side_of_thread(sections, thread, bound_off)
+    begun = max((i for i, s in enumerate(sections) if _is_cast_on(s.stitches)), default=0)
+    while begun < len(sections) - 1 and is_on_two_beds(sections[begun].stitches):
+        begun += 1
+    return range(begun, len(sections))
+
+
+def _side_of_thread(
+    sections: Sequence[_Section], thread: int, bound_off: Collection[Loop]
+) -> range:
+    """Places of the piece before or after the only course of a draw thread.
+
+    Raises
+    ------
+    InputError
+        If more is knitted before it than after it, and neither has a pattern or an edge.
+    """
+    sides = range(thread), range(thread + 1, len(sections))
+    before, after = (
+        max(_factor(sections[i].stitches, bound_off, start_counts=False) for i in side)
+        for side in sides
+    )
+    sizes = [sum(len(sections[i].stitches) for i in side) for side in sides]
+    if after > before or (after == before and sizes[1] >= sizes[0]):
+        return sides[1]
+    if before > after:
+        return sides[0]
+    first, second = (sections[thread + step].carriers for step in (-1, 1))
+    raise InputError(
+        "knitout",
+        f"carrier {named(sections[thread].carriers)} knits one course (line "
+        f"{sections[thread].stitches[0].line}), as a draw thread does; the piece may be what "
+        f"carrier {named(first)} knits before it or what carrier {named(second)} knits after it.",
+        f"Name the yarn of the piece by a line such as: ; carrier {second[0]} knits #efe9dd wool",
+    )
 
 
 def _span_of_piece(sections: Sequence[_Section], bound_off: Collection[Loop]) -> tuple[int, int]:
@@ -270,4 +366,11 @@ def _span_of_piece(sections: Sequence[_Section], bound_off: Collection[Loop]) ->
         first -= 1
     while last + 1 < len(sections) and sections[last + 1].weight >= enough:
         last += 1
+    # Plain courses of one yarn before and after a patterned piece are waste, whatever their number.
+    if (
+        first == 0 < last == len(sections) - 1
+        and sections[0].carriers == sections[-1].carriers
+        and sections[0].factor == sections[-1].factor < sections[main].factor
+    ):
+        return 1, last - 1
     return first, last

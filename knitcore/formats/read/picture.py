@@ -25,6 +25,12 @@ MAX_SIDE = 1600
 """Pixels along a side to which larger pictures are reduced."""
 MIN_CELL_PIXELS = 8
 """Least side of a cell that is taken as a stitch; smaller blocks are stitches of a pixel each."""
+MAX_UNTOLD = 64
+"""Side up to which nobody asks whether a pixel is a stitch."""
+_LINE = 0.75
+"""Part of a picture's side that a line of a grid crosses."""
+_WHOLE = 0.1
+"""Part of a cell by which a border may miss whole cells."""
 _FORMATS = ["PNG", "JPEG", "GIF", "BMP", "TIFF", "WEBP"]
 _LUMINANCE = np.array([0.299, 0.587, 0.114])
 _CLEAR = 0.8
@@ -51,6 +57,7 @@ def read_picture(file: Path, scale: PictureScale | None = None) -> tuple[Piece, 
                 return _own(np.asarray(image)[::-1].astype(np.intp), text, file.name), ()
             notes = list(_lost(image, has_yarns=isinstance(text, str)))
             is_own = image.mode == "1" or isinstance(text, str)
+            is_drawn = image.format == "JPEG"
             colours, is_clear = _colours(ImageOps.exif_transpose(image))
     except (Image.DecompressionBombError, Image.DecompressionBombWarning):
         raise _too_large(f"{file.name} has more pixels than any chart has stitches.") from None
@@ -63,7 +70,11 @@ def read_picture(file: Path, scale: PictureScale | None = None) -> tuple[Piece, 
         ) from None
     if is_clear:
         notes.append("Transparent pixels are read as knits; an outline is not taken from them.")
-    columns, rows, size_notes = _size(colours, scale or PictureScale(), is_own=is_own)
+    if not is_own and (scale is None or (scale.columns is None and scale.rows is None)):
+        colours, border_notes = _without_border(colours)
+        notes += border_notes
+    scale = scale or PictureScale()
+    columns, rows, size_notes = _size(colours, scale, is_own=is_own, is_drawn=is_drawn)
     purl, tone_notes = _purls(_cells(colours, rows, columns))
     chart = StitchChart(purl[::-1])
     return Piece.plain(chart), (*notes, *size_notes, *tone_notes)
@@ -113,12 +124,14 @@ def _colours(image: Image.Image) -> tuple[Array, bool]:
     return np.asarray(flat.convert("RGB").reduce(factor), dtype=np.float64), is_part_clear
 
 
-def _size(colours: Array, scale: PictureScale, *, is_own: bool) -> tuple[int, int, list[str]]:
+def _size(
+    colours: Array, scale: PictureScale, *, is_own: bool, is_drawn: bool
+) -> tuple[int, int, list[str]]:
     """Columns and rows of the chart, and notes on them."""
     height, width = colours.shape[:2]
     columns, rows = scale.columns, scale.rows
     if columns is None and rows is None:
-        across, down, notes = _found_size(colours, is_own=is_own)
+        across, down, notes = _size_shown(colours, is_own=is_own, is_drawn=is_drawn)
         if scale.aspect is not Aspect.AS_KNITTED:
             check_chart_size(down, across)
             return across, down, notes
@@ -154,8 +167,14 @@ def _size(colours: Array, scale: PictureScale, *, is_own: bool) -> tuple[int, in
     return columns, rows, notes
 
 
-def _found_size(colours: Array, *, is_own: bool) -> tuple[int, int, list[str]]:
-    """Columns and rows that the picture itself shows."""
+def _size_shown(colours: Array, *, is_own: bool, is_drawn: bool) -> tuple[int, int, list[str]]:
+    """Columns and rows that the picture itself shows.
+
+    Parameters
+    ----------
+    is_own : of this library, or black and white: a pixel is a stitch.
+    is_drawn : a photo or a drawing, whose pixels are not exact.
+    """
     height, width = colours.shape[:2]
     is_small = max(height, width) <= MAX_STITCHES_PER_SIDE
     if is_own and is_small:
@@ -163,45 +182,117 @@ def _found_size(colours: Array, *, is_own: bool) -> tuple[int, int, list[str]]:
     columns, rows = (_cells_along(_changes(colours, axis)) for axis in (1, 0))
     if columns and rows:
         wide, high = width / columns, height / rows
+        longer = max(wide, high) / min(wide, high)
+        if longer > 1.5 and abs(longer - round(longer)) < _WHOLE:  # blocks of stitches
+            columns, rows = (round(side / min(wide, high)) for side in (width, height))
         if min(wide, high) >= MIN_CELL_PIXELS:
             note = (
                 f"A grid of {columns} x {rows} cells is seen, each a stitch; give columns to read "
                 "it otherwise."
             )
             return columns, rows, [note]
-    if is_small:
-        return width, height, []
+    if is_small and (not is_drawn or max(height, width) <= MAX_UNTOLD):
+        note = f"Each of {width} x {height} pixels is a stitch; give columns if it is a drawing."
+        return width, height, [note] * (max(height, width) > MAX_UNTOLD)
+    why = "a photo has no pixel for a stitch" if is_small else "it has more pixels than a chart has"
     raise InputError(
         "columns",
-        "no grid is seen in the picture, and it has more pixels than a chart has stitches.",
-        "Give columns, the width of the chart in stitches.",
+        f"no grid is seen in the picture, and {why}.",
+        "Cut it to its cells, or give columns, the width of the chart in stitches.",
     )
 
 
 def _changes(colours: Array, axis: int) -> Array:
-    """How much all pixels differ from the next along an axis; small differences are noise."""
+    """How much all pixels differ from the next along an axis; small differences are noise.
+
+    Where lines are drawn across the whole picture, only they count: not the signs in its cells.
+    """
     changes = np.abs(np.diff(colours, axis=axis)).sum(axis=2)
     changes[changes < 0.2 * changes.max(initial=0)] = 0
-    return np.asarray(changes.sum(axis=1 - axis))
+    across = (changes > 0).mean(axis=1 - axis)
+    total = np.asarray(changes.sum(axis=1 - axis))
+    is_line = across > 0.5 * across.max(initial=0)
+    if across.max(initial=0) > _LINE:
+        lines = np.where(is_line, total, 0.0)
+        count = _cells_along(lines)
+        if count and is_line.sum() > 1.5 * count:  # a line has two sides
+            return lines
+    return total
+
+
+def _without_border(colours: Array) -> tuple[Array, list[str]]:
+    """A picture without what is around a grid, and a note on it.
+
+    It ends at the frame around the cells, beyond which there may be numbers; without a frame, where
+    the plain border is not as wide as whole cells.
+    """
+    for is_framed in (True, False):
+        (top, bottom), (left, right) = spans = [_span(colours, axis, is_framed) for axis in (0, 1)]
+        inner = colours[top:bottom, left:right]
+        margins = (top, colours.shape[0] - bottom, left, colours.shape[1] - right)
+        counts = [_cells_along(_changes(inner, axis)) if inner.size else 0 for axis in (0, 1)]
+        cell = [(b - a) / max(count, 1) for (a, b), count in zip(spans, counts, strict=True)]
+        if not all(counts) or max(margins) < 2 or min(cell) < MIN_CELL_PIXELS:
+            continue
+        edges = inner[0], inner[-1], inner[:, 0], inner[:, -1]
+        if is_framed and all(_is_plain(edge) for edge in edges):
+            return inner, ["What is around the frame of the grid is left out."]
+        cells = [margin / cell[side // 2] for side, margin in enumerate(margins)]
+        is_whole = all(abs(number - round(number)) < _WHOLE for number in cells)
+        if not is_framed and not is_whole and max(colours.shape) > MAX_UNTOLD:
+            return inner, ["The plain border is left out, with any plain rows beside it."]
+    return colours, []
+
+
+def _is_plain(line: Array) -> bool:
+    """Say whether a line of pixels has one colour, but for its corners."""
+    away = np.abs(line - np.median(line, axis=0)).max(axis=1)
+    return bool((away < _NOISE).mean() > _LINE)
+
+
+def _span(colours: Array, axis: int, is_line: bool) -> tuple[int, int]:
+    """First and last change along an axis, of all or of those that go on across the picture."""
+    changes = np.abs(np.diff(colours, axis=axis)).sum(axis=2)
+    across = (changes > 0.2 * changes.max(initial=0)).mean(axis=1 - axis)
+    at = np.flatnonzero(across > (0.5 * across.max(initial=0) if is_line else 0))
+    return (int(at[0]) + 1, int(at[-1]) + 1) if at.size else (0, 0)
 
 
 def _cells_along(changes: Array) -> int:
     """The smallest number of equal cells whose borders explain the changes along an axis, or 0.
 
-    ``changes`` are those between each pixel and the next.
+    ``changes`` are those between each pixel and the next. A few may be noise, unless more cells
+    explain them, too.
+    """
+    count = _smallest_count(changes, 1, 0.95)
+    return (count and _smallest_count(changes, count, 0.995)) or count
+
+
+def _smallest_count(changes: Array, step: int, share: float) -> int:
+    """The smallest multiple of a number of cells that explains a share of the changes, or 0.
+
+    The picture may be longer than its cells by a line, which is cut off in part at its beginning.
     """
     length = len(changes) + 1
     total = float(changes.sum())
     if total == 0:
         return 0
     sums = np.concatenate([[0.0, 0.0], np.cumsum(changes)])  # before pixel 0 … length
-    for count in range(2, min(MAX_STITCHES_PER_SIDE, length // 3) + 1):
+    for count in range(max(step, 2), min(MAX_STITCHES_PER_SIDE, length // 3) + 1, step):
         reach = max(1, round(length / count * 0.08))
-        at = np.floor(np.arange(count + 1) * length / count + 0.5).astype(np.intp)
-        first, last = np.maximum(at - reach, 0), np.minimum(at + reach, length - 1)
-        explained = float((sums[last + 1] - sums[first]).sum())
-        if explained > 0.95 * total and int((last - first + 1).sum()) < 0.75 * length:
-            return count
+        for begin, line in (
+            (0, 0),
+            (0, reach),
+            (0, 2 * reach),
+            (reach / 2, reach),
+            (reach, 2 * reach),
+        ):
+            borders = begin + np.arange(count + 1) * (length - line) / count
+            at = np.floor(borders + 0.5).astype(np.intp)
+            first, last = np.maximum(at - reach, 0), np.minimum(at + reach, length - 1)
+            explained = float((sums[last + 1] - sums[first]).sum())
+            if explained > share * total and int((last - first + 1).sum()) < 0.75 * length:
+                return count
     return 0
 
 

@@ -13,7 +13,7 @@ MAX_BYTES = 80_000_000
 WANTED = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
 
 
-def read_wanted_moduli(file: Path) -> tuple[Array, Array]:
+def read_target_moduli(file: Path) -> tuple[Array, Array]:
     """Two maps (rows, columns), row 0 at the bottom; NaN where a cell is empty or missing.
 
     The file needs the columns ``row`` and ``column`` (from 1 at the bottom left) and one or both

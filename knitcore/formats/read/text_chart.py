@@ -10,6 +10,7 @@ import re
 import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
@@ -39,15 +40,31 @@ _NUMBER = r"(?:row\s?|r)?(\d{1,4})"
 _LEFT = re.compile(rf"\s*{_NUMBER}[.:)]?(?=[\s|│┃║KkPp□■•\-])", re.IGNORECASE)
 _RIGHT = re.compile(rf"(?<=[\s|│┃║KkPp□■•\-])[.:(]?{_NUMBER}\s*$", re.IGNORECASE)
 _BARS = "|│┃║"
-_BORDER = re.compile(r"(?=.*[+┌┐└┘├┤┬┴┼╔╗╚╝╠╣╦╩╬┏┓┗┛═|])[-+─━═=_┌┐└┘├┤┬┴┼╔╗╚╝╠╣╦╩╬┏┓┗┛|\s:]+")
-_RULE = re.compile(r"\s*\|?(?:\s*:?-{3,}:?\s*\|)+(?:\s*:?-{3,}:?)?\s*")
+_CORNERS = "┌┐└┘├┤┬┴┼╔╗╚╝╠╣╦╩╬┏┓┗┛┣┫┳┻╋"
+_BORDER = re.compile(rf"(?=.*[+═|{_CORNERS}])[-+─━═=_{_CORNERS}|\s:]+")
+_RULE = re.compile(
+    r"\s*\|?(?:\s*:?[-=]{2,}:?\s*\||\s*:-:\s*\|)+(?:\s*:?-{2,}:?)?\s*|\s*[-=]{3,}\s*"
+)
+_DIGITS = re.compile(r'[\d\s|│,;"]*')
 _CELL = re.compile(r"\|\s\S\s\|")
 _LEGEND = re.compile(
-    r"\s*(?P<sign>\S|blank|empty|\(blank\)|\(empty\))(?:\s*[=:→]+\s*|\s+[-–]\s+|\s+)(?P<words>.*[A-Za-z]{1,}.*)",
+    r"\s*(?P<sign>\S|blank|empty|\(blank\)|\(empty\))(?:\s*[=:→]+\s*|\s+[-–]\s+|\s+)(?P<words>.*[A-Za-z\u3040-\u30fb\u30fd-\u9fff].*)",
     re.IGNORECASE,
 )
 _HEADING = re.compile(r"\s*(?:legend|key|symbols?)\b.{0,20}", re.IGNORECASE)
 _KIND = re.compile(r"(?P<knit>\bknit|\bk\b|表)|(?P<purl>\bpurl|\bp\b|裏)", re.IGNORECASE)
+_WORDS = ("knit", "purl")
+_NUMBER_CELL = r'"?(?:row\s?|r)?(?P<count>\d{1,4})"?[.:)]?'
+_NUMBER_CELLS = [
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        rf"^(?P<border>)\s*{_NUMBER_CELL}\s*[,;\t]",
+        rf"^(?P<border>\s*[{_BARS}])\s*{_NUMBER_CELL}\s*[{_BARS}]",
+        rf"[,;\t]\s*{_NUMBER_CELL}\s*(?P<border>)$",
+        rf"[{_BARS}]\s*{_NUMBER_CELL}\s*(?P<border>[{_BARS}]\s*)$",
+    )
+]
+"""A number in the first or the last cell of a row of a table."""
 _SEPARATORS = re.compile(r"[,;\t]")
 
 
@@ -96,6 +113,7 @@ class _Reader:
         self._legend: dict[str, bool] = {}
         self._named: dict[str, str] = {}
         """Other stitches of the legend."""
+        self._has_border = False
 
     def read(self) -> tuple[StitchChart, tuple[str, ...]]:
         drawn = list(self._drawn())
@@ -121,25 +139,28 @@ class _Reader:
         """Lines of the drawing; legend, titles, borders and numbers of columns are noted."""
         left_out: list[str] = []
         seen = False
-        gap = 0
+        gap = underlined = 0
         has_cells = any(_CELL.search(line) for line in self._lines)
+        has_signs = not all(_DIGITS.fullmatch(line) for line in self._lines)
         for number, raw in enumerate(self._lines, start=1):
-            line = "".join(_plain(sign) for sign in raw).rstrip()
+            line = "".join(_plain(sign) for sign in raw).rstrip(BLANK)
             if not line.strip():
                 gap = number if seen else 0
                 continue
             if line.lstrip().startswith("#") and not _is_drawn_with_hashes(line):
                 continue
             if self._is_legend(line):
+                underlined = number + 1 if line.strip(" :").isalpha() else 0
                 continue
             if _is_prose(line):
                 left_out.append(line.strip())
                 continue
-            if _BORDER.fullmatch(line) and set(line) & set("+┌└├╔╚╠┏┗═"):
+            if _BORDER.fullmatch(line) and set(line) & set("+┌└├╔╚╠┏┗┣═"):
+                self._has_border = True
                 continue
-            if has_cells and _RULE.fullmatch(line):
+            if (has_cells or number == underlined) and _RULE.fullmatch(line):
                 continue
-            if re.fullmatch(r"[\d\s|│]+", line) and not re.fullmatch(r"[01\s|│]+", line):
+            if has_signs and _DIGITS.fullmatch(line) and set(line) & set("23456789"):
                 self._note("The line of column numbers is left out.")
                 continue
             if gap and self._is_blank_row(line):
@@ -183,6 +204,13 @@ class _Reader:
         """Rows without the numbers beside them."""
         if all(set(line) <= set("01 \t,;|") for _, line in drawn):
             return [_Row(number, None, line) for number, line in drawn]
+        drawn, cells = _without_number_cells(drawn)
+        if any(cells):
+            self._note("The numbers beside the rows are left out.")
+            return [
+                _Row(number, count, line)
+                for (number, line), count in zip(drawn, cells, strict=True)
+            ]
         left = [_LEFT.match(line) for _, line in drawn]
         right = [_RIGHT.search(line) for _, line in drawn]
         start = max((m.end() for m in left if m), default=0)
@@ -211,7 +239,8 @@ class _Reader:
         """Rows with one sign a stitch: cells of a table, a frame taken off, or columns of text."""
         signs = set("".join(row.signs for row in rows))
         if signs & set(",;\t"):
-            return self._from_cells(rows, [_SEPARATORS.split(row.signs.rstrip()) for row in rows])
+            cells = [_SEPARATORS.split(row.signs.rstrip(BLANK)) for row in rows]
+            return self._from_cells(rows, cells)
         stripped = [row.signs.strip() for row in rows]
         has_knit = bool(signs & (_KNIT - set(_BARS))) or self._legend.get(BLANK) is False
         for bar in _BARS:
@@ -221,10 +250,11 @@ class _Reader:
             is_table = all(len(cell.strip()) <= 1 for row in cells for cell in row)
             is_table = is_table and len({len(row) for row in cells}) == 1
             is_empty = any(not cell.strip() for row in cells for cell in row)
-            if is_table and len(cells[0]) > 1 and (has_knit or is_empty or bar != "|"):
+            is_frame = has_knit or self._has_border or bar != "|"
+            if is_table and len(cells[0]) > 1 and (is_frame or is_empty):
                 self._note("Bars between the stitches are taken as lines of the grid.")
                 return self._from_cells(rows, cells)
-            if all(len(row) == 1 for row in cells) and (has_knit or bar != "|" or is_blank(cells)):
+            if all(len(row) == 1 for row in cells) and (is_frame or is_blank(cells)):
                 self._note("Bars at both ends of the rows are taken as the chart's border.")
                 inner = [cell[0] for cell in cells]
                 width = max(len(cell) for cell in inner)
@@ -240,12 +270,16 @@ class _Reader:
     def _from_cells(self, rows: list[_Row], cells: list[list[str]]) -> list[_Row]:
         if len({len(row) for row in cells}) > 1 or all(not row[-1].strip() for row in cells):
             cells = [row[:-1] if not row[-1].strip() else row for row in cells]
+        cells = [[part.strip(' "') for part in row] for row in cells]
+        if any("" in row for row in cells):  # blanks at the end of a line may be cut off
+            width = max(map(len, cells))
+            cells = [row + [""] * (width - len(row)) for row in cells]
         done = []
         for row, parts in zip(rows, cells, strict=True):
-            signs = [part.strip()[:1] or BLANK for part in parts]
+            signs = [part[:1] or BLANK for part in parts]
             for column, part in enumerate(parts, start=1):
-                if len(part.strip()) > 1 and part.strip().lower() not in ("knit", "purl"):
-                    raise self._wrong(row.line, column, part.strip())
+                if len(part) > 1 and part.lower() not in _WORDS:
+                    raise self._wrong(row.line, column, part)
             done.append(_Row(row.line, row.number, "".join(signs)))
         return done
 
@@ -347,6 +381,29 @@ class _Reader:
         )
 
 
+def _without_number_cells(
+    drawn: Sequence[tuple[int, str]],
+) -> tuple[list[tuple[int, str]], list[int | None]]:
+    """Rows of a table without their first or last cell, where it has the number of every row."""
+    rows = list(drawn)
+    counts: list[int | None] = [None] * len(drawn)
+    for pattern in _NUMBER_CELLS:
+        matches = [pattern.search(line) for _, line in rows]
+        numbers = [int(m["count"]) for m in matches if m is not None]
+        steps = {b - a for a, b in pairwise(numbers)}
+        if len(numbers) < max(len(rows), 2) or steps not in ({1}, {-1}):
+            continue
+        if counts[0] is not None and counts != numbers:
+            continue
+        counts = list(numbers)
+        rows = [
+            (number, line[: m.start()] + m["border"] + line[m.end() :])
+            for (number, line), m in zip(rows, matches, strict=True)
+            if m is not None
+        ]
+    return rows, counts
+
+
 def is_blank(cells: Sequence[Sequence[str]]) -> bool:
     """Say whether there is a blank between signs, or at one end of some rows only."""
     inner = [row[0] for row in cells]
@@ -394,7 +451,7 @@ def _is_framed(line: str) -> bool:
 
 
 def _is_chart_words(words: str) -> bool:
-    return not set(words) - set("KkPp|-•– ,\t")
+    return not set(words) - set("KkPp ,;\t0123456789") - _KNIT - _PURL - set(_BARS)
 
 
 def _is_prose(line: str) -> bool:
@@ -403,5 +460,5 @@ def _is_prose(line: str) -> bool:
     stitches = sum(sign in "KkPpー" for sign in letters)
     is_signs = all(len(word) == 1 for word in line.split())
     has_word = re.search(r"[A-Za-z\u00c0-\u024f]{2}", line) is not None
-    is_repeated = len(set(letters)) <= 2
+    is_repeated = len(set(letters)) <= 2 or {*re.split(r"\W+", line.lower())} <= {*_WORDS, ""}
     return has_word and not is_signs and not is_repeated and 2 * stitches < len(letters)

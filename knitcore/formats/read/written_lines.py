@@ -17,8 +17,9 @@ from knitcore.formats.read.written_words import MAX_CHARACTERS, NUMBER_WORDS, Li
 _I = re.IGNORECASE
 _ROW = r"(?P<name>rows?|rounds?|rnds?|rds?)"
 _ST = r"(?:st|nd|rd|th)"
-_AND = r"\s?(?:, ?and\s|,|\band\s|&|[-–—]|\bto\s|\bthrough\s)\s?"
+_AND = r"\s?(?:, ?and\s|,|\band\s|[&+/]|[-–—]|\bto\s|\bthrough\s)\s?"
 _SIDE = r"(?:\s?[(\[{]?\s?(?P<side>RS|WS|right[- ]side|wrong[- ]side)\b\s?[)\]}]?)?"
+_SIDE_2 = _SIDE.replace("side>", "side2>")
 _EVERY = (
     r"(?:all|every|each)\s(?:(?:other|alternate|alt|following|foll|subsequent|remaining)\s)*"
     r"(?P<every>even|odd|RS|WS|right[- ]side|wrong[- ]side)?(?:[- ]numbered)?\s?"
@@ -29,15 +30,17 @@ _ROW_BEGINS = (
     re.compile(
         rf"(?:{_ROW}\.?\s?|r)(?P<numbers>\d{{1,4}}(?:{_AND}\d{{1,4}})*)"
         rf"(?:,? (?:and|&) {_EVERY}(?:rows?|rounds?|rnds?))?{_SIDE}"
-        rf"(?:\s?[:.)]|\s[-–—]\s|\s{_STITCH}){_SIDE.replace('side>', 'side2>')}",
+        rf"(?:\s?[:.)=|]|\s[-–—]\s|\s{_STITCH}){_SIDE_2}",
         _I,
     ),
     # 1st and 3rd row …, from ws 2nd to 10th row …, 1st row (RS): …
     re.compile(
         rf"(?:from )?(?:(?P<only>rs|ws) )?(?P<numbers>\d{{1,4}}{_ST}(?:{_AND}\d{{1,4}}{_ST}?)*) "
-        rf"{_ROW}{_SIDE}(?P<ordinal>\s?:?)",
+        rf"{_ROW}{_SIDE}(?P<ordinal>\s?:?){_SIDE_2}",
         _I,
     ),
+    # Set-up row (WS): …
+    re.compile(rf"(?P<setup>set-?\s?up|foundation|preparation) {_ROW}{_SIDE}\s?:{_SIDE_2}", _I),
     # All WS rows: …, every even row …, RS rows: …
     re.compile(rf"{_EVERY}{_ROW}{_SIDE}(?P<ordinal>\s?:?)", _I),
     re.compile(
@@ -50,7 +53,9 @@ _ROW_BEGINS = (
 _BARE = re.compile(rf"(?P<numbers>\d{{1,4}}){_SIDE}\s?[.:)]\s", _I)
 _BODY = re.compile(r"(?=.*(?:\d|,|knit|purl))[*\[(]?\s?(?:[kp]\s?\d|[kp]\s?,|knit\b|purl\b)", _I)
 _CAST_ON = re.compile(
-    r"\b(?:cast[- ]?on|co)(?![a-z])\s?:?\s?(\d{1,4}|[a-z]+)\b(\s?\(\d+[,)\s])?", _I
+    r"\b(?:cast[- ]?on|co)(?![a-z])\s?:?\s?(\d{1,4}|[a-z]+)\b"
+    r"(\s?(?:[(\[{]\s?\d+(?! ?st)|[/,:–-]\s?\d))?",
+    _I,
 )
 _MULTIPLE = re.compile(
     r"multiple of (\d{1,3})(?: sts?| stitches)?(?:,? (?:\+|plus|and) (\d{1,3}))?", _I
@@ -64,10 +69,31 @@ _KNOWN = re.compile(
     _I,
 )
 _YARN = re.compile(r"yarn ([A-Z]{1,2}): (.*) \((#[0-9a-f]{6})\)", _I)
+_ROWS = r"(?:r|(?:rows?|rnds?|rounds?)\s?)"
 _AGAIN = re.compile(
-    r"(?:repeat|rep|work as|as|same as)(?: for)? (?:rows?|rnds?|rounds?) "
-    r"(\d{1,4})(?:(?:\s?[-–—]\s?| and | to | through )(\d{1,4}))?(.*)",
+    r"(?:repeat|rep|work as|work|as|same as)(?: for)? "
+    rf"{_ROWS}(\d{{1,4}})(?:(?:\s?[-–—&,]\s?| and | to | through ){_ROWS}?(\d{{1,4}}))?\b(.*)",
     _I,
+)
+_LAST = re.compile(
+    r"(?:repeat|rep|work) (?:these|those|the last|last|the previous) (\w+) (?:rows?|rnds?|rounds?)"
+    r"\b(.*)",
+    _I,
+)
+_ORDINALS = {
+    "first": "1st", "second": "2nd", "third": "3rd", "fourth": "4th", "fifth": "5th",
+    "sixth": "6th", "seventh": "7th", "eighth": "8th", "ninth": "9th", "tenth": "10th",
+}  # fmt: skip
+_NTH_ROW = re.compile(rf"\b(\d{{1,4}}){_ST} (rows?|rnds?|rounds?)\b", _I)
+_HASH_NUMBER = re.compile(r"\b((?:row|rnd|round)s?\s*)#(?=\d)", _I)
+_BULLET = re.compile(r"^(?:[-•·▪◦>]|#+|\*(?=\s(?:row|r\d|rnd|round)))\s+|\*\*|__", _I)
+_IN_WORDS = re.compile(
+    rf"^(?:({'|'.join(_ORDINALS)}) (?=(?:row|rnd|round)\b)"
+    rf"|((?:row|rnd|round)s?) ({'|'.join(NUMBER_WORDS)})\b)",
+    _I,
+)
+_SIDE_BEFORE = re.compile(
+    r"^[(\[]?(RS|WS)[)\]]?[ :]+(?=(?:(?:row|rnd|round)s? ?\d|r\d)[^:.]*[:.])([^:.]*)", _I
 )
 _TIMES = re.compile(r"(\d{1,4}|[a-z]+)(?: more)?(?: times?)?(?: more)?\.?", _I)
 _END = re.compile(
@@ -77,6 +103,7 @@ _END = re.compile(
     _I,
 )
 _GOES_ON = re.compile(r"(?:repeat|rep|continue|cont|these)\b.*", _I)
+_TO_STAR = re.compile(r"rep(?:eat)?\.? (?:from )?\*", _I)
 _WORKS = re.compile(r"(?:work\b|knit\b|purl\b|[kp]\s?\d|[kp]\s?,|\*|\[)", _I)
 _AFTER = re.compile(r"\s*(?:[x×\d]|twice|thrice|once|to\b|until|till?\b|across|rep|more|$)", _I)
 _KEPT = re.compile(
@@ -119,7 +146,7 @@ class RowLine:
 
 @dataclass(frozen=True)
 class RepeatLine:
-    """Earlier rows, worked again ``times`` times."""
+    """Earlier rows, worked again ``times`` times; negative ones count back from those before it."""
 
     line: Line
     first: int
@@ -153,7 +180,7 @@ class Pattern:
 def looks_written(text: str) -> bool:
     """Say whether a text is meant as written rows rather than as lines of K and P."""
     for number, raw in enumerate(text.splitlines()):
-        line = " ".join(_REMARK.sub("", raw).split())
+        line = _plainly(raw)
         if number > MAX_LOOKED_AT:
             return False
         if _row_begins(line) or re.match(r"(?:cast[- ]?on|co)(?![a-z])\s?:?\s?\w", line, _I):
@@ -181,8 +208,20 @@ def row_of(numbers: tuple[int, ...]) -> str:
 
 def again(body: str) -> tuple[int, int, str] | None:
     """The first and the last row that a row repeats, and what follows them."""
-    match = _AGAIN.fullmatch(body.rstrip(". "))
+    match = _AGAIN.fullmatch(_NTH_ROW.sub(r"\2 \1", body.rstrip(". ")))
     return match and (int(match[1]), int(match[2] or match[1]), match[3].strip(" ,.("))
+
+
+def _plainly(raw: str) -> str:
+    """A line without remarks, bullets and marks of bold type; its row by number."""
+    line = " ".join(_REMARK.sub("", _HASH_NUMBER.sub(r"\1", raw)).split())
+    line = " ".join(_BULLET.sub("", line).split())
+    match = _IN_WORDS.match(line)
+    if match is not None:
+        ordinal, row, number = match.groups()
+        begin = f"{row} {NUMBER_WORDS[number.lower()]}" if row else f"{_ORDINALS[ordinal.lower()]} "
+        line = begin + line[match.end() :]
+    return _SIDE_BEFORE.sub(r"\2 (\1)", line)
 
 
 def _number(word: str) -> int:
@@ -215,7 +254,7 @@ class _Reader:
         for number, raw in enumerate(lines, start=1):
             words = " ".join(raw.split())
             if _YARN.fullmatch(words) is None:
-                words = self._without_remarks(" ".join(_REMARK.sub("", words).split()))
+                words = self._without_remarks(_plainly(words))
                 words = _SIDE_FIRST.sub(r"\2 \1", words)
             if len(words) > MAX_CHARACTERS:
                 problem = f"it has {len(words)} characters."
@@ -281,14 +320,21 @@ class _Reader:
             return
         end = _END.fullmatch(line.text)
         is_open = self._open is not None and not self._open[-1].endswith(".")
-        is_other = end is not None or again(line.text) or _GOES_ON.fullmatch(line.text)
+        is_other = (
+            end is not None
+            or again(line.text)
+            or (_GOES_ON.fullmatch(line.text) and not _TO_STAR.match(line.text))
+        )
         if self._open is not None and is_open and not is_other:
             self._open.append(line.text)
             return
         self._close()
         repeat = again(line.text)
+        latest = _LAST.fullmatch(line.text.rstrip(". "))
         if repeat is not None and pattern.rows:
-            self._repeat(line, repeat)
+            self._repeat(line, *repeat)
+        elif latest is not None and pattern.rows and _number(latest[1]):
+            self._repeat(line, -_number(latest[1]), -1, latest[2])
         elif end is not None and pattern.rows:
             pattern.bound_off = line, int(end["count"]) if end["count"] else None
         elif pattern.rows and _GOES_ON.fullmatch(line.text):
@@ -302,13 +348,9 @@ class _Reader:
             remedy = 'Write "Row 1 (RS): …" or "Rows 3-8: …", and remarks after //.'
             raise line.wrong(f"{line.text[:60]!r} is not a row.", remedy)
 
-    def _repeat(self, line: Line, repeat: tuple[int, int, str]) -> None:
-        first, last, often = repeat
-        match = _TIMES.fullmatch(often)
-        times = {"twice": 2, "once": 1}.get(often.lower().split(" ")[0] if often else "", 0)
-        times = times or (_number(match[1]) if match else 0)
+    def _repeat(self, line: Line, first: int, last: int, often: str) -> None:
+        times = times_in(often)
         if times:
-            times = min(times, MAX_STITCHES_PER_SIDE)
             self._pattern.rows.append(RepeatLine(line, first, last, times))
         else:
             self._pattern.open_repeats.append(line.text)
@@ -363,7 +405,7 @@ class _Reader:
         self._began = self._open = None
         groups = match.groupdict()
         name = (groups.get("name") or "").lower()
-        numbers = _numbers(line, groups.get("numbers") or "")
+        numbers = (0,) if groups.get("setup") else _numbers(line, groups.get("numbers") or "")
         every = groups.get("every")
         if groups.get("numbers") and re.search(r"\b(?:all|every|each)\b", match[0], _I):
             every = every or "other"
@@ -371,7 +413,7 @@ class _Reader:
             every = every or "rs ws"
         side = groups.get("side") or groups.get("side2")
         labelled = Line(line.number, line.text, row_of(numbers) if numbers else "")
-        if numbers == (0,):
+        if numbers == (0,) and _CAST_ON.search(body):
             self._opening(Line(line.number, body))
             return
         end = _END.fullmatch(body)
@@ -390,6 +432,14 @@ class _Reader:
                 groups.get("ordinal", ":").strip() == "",
             )
         )
+
+
+def times_in(often: str) -> int:
+    """How often something is repeated, if these words say so; else 0."""
+    often = often.strip(" ,.(")
+    match = _TIMES.fullmatch(often)
+    times = {"twice": 2, "once": 1}.get(often.lower().split(" ")[0] if often else "", 0)
+    return min(times or (_number(match[1]) if match else 0), MAX_STITCHES_PER_SIDE)
 
 
 def _every(name: str | None) -> str | None:

@@ -8,6 +8,7 @@ for examples.
 """
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from knitcore.formats.read.written_lines import (
     looks_written,
     read_lines,
     row_of,
+    times_in,
 )
 from knitcore.formats.read.written_words import Line, RowWords, Work, is_ambiguous, read_row
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, yarn_name
@@ -102,7 +104,8 @@ class _Reader:
         self._pattern, self._often_more = pattern, often_more
         self._yarns: list[PieceYarn] = []
         self._rows: dict[int, RowWords | int] = {}
-        """Words of each row, or the number of the earlier row that it repeats."""
+        """Words of each row, or the number of the row that it repeats; a set-up row is 0."""
+        self._start = 1
         self._notes: list[str] = []
 
     def read(self) -> tuple[Piece, list[str]]:
@@ -147,6 +150,9 @@ class _Reader:
         last = 0
         for row in self._pattern.rows:
             if isinstance(row, RepeatLine):
+                if row.first < 0:
+                    back = replace(row, first=last + 1 + row.first, last=last + 1 + row.last)
+                    row = back  # noqa: PLW2901
                 count = (row.last - row.first + 1) * row.times
                 numbers = tuple(range(last + 1, last + 1 + max(count, 0)))
             else:
@@ -184,7 +190,7 @@ class _Reader:
         if row.only is not None:
             numbers = tuple(number for number in numbers if self._side(number) is row.only)
         repeat = again(row.body)
-        if repeat is not None and not repeat[2]:
+        if repeat is not None and (not repeat[2] or times_in(repeat[2])):
             self._repeat(line, repeat[0], repeat[1], numbers)
             return
         words = self._words(row, line)
@@ -214,7 +220,8 @@ class _Reader:
             return
         last = max(self._rows, default=0)
         if not last:
-            last = 1 if all(self._belongs(row, 1) for row in lines) else 2
+            is_round = self._construction is Construction.ROUND
+            last = 1 if is_round and all(self._belongs(row, 1) for row in lines) else 2
         elif last % 2 and any(self._belongs(row, last + 1) for row in lines):
             last += 1
         check_chart_size(last, 1)
@@ -237,7 +244,9 @@ class _Reader:
 
     def _in_order(self) -> list[RowWords]:
         count = max(self._rows, default=1)
-        missing = next((i for i in range(1, count + 1) if i not in self._rows), None)
+        self._start = 0 if 0 in self._rows else 1
+        numbers = range(self._start, count + 1)
+        missing = next((number for number in numbers if number not in self._rows), None)
         if missing is not None:
             first = f": {self._pattern.remarks[0][:60]!r} is none" if self._pattern.remarks else ""
             name = f"row {missing} is missing" if self._rows else f"there are no rows{first}"
@@ -245,9 +254,9 @@ class _Reader:
                 "rows", f"{name}.", 'Number the rows from 1 without gaps: "Row 1: Knit."'
             )
         words: list[RowWords] = []
-        for number in range(1, count + 1):
+        for number in numbers:
             row = self._rows[number]
-            words.append(words[row - 1] if isinstance(row, int) else row)
+            words.append(words[row - self._start] if isinstance(row, int) else row)
         return words
 
     def _cast_on(self, words: list[RowWords]) -> int:
@@ -260,7 +269,7 @@ class _Reader:
         multiple, plus = self._pattern.multiple or (1, 0)
         fits = (counts % max(multiple, 1) == plus % max(multiple, 1)) & (counts > plus)
         gain = 0
-        for row, number in zip(words, range(1, len(words) + 1), strict=True):
+        for number, row in enumerate(words, start=self._start):
             before = fits
             fits = fits & row.fits(counts + gain)
             if not fits.any():
@@ -280,15 +289,15 @@ class _Reader:
     def _piece(self, words: list[RowWords], needle: int) -> Piece:
         rows = []
         known: dict[tuple[int, int], Work] = {}
-        for number, row in enumerate(words, start=1):
+        for number, row in enumerate(words, start=self._start):
             key = id(row), needle
             if key not in known:
                 known[key] = row.work(needle)
             work = known[key]
-            if number == 1 and (work.first or work.last):
+            if number == self._start and (work.first or work.last):
                 self._notes.append(
-                    f"Row 1 makes {len(work.stitches)} of the {needle} stitches cast on: the chart "
-                    "begins with row 1."
+                    f"Row {number} makes {len(work.stitches)} of the {needle} stitches cast on: the"
+                    " chart begins with it."
                 )
                 work = Work(0, 0, work.stitches)
             needle = len(work.stitches)
@@ -307,4 +316,4 @@ class _Reader:
             more = len(self._pattern.remarks) - MAX_SHOWN
             yield f"Left out as remarks: {shown}{f' and {more} more' if more > 0 else ''}."
         for said in self._pattern.open_repeats:
-            yield f"Read once: {said[:80]!r} gives no number of times."
+            yield f"Read once: {said[:80]!r} does not say how often, or which rows."

@@ -26,10 +26,19 @@ NUMBER_WORDS = {
     )
 }
 _COUNT = re.compile(
-    r"(?:[.(\[–—=-]\s*(\d{1,4}) (?:sts?|stitch(?:es)?)\s*[)\]]?|\((\d{1,4})\))[ .]*$", re.IGNORECASE
+    r"(?:[.(\[<–—=-]\s*(\d{1,4}) (?:sts?|stitch(?:es)?)\s*[)\]>]?|[(\[<](\d{1,4})[)\]>])[ .]*$",
+    re.IGNORECASE,
 )
 _TOKEN = re.compile(r"\*+|[\[\](){},;.:]|\d+(?![\w/])|[^\s*\[\](){},;.:]+")
 _STITCH = re.compile(r"([kp])(\d{0,5})|(knit|purl)s?", re.IGNORECASE)
+_PLAINER = (
+    (re.compile(r"[.,;]\s*turn(?: (?:the )?work)?[ .]*$", re.IGNORECASE), ""),
+    (re.compile(r",?\s*\b(?:[psr]m|(?:place|slip|remove) markers?)\b", re.IGNORECASE), ""),
+    (re.compile(r"\b([kp])(?:nit|url)(?=\d)", re.IGNORECASE), r"\1"),
+    (re.compile(r"\b(\d{1,4})([kp])\b", re.IGNORECASE), r"\2\1"),
+    (re.compile(r"([kp]\d{1,4})(?=[kp]\d)", re.IGNORECASE), r"\1 "),
+)
+"""Words that make no stitch (``turn``, ``pm``); other spellings (``knit2``, ``2k``, ``k1p1``)."""
 _SHAPED = ("ssk", "ssp", "k2tog", "p2tog", "k3tog", "p3tog", "m1", "m1p")
 _TIMES = re.compile(r"(?:[x×](\d{1,5})|(\d{1,5})[x×])", re.IGNORECASE)
 _SIZES = re.compile(r"\(\s*\d+(?:[\s,;/]+\d+)*\s*\)")
@@ -215,9 +224,9 @@ def _shaped(line: Line, stitches: Stitches, first: int, last: int) -> tuple[int,
     for index, form in ((i, s.form) for i, s in enumerate(stitches) if s.form):
         if form in ("k3tog", "p3tog") and end == 0:
             first, last = first - 1, last - 1
-        elif form in ("ssk", "ssp") and index == 0:
+        elif index == 0 and form in (("ssk", "p2tog", "ssp") if end else ("ssk", "p2tog")):
             first -= 1
-        elif form in ("k2tog", "p2tog") and index == end:
+        elif form in ("k2tog", "ssp", "p2tog") and index == end:
             last -= 1
         elif form in ("m1", "m1p") and index == 1 and end > 2:
             first += 1
@@ -247,6 +256,8 @@ def read_row(line: Line, body: str, yarns: int = 1, *, again: bool = True) -> Ro
         raise line.wrong(f"it has {len(body)} characters.", "Split it, or write it with repeats.")
     count = _COUNT.search(body)
     words = (body[: count.start()] if count else body).strip().rstrip(".").strip()
+    for spelling, plainer in _PLAINER:
+        words = spelling.sub(plainer, words)
     if _SIZES.search(words):
         raise line.wrong("it is written for several sizes.", "Keep the numbers of one size.")
     first, last, words = _edges(words)
@@ -347,8 +358,7 @@ class _Reader:
         elif word in ("rep", "repeat"):
             self._repeat()
         elif word in ("end", "ending", "ends") and self._is_repeated():
-            self._skip("with")
-            self._stack[-1].parts[-1] = replace(self._stack[-1].parts[-1], leave=_THE_REST)
+            self._end_with()
         elif word == "with" and self._yarns > 1:
             self._change_yarn()
         elif _STITCH.fullmatch(word):
@@ -359,10 +369,17 @@ class _Reader:
         else:
             raise self._unknown(self._next - 1)
 
+    def _end_with(self) -> None:
+        """Leave what follows to the end, unless the repeat has said how much that is."""
+        self._skip("with")
+        repeated = self._stack[-1].parts[-1]
+        if not repeated.leave:
+            self._stack[-1].parts[-1] = replace(repeated, leave=_THE_REST)
+
     def _is_repeated(self) -> bool:
         """Say whether the last words repeat to the end."""
         parts = self._stack[-1].parts
-        return len(self._stack) == 1 and bool(parts) and parts[-1].leave == 0
+        return len(self._stack) == 1 and bool(parts) and parts[-1].leave is not None
 
     def _take(self) -> str:
         self._next += 1
@@ -416,8 +433,8 @@ class _Reader:
     def _repeat(self) -> None:
         """Go on after "rep": to the end of a star, to a star, or back to the beginning."""
         if self._stack[-1].mark == "*":
-            self._skip("from")
-            if not self._skip("*", "**", "***"):
+            has_from = self._skip("from")
+            if not self._skip("*", "**", "***") and has_from:
                 raise self._line.wrong('"repeat" names no star.', 'Write "rep from * to end".')
             self._end_star(is_from=True)
         elif self._peek().startswith("*") or self._peek() in _BRACKETS:
@@ -475,11 +492,13 @@ class _Reader:
         A number of times that is said to be "in all" has -1 for "more".
         """
         token = self._peek()
-        if token in ("across", "around", "throughout", "even"):
+        if token in ("across", "around", "along", "throughout", "even"):
             self._next += 1
             self._skip("the")
             self._skip("row", "round", "rnd")
-            return 0, None, 0
+            if self._peek() not in ("to", "until", "till", "til"):
+                return 0, None, 0
+            token = self._peek()
         if token in ("to", "until", "till", "til"):
             self._next += 1
             return self._to_end(), None, 0
@@ -526,6 +545,9 @@ class _Reader:
             )
         self._skip("st", "sts", "stitch", "stitches")
         self._skip("remain", "remains", "rem", "left", "remaining")
+        if self._skip("before", "from"):
+            self._skip("the")
+            self._skip("end")
         return number
 
     def _change_yarn(self) -> None:

@@ -26,22 +26,15 @@ from knitcore.formats.write.chart_key import (
     SMALL_MM,
     TENTH,
     ChartStyle,
+    Points,
     is_coloured,
     key_height,
     key_shapes,
     multiple_words,
+    symbol_shapes,
     tinted,
 )
-from knitcore.formats.write.drawn_page import (
-    Dots,
-    Label,
-    Lines,
-    Page,
-    Rectangle,
-    Shape,
-    to_pdf,
-    to_svg,
-)
+from knitcore.formats.write.drawn_page import Label, Lines, Page, Rectangle, Shape, to_pdf, to_svg
 from knitcore.garment.piece import Piece
 
 CELL_MM = 5.0
@@ -125,7 +118,7 @@ def _overview(piece: Piece, style: ChartStyle, parts: list[_Part], first: int) -
     whole = _Part(piece, style, range(chart.rows), range(chart.columns), cell)
     yield from whole.header()
     yield from whole.silhouette()
-    yield whole.purls(FAINT)
+    yield from whole.symbols(FAINT)
     yield from whole.region_borders()
     for number, part in enumerate(parts, start=first + 1):
         left, top = whole.x(part.columns.start), whole.y(part.rows.stop - 1)
@@ -203,7 +196,7 @@ class _Part:
         yield Rectangle(LEFT_MM, TOP_MM, self._width, self._height, fill="#ffffff")
         yield from self._colours()
         yield from self._grid()
-        yield self.purls(INK)
+        yield from self.symbols(INK)
         yield from self._no_stitches()
         yield from self.region_borders()
         if self.style.repeats:
@@ -262,16 +255,19 @@ class _Part:
         yield Lines(tuple(fine), GRID, 0.15)
         yield Lines(tuple(tenth), TENTH, 0.3)
 
-    def purls(self, colour: str) -> Dots:
-        """A dot in each purl."""
-        window = (self.chart.purl & self.piece.shaped.stitch)[
-            self.rows.start : self.rows.stop, self.columns.start : self.columns.stop
-        ]
-        rows, columns = np.nonzero(window)
+    def symbols(self, colour: str) -> Iterator[Shape]:
+        """The symbols of the stitches."""
+        window = np.s_[self.rows.start : self.rows.stop, self.columns.start : self.columns.stop]
+        purl, stitch = self.chart.purl[window], self.piece.shaped.stitch[window]
+        knits, purls = self._middles(stitch & ~purl), self._middles(stitch & purl)
+        cell = (self.cell, self._row_height)
+        yield from symbol_shapes(self.style.symbols, knits, purls, cell, colour)
+
+    def _middles(self, cells: Mask) -> Points:
+        rows, columns = np.nonzero(cells)
         x = LEFT_MM + self.cell * (columns + 0.5)
         y = TOP_MM + self._row_height * (len(self.rows) - 0.5 - rows)
-        radius = round(0.22 * min(self.cell, self._row_height), 3)
-        return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, colour)
+        return tuple(zip(x.tolist(), y.tolist(), strict=True))
 
     def silhouette(self) -> Iterator[Shape]:
         """The piece as one tone."""

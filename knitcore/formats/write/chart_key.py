@@ -3,12 +3,13 @@
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import StrEnum
 
 from knitcore.base.arrays import Mask
 from knitcore.base.bounds import check_range
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.formats.write.drawn_page import Dots, Label, Rectangle, Shape
+from knitcore.formats.write.drawn_page import Dots, Label, Lines, Rectangle, Shape
 from knitcore.garment.piece import Piece, yarn_name
 
 MARGIN_MM = 12.0
@@ -22,6 +23,14 @@ INK, TENTH, GRID, FAINT = "#222222", "#55504a", "#b5b0a8", "#cfc9c0"
 HEAVY, NO_STITCH = "#b3322b", "#d9d5ce"
 SMALL_MM = 2.5
 """Smallest type: 7 pt, readable at arm's length."""
+
+
+class Symbols(StrEnum):
+    """How printed charts tell purls from knits: by a dot, by a dash, or as Japanese charts do."""
+
+    DOTS = "dots"
+    DASHES = "dashes"
+    JAPANESE = "japanese"
 
 
 @dataclass(frozen=True)
@@ -55,6 +64,7 @@ class ChartStyle:
     note : printed below the key.
     title : name of the design, printed above the chart.
     regions : named parts, whose borders are drawn in their colours.
+    symbols : of knits and purls.
     """
 
     construction: Construction = Construction.FLAT
@@ -65,9 +75,29 @@ class ChartStyle:
     note: str = ""
     title: str = ""
     regions: tuple[RegionMark, ...] = ()
+    symbols: Symbols = Symbols.DOTS
 
     def __post_init__(self) -> None:
         check_range("aspect", self.aspect, 0.2, 5, what="the aspect ratio of a stitch")
+
+
+Points = tuple[tuple[float, float], ...]
+
+
+def symbol_shapes(
+    symbols: Symbols, knits: Points, purls: Points, cell: tuple[float, float], colour: str
+) -> Iterator[Shape]:
+    """Symbols of stitches by the middles of their cells, whose width and height are given."""
+    small = min(cell)
+    if symbols is Symbols.DOTS:
+        yield Dots(purls, round(0.22 * small, 3), colour)
+        return
+    half = 0.28 * cell[0]
+    dashes = [(x - half, y, x + half, y) for x, y in purls]
+    if symbols is Symbols.JAPANESE:
+        half = 0.28 * cell[1]
+        dashes += [(x, y - half, x, y + half) for x, y in knits]
+    yield Lines(tuple(dashes), colour, round(0.12 * small, 3))
 
 
 def is_coloured(piece: Piece) -> bool:
@@ -114,11 +144,12 @@ def key_shapes(piece: Piece, style: ChartStyle, y: float) -> Iterator[Shape]:
     flat = style.construction is Construction.FLAT
     knit = "knit on RS, purl on WS" if flat else "knit"
     purl = "purl on RS, knit on WS" if flat else "purl"
-    for index, (dot, words) in enumerate(((False, knit), (True, purl))):
+    for index, words in enumerate((knit, purl)):
         top = y + 5.5 * index
         yield Rectangle(MARGIN_MM, top - 3.0, 4.0, 4.0, fill="#ffffff", stroke=GRID)
-        if dot:
-            yield Dots(((MARGIN_MM + 2.0, top - 1.0),), 0.9, INK)
+        place = ((MARGIN_MM + 2.0, top - 1.0),)
+        knits, purls = ((), place) if index else (place, ())
+        yield from symbol_shapes(style.symbols, knits, purls, (4.0, 4.0), INK)
         yield Label(MARGIN_MM + 6.0, top, words)
     x = MARGIN_MM + 50.0
     if not piece.is_rectangle:

@@ -14,7 +14,13 @@ from knitcore.formats.designs.design_file import DesignFile, write_design
 from knitcore.formats.designs.layout import DesignLayout, DesignRepeat, piece_of, region_cells
 from knitcore.formats.read.knitout_reader import verified
 from knitcore.formats.write.chart_drawing import chart_pdf, chart_svg
-from knitcore.formats.write.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
+from knitcore.formats.write.chart_key import (
+    ChartStyle,
+    RegionMark,
+    RepeatMark,
+    Symbols,
+    multiple_words,
+)
 from knitcore.formats.write.drawn_page import Page, letters_lacking, to_long_svg, to_pdf
 from knitcore.formats.write.knitout import Finish
 from knitcore.formats.write.knitspeak import write_knitspeak
@@ -63,6 +69,7 @@ class ExportOptions:
     note : printed on charts, and kept in the project file.
     layout : outline, regions and their yarns, and what else the project file keeps.
     linear_density_tex : of the yarns, for their mass.
+    symbols : of knits and purls in printed charts.
     photo : a PNG picture of the cloth, for the first page of a pattern.
     gauge : relaxed size of the mean stitch, if known.
     """
@@ -76,6 +83,7 @@ class ExportOptions:
     linear_density_tex: float | None = None
     photo: bytes | None = None
     gauge: RelaxedSize | None = None
+    symbols: Symbols = Symbols.DOTS
 
 
 @dataclass(frozen=True)
@@ -259,6 +267,7 @@ def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartSty
         options.note,
         options.name,
         regions,
+        options.symbols,
     )
 
 

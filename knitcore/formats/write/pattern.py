@@ -367,8 +367,8 @@ def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
         across = width * cells.sum(axis=1).max() / 10
         up = height * cells.sum(axis=0).max() / 10
         gauge = f"{100 / width:.0f} sts, {100 / height:.0f} rows"
-        cells_told = (_short(region.name), where, gauge, f"{across:.1f} × {up:.1f} cm")
-        flow.row(cells_told, places, colour=region.colour)
+        texts = (_short(region.name), where, gauge, f"{across:.1f} × {up:.1f} cm")
+        flow.row(texts, places, colour=region.colour)
     flow.text(
         "Stitches are counted from the right edge; sizes are of each part's widest row and "
         "highest column, beside its neighbours. By itself, its fabric has another gauge."

@@ -196,7 +196,8 @@ def _edge_forms(row: PieceRow) -> tuple[list[str], list[str], list[str]]:
     return forms, before, after
 
 
-_PURLED = {"ssk": "ssp", "k2tog": "p2tog", "k3tog": "p3tog", "m1": "m1p"}
+_PURLED = {"ssk": "p2tog", "k2tog": "ssp", "k3tog": "p3tog", "m1": "m1p"}
+"""The same act on a purl, leaning the same way as the row is worked: along the edge."""
 
 
 def _bracketed(purls: Sequence[bool], forms: Sequence[str], start: int, stop: int) -> str:

@@ -17,7 +17,7 @@ from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import strain_at_stress
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials.estimate.yarn_statistics import (
     DIRECTIONS,
     FABRICS,
@@ -182,7 +182,7 @@ def _own_values(swatches: Sequence[MeasuredSwatch], bending: float) -> dict[str,
 
 def _value(law: ConstitutiveLaw, direction: Direction, name: str) -> float:
     if name == "strain":
-        return strain_at_stress(law, direction, LOAD_N_PER_MM)
+        return float(free_strains_at_stress(law, direction, LOAD_N_PER_MM))
     constants = {"modulus": law.modulus, "alpha": law.alpha, "beta": law.beta}
     return constants[name](direction)
 

@@ -81,7 +81,7 @@ class JointModel:
         return np.sqrt(np.diag(self.covariance)).reshape(_SHAPE)
 
     def knowing(self, points: Sequence[LogStrain]) -> JointModel:
-        """The same, given points of stretch curves."""
+        """Condition the model on points of stretch curves."""
         if not points:
             return self
         start: Array = self.mean.ravel()

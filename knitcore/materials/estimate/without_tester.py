@@ -27,7 +27,7 @@ from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import strain_at_stress, uniaxial_response
+from knitcore.law.uniaxial import free_strains_at_stress, uniaxial_response
 from knitcore.materials.estimate.estimate import Estimate, FabricEstimate
 from knitcore.materials.estimate.joint_model import JointModel, LogStrain
 from knitcore.materials.estimate.mixed_model import covering
@@ -191,7 +191,7 @@ def points_of_law(fabric: Fabric, law: ConstitutiveLaw) -> tuple[StretchPoint, .
     """Points of the curves of a law that was fitted to tests, from which other fabrics follow."""
     points = []
     for direction in Direction:
-        strains = [strain_at_stress(law, direction, stress) for stress in LAW_STRESSES_N_PER_MM]
+        strains = free_strains_at_stress(law, direction, LAW_STRESSES_N_PER_MM).tolist()
         curve = uniaxial_response(law, direction, strains)
         rows = zip(LAW_STRESSES_N_PER_MM, strains, curve.transverse_strain.tolist(), strict=True)
         points += [
@@ -414,15 +414,15 @@ def _log_strain(point: StretchPoint) -> LogStrain:
 
 
 @cache
-def _library_values() -> Array:
-    """(yarns, 3, 4, 2) logarithms of modulus, alpha and beta."""
+def library_values() -> Array:
+    """Logarithms of modulus, alpha and beta of the library, (yarns, 3, 4, 2)."""
     table = library_table()
     return np.stack([table.modulus + table.scale, table.alpha, table.beta], axis=1)
 
 
 @cache
 def _law_model(without: tuple[int, ...]) -> JointModel:
-    return JointModel.fit(np.delete(_library_values(), without, axis=0))
+    return JointModel.fit(np.delete(library_values(), without, axis=0))
 
 
 @cache
@@ -430,7 +430,7 @@ def _factors(points: tuple[LogStrain, ...]) -> dict[str, float]:
     """Standard deviations that 90 % of left-out values need, measured as these points were."""
     random = np.random.default_rng(0)
     errors: dict[str, list[Array]] = {"modulus": [], "alpha": [], "beta": [], "strain": []}
-    for index, truth in enumerate(_library_values()):
+    for index, truth in enumerate(library_values()):
         others = _law_model((index,))
         true = JointModel(truth, np.zeros((24, 24)))
         for _ in range(_REPEATS if points else 1):
@@ -573,7 +573,7 @@ def _curve(
     """Error of the stress at a strain, from that of the strain at 0.1 N/mm."""
     step = 0.05
     low, high = (
-        math.log(strain_at_stress(law, direction, LOAD_N_PER_MM * math.exp(sign * step)))
+        math.log(free_strains_at_stress(law, direction, LOAD_N_PER_MM * math.exp(sign * step)))
         for sign in (-1, 1)
     )
     return CurveUncertainty(_log_deviation(strains[direction]) * 2 * step / (high - low))

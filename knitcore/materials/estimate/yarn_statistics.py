@@ -18,7 +18,7 @@ from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import strain_at_stress
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material, load_library
 from knitcore.materials.estimate.mixed_model import MixedModel, covering, interval_factor
 from knitcore.materials.law_uncertainty import COVERAGE
@@ -106,7 +106,7 @@ def table_of(materials: Sequence[Material]) -> LibraryTable:
             for direction in DIRECTIONS:
                 scale = math.log(bending / record.loop_length_mm**3)
                 modulus = math.log(record.law.modulus(direction))
-                strain = strain_at_stress(record.law, direction, LOAD_N_PER_MM)
+                strain = float(free_strains_at_stress(record.law, direction, LOAD_N_PER_MM))
                 rows.append(
                     (
                         modulus - scale,
@@ -211,7 +211,7 @@ def predict_cells(
         for i in range(len(FABRICS))
     ]
     values["strain"] = np.log(
-        [[strain_at_stress(law, d, LOAD_N_PER_MM) for d in DIRECTIONS] for law in laws]
+        [[free_strains_at_stress(law, d, LOAD_N_PER_MM) for d in DIRECTIONS] for law in laws]
     )
     return Prediction(values, deviation, laws)
 

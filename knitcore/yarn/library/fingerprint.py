@@ -132,7 +132,7 @@ def _named_data(module: str, source: ModuleCode) -> Iterator[Path]:
 
 
 def _without_docstrings(tree: ast.Module) -> ast.Module:
-    """The same tree, in place, without strings used as statements."""
+    """Remove strings used as statements from a tree, in place."""
     for node in ast.walk(tree):
         body = getattr(node, "body", None)
         if isinstance(body, list):

@@ -195,13 +195,6 @@ def stored_fabric(fabric: Fabric, material_id: str) -> StoredStitch:
     return stored
 
 
-def stored_failure(chart: StitchChart, material_id: str) -> str | None:
-    """Why a repeat of the store has no relaxed shape; None if it has one or is not in the store."""
-    entry = _entries().get(f"{material_id}/{chart.canonical().key}", {})
-    failure: str | None = entry.get("failure")
-    return failure
-
-
 def stored_charts(material_id: str) -> list[StitchChart]:
     """The relaxed repeats in the store, one of each fabric."""
     prefix = f"{material_id}/"

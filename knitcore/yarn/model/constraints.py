@@ -42,13 +42,13 @@ def middle_weights(grid: SplineGrid) -> Array:
 
 
 def tip_weights(grid: SplineGrid) -> Array:
-    """The same of the height of a stitch's upper half over its lower half, half of it."""
+    """Weights of half the height of a stitch's upper half over its lower half."""
     t = np.arange(grid.controls + 1) / grid.controls
     return _stitch_weights(grid, np.sign(0.25 - np.abs(t - 0.5)))
 
 
 def lean_weights(grid: SplineGrid) -> Array:
-    """The same of the height of a stitch's right half over its left half, half of it."""
+    """Weights of half the height of a stitch's right half over its left half."""
     t = np.arange(grid.controls + 1) / grid.controls
     return _stitch_weights(grid, np.sign(t - 0.5))
 

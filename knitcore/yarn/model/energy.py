@@ -39,7 +39,7 @@ from knitcore.yarn.model.yarn_model import YarnModel
 SPACING_PER_BENDING = 100.0
 """Stiffness of the spacing penalty in units of B / L: keeps the samples evenly spread."""
 STIFF_SPACING_PER_BENDING = 1000.0
-"""The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
+"""Stiffness on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
 the lengths, is then convex in them. It costs 1e-4 of the energy, so the fine grid goes without."""
 PAIRS_TO_SHARE = 1_000_000
 """From this many pairs on a second thread pays."""

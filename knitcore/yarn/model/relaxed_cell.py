@@ -153,12 +153,6 @@ class Sweep(Result):
         return self._strain(self.direction.other)
 
     @property
-    def transverse_stress_n_per_mm(self) -> Array:
-        """Nominal stress across the stretch; 0 where that direction is free of force."""
-        across, size = self.direction.other, self.zero.cell_mm(self.direction)
-        return np.array([cell.force_n[across.axis] / size for cell in self.cells])
-
-    @property
     def energy_n_mm(self) -> Array:
         """Energy of one stitch at each cell, N·mm."""
         return np.array([cell.energy_n_mm for cell in self.cells])
@@ -184,16 +178,6 @@ class Sweep(Result):
             return None
         pair = slice(max(above[0] - 1, 0), above[0] + 1)
         return float(np.interp(0.5, self.contact_share[pair], self.strain[pair]))
-
-    def stress_from_energies(self) -> tuple[Array, Array]:
-        """Strain and stress (N/mm), (points - 1,) each, by the paper's midpoint rule.
-
-        It differs from ``stress_n_per_mm`` at jumps, and in the published branch where pairs of
-        points enter or leave the exclusion along the yarn (the energy as published steps there).
-        """
-        size, width = self.zero.cell_mm(self.direction), self.zero.cell_mm(self.direction.other)
-        middle: Array = 0.5 * (self.strain[1:] + self.strain[:-1])
-        return middle, np.diff(self.energy_n_mm) / (np.diff(self.strain) * size * width)
 
     @property
     def seconds(self) -> float:

@@ -71,7 +71,7 @@ class PublishedStretch:
 
     @classmethod
     def of(cls, zero: RelaxedCell, along: Direction, quenched: bool | None) -> PublishedStretch:
-        """With the paper's slide quenching, or without; by default where the paper had it."""
+        """Stretch with slide quenching or without; by default where the paper had it."""
         quenching = SlideQuenching.default(published_fabric(zero.chart), along)
         if quenched is not None:
             quenching = SlideQuenching.PAPER if quenched else SlideQuenching.NONE

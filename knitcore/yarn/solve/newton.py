@@ -42,8 +42,9 @@ _INDEFINITE_DAMPING = 0.05
 SPARSE_FROM = 12
 """Cells of at least this many stitches have a sparse factor."""
 _MIN_DAMPING_SINGLE = 1e-3
-"""The same for a factor in single precision. With its diagonal scaled to one the damped matrix has
-a condition of some 1e5, which leaves steps of two digits: enough on the way, in half the time."""
+"""Least damping for a factor in single precision. Scaled to a diagonal of one, the damped matrix
+has a condition of some 1e5, which leaves steps of two digits: enough on the way, in half the
+time."""
 _SINGLE_DOWN_TO = 1e-6
 """Gain of a step, relative to the energy, below which sparse factors are in double precision."""
 _TRIALS = 60
@@ -54,7 +55,7 @@ _STABLE = 0.02
 """Damping, relative to the first, with which the Hessian of a minimum is positive definite (rigid
 motions of the sheet have no stiffness)."""
 _STABLE_LARGE = 2e-3
-"""The same for cells with a sparse factor, whose folds are softer."""
+"""Damping of cells with a sparse factor, whose folds are softer."""
 _NUDGES = 4
 _NUDGE = 0.03
 """First displacement with which a saddle is left, in radii: far above rounding, and small enough to
@@ -62,7 +63,7 @@ follow the direction in which it falls."""
 _BEYOND_LOWEST = 1.3
 """Damping where the lowest curvature is negative, relative to it."""
 _BESIDE_LOWEST = 1.02
-"""The same where the direction of the lowest curvature is wanted, and not that of the next."""
+"""Damping for the direction of the lowest curvature alone, and not that of the next."""
 _INDEFINITE_GROWTH = 3.0
 _POWER_STEPS = 2
 _SADDLE_STEPS = 40

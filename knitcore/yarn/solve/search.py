@@ -26,7 +26,7 @@ _STRAIGHT = 0.9
 """Size over loop length at which a stitch is pulled straight."""
 
 _REMEDY = (
-    "Give the stitches more yarn, a thinner yarn, or a core of .25 to .6 of the radius, as the "
+    "Give the stitches more yarn, a thinner yarn, or a core of 0.25 to 0.6 of the radius, as the "
     "paper's yarns have."
 )
 
@@ -90,7 +90,7 @@ class Search:
         self.energy = energy
         self.options = options
         self.cancelled = cancelled
-        self.found: list[Minimum] = []
+        self.minima: list[Minimum] = []
         self.reports: list[StartReport] = []
         self.evaluations = 0
         self._errors: list[KnitcoreError] = []
@@ -145,7 +145,7 @@ class Search:
             )
         )  # fmt: skip
         if became in (RELAXED, UNSETTLED):
-            self.found.append(minimum)
+            self.minima.append(minimum)
 
     def best(self) -> tuple[Minimum, list[Minimum]]:
         """The lowest state of the fabric, and others that are as low (:func:`lowest_of`).
@@ -155,7 +155,7 @@ class Search:
         ConvergenceError, UnravelledError
             If there is none.
         """
-        if not self.found:
+        if not self.minima:
             if self._errors:
                 if isinstance(self._errors[0], UnravelledError):
                     raise UnravelledError(f"{self._errors[0]} {_REMEDY}")
@@ -164,7 +164,7 @@ class Search:
             raise UnravelledError(
                 f"No start kept the stitches of this repeat: {reasons}. {_REMEDY}"
             )
-        settled = [m for m in self.found if m.converged] or self.found
+        settled = [m for m in self.minima if m.converged] or self.minima
         return lowest_of(settled)
 
     def refined(self, best: Minimum, energy: CellEnergy, options: Options) -> Minimum:
@@ -201,11 +201,11 @@ class Search:
     def notes(self, best: Minimum) -> tuple[str, ...]:
         """Notes for the user: higher minima, and how much the mirrored state differs."""
         notes = []
-        energies = [m.terms.energy for m in self.found]
+        energies = [m.terms.energy for m in self.minima]
         others = sum(e > min(energies) * (1.0 + SAME_ENERGY) for e in energies)
         if others:
             notes.append(f"{others} of {len(self.reports)} starts ended in a higher minimum.")
-        failed = len(self.reports) - len(self.found)
+        failed = len(self.reports) - len(self.minima)
         if failed:
             notes.append(f"{failed} of {len(self.reports)} starts failed.")
         if not best.converged:
@@ -222,7 +222,7 @@ class Search:
         return tuple(notes)
 
     def _lowest(self, energy: CellEnergy, starts: Sequence[Start]) -> Minimum:
-        """From the first start, unless another one ends distinctly lower."""
+        """The shape from the first start, unless another start ends distinctly lower."""
         best = self._grow(energy, starts[0])
         self.evaluations += best.evaluations
         for start in starts[1:]:

@@ -42,7 +42,7 @@ from knitcore.yarn.solve.search import RELAXED, UNSETTLED, Search, outcome
 MAX_STITCHES = 400
 """Largest cell that is solved."""
 MAX_STITCHES_RULED = 100
-"""The same where each stitch has a rule of its own (its length, or a plane)."""
+"""Largest cell in which each stitch has a rule of its own (its length, or a plane)."""
 FINE = SplineGrid(controls=20, per_span=4)
 COARSE = SplineGrid(controls=16, per_span=3)
 ROUGH = SplineGrid(controls=12, per_span=4)

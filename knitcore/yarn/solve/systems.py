@@ -125,7 +125,7 @@ class System(ABC):
     def decrease_solved(
         self, slope: Slope, step: Array, change: Array, excess: Array, fraction: float
     ) -> float:
-        """The same for a fraction of what ``solve`` returned, without a product with the matrix."""
+        """Decrease for a fraction of what ``solve`` returned, without a product with the matrix."""
         along = self._downhill(slope, step, change, excess)
         return (1.0 - 0.5 * fraction) * along + 0.5 * self._damping * dot(step, step)
 
@@ -135,7 +135,7 @@ class System(ABC):
 
 
 class DenseSystem(System):
-    """With a dense Cholesky factor."""
+    """Newton's system with a dense Cholesky factor."""
 
     def __init__(self, slope: Slope, penalty: float, free: NDArray[np.bool_]) -> None:
         super().__init__(slope, penalty, free)
@@ -169,7 +169,10 @@ class DenseSystem(System):
 
 
 class SparseSystem(System):
-    """With a sparse factor; the two sizes of a stitch, which touch everything, come last."""
+    """Newton's system with a sparse factor.
+
+    The two sizes of a stitch, which touch everything, come last.
+    """
 
     def __init__(
         self, slope: Slope, penalty: float, free: NDArray[np.bool_], fronts: tuple[Front, ...],

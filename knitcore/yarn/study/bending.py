@@ -92,18 +92,18 @@ class FabricBending:
         return Curl.BACK if tightness > 0.0 else Curl.FRONT
 
     def unstable(self) -> FabricBending:
-        """The same of a state that is a minimum in its repeat, but not in a larger cell."""
+        """Bending of a state that is a minimum in its repeat, but not in a larger cell."""
         return replace(
             self, oblique=None, twist_n_mm=None, coupling_n_mm=None, shear_modulus_n_per_mm=None,
             minimum=False,
         )  # fmt: skip
 
     def mirror_image(self) -> FabricBending:
-        """The same with left and right exchanged."""
+        """Exchange left and right."""
         return self if self.oblique is None else replace(self, oblique=self.oblique[::-1])
 
     def swapped(self) -> FabricBending:
-        """The same with knits for purls: front and back exchanged."""
+        """Exchange knits and purls: front and back."""
         oblique = self.oblique
         return replace(
             self,
@@ -131,11 +131,11 @@ class RepeatBending:
     unmirrored_failure: str = ""
 
     def mirror_image(self) -> RepeatBending:
-        """The same with left and right exchanged."""
+        """Exchange left and right."""
         return self._changed(FabricBending.mirror_image)
 
     def swapped(self) -> RepeatBending:
-        """The same with knits for purls: front and back exchanged."""
+        """Exchange knits and purls: front and back."""
         return self._changed(FabricBending.swapped)
 
     def _changed(self, change: Callable[[FabricBending], FabricBending]) -> RepeatBending:

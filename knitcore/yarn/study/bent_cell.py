@@ -118,7 +118,7 @@ class BendingResponse:
         return -self.moment_n / self.rigidity_n_mm
 
     def swapped(self) -> BendingResponse:
-        """The same with front and back exchanged."""
+        """Exchange front and back."""
         turned = {"moment_n": 0.0 - self.moment_n, "strain_across_mm": 0.0 - self.strain_across_mm}
         return replace(self, **turned)  # without -0.0
 

@@ -147,7 +147,7 @@ class SplineStretch:
 
 
 def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
-    """The same state with its yarn kept from sliding where it touches.
+    """Keep the yarn of a state from sliding where it touches.
 
     Raises
     ------

@@ -8,7 +8,7 @@ from app.cli.commands import command_of
 from app.cli.main import SECTIONS, main
 from app.operations.registry import operations
 from scripts.site import every_command
-from tests.app.operations.test_registry import ASKING
+from tests.app.operations.test_registry import ECHOING
 from tests.app.running import python
 
 NAMES_SO_FAR = frozenset(
@@ -82,7 +82,7 @@ def test_defaults_are_shown_as_they_are(words: str) -> None:
 def test_a_default_is_shown_with_its_option() -> None:
     relax = EVERY["relax"].get_help(click.Context(EVERY["relax"]))
     assert "[default: published]" in " ".join(relax.split())
-    asking = command_of(ASKING, "ask")
+    asking = command_of(ECHOING, "ask")
     assert "[default: 3]" in asking.get_help(click.Context(asking))
 
 

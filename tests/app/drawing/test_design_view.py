@@ -38,7 +38,7 @@ def test_a_huge_chart_is_drawn_around_its_focus() -> None:
         drawing.part.placement.centres_mm[-1, 0], scene.placement.centres_mm[299, 0]
     )
     assert drawing.ground.shape == (300, 400)
-    assert drawing.picture is not None
+    assert not drawing.is_whole
 
 
 def test_every_way_to_colour_the_stitches() -> None:

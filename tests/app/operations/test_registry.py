@@ -45,7 +45,7 @@ def test_every_operation_has_a_route_or_is_a_job(schema: dict[str, Any]) -> None
 Lines = Callable[[Any], list[str]]
 
 
-class Asked(RequestModel):
+class EveryField(RequestModel):
     """A request with a field of every sort."""
 
     chart: ChartInput
@@ -60,31 +60,31 @@ class Asked(RequestModel):
     brief: bool = False
 
 
-class Told(ResultModel):
+class Echo(ResultModel):
     """The request, and the content of its file."""
 
     request: str
     content: str = ""
 
 
-def tell(request: Asked, context: Context) -> Told:
+def echo(request: EveryField, context: Context) -> Echo:
     assert context.local
     content = ""
     if request.file is not None:
         with stored([request.file]) as (path,):
             content = path.read_text()
-    return Told(request=request.model_dump_json(exclude={"file"}), content=content)
+    return Echo(request=request.model_dump_json(exclude={"file"}), content=content)
 
 
 COMMAND = Command(lambda r: [r.request], names={"parts": "--part"})
-ASKING = Operation(tell, tag="tests", summary="Ask", command=COMMAND)
+ECHOING = Operation(echo, tag="tests", summary="Echo", command=COMMAND)
 
 
-def ask(*arguments: str) -> Asked:
-    result = CliRunner().invoke(command_of(ASKING, "ask"), arguments, standalone_mode=False)
+def echoed(*arguments: str) -> EveryField:
+    result = CliRunner().invoke(command_of(ECHOING, "echo"), arguments, standalone_mode=False)
     if result.exception:
         raise result.exception
-    return Asked.model_validate_json(result.output)
+    return EveryField.model_validate_json(result.output)
 
 
 def done(run: Callable[[Any, Context], Any], lines: Lines, *options: str) -> Result:
@@ -99,18 +99,20 @@ GARTER = ("garter", "--size", "4x2", "--material", "acrylic", "--direction", "wa
 def test_options_are_the_fields_of_the_request(tmp_path: Path) -> None:
     file = tmp_path / "a.txt"
     file.write_text("hello")
-    plain = ask(*GARTER)
+    plain = echoed(*GARTER)
     assert plain.chart.model_dump() == {"fabric": "garter", "columns": 4, "rows": 2}  # type: ignore[union-attr]
     assert (plain.steps, plain.check, plain.brief) == (3, True, False)
     assert plain.gauge is None
     assert plain.parts is None
-    full = ask(
+    full = echoed(
         *GARTER, "--stitches-per-10-cm", "20", "--rows-per-10-cm", "30",
         "--part", "1", "--part", "2", "--steps", "5", "--no-check", "--brief",
     )  # fmt: skip
     assert full.gauge == GaugeInput(stitches_per_10_cm=20, rows_per_10_cm=30)
     assert (full.parts, full.steps, full.check, full.brief) == ([1.0, 2.0], 5, False, True)
-    shown = CliRunner().invoke(command_of(ASKING, "ask"), [*GARTER, "--file", str(file), "--json"])
+    shown = CliRunner().invoke(
+        command_of(ECHOING, "echo"), [*GARTER, "--file", str(file), "--json"]
+    )
     assert '"content":"hello"' in shown.output
 
 
@@ -124,13 +126,13 @@ def test_options_are_the_fields_of_the_request(tmp_path: Path) -> None:
 )
 def test_a_refused_option_is_named(more: list[str], says: str) -> None:
     with pytest.raises((click.ClickException, ValueError), match=says):
-        ask(*GARTER, *more)
+        echoed(*GARTER, *more)
 
 
 def test_a_file_brings_chart_and_outline(tmp_path: Path) -> None:
     file = tmp_path / "c.txt"
     file.write_text("KP\nPK")
-    request = ask(str(file), "--material", "acrylic", "--direction", "wale")
+    request = echoed(str(file), "--material", "acrylic", "--direction", "wale")
     assert (request.chart, request.outline) == ("KP\nPK", None)
 
 
@@ -140,9 +142,9 @@ class Repeat(RequestModel):
     chart: RepeatInput
 
 
-def repeat(request: Repeat, context: Context) -> Told:
+def repeat(request: Repeat, context: Context) -> Echo:
     assert context.local
-    return Told(request=str(request.chart))
+    return Echo(request=str(request.chart))
 
 
 def test_a_repeat_needs_no_size() -> None:
@@ -206,12 +208,12 @@ def _leaves(value: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def test_an_operation_is_described_by_its_function() -> None:
-    assert (ASKING.name, ASKING.request, ASKING.result) == ("tell", Asked, Told)
+    assert (ECHOING.name, ECHOING.request, ECHOING.result) == ("echo", EveryField, Echo)
     assert operations()["stretch"].result is StretchResult  # which comes with data for the view
     assert operations()["import"].address == "/import"
 
 
-class Found:
+class LibraryResult:
     """The result of a library function."""
 
     modulus_course_n_per_mm = 0.5
@@ -231,7 +233,7 @@ class Numbers(ResultModel):
 
 
 def test_a_result_reads_the_attributes_of_what_was_found() -> None:
-    numbers = Numbers.of(Found(), count=2)
+    numbers = Numbers.of(LibraryResult(), count=2)
     assert numbers.model_dump() == {
         "modulus_course_n_per_mm": 0.5,
         "interval": (1.0, 2.0),

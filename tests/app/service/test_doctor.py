@@ -71,7 +71,7 @@ def _executing(statement: str) -> Callable[[Path], None]:
     return spoil
 
 
-def _told(folder: Path) -> tuple[int, dict[str, dict[str, str]]]:
+def _failing(folder: Path) -> tuple[int, dict[str, dict[str, str]]]:
     """Exit code of the doctor, and the checks that fail."""
     result = _doctor(folder, "--json")
     checks = json.loads(result.stdout)["checks"]
@@ -80,10 +80,10 @@ def _told(folder: Path) -> tuple[int, dict[str, dict[str, str]]]:
 
 
 def test_a_sound_set_up_passes(tmp_path: Path) -> None:
-    assert _told(tmp_path / "new") == (0, {})
+    assert _failing(tmp_path / "new") == (0, {})
     assert not (tmp_path / "new").exists()
     _database(tmp_path)
-    assert _told(tmp_path) == (0, {})
+    assert _failing(tmp_path) == (0, {})
     assert "ok    database" in _doctor(tmp_path).output
 
 
@@ -188,7 +188,7 @@ def test_doctor_start_and_readiness_say_the_same_in_one_line(
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    code, failed = _told(Path(os.environ["KNITCORE_DATA_DIR"]))
+    code, failed = _failing(Path(os.environ["KNITCORE_DATA_DIR"]))
     assert (code, list(failed)) == (1, [broken.check])
     problem, remedy = failed[broken.check]["problem"], failed[broken.check]["remedy"]
     assert broken.words in f"{problem} {remedy}"
@@ -272,7 +272,7 @@ def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
 
 
 def test_a_copy_is_kept_before_a_migration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a next migration, which only this test has."""
+    """The next migration is one that only this test has."""
     with opened(tmp_path) as database:
         before = revision(database)
         migrations = shutil.copytree(schema.MIGRATIONS, tmp_path / "migrations")

@@ -124,10 +124,26 @@ def test_without_a_gpu_less_of_a_large_chart_is_yarn(
 ) -> None:
     monkeypatch.setattr(scene_module, "COARSE_WINDOW", 6)
     scene = scene_of(SMALL)
-    for picture, stitches in ((None, 12), (scene.colours, 6)):
+    whole = scene.drawing()
+    for drawing, stitches in ((whole, 12), (replace(whole, part=scene.window(9)), 6)):
         view.writer.coarse = True
-        view.show(replace(scene.drawing(), picture=picture))
+        view.show(drawing)
         assert sum(_nodes(view).values()) == stitches
+
+
+def test_a_back_is_shown_unless_the_cloth_was_changed_meanwhile(view: View) -> None:
+    first, second = (scene_of(SMALL).drawing() for _ in range(2))
+    layers = view.server.scene._handle_from_node_name
+    picture = np.full((20, 30, 4), 200, np.uint8)
+    view.show(first, picture)
+    view.show(second, picture)
+    assert "/face" in layers
+    view.writer.show_back(first, picture)
+    assert "/back" not in layers
+    view.writer.show_back(second, picture)
+    assert "/back" in layers
+    view.show(first)
+    assert not {"/face", "/back"} & set(layers)
 
 
 def test_a_moved_camera_keeps_its_place_until_reset(view: View) -> None:

@@ -1,6 +1,5 @@
 """Pictures of a fabric that the service draws itself."""
 
-import dataclasses
 import io
 
 import numpy as np
@@ -10,7 +9,7 @@ from PIL import Image
 
 from app.drawing.colours import FABRIC_COLOURS, rgb
 from app.drawing.computed import PosedView
-from app.drawing.fabric import Drawing
+from app.drawing.fabric import FabricScene
 from app.viewer.still import still_png
 from knitcore.chart.fabric import Fabric
 from knitcore.draw.body import Body
@@ -24,7 +23,7 @@ def picture(content: bytes) -> np.ndarray:
 
 
 def still(width: int, height: int, **changed: object) -> np.ndarray:
-    return picture(still_png(scene_of(ASKED | changed).drawing(), width, height))
+    return picture(still_png(scene_of(ASKED | changed), width, height))
 
 
 def opaque(drawn: np.ndarray) -> np.ndarray:
@@ -38,8 +37,8 @@ def cloth(height_mm: float) -> np.ndarray:
     return corners
 
 
-def posed(view: PosedView) -> Drawing:
-    return scene_of(ASKED | {"curl": {"id": "posed"}}, view).drawing()
+def posed(view: PosedView) -> FabricScene:
+    return scene_of(ASKED | {"curl": {"id": "posed"}}, view)
 
 
 def test_the_fabric_lies_in_the_middle_in_its_colour() -> None:
@@ -70,9 +69,9 @@ def test_where_there_is_no_stitch_nothing_is_drawn() -> None:
 
 
 def test_a_shape_that_leaves_the_picture_is_cut_at_its_edges() -> None:
-    near = posed(PosedView(cloth(12.0)))  # nearer to the eye, in the frame of the flat one
-    drawing = dataclasses.replace(near, ground=scene_of(ASKED).ground)
-    shown = opaque(picture(still_png(drawing, 120, 90)))
+    near = posed(PosedView(cloth(12.0)))
+    vars(near)["ground"] = scene_of(ASKED).ground  # nearer to the eye, in the frame of the flat one
+    shown = opaque(picture(still_png(near, 120, 90)))
     assert shown[0].any()
     assert shown[-1].any()
 
@@ -117,3 +116,15 @@ def test_the_service_gives_it_without_a_browser(client: TestClient) -> None:
     assert answer.headers["content-type"] == "image/png"
     assert picture(answer.content).shape == (48, 64, 4)
     assert client.post("/api/v1/views/still?width=1601", json=ASKED).status_code == 422
+
+
+def test_many_stitches_make_one_surface_in_the_same_place() -> None:
+    chart = {"fabric": "stockinette", "columns": 40, "rows": 40}
+    few = {"fabric": "stockinette", "columns": 25, "rows": 25}
+    cloth, yarn = (opaque(still(120, 90, chart=of)) for of in (chart, few))
+    ends = [
+        np.flatnonzero(shown.any(axis=axis))[[0, -1]] for shown in (cloth, yarn) for axis in (0, 1)
+    ]
+    assert np.abs(np.subtract(ends[:2], ends[2:])).max() <= 5
+    (top, bottom), (left, right) = ends[1], ends[0]
+    assert cloth[top + 2 : bottom - 2, left + 2 : right - 2].all()

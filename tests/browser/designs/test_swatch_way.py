@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
+from tests.browser.axe import violations_in_both_themes
 from tests.browser.page import complaints
 
 pytestmark = pytest.mark.slow
@@ -35,6 +36,7 @@ def test_a_yarn_is_made_from_a_ruler_a_scale_and_photos(flat_studio: Page) -> No
     page.fill("#swatch-ten", "150")
     page.click("#swatch-next")
 
+    assert violations_in_both_themes(page, "#yarns-dialog") == []
     with page.expect_download() as sheet:
         page.click("#swatch-sheet")
     assert sheet.value.suggested_filename == "knitcore-marks.pdf"
@@ -57,6 +59,7 @@ def test_a_yarn_is_made_from_a_ruler_a_scale_and_photos(flat_studio: Page) -> No
     expect(rows.last.locator(".swatch-brought")).to_have_count(2)
     expect(page.locator("#swatch-way")).to_contain_text("pulled along the columns only")
     expect(page.locator(".yarn-use").first).to_contain_text("Roughly: charts on the page")
+    assert violations_in_both_themes(page, "#yarns-dialog") == []
     page.click("#swatch-next")
     expect(page.locator("#material-button")).to_contain_text("Bottle wool")
     assert [line for line in said if "422" not in line] == []

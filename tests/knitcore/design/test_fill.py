@@ -207,11 +207,11 @@ def moduli_of(chart: StitchChart, cells: np.ndarray) -> np.ndarray:
     return np.array([inside.modulus_n_per_mm(direction) for direction in Direction])
 
 
-def refilled(kept: StitchChart, wishes: dict[str, tuple[np.ndarray, float]]) -> FilledField:
+def refilled(kept: StitchChart, targets: dict[str, tuple[np.ndarray, float]]) -> FilledField:
     """Fill parts that should be stiffer or softer by a factor, each as it is now."""
     targets = [
         PartTarget(name, runs_of(cells), *(factor * moduli_of(kept, cells)).tolist())
-        for name, (cells, factor) in wishes.items()
+        for name, (cells, factor) in targets.items()
     ]
     maps = target_maps(targets, *kept.purl.shape)
     return filled(*maps, parts=targets, kept=kept, scattered=False, check=False)
@@ -224,14 +224,14 @@ def check_no_part_is_farther(seed: int) -> None:
     middles = rng.uniform(0, kept.rows, (rng.integers(2, 5), 1, 1, 2))
     places = np.stack(np.indices(kept.purl.shape), axis=-1)
     nearest = ((places - middles) ** 2).sum(axis=-1).argmin(axis=0)
-    wishes = {
+    targets = {
         f"part {number}": (nearest == number, float(rng.choice([0.4, 1 / 1.3, 1.3, 2.5])))
         for number in np.unique(nearest).tolist()
         if number == nearest[0, 0] or rng.random() < 0.8
     }
-    field = refilled(kept, wishes)
+    field = refilled(kept, targets)
     for part in field.parts:
-        cells, factor = wishes[part.name]
+        cells, factor = targets[part.name]
         before, after = moduli_of(kept, cells), moduli_of(field.chart, cells)
         assert [part.course_before_n_per_mm, part.wale_before_n_per_mm] == pytest.approx(before)
         assert [part.course_n_per_mm, part.wale_n_per_mm] == pytest.approx(after)
@@ -241,7 +241,7 @@ def check_no_part_is_farther(seed: int) -> None:
         changed = (field.chart.purl != kept.purl)[cells].any()
         assert part.repainted or not changed
         assert part.repainted or any(part.name in message for message in field.messages)
-    outside = ~np.logical_or.reduce([cells for cells, _ in wishes.values()])
+    outside = ~np.logical_or.reduce([cells for cells, _ in targets.values()])
     assert np.array_equal(field.chart.purl[outside], kept.purl[outside])
 
 

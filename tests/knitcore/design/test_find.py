@@ -11,8 +11,8 @@ from knitcore.chart.repeats import repeats_up_to
 from knitcore.design.atlas import CURVES, VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.cost import CostLimits
-from knitcore.design.find import FoundFabrics, Quantity, Target, WornTube, find_fabric
-from knitcore.law.uniaxial import strain_at_stress
+from knitcore.design.find import FabricMatches, Quantity, Target, WornTube, find_fabric
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.mechanics.pressure import limb_pressure
 from tests.knitcore.design.atlases import REPEATS, acrylic_atlas
 from tests.knitcore.refusals import refuses
@@ -20,7 +20,7 @@ from tests.knitcore.refusals import refuses
 ACRYLIC = material("acrylic")
 
 
-def find(*targets: Target, count: int = len(REPEATS), **options: Any) -> FoundFabrics:
+def find(*targets: Target, count: int = len(REPEATS), **options: Any) -> FabricMatches:
     """Search the small atlas of acrylic, by default for all its repeats."""
     return find_fabric(acrylic_atlas(), targets, count=count, **options)
 
@@ -46,7 +46,7 @@ def test_a_wanted_pressure_is_that_of_the_pressure_model(
 
 def test_stretch_at_a_load_and_poisson_s_ratio_together() -> None:
     law = ACRYLIC.law(Fabric.GARTER)
-    strain = strain_at_stress(law, Direction.WALE, 0.05)
+    strain = free_strains_at_stress(law, Direction.WALE, 0.05)
     stretch = Target(Quantity.STRETCH_WALE, strain, 0.02, load_n_per_mm=0.05)
     best = find(stretch, Target(Quantity.POISSON_WALE, law.poisson_xy, 0.02)).candidates[0]
     assert best.repeat == "P/K"

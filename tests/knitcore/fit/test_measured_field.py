@@ -55,7 +55,7 @@ def test_a_picture_turned_by_a_quarter_gives_the_same_errors() -> None:
 
 
 def test_a_course_wise_pull_is_compared_along_the_courses() -> None:
-    """With x and y of the law exchanged, the field of a wale-wise pull is a course-wise one."""
+    """The field of a wale-wise pull is a course-wise one if x and y of the law are exchanged."""
     field = measured_field(*camera_arrays(GARTER, SheetModel()))
     other_way = str.maketrans("xy", "yx")
     exchanged = ConstitutiveLaw(**{k.translate(other_way): v for k, v in asdict(GARTER).items()})

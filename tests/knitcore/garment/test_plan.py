@@ -243,6 +243,44 @@ def test_measurements_that_cannot_be_knitted(make: object, field: str) -> None:
         make()
 
 
-def test_a_fit_takes_one_pressure() -> None:
-    with pytest.raises(InputError, match="mmhg: a list is not one number"):
+def test_a_fit_takes_one_pressure_or_a_profile() -> None:
+    graded = Fit(mmhg=((0, 20), (100, 10)))
+    assert [graded.mmhg_at(at) for at in (-5, 0, 25, 100, 200)] == [20, 20, 17.5, 10, 10]
+    assert Fit(mmhg=20).mmhg_at(70) == 20
+    assert Fit().mmhg_at(70) is None
+    with pytest.raises(InputError, match="mmhg: is of type list, no pressure and no profile"):
         Fit(mmhg=[20.0, 15.0])
+    with pytest.raises(InputError, match="do not increase"):
+        Fit(mmhg=[(10, 20.0), (0, 15.0)])
+
+
+def test_pressure_is_graded_along_a_sleeve() -> None:
+    """The middle of every interval follows the profile, as near as whole stitches allow."""
+    fit = Fit(mmhg=((50, 20), (250, 8)))  # places as they are measured, the sleeve begins at 50
+    limb = [Girth(50, 200), Girth(250, 210)]
+    plan = limb_tube("s", limb, WOOL, fit=fit, hem_mm=0)
+    middles = [(w.pressure.mmhg.low + w.pressure.mmhg.high) / 2 for w in plan.worn]
+    targets = np.interp([w.at_mm for w in plan.worn], [0, 200], [20, 8])
+    assert middles == pytest.approx(targets, rel=0.15)
+    bent = limb_tube("s", limb, WOOL, fit=Fit(mmhg=((50, 20), (150, 20), (250, 8))), hem_mm=0)
+    assert 100 in [w.at_mm for w in bent.worn]
+
+
+def test_a_ribbing_that_misses_the_pressure_says_so() -> None:
+    limb = [Girth(0, 200), Girth(200, 210)]
+    notes = limb_tube("s", limb, WOOL, fit=Fit(mmhg=15)).notes
+    missed = [note for note in notes if "does not keep to the 15 mmHg" in note]
+    assert len(missed) == 2
+    assert all("ribbing" in note for note in missed)
+    like_body = limb_tube("s", limb, WOOL, fit=Fit(mmhg=15), hem=Fabric.STOCKINETTE)
+    assert not any("does not keep" in note for note in like_body.notes)
+    assert not any("does not keep" in note for note in limb_tube("s", limb, WOOL).notes)
+
+
+def test_a_pressure_that_can_stop_the_blood_is_warned_of() -> None:
+    tight, loose = (
+        worn(WOOL, Fabric.STOCKINETTE, Direction.WALE, rest, 60).pressure.warnings[0]
+        for rest in (45, 58)
+    )
+    assert "stop the blood" in tight
+    assert "stop the blood" not in loose

@@ -66,6 +66,29 @@ def test_csv_reads_back(tmp_path: Path) -> None:
     assert fit.k_n_per_mm3 == pytest.approx(1e-3, rel=0.05)
 
 
+@pytest.mark.parametrize(
+    ("head", "separator", "depth", "force"),
+    [
+        ("Depth (µm),Force (mN)", ",", 1e3, 1e3),
+        ("sep=;\nStandardweg;Standardkraft\nmm;mN", ";", 1.0, 1e3),
+        ("depth_mm\tforce_n", "\t", 1.0, 1.0),
+    ],
+)
+def test_forms_of_testers_give_the_same_test(
+    tmp_path: Path, head: str, separator: str, depth: float, force: float
+) -> None:
+    rows = [
+        f"{depth * d:.7f}{separator}{force * f:.7f}"
+        for d, f in zip(MADE.depth_mm, MADE.force_n, strict=True)
+    ]
+    text = "\n".join([head, *rows])
+    (tmp_path / "mine-1.csv").write_text(text.replace(".", ",") if separator == ";" else text)
+    (test,) = read_compression(tmp_path / "mine-1.csv")
+    assert (test.name, test.yarn) == ("mine-1", "mine")
+    fit = fit_compression(test, diameter_mm=2.0)
+    assert fit.k_n_per_mm3 == pytest.approx(1e-3, rel=0.05)
+
+
 def test_means_are_by_yarn() -> None:
     samples = [fit_compression(squeeze(k, 2.5)) for k in (1e-3, 2e-3)]
     (mean,) = average_compression(samples)
@@ -105,7 +128,7 @@ def test_files_that_are_something_else(tmp_path: Path) -> None:
     (tmp_path / "a.xls").write_text("depth_mm,force_n\n1,2\n")
     (tmp_path / "b.xls").write_bytes(bytes.fromhex("d0cf11e0a1b11ae1") + b"\0" * 3000)
     (tmp_path / "c.xlsx").write_bytes(b"PK\x03\x04" + b"\0" * 100)
-    write(tmp_path / "d.csv", MADE.depth_mm, MADE.force_n, header="depth,force")
+    write(tmp_path / "d.csv", MADE.depth_mm, MADE.force_n, header="a,b")
     write(tmp_path / "e.csv", MADE.depth_mm, np.full(len(MADE.depth_mm), np.nan))
     (tmp_path / "f.csv").write_text("")
     for name in ("a.xls", "b.xls", "c.xlsx", "d.csv", "e.csv", "f.csv", "g.csv"):

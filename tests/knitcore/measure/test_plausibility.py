@@ -60,7 +60,7 @@ def test_a_strain_that_does_not_begin_at_zero_is_shifted_and_one_under_load_told
     notes: list[str] = []
     shifted = replace(run, strain_along=0.05 + 1.05 * run.strain_along)
     assert plausible(shifted, own, notes, []).strain_along == pytest.approx(run.strain_along)
-    assert any("first reading" in note for note in notes)
+    assert any("first reading, 0.050, as if the strip was 5.0% longer" in note for note in notes)
     loaded = run.only(run.strain_along > 0.1)
     assert plausible(loaded, own, notes, []) is loaded
     assert "under load" in notes[-1]
@@ -72,7 +72,9 @@ def test_a_strain_that_does_not_begin_at_zero_is_shifted_and_one_under_load_told
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (lambda e, t: (1 + e, 1 + t), "stretch ratio"),
+        (lambda e, t: (1 + e, 1 + t), "strain_along: begins at 1, .* stretch ratio"),
+        (lambda e, t: (1 + e, t), "strain_along: begins at 1, .* stretch ratio"),
+        (lambda e, t: (e, 1 + t), "strain_across: begins at 1, .* stretch ratio"),
         (lambda e, t: (e, -t), "strain_across.*wider"),
     ],
 )
@@ -119,5 +121,23 @@ def test_tests_of_a_rib_that_is_stiffer_along_its_rows_may_be_exchanged() -> Non
     assert order_doubt(stiff, soft, Fabric.SEED) is None
     doubt = order_doubt(stiff, soft, Fabric.RIB)
     assert doubt
-    assert "8.0 times stiffer along its rows" in doubt.problem
+    assert "8 times stiffer along its rows" in doubt.problem
     assert [reading.exchanges for reading in doubt.readings] == [True, False]
+
+
+def test_a_strain_beyond_any_knit_is_doubted() -> None:
+    usual, run = strip_of(0.2), pull()
+    stretched = replace(run, strain_along=run.strain_along * 8)
+    far = replace(usual, runs=(stretched,))
+    with pytest.raises(DoubtError, match=r"reaches 4\.8; .* force and strain exchanged") as error:
+        check_units(far, usual)
+    words = [reading.words for reading in error.value.doubt.readings]
+    assert words == ["per cent: 0.048", "4.8, as it stands"]
+    assert check_units(replace(far, sure=frozenset({"strain_along"})), usual) == []
+
+
+def test_a_strip_that_is_shorter_than_wide_is_told() -> None:
+    usual = strip_of(0.2)
+    assert check_units(replace(usual, length_mm=100.0), usual) == []
+    (note,) = check_units(replace(usual, length_mm=20.0), usual)
+    assert "shorter (20 mm) than wide (70 mm)" in note

@@ -128,6 +128,80 @@ def test_our_own_columns_may_stand_between_semicolons(tmp_path: Path) -> None:
     assert test.runs[1].strain_across[-1] == pytest.approx(-0.18)
 
 
+def stated(name: str, width: str, length: str, *, separator: str = ",") -> bytes:
+    """A pull below two lines about its width and its length, decimals with a point."""
+    rows = [f"{LENGTH_MM * e:.4f}{separator}{f:.4f}" for e, f in zip(STRAIN, FORCE, strict=True)]
+    return "\n".join([width, length, name, *rows]).encode()
+
+
+def grouped() -> bytes:
+    """Thousands in groups, in quotes."""
+    rows = [
+        f'"{1e3 * LENGTH_MM * e:,.1f}","{1e3 * f:,.2f}"' for e, f in zip(STRAIN, FORCE, strict=True)
+    ]
+    return "\n".join(["Width,70", "Length,100", "Extension (µm),Load (mN)", *rows]).encode()
+
+
+def quoted_commas() -> bytes:
+    rows = [f'"{comma(LENGTH_MM * e)}","{comma(f)}"' for e, f in zip(STRAIN, FORCE, strict=True)]
+    return "\n".join(['"Width","70,0"', '"Length","100"', '"Extension","Load"', *rows]).encode()
+
+
+def with_results_below() -> bytes:
+    above = stated("Extension (mm),Load (N)", "Width,70", "Length,100")
+    return above + b"\n\nMaximum load,14.88\nMean,12.1\n"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        stated("Extension,Load", "Width : 70 mm", "Gauge length : 100 mm"),
+        stated("Extension (mm),Load (N)", "Breite;7;cm".replace(";", ","), "Länge,100,mm"),
+        stated("Crosshead,Load\nmm,N", '"Width","70","mm"', '"Gage Length","100","mm"'),
+        stated("Axial Displacement,Axial Force\nmm,N", "Specimen width b0,70", "Länge L0,100"),
+        stated(
+            "Machine Extension (mm),Load (N)", "Probenbreite b0,70",
+            "Grip to grip separation at the start position,100",
+        ),
+        stated("Standard travel,Standard force", "Width,70", "Einspannlänge bei Start,100"),
+        stated("Allongement,Force", "Largeur,70,mm", "Longueur,100,mm"),
+        stated("Extension(mm)   Load(N)", "Width 70 mm", "Length 100 mm", separator="   "),
+        stated("Extension Load", "Width 70", "Length 100", separator=" "),
+        grouped(), quoted_commas(), with_results_below(),
+    ],
+)  # fmt: skip
+def test_titles_and_numbers_in_other_forms(tmp_path: Path, content: bytes) -> None:
+    test = read(tmp_path / "test.csv", content)
+    assert (test.width_mm, test.length_mm) == ((70.0,), 100.0)
+    stress = np.interp([0.1, 0.3, 0.5], test.runs[0].strain_along, test.runs[0].stress)
+    expected = np.interp([0.1, 0.3, 0.5], STRAIN, FORCE / WIDTH_MM)
+    assert stress == pytest.approx(expected, rel=2e-3)
+
+
+def test_of_two_extensions_the_first_is_read_and_told(tmp_path: Path) -> None:
+    rows = [f"{LENGTH_MM * e:.4f},{f:.4f},0" for e, f in zip(STRAIN, FORCE, strict=True)]
+    content = "\n".join(["Crosshead (mm),Load (N),Extension (mm)", *rows]).encode()
+    test = read(tmp_path / "test.csv", content, width_mm=WIDTH_MM, length_mm=LENGTH_MM)
+    assert "Crosshead (mm), Load (N) are read, and Extension (mm) is not" in test.notes[0]
+
+
+def test_signs_of_a_press_are_turned(tmp_path: Path) -> None:
+    rows = [f"{-LENGTH_MM * e:.4f},{-f:.4f}" for e, f in zip(STRAIN, FORCE, strict=True)]
+    content = "\n".join(["Extension (mm),Load (N)", *rows]).encode()
+    test = read(tmp_path / "test.csv", content, width_mm=WIDTH_MM, length_mm=LENGTH_MM)
+    assert test.largest_strain == pytest.approx(0.6)
+    assert ["are negative" in note for note in test.notes[:2]] == [True, True]
+
+
+def test_a_workbook_under_another_name(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    for row in (["Width", 70], ["Extension", "Load"], *zip(100 * STRAIN, FORCE, strict=True)):
+        book.active.append(list(row))
+    book.save(tmp_path / "test.xlsx")
+    file = (tmp_path / "test.xlsx").rename(tmp_path / "test.csv")
+    assert read_stretch_test(file, reading=TableReading(length_mm=100.0)).width_mm == (70.0,)
+
+
 def channels(name: str = "Ch 1 (mm),Ch 2 (N)") -> bytes:
     rows = [f"{LENGTH_MM * e:.4f},{f:.4f}" for e, f in zip(STRAIN, FORCE, strict=True)]
     return "\n".join([name, *rows]).encode()
@@ -145,12 +219,49 @@ def test_columns_that_say_too_little_can_be_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("above", "constants"),
+    [
+        ("", {}),
+        ("\n\n", {}),
+        ("mm,N\n", {}),
+        ("Specimen 1\nWidth,70 mm\n\n", {"width_mm": WIDTH_MM}),
+        ("Width,70,mm\nmm,N\n", {"width_mm": WIDTH_MM}),
+    ],
+)
+def test_numbers_without_names_can_be_named(
+    tmp_path: Path, above: str, constants: dict[str, float]
+) -> None:
+    file, content = tmp_path / "test.csv", above.encode() + channels().split(b"\n", 1)[1]
+    called = {"extension_mm": "column 1", "force_n": "column 2"}
+    test = read(file, content, columns=called, width_mm=WIDTH_MM, length_mm=LENGTH_MM)
+    assert test.runs[0].length == len(STRAIN)
+    assert test.largest_strain == pytest.approx(0.6)
+    heads = table_heads(file, TableReading(columns=called))
+    assert heads
+    assert heads.titles == ("column 1", "column 2")
+    assert heads.quantities == ("extension_mm", "force_n")
+    assert heads.units == (("mm", "N") if "mm,N" in above else ("", ""))
+    assert heads.rows[0] == ("0.0000", "0.0000")
+    assert heads.constants == constants
+    with pytest.raises(InputError, match="it has column 1, column 2"):
+        read(file, content)
+    wrong = content.replace(b"\n7.5949,", b"\n7.5949,x")
+    row = 12 + above.count("\n") - 1
+    with pytest.raises(InputError, match=f"row {row} holds"):
+        read(file, wrong, columns=called, width_mm=WIDTH_MM, length_mm=LENGTH_MM)
+
+
+@pytest.mark.parametrize(
     ("content", "says"),
     [
         (channels("Extension (mm),Load (stone)"), "'stone', which is not known"),
         (channels("Extension (mm),Load (N)"), "does not say how wide"),
         (channels("a,b"), "it has a, b"),
         (channels("Extension (mm),Load (N)").replace(b"\n7.5949,", b"\n7.5949,x"), "row 12 holds"),
+        (
+            b"Extension,Load\n" + b"0,5,0,25\n" * 30,
+            "4 numbers under 2 names: its decimals are commas",
+        ),
         (b"\x00\x01" * 50, "is not text"),
         (b"Extension,Load" + b"," * 20_000, "more than 200 columns"),
     ],

@@ -94,8 +94,11 @@ def _in_rows(change: Callable[..., tuple[object, ...]]) -> Callable[[list[str]],
 _in_percent = _in_rows(lambda r, e, t, *fw: (r, 100 * e, 100 * t, *fw))
 
 
-def _unload(lines: list[str]) -> None:
-    lines += lines[:1:-1]
+def _pull_again(lines: list[str]) -> None:
+    """Under one label: a pull, its unloading, and a pull to more."""
+    farther = lines[1:]
+    _in_rows(lambda r, e, t, f, w: (r, e, t, 1.1 * f, w))(farther := ["", *farther])
+    lines += lines[:1:-1] + farther[1:]
 
 
 @pytest.mark.parametrize(
@@ -108,7 +111,7 @@ def _unload(lines: list[str]) -> None:
         (_in_rows(lambda r, e, t, *fw: (r, t, e, *fw)), ["strain"]),
         (_in_rows(lambda r, e, *tfw: (r, 0.2, *tfw)), ["strain_along", "the same in every row"]),
         (_in_rows(lambda r, e, t, f, w: (r, e, t, 1000 * f, w)), ["newton (not mN"]),
-        (_unload, ["monotone", "row"]),
+        (_pull_again, ["monotone", "row"]),
         (lambda lines: lines.__delitem__(slice(12, None)), ["11 usable points"]),
         (lambda lines: lines.__delitem__(slice(1, None)), ["no rows"]),
         (lambda lines: lines.__setitem__(0, "run,a,b,c,d"), ["no column", "strain_along"]),
@@ -128,6 +131,44 @@ def test_errors_in_csv_name_file_column_and_row(
     for word in ["course.csv", *says]:
         assert word in str(error.value)
     assert error.value.remedy
+
+
+@pytest.mark.parametrize("has_labels", [True, False])
+def test_an_unloading_in_a_table_is_left_out(tmp_path: Path, has_labels: bool) -> None:
+    path = write_csv(tmp_path / "course.csv", X, runs=1)
+    whole = read_stretch_test(path)
+    lines = path.read_text().splitlines()
+    lines += lines[:1:-1]
+    path.write_text("\n".join(lines if has_labels else [li.split(",", 1)[1] for li in lines]))
+    test = read_stretch_test(path)
+    assert test.runs[0].length == pytest.approx(whole.runs[0].length, abs=2)
+    assert any("after the largest force" in note for note in test.notes)
+
+
+def test_pulls_without_labels_are_parted_and_the_first_conditions(tmp_path: Path) -> None:
+    lines = write_csv(tmp_path / "course.csv", X, runs=1).read_text().splitlines()
+    head, *rows = [line.split(",", 1)[1] for line in lines]
+    path = tmp_path / "cycles.csv"
+    path.write_text("\n".join([head, *[*rows, *rows[::-1]] * 3]))
+    test = read_stretch_test(path)
+    assert [run.name for run in test.runs] == ["cycles.csv, run pull 2", "cycles.csv, run pull 3"]
+    assert "of 3 pulls the first conditions" in test.notes[0]
+
+
+def test_own_columns_in_other_units_are_converted(tmp_path: Path) -> None:
+    path = write_csv(tmp_path / "course.csv", X, runs=1)
+    whole = read_stretch_test(path)
+    rows = [line.split(",") for line in path.read_text().splitlines()[1:]]
+    for head, units, force, width in (
+        ("force (cN),width (cm)", [], 100.0, 0.1),
+        ("force_n,width_mm", ["-,-,N,mm"], 1.0, 1.0),
+    ):
+        lines = [f"strain_along,strain_across,{head}", *units]
+        lines += [f"{r[1]},{r[2]},{float(r[3]) * force},{float(r[4]) * width}" for r in rows]
+        path.write_text("\n".join(lines))
+        test = read_stretch_test(path)
+        assert test.width_mm == pytest.approx(whole.width_mm)
+        assert test.runs[0].stress == pytest.approx(whole.runs[0].stress)
 
 
 def test_files_that_are_not_what_they_claim(tmp_path: Path) -> None:

@@ -79,7 +79,7 @@ def test_knitted_fabric_folds_less_than_its_sweep_as_the_learned_answer_does(tex
         assert own.strain(0.1) == pytest.approx(other.strain(0.1), rel=0.35)
 
 
-def _found(text: str, of: Material) -> RelaxedSize:
+def _from_relaxation(text: str, of: Material) -> RelaxedSize:
     stored = _stored(text)
     pure = {f: _stored(StitchChart.of_fabric(f).repeat().key) for f in Fabric}
     pure_mm = {f: (cell.cell_course_mm, cell.cell_wale_mm) for f, cell in pure.items()}
@@ -91,7 +91,7 @@ def _found(text: str, of: Material) -> RelaxedSize:
 def test_a_material_of_the_yarn_levels_fabrics_takes_its_size(
     text: str, simulated: Material
 ) -> None:
-    relaxed, stored = _found(text, simulated), _stored(text)
+    relaxed, stored = _from_relaxation(text, simulated), _stored(text)
     size = stored.cell_course_mm, stored.cell_wale_mm
     assert (relaxed.course_mm, relaxed.wale_mm) == pytest.approx(size)
 
@@ -102,7 +102,7 @@ def test_measured_cloth_takes_only_a_part_of_the_fold() -> None:
     flat = (acrylic.record("stockinette").stitch_mm[0] + acrylic.record("rib").stitch_mm[0]) / 2
     stored, pure = _stored("KKPP"), (_stored("K"), _stored("KP"))
     whole = stored.cell_course_mm / sum(cell.cell_course_mm / 2 for cell in pure)
-    part = _found("KKPP", acrylic).course_mm / flat
+    part = _from_relaxation("KKPP", acrylic).course_mm / flat
     assert whole < part < 1
     assert predict(chart, acrylic).relaxed_course_mm == pytest.approx(part * flat, rel=0.05)
 
@@ -111,7 +111,7 @@ def test_it_makes_the_stretch_of_a_simulated_material_more_certain() -> None:
     chart, of = StitchChart.parse("KPPK/KKPK/PKKP"), material("acrylic:simulation")
     learned = predict(chart, of)
     size = learned.relaxed_course_mm, learned.relaxed_wale_mm
-    sd = _found("KP/KK", of).log_sd  # that of another chart of the same kind
+    sd = _from_relaxation("KP/KK", of).log_sd  # that of another chart of the same kind
     known = predict(chart, of, RelaxedSize(*size, sd, KnownBy.RELAXATION))
     assert (known.provenance, known.relaxed_source) == ("learned with known size", "relaxation")
     assert known.size_is_known

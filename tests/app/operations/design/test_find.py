@@ -10,7 +10,7 @@ from app.context import Context
 from app.operations.design.find import FindRequest, find
 from app.service.results.atlases import repeats_of
 from knitcore.base.errors import InputError
-from knitcore.formats.read.stitch_maps import read_wanted_moduli
+from knitcore.formats.read.stitch_maps import read_target_moduli
 from tests.app.command_line import printed, refused, run
 from tests.app.rest import post, refusal
 
@@ -73,24 +73,24 @@ def test_stretch_pressure_and_limits_over_rest_and_on_the_command_line(
 
 def test_targets_for_parts_fill_them_and_contradictions_are_refused(client: TestClient) -> None:
     box = [[row, 0, 8] for row in range(8)]
-    wishes = [
+    targets = [
         {"name": "palm", "runs": box, "modulus_course_n_per_mm": 0.135},
         {"name": "back", "runs": [[row, 8, 8] for row in range(8)], "modulus_wale_n_per_mm": 0.48},
     ]
-    request = {"material": "acrylic", "rows": 8, "columns": 16, "wishes": wishes}
+    request = {"material": "acrylic", "rows": 8, "columns": 16, "targets": targets}
     filled = post(client, "fill", request)
     assert (filled["rows"], filled["columns"]) == (8, 16)
     assert filled["off_share"] <= 0.3
 
     kept = ["KPPKKPKKPPKPPPKK"] * 8
-    rest = {"wishes": wishes[:1], "chart": "\n".join(kept)}
+    rest = {"targets": targets[:1], "chart": "\n".join(kept)}
     beside = post(client, "fill", request | rest)
     assert [line[8:] for line in beside["chart"].split()] == [line[8:] for line in kept]
     shape = {"outline": "\n".join(["xxxxxxxxxxxxxx.."] * 8)}
     post(client, "fill", request | rest | shape)
     assert refusal(client, "fill", request | rest | {"chart": "KP"})["field"] == "chart"
 
-    wishes[1] = {"name": "thumb", "runs": box, "modulus_course_n_per_mm": 0.1}
+    targets[1] = {"name": "thumb", "runs": box, "modulus_course_n_per_mm": 0.1}
     problem = refusal(client, "fill", request)
     assert "contradict" in problem["detail"]
     for wrong in ({"rows": None}, {"modulus_course_n_per_mm": [[0.1]]}):
@@ -133,7 +133,7 @@ def test_the_values_of_a_chart_give_the_chart_back(
     assert run(*fill, f"--chart={chart}")["chart"].split()[:7] == chart.read_text().split()[:7]
     values.write_text("\n".join(lines))
 
-    course, wale = (m.tolist() for m in read_wanted_moduli(values))
+    course, wale = (m.tolist() for m in read_target_moduli(values))
     request = {"material": "acrylic", "modulus_course_n_per_mm": course}
     assert post(client, "fill", request | {"modulus_wale_n_per_mm": wale}) == result
 

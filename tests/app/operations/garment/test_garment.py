@@ -15,6 +15,12 @@ REQUESTS = (
     {"template": "wrist-brace", "wrist_mm": 170, "length_mm": 90},
     {"template": "sock-leg", "ankle_mm": 220, "calf_mm": 360, "length_mm": 200},
     {"template": "limb", "profile": [[0, 180], [200, 260]], "body": "seed"},
+    {
+        "template": "limb",
+        "profile": [[0, 200], [200, 220]],
+        "mmhg_profile": [[0, 15], [200, 8]],
+        "hem": "stockinette",
+    },
 )
 
 

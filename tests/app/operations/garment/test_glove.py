@@ -40,6 +40,13 @@ def test_the_wrist_is_that_of_the_plan(worn: dict[str, Any]) -> None:
     assert wrist["girth_mm"] == planned["worn_mm"]
 
 
+def test_parts_that_press_too_hard_are_named() -> None:
+    tight = run("glove", "--material", "glove-wool:glove", "--set", "ease=-0.3")["notes"][0]
+    assert tight.startswith("Too tight: ")
+    assert "index finger" in tight
+    assert "stop the blood" in tight
+
+
 @pytest.mark.slow
 def test_measurements_are_options_and_a_file_is_written(tmp_path: Path) -> None:
     out = tmp_path / "glove.glb"

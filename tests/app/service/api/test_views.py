@@ -55,6 +55,13 @@ def test_the_same_design_twice_is_one_scene(client: TestClient) -> None:
     assert b"/fabric/1" in second
 
 
+def test_a_cloth_of_many_stitches_gets_pictures_of_its_face_and_then_its_back(
+    client: TestClient,
+) -> None:
+    draw(client, "large-design", {"fabric": "seed", "columns": 40, "rows": 30}, colour="yarn")
+    assert b"/face" in _messages(client, "large-design", b"/back")
+
+
 def test_a_closed_view_is_drawn_again_by_the_next_request(client: TestClient) -> None:
     for _ in range(2):
         assert draw(client, "design-that-slept", "KP\nPK")["stitches"] == 4

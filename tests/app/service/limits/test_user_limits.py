@@ -71,7 +71,7 @@ def test_computing_time_is_spent_and_restored() -> None:
 
 
 def test_computations_of_a_user_share_the_memory_of_the_machine(tmp_path: Path) -> None:
-    """With the default limit of a worker, half of the machine's memory, that is two at once."""
+    """A worker may take half of the machine's memory, so two run at once."""
     with served(require_login=True, workers=3, data_dir=tmp_path) as client:
         settings = state_of(client).settings
         queue = state_of(client).compute.queue

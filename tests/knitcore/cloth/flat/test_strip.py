@@ -353,3 +353,17 @@ def test_a_row_more_changes_the_force_little(hem: str) -> None:
     forces = [stress(bands(lower, upper, rows)) for rows in range(16, 64)]
     most = max(float(np.abs(b - a).max()) for a, b in pairwise(forces))
     assert most < np.log(1.27)
+
+
+def test_the_first_taut_cloth_has_its_place_on_the_curve() -> None:
+    """Finer steps find the same; a test that ends before it has none."""
+    chart = StitchChart.of_fabric("garter", rows=6, columns=8)
+    coarse, fine = (strip_test(chart, ACRYLIC, "wale", 1.2, steps=steps) for steps in (24, 48))
+    strain, force = fine.first_taut
+    assert coarse.first_taut == pytest.approx((strain, force), rel=0.1)
+    after = int(np.searchsorted(fine.strain, strain))
+    assert fine.force_n[after - 1] < force < fine.force_n[after]
+    assert fine.tightest() > 0.95
+    short = strip_test(chart, ACRYLIC, "wale", 0.9 * strain)
+    assert short.first_taut is None
+    assert 0.5 < short.tightest() < 0.95

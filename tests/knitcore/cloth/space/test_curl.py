@@ -188,7 +188,7 @@ def test_pulled_along_the_rows_top_and_bottom_curl_to_the_front() -> None:
 
 
 def test_a_shaped_piece_is_the_rectangle_without_what_lies_outside() -> None:
-    """With every stitch nothing changes; without a corner the rest keeps its size."""
+    """Nothing changes if every stitch is there; without a corner the rest keeps its size."""
     chart = StitchChart.of_fabric(Fabric.GARTER, rows=10, columns=10)
     every = curl(chart, ACRYLIC, stitches=np.ones((10, 10), dtype=bool))
     np.testing.assert_allclose(every.corners_mm, curl(chart, ACRYLIC).corners_mm, atol=1e-9)

@@ -157,7 +157,7 @@ def _elastica(shortened: float) -> float:
 
 
 def _pushed_together(rows: int, shortened: float) -> float:
-    """The same of a strip of garter."""
+    """Height over length of a strip of garter that is pushed together."""
     plain = sheet_of(StitchChart.of_fabric("garter", rows=rows, columns=2), ACRYLIC)
     sheet = replace(plain, touch_n_per_mm=0.0)
     length = np.ptp(sheet.flat_mm[:, 1])

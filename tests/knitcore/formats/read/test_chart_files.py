@@ -30,6 +30,12 @@ def test_transparent_pixels_are_knits(tmp_path: Path) -> None:
     assert not read_chart(file).purl.any()
 
 
+def test_a_program_under_another_name(tmp_path: Path) -> None:
+    file = tmp_path / "chart.txt"
+    file.write_text("; by hand\nin 1\ntuck - f2 1\ntuck - f1 1\nknit + f1 1\nknit + f2 1\n")
+    assert read_chart(file).text == "KK"
+
+
 def test_design_file(tmp_path: Path) -> None:
     file = tmp_path / "chart.json"
     file.write_text(json.dumps({"format": "knitcore-design", "version": 2, "chart": CHART.text}))

@@ -209,6 +209,74 @@ def test_a_piece_may_be_smaller_than_its_plain_waste(lines: list[str], text: lis
     assert any(note.startswith("Waste: ") and "carrier 2" in note for note in knitted.notes)
 
 
+@pytest.mark.parametrize("tuck", [False, True])
+@pytest.mark.parametrize("tag", [0, 3])
+def test_a_bind_off_that_begins_with_a_stitch(tuck: bool, tag: int) -> None:
+    lines = stockinette(4)
+    for n in range(6, 1, -1):
+        lines += [f"knit - f{n} 1", f"xfer f{n} b{n}", "rack -1", f"xfer b{n} f{n - 1}", "rack 0"]
+        lines += [f"tuck + b{n} 1"] * tuck
+    lines += ["knit - f1 1", *["knit + f1 1", "knit - f1 1"][:tag], "outhook 1", "drop f1"]
+    assert read(*lines).chart.text == "\n".join(["K" * 6] * 4)
+
+
+def around_needles(carrier: str, rows: int) -> list[str]:
+    """Waste on both beds in turn, of which the back loops are dropped."""
+    lines = [f"in {carrier}"]
+    for row in range(rows):
+        lines += courses(carrier, "fb" * 3 if row % 2 else "bf" * 3, 1, first=row)
+    return [*lines, *(f"drop b{n}" for n in range(1, 7))]
+
+
+@pytest.mark.parametrize("thread", [[], ["in 3", *courses("3", "f" * 6, 1)]])
+def test_yarn_that_is_waste_before_a_piece_is_waste_after_it(thread: list[str]) -> None:
+    lines = [*around_needles("2", 10), *thread, "in 1", *courses("1", "f" * 6, 6, first=1)]
+    knitted = read(*lines, *courses("2", "f" * 6, 10, first=1))
+    assert knitted.chart.text == "\n".join(["KKKKKK"] * 6)
+    assert any("what carrier 2 knits after the piece" in note for note in knitted.notes)
+
+
+def test_waste_after_purls_has_no_pattern_of_its_own() -> None:
+    lines = stockinette(4)
+    to_back, to_front = ([f"xfer {a}{n} {b}{n}" for n in range(1, 7)] for a, b in ("fb", "bf"))
+    lines += [*to_back, *courses("1", "b" * 6, 2), *to_front, *courses("1", "f" * 6, 2)]
+    lines += [*to_back, *courses("1", "b" * 6, 2), *to_front, "in 2", *courses("2", "f" * 6, 12)]
+    assert read(*lines).chart.repeat_cut().key == "P/P/K/K/P/P/K/K/K/K"
+
+
+def test_blocks_of_colour_in_a_rib_are_stripes() -> None:
+    lines = ["in 1", *(f"tuck - {b}{n} 1" for n, b in reversed(list(enumerate(RIB, 1))))]
+    lines += [*courses("1", RIB, 4, first=1), "out 1", "in 2", *courses("2", RIB, 4, first=1)]
+    lines += ["out 2", "in 3", *courses("3", RIB, 4, first=1)]
+    assert read(*lines).piece.yarn_of[:, 0].tolist() == [0] * 4 + [1] * 4 + [2] * 4
+
+
+def test_plain_courses_of_a_yarn_around_a_patterned_piece_are_waste() -> None:
+    crossed = [f"xfer f{n} b{n}" for n, bed in enumerate(RIB, 1) if bed == "b"]
+    lines = [*waste(12, ended=False), *crossed, "in 1", *courses("1", RIB, 6)]
+    lines += [f"xfer b{n} f{n}" for n, bed in enumerate(RIB, 1) if bed == "b"]
+    knitted = read(*lines, *courses("2", "f" * 6, 12))
+    assert knitted.chart.text == "\n".join(["PKPKPK"] * 6)
+
+
+def beside_thread(before: int, after: int) -> list[str]:
+    """Plain courses of carrier 2, one of carrier 3, and plain courses of carrier 1."""
+    lines = [*waste(before), "in 3", *courses("3", "f" * 6, 1, first=before), "out 3", "in 1"]
+    return [*lines, *courses("1", "f" * 6, after, first=before + 1)]
+
+
+def test_a_draw_thread_parts_waste_from_a_larger_piece() -> None:
+    assert read(*beside_thread(6, 8)).chart.rows == 8
+
+
+def test_a_piece_smaller_than_what_lies_before_its_draw_thread_is_a_question() -> None:
+    with pytest.raises(InputError, match=r"carrier 3 knits one course \(line 134\)") as refused:
+        read(*beside_thread(20, 6))
+    assert "; carrier 1 knits #efe9dd wool" in refused.value.remedy
+    answered = read("; carrier 1 knits #efe9dd wool", *beside_thread(20, 6))
+    assert answered.chart.rows == 6
+
+
 def test_a_note_says_where_only_size_tells_waste_from_the_piece() -> None:
     knitted = read(*waste(12), "in 1", *courses("1", "f" * 6, 4))
     assert knitted.notes[0].startswith("Waste, by its size alone: what carrier 1 knits after")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageDraw, ImageOps
 
 from knitcore import InputError, StitchChart
 from knitcore.formats.read.chart_files import Aspect, PictureScale
@@ -26,7 +26,30 @@ def drawn() -> Image.Image:
     """The chart with cells of 20 pixels and lines between them."""
     tones = np.kron(np.where(PURL, 60, 220), np.ones((20, 20))).astype(np.uint8)
     tones[::20] = tones[:, ::20] = 0
-    return Image.fromarray(tones)
+    return Image.fromarray(np.pad(tones, (0, 1)))
+
+
+def sheet(sign: str, line: int, grey: int = 0) -> Image.Image:
+    """The chart with cells of 24 pixels and lines between them, numbers beside it, a title."""
+    rows, columns = PURL.shape
+    image = Image.new("L", (24 * columns + 90, 24 * rows + 100), 255)
+    pen = ImageDraw.Draw(image)
+    for row, column in np.argwhere(PURL):
+        x, y = 30 + 24 * int(column), 40 + 24 * int(row)
+        if sign == "cell":
+            pen.rectangle([x, y, x + 24, y + 24], fill=60)
+        elif sign == "dot":
+            pen.ellipse([x + 6, y + 6, x + 18, y + 18], fill=0)
+        else:
+            pen.line([x + 6, y + 12, x + 18, y + 12], fill=0, width=3)
+    for row in range(rows + 1):
+        pen.line([30, 40 + 24 * row, 30 + 24 * columns, 40 + 24 * row], fill=grey, width=line)
+        pen.text((30 + 24 * columns + 8, 46 + 24 * row), str(rows - row), fill=0)
+    for column in range(columns + 1):
+        x = 30 + 24 * column
+        pen.line([x, 40, x, 40 + 24 * rows], fill=grey, width=line)
+    pen.text((30, 10), "Chart A", fill=0)
+    return image
 
 
 def read(image: Image.Image, file: Path, scale: PictureScale | None = None) -> tuple[Piece, str]:
@@ -53,6 +76,14 @@ def read(image: Image.Image, file: Path, scale: PictureScale | None = None) -> t
         (toned((0, 0, 0, 255), (0, 0, 0, 0)), "png", "Transparent pixels are read as knits"),
         (drawn(), "png", "A grid of 16 x 12 cells is seen"),
         (drawn(), "jpg", "A grid of 16 x 12 cells is seen"),
+        (ImageOps.expand(drawn(), 40, 255), "png", "A grid of 16 x 12 cells is seen"),
+        (ImageOps.expand(drawn(), 13, 200), "png", "A grid of 16 x 12 cells is seen"),
+        (ImageOps.expand(toned(0, 255).resize((256, 192), 0), 21, 255), "png", "plain border"),
+        (sheet("cell", 1), "png", "around the frame of the grid"),
+        (sheet("cell", 3), "jpg", "around the frame of the grid"),
+        (sheet("cell", 1, grey=150), "png", "around the frame of the grid"),
+        (sheet("dot", 1), "png", "around the frame of the grid"),
+        (sheet("dash", 2), "jpg", "around the frame of the grid"),
     ],
 )
 def test_two_tones_or_colours_part_knits_from_purls(
@@ -111,6 +142,23 @@ def test_a_size_that_does_not_follow_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=says):
         read(drawn(), tmp_path / "chart.png", scale)
+
+
+def test_rows_of_blocks_without_lines_are_all_counted(tmp_path: Path) -> None:
+    """Welts, of which only every second border goes across, and a motif in between."""
+    purl = np.arange(16)[:, None] // 2 % 2 + np.zeros((1, 12)) > 0
+    purl[5, 3:6] = purl[10, 7:9] = True
+    tones = np.kron(np.where(purl, 20, 230), np.ones((12, 12))).astype(np.uint8)
+    assert (read(Image.fromarray(tones), tmp_path / "c.png")[0].chart.purl[::-1] == purl).all()
+
+
+def test_pixels_that_are_stitches_are_told_and_a_photo_has_none(tmp_path: Path) -> None:
+    tones = np.random.default_rng(2).integers(0, 2, (90, 120)).astype(np.uint8) * 255
+    piece, notes = read(Image.fromarray(tones), tmp_path / "chart.png")
+    assert (piece.chart.rows, piece.chart.columns) == (90, 120)
+    assert "Each of 120 x 90 pixels is a stitch" in notes
+    with pytest.raises(InputError, match="a photo has no pixel for a stitch"):
+        read(Image.fromarray(tones), tmp_path / "chart.jpg")
 
 
 def test_a_large_picture_without_a_grid_needs_a_width(tmp_path: Path) -> None:

@@ -38,6 +38,17 @@ from knitcore.formats.read.text_chart import read_text_chart
         ("| K | P |\n| P | K |", "KP/PK", "lines of the grid"),
         ("| K | P |\n|---|---|\n| P | K |", "KP/PK", "lines of the grid"),
         ("| - |   |\n|   | - |", "PK/KP", "lines of the grid"),
+        ("|:-:|:--|\n| Row | 1 | 2 |\n| 2 | K | P |\n| 1 | P | K |", "KP/PK", "beside the rows"),
+        ("┌───┬───┐\n│ K │ P │ 2\n├───┼───┤\n│ P │ K │ 1\n└───┴───┘\n  2   1", "KP/PK", "grid"),
+        ("┏━┳━┓\n2 ┃-┃ ┃\n┣━╋━┫\n1 ┃ ┃-┃\n┗━┻━┛", "PK/KP", "lines of the grid"),
+        ("+----+\n|.x.x|\n|x.x.|\n+----+", "KPKP/PKPK", "border"),
+        (",3,2,1\n2,K,P,K\n1,P,K,P\n", "KPK/PKP", "line of column numbers"),
+        ("K\tP\tK\t2\nP\tK\tP\t1\n3\t2\t1\t", "KPK/PKP", "beside the rows"),
+        ("2,0,1\n1,1,0", "KP/PK", "1 as purl"),
+        ("x\t\tx\n\tx\t\nx\t\tx", "PKP/KPK/PKP", "The 4 blank squares"),
+        ('"x","","x"\n"","x",""', "PKP/KPK", "The 3 blank squares"),
+        ("□ = 表目\n－ = 裏目\n\n□－\n－□", "KP/PK", "by its legend"),
+        ("Legend\n------\n. - knit\nx - purl\n\n.x\nx.", "KP/PK", "by its legend"),
         ("o = purl\n. = knit\n\no.o\n.o.", "PKP/KPK", "by its legend"),
         ("My rib\nKPKP\nPKPK", "KPKP/PKPK", "remarks: 'My rib'"),
     ],
@@ -53,6 +64,10 @@ def test_drawn_charts_are_read_and_noted(text: str, key: str, note: str) -> None
 )
 def test_plain_charts_need_no_note(text: str) -> None:
     assert read_text_chart(text) == (StitchChart.parse(text), ())
+
+
+def test_words_for_knit_and_purl_are_stitches() -> None:
+    assert read_text_chart("knit\tpurl\nknit\tpurl")[0].key == "KP/KP"
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ from knitcore.formats.designs.layout import (
 from knitcore.formats.read.chart_files import read_chart, read_noted_piece
 from knitcore.formats.write import report
 from knitcore.formats.write.chart_drawing import chart_pages, chart_pdf, chart_svg
-from knitcore.formats.write.chart_key import HEAVY, ChartStyle, RegionMark, tinted
+from knitcore.formats.write.chart_key import HEAVY, INK, ChartStyle, RegionMark, Symbols, tinted
 from knitcore.formats.write.drawn_page import Label, Page, Rectangle, to_pdf, to_svg
 from knitcore.formats.write.export import FORMATS, ExportKind, ExportOptions, export_chart
 from knitcore.formats.write.extensibility_drawing import region_fields
@@ -342,3 +342,22 @@ def test_names_keep_the_letters_of_their_language(kind: ExportKind) -> None:
     assert file.notes == ()
     (note,) = export_chart(chart, kind, ACRYLIC, ExportOptions(name="毛衣 סוודר")).notes
     assert "毛衣סודר" in note
+
+
+def test_the_designer_chooses_the_symbols_of_the_chart() -> None:
+    """The key shows the same as the chart: one entry for knits, one for purls."""
+
+    def drawn(symbols: Symbols) -> tuple[int, int]:
+        style = ChartStyle(symbols=symbols)
+        root = ET.fromstring(chart_svg(StitchChart.parse("KKP"), style))  # noqa: S314 - our own
+        names = [element.tag.split("}")[1] for element in root.iter()]
+        strokes = sum(
+            element.get("d", "").count("M")
+            for element in root.iter()
+            if element.get("stroke") == INK
+        )
+        return names.count("circle"), strokes
+
+    assert drawn(Symbols.DOTS) == (2, 0)
+    assert drawn(Symbols.DASHES) == (0, 2)
+    assert drawn(Symbols.JAPANESE) == (0, 5)

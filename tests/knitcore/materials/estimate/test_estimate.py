@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from knitcore import Direction, Fabric, InputError, material
-from knitcore.law.uniaxial import strain_at_stress
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials.estimate.estimate import MeasuredSwatch, estimate_yarn
 from knitcore.materials.estimate.yarn_statistics import left_out, library_table
 
@@ -78,7 +78,7 @@ def test_intervals_enclose_their_value_and_narrow_with_a_swatch() -> None:
 def test_the_extension_is_the_laws() -> None:
     garter = estimate_yarn(0.02, 9.0).fabrics[Fabric.GARTER]
     for direction in Direction:
-        strain = strain_at_stress(garter.law, direction, 0.1)
+        strain = free_strains_at_stress(garter.law, direction, 0.1)
         assert garter.strain_at_load[direction].value == pytest.approx(strain)
 
 

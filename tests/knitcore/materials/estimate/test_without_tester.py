@@ -8,7 +8,7 @@ import pytest
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import strain_at_stress, uniaxial_response
+from knitcore.law.uniaxial import free_strains_at_stress, uniaxial_response
 from knitcore.materials import load_library, material
 from knitcore.materials.estimate.without_tester import (
     KnownSwatch,
@@ -27,7 +27,7 @@ def hung(law: ConstitutiveLaw, *directions: Direction) -> list[StretchPoint]:
     points = []
     for direction in directions:
         for stress in (0.045, 0.135):
-            along = strain_at_stress(law, direction, stress)
+            along = free_strains_at_stress(law, direction, stress)
             across = float(uniaxial_response(law, direction, [along]).transverse_strain[0])
             points.append(StretchPoint(FABRIC, direction, stress, along, 0.004, across, 0.004))
     return points
@@ -65,7 +65,7 @@ def test_each_measurement_narrows_what_it_is_about() -> None:
     ):
         now = after.strain_at_load[direction]
         assert width(now) < 0.5 * width(before.strain_at_load[direction])
-        assert now.low < strain_at_stress(RECORD.law, direction, 0.1) < now.high
+        assert now.low < free_strains_at_stress(RECORD.law, direction, 0.1) < now.high
     assert wale.loop_length_mm.value == pytest.approx(RECORD.loop_length_mm, rel=0.03)
     assert wale.bending_modulus_n_mm2.low < 0.0708 < wale.bending_modulus_n_mm2.high
     assert wale.other_strains < library.other_strains
@@ -81,7 +81,7 @@ def test_intervals_cover_the_other_fabrics_of_the_library() -> None:
         made = yarn_without_tester(swatch, hung(record.law, *Direction))
         for fabric, estimate in made.fabrics.items():
             for direction, strain in estimate.strain_at_load.items():
-                true = strain_at_stress(yarn.law(fabric), direction, 0.1)
+                true = free_strains_at_stress(yarn.law(fabric), direction, 0.1)
                 inside.append(strain.low < true < strain.high)
     assert np.mean(inside) > 0.85
 
@@ -105,7 +105,7 @@ def test_tests_of_one_fabric_serve_in_place_of_photos() -> None:
     assert yarn.steps[-1].name == "tests, pulled wale-wise"
     stretch = yarn.fabrics[FABRIC].strain_at_load[Direction.WALE]
     assert stretch.value == pytest.approx(
-        strain_at_stress(RECORD.law, Direction.WALE, 0.1), rel=0.05
+        free_strains_at_stress(RECORD.law, Direction.WALE, 0.1), rel=0.05
     )
 
 

@@ -23,5 +23,5 @@ def test_what_is_missing_is_named() -> None:
         relax("K")
     with pytest.raises(InputError, match="loop_length_mm: is missing"):
         relax("K", used.yarn)
-    with pytest.raises(InputError, match="a float is not a material"):
+    with pytest.raises(InputError, match="is of type float"):
         relax("K", 10.5)

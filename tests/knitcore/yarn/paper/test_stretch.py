@@ -28,7 +28,9 @@ def cotton_stockinette():
 def test_stress_is_the_slope_of_the_energy(cotton_stockinette):
     for curve in cotton_stockinette:
         assert curve.converged
-        middle, slope = curve.stress_from_energies()
+        area = curve.zero.cell_course_mm * curve.zero.cell_wale_mm
+        middle = 0.5 * (curve.strain[1:] + curve.strain[:-1])
+        slope = np.diff(curve.energy_n_mm) / (np.diff(curve.strain) * area)
         inside = slice(0, 8)
         exact = np.interp(middle, curve.strain, curve.stress_n_per_mm)
         assert slope[inside] == pytest.approx(exact[inside], rel=0.05, abs=2e-3)

@@ -98,12 +98,12 @@ def test_a_pull_at_the_free_narrowing_is_free_and_a_held_width_takes_more(stocki
         )
         for share in (1.0, 0.0)
     )  # fmt: skip
-    np.testing.assert_allclose(free.transverse_stress_n_per_mm, 0.0, atol=1e-6)
+    across_n = [[cell.force_n[0] for cell in pulled.cells] for pulled in (free, same, held)]
+    np.testing.assert_allclose(across_n[:2], 0.0, atol=2e-5)
     np.testing.assert_allclose(same.stress_n_per_mm, free.stress_n_per_mm, atol=1e-5)
-    np.testing.assert_allclose(same.transverse_stress_n_per_mm, 0.0, atol=1e-5)
     np.testing.assert_allclose(held.transverse_strain, 0.0, atol=1e-12)
     assert np.all(held.stress_n_per_mm[1:] > 1.02 * free.stress_n_per_mm[1:])
-    assert np.all(held.transverse_stress_n_per_mm[1:] > 0.0)
+    assert np.all(np.array(across_n[2][1:]) > 0.0)
     # all work goes into the yarn, less 1.5 % that this coarse grid spends on even samples
     area = stockinette.cell_course_mm * stockinette.cell_wale_mm
     work = area * np.trapezoid(held.stress_n_per_mm, held.strain)

@@ -6,7 +6,7 @@ import { Floating, changed } from "../../design/floating.js";
 import { ellipse, enclosed, flood, line, rectangle, thick } from "../../grid/raster.js";
 import { surroundings } from "../../grid/segments.js";
 import { combined, selectedCells } from "../../design/selection.js";
-import { TOOLS } from "../../tools/registry.js";
+import { TOOLS } from "../../tools/tools.js";
 import { ACTIONS, matches } from "../../actions/registry.js";
 import { random } from "../random.js";
 

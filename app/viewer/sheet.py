@@ -1,0 +1,123 @@
+"""Cloth from afar: pictures of its face and of its back, in which every stitch is drawn."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from PIL import Image, ImageFilter
+from scipy.ndimage import grey_closing
+
+from knitcore.draw.body import Floats
+from knitcore.draw.placing import mean_sizes_mm
+from knitcore.draw.tubes import resampled
+
+from ..context import Supplies
+from ..drawing.colours import linear
+from ..drawing.computed import PosedView, StretchView
+from ..drawing.design_view import ViewRequest, build_scene
+from ..drawing.fabric import Drawing, FabricScene
+from .balls import Balls, Picture, drawn, points_along
+
+PIXELS = 2_000_000
+LONGEST = 4096
+"""Pixels of a picture, and of its longer side, at most."""
+STITCH = 10.0
+"""Width of a stitch at most, pixels."""
+GAP = 0.3
+"""Light in the gaps between loops, over that of the yarn around them."""
+AROUND = 8
+"""Width of the squares of pixels whose mean light is that of the yarn around."""
+CLOSED = 5
+"""Half of the width up to which a gap has shade in it, pixels: it is cloth, not a hole."""
+SOFT = 0.9
+"""Standard deviation in pixels by which a picture is blurred, or loops and pixels would beat."""
+FEWEST = 900
+"""Stitches of a flat cloth that is seen from so far that its loops make one surface."""
+
+
+def looks_even(scene: FabricScene) -> bool:
+    """Tell whether loops of a cloth are too small in a view to be seen one by one."""
+    return scene.placement.frames is None and scene.shapes.index.size >= FEWEST
+
+
+def build_drawing(
+    request: ViewRequest, supplies: Supplies, *, cancelled: Callable[[], bool]
+) -> tuple[Drawing, Picture | None]:
+    """Draw a large chart, which has no stretch test or shape, and its face; runs in a worker."""
+    scene = build_scene(request, None, supplies.context(cancelled=cancelled))
+    return scene.drawing(), sheet_picture(scene)
+
+
+def build_back(
+    request: ViewRequest,
+    computed: StretchView | PosedView | None,
+    supplies: Supplies,
+    *,
+    cancelled: Callable[[], bool],
+) -> Picture | None:
+    """Draw the back of a design; runs in a worker."""
+    scene = build_scene(request, computed, supplies.context(cancelled=cancelled))
+    return sheet_picture(scene, back=True)
+
+
+def sheet_picture(scene: FabricScene, *, back: bool = False) -> Picture | None:
+    """The cloth seen straight on, as one stands before its face or its back.
+
+    Returns
+    -------
+    (height, width, 4) uint8, as wide and high as the cloth's
+    :attr:`~knitcore_app.drawing.fabric.Ground.extent_mm`, opaque where there is cloth; None of a
+    cloth that tubes show well: one of few stitches, or one that has left its plane.
+    """
+    if not looks_even(scene):
+        return None
+    extent = scene.ground.extent_mm
+    stitch = STITCH / float(scene.ground.sizes_mm[..., 0].mean())
+    scale = min(stitch, math.sqrt(PIXELS / extent.prod()), LONGEST / float(extent.max()))
+    width, height = np.maximum(np.round(scale * extent).astype(int), 1).tolist()
+    nothing = np.full((height, width), -np.inf, np.float32), np.empty((0, 3))
+    balls = _balls(scene, scale, (width, height), -1 if back else 1)
+    return _filled(drawn(balls, nothing))
+
+
+def _balls(scene: FabricScene, scale: float, size: tuple[int, int], side: int) -> Balls:
+    """Balls of all stitches, each with the tangents that its shape has at its mean size."""
+    shapes, places = scene.shapes, scene.placement
+    number = points_along(scene, scale)
+    lines = resampled(shapes.lines, number)
+    mean = np.column_stack([mean_sizes_mm(shapes, places), np.full(len(lines), places.depth)])
+    along = np.gradient(lines * mean[:, None], axis=1) * [side, 1, side]
+    along /= np.linalg.norm(along, axis=-1, keepdims=True)
+    shown = slice(None) if scene.drawn is None else scene.drawn
+    shape = shapes.index[shown].ravel()
+    own: Floats = (scale * lines).astype(np.float32)[shape]
+    own[..., :2] *= places.sizes_mm[shown].reshape(-1, 1, 2)
+    angles = places.angles[shown].astype(np.float32).reshape(-1, 1)
+    cosine, sine = np.cos(angles), np.sin(angles)
+    away = scale * (places.centres_mm[shown].reshape(-1, 2) - scene.ground.middle_mm)
+    middle = (away + 0.5 * np.array(size) * [side, -1]).astype(np.float32)
+    x = cosine * own[..., 0] - sine * own[..., 1] + middle[:, :1]
+    y = sine * own[..., 0] + cosine * own[..., 1] + middle[:, 1:]
+    return Balls(
+        x=np.float32(side) * x,
+        y=-y,
+        z=np.float32(side * places.depth) * own[..., 2],
+        along=along,
+        shape=shape,
+        radius=scale * shapes.yarn_radius_mm,
+        colours=linear(scene.colours)[shown].reshape(-1, 3),
+    )
+
+
+def _filled(picture: Picture) -> Picture:
+    """The picture with shade in the gaps between loops, and softened."""
+    height, width = picture.shape[:2]
+    image = Image.fromarray(picture, "RGBA").convert("RGBa")
+    around = image.reduce(AROUND).resize((width, height), Image.Resampling.BILINEAR)
+    mean = np.asarray(around).astype(np.float32)
+    shade = GAP ** (1 / 2.2) * mean[..., :3] * (255 / np.maximum(mean[..., 3:], 1.0))
+    cloth = grey_closing(np.pad(picture[..., 3], CLOSED), (2 * CLOSED + 1,) * 2)
+    filled = np.dstack([shade.astype(np.uint8), cloth[CLOSED:-CLOSED, CLOSED:-CLOSED]])
+    filled = np.where(picture[..., 3:] > 0, picture, filled)
+    soft = Image.fromarray(filled, "RGBA").convert("RGBa").filter(ImageFilter.GaussianBlur(SOFT))
+    return np.asarray(soft.convert("RGBA"))

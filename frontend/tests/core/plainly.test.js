@@ -1,0 +1,35 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { labelOf, plainly } from "../../core/plainly.js";
+
+const TITLE = "This input cannot be used";
+
+test("a refusal names what was entered, not the field of a request", () => {
+  const { detail, remedy } = plainly({
+    title: TITLE,
+    field: "request.force_n",
+    detail: "request.force_n: Input should be less than or equal to 10000.",
+    remedy: "Use 10000.0 or less.",
+  });
+  assert.equal(detail, "Force is too large.");
+  assert.equal(remedy, "Use 10,000 or less.");
+  assert.equal(labelOf("garment.glove.wrist_circumference_mm"), "Wrist circumference");
+  assert.equal(labelOf("garment.limb.profile.2"), "Measurements along the limb");
+});
+
+test("what the library says keeps its sentence, in knitters' directions", () => {
+  const { detail, remedy } = plainly({
+    title: TITLE,
+    field: "strain",
+    detail: "strain: 1.3 wale-wise is too much: this swatch locks up before that.",
+    remedy: "Use at most 1.221.",
+  });
+  assert.equal(detail, "Stretch: 1.3 along the columns is too much: this swatch locks up before that.");
+  assert.equal(remedy, "Use at most 1.221.");
+  assert.equal(
+    plainly({ title: TITLE, field: "material", detail: "material: is missing.", remedy: "Give material." }).remedy,
+    "Give material.",
+  );
+  const other = { title: "Not now", detail: "The computation took longer than 120 s." };
+  assert.deepEqual(plainly(other), other);
+});
