@@ -24,7 +24,7 @@ from knitcore.base.errors import InputError
 from knitcore.fit.measured_field import load_field
 from knitcore.formats.read.chart_files import read_noted_chart
 from knitcore.formats.read.law_files import load_law
-from knitcore.formats.read.stitch_maps import read_wanted_moduli
+from knitcore.formats.read.stitch_maps import read_target_moduli
 from knitcore.materials import load_material_file
 from knitcore.measure.compression_files import read_compression
 from knitcore.measure.uniaxial_files import read_stretch_test
@@ -313,7 +313,7 @@ CASES = {
         load_law, ".json", lambda n: LAW % ",".join(f'"a{i}": {{}}' for i in range(n)), 5_000
     ),
     "map of moduli": Case(
-        read_wanted_moduli,
+        read_target_moduli,
         ".csv",
         lambda n: (
             "row,column,modulus_wale_n_per_mm\n"
@@ -322,7 +322,7 @@ CASES = {
         5_000,
     ),
     "map of moduli, a head of commas": Case(
-        read_wanted_moduli,
+        read_target_moduli,
         ".csv",
         lambda n: "row,column,modulus_wale_n_per_mm" + "," * n + "\n1,1,1",
         20_000,
