@@ -120,7 +120,7 @@ audit: $(VENV)/.installed-tests build/product.txt ## Risky code, licences, list 
 	$(BIN)/ruff check --quiet --select S app knitcore
 	$(BIN)/python -m scripts.audit
 	@if $(MAKE) --no-print-directory .audit/.installed; then \
-		.audit/bin/bandit --quiet -c pyproject.toml -r app knitcore && \
+		.audit/bin/bandit --quiet --severity-level medium -c pyproject.toml -r app knitcore && \
 		.audit/bin/pip-audit --strict --disable-pip --require-hashes -r build/product.txt; \
 	else echo "PyPI does not answer: bandit did not run, and nobody looked for known holes."; fi
 

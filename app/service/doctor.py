@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import shutil
 from collections.abc import Callable
@@ -21,6 +22,8 @@ from .store.schema import check_schema
 
 if TYPE_CHECKING:
     from .compute.cluster import Cluster
+
+log = logging.getLogger("knitcore.app")
 
 MIN_FREE_BYTES = 100_000_000
 
@@ -80,6 +83,10 @@ def _checked(name: str, check: Callable[[], object]) -> Check:
         )
     except ServiceError as error:
         return Check(name=name, ok=False, problem=error.detail, remedy=error.remedy)
+    except Exception as error:  # who asks the doctor gets an answer, whatever it is
+        log.debug("%s", name, exc_info=True)
+        what = f"{type(error).__name__}: {error}".splitlines()[0]
+        return Check(name=name, ok=False, problem=f"{what}.", remedy="Report this as a bug.")
     return Check(name=name, ok=True, note=note if isinstance(note, str) else None)
 
 

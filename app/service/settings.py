@@ -10,7 +10,7 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, IPvAnyNetwork, SecretStr
+from pydantic import Field, IPvAnyNetwork, SecretStr, field_validator
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
@@ -108,6 +108,29 @@ class Settings(BaseSettings):
         300.0, gt=0, description="Seconds after which an unwatched view closes."
     )
 
+    @field_validator("data_dir")
+    @classmethod
+    def _has_home(cls, folder: Path) -> Path:
+        try:
+            return folder.expanduser()
+        except RuntimeError:
+            raise ValueError(f"{folder} begins with a user who is not known here") from None
+
+    @field_validator("database_url")
+    @classmethod
+    def _is_url(cls, url: SecretStr | None) -> SecretStr | None:
+        if url is not None:
+            from sqlalchemy import make_url  # a command without a database is spared it
+            from sqlalchemy.exc import ArgumentError
+
+            try:
+                make_url(url.get_secret_value())
+            except (ArgumentError, ValueError):
+                raise ValueError(
+                    "not a URL; write @, :, / and % of a password as %40, %3A, %2F and %25"
+                ) from None
+        return url
+
     @classmethod
     def settings_customise_sources(
         cls,
@@ -161,7 +184,7 @@ class Settings(BaseSettings):
     @property
     def folder(self) -> Path:
         """The data folder."""
-        return self.data_dir.expanduser()
+        return self.data_dir
 
     @property
     def store_url(self) -> str:

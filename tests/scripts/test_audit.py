@@ -1,4 +1,4 @@
-"""What is shipped with the service: its licences, and the list of packages."""
+"""Licences of what is shipped with the service, and the list of packages."""
 
 from email.message import Message
 from importlib.metadata import Distribution

@@ -257,13 +257,14 @@ class SqliteFile(Backend):
         return f"Process {service.process} runs on it{at}."
 
     def _check_not_lost(self) -> None:
-        """Refuse to make a database where a service had one before."""
+        """Refuse to make a database where a service had one before, or where a file is empty."""
         path = self.path
-        if self.lock.exists() and not (path.exists() and path.stat().st_size):
+        used = ", although a service used it before" if self.lock.exists() else ""
+        is_empty = path.is_file() and not path.stat().st_size
+        if is_empty or (used and not path.exists()):
             raise InputError(
                 "data_dir",
-                f"{path} is {'empty' if path.exists() else 'gone'}, although a service used it "
-                "before.",
+                f"{path} is {'empty' if is_empty else 'gone'}{used}.",
                 f"Put it back; or remove it and {self.lock}, to begin with none or to restore a "
                 "backup.",
             )

@@ -102,14 +102,14 @@ def install_schema(app: FastAPI) -> None:
 
     def complete() -> dict[str, Any]:
         schema = made()
-        requests, answers = _read("requests.json"), _read("answers.json")
+        bodies, answers = _read("requests.json"), _read("answers.json")
         for name, operation in documented_operations(schema):
             _mark_problems(operation["responses"])
             for status, response in operation["responses"].items():
                 _add_headers(int(status), response)
             if name in OPEN:
                 operation["security"] = []
-            _show(operation, requests.get(name), answers.get(name))
+            _show(operation, bodies.get(name), answers.get(name))
             for parameter in operation.get("parameters", []):
                 if parameter["in"] == "path":
                     parameter["example"] = PARAMETERS.get(parameter["name"])

@@ -50,6 +50,12 @@ def _damage(file: Path) -> None:
     file.write_bytes(content[:middle] + b"\xa5" * 60_000 + content[middle + 60_000 :])
 
 
+def _empty(file: Path) -> None:
+    for place in file.parent.iterdir():
+        place.unlink()
+    file.touch()
+
+
 def _open_to_all(file: Path) -> None:
     file.chmod(0o644)
     file.parent.chmod(0o755)
@@ -119,12 +125,17 @@ BROKEN = {
     "a misspelt login": _setting("REQUIRE_LOGGIN", "true", "KNITCORE_REQUIRE_LOGIN"),
     "a port that is no number": _setting("PORT", "many", "port"),
     "a list that is not JSON": _setting("ALLOWED_HOSTS", "knit.example.org", "JSON"),
+    "a database that has no URL": _setting(
+        "DATABASE_URL", "postgresql+psycopg://u:p@ss:word@host:port/x", "%40"
+    ),
+    "a home of nobody": _setting("DATA_DIR", "~nobody-at-all/x", "not known here"),
     "a network without a login": _setting("HOST", "0.0.0.0", "KNITCORE_TOKEN"),
     "a folder that cannot be": Broken(
         "data folder", "cannot be written", {"KNITCORE_DATA_DIR": "/dev/null/nowhere"}
     ),
     "a damaged database": Broken("database", "damaged", spoil=_damage),
     "a lost database": Broken("database", "is gone", spoil=Path.unlink),
+    "a file of nothing": Broken("database", "is empty.", spoil=_empty),
     "an emptied database": Broken("database", "is empty", spoil=lambda file: os.truncate(file, 0)),
     "a database without a table": Broken(
         "database", "lacks sessions", spoil=_executing("DROP TABLE sessions")
@@ -299,3 +310,12 @@ def test_a_cluster_without_workers_is_reported(
             refused = client.post("/api/v1/relax", json=wish)
             assert refused.status_code == 503
             assert "accepts computations" in refused.json()["detail"]
+
+
+def test_the_doctor_answers_whatever_happens(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(doctor, "_check_modes", lambda _: {}["not there"])
+    result = _doctor(tmp_path)
+    assert result.exit_code == 1
+    assert "FAIL  file modes: KeyError: 'not there'. Report this as a bug." in result.output

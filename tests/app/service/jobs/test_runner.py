@@ -76,10 +76,10 @@ def test_a_stretch_test_in_the_background(client: TestClient) -> None:
 
 
 def test_a_job_that_cannot_work_says_why(client: TestClient) -> None:
-    body = {"kind": "stretch", "request": STRETCH | {"material": "steel"}}
+    body = {"kind": "stretch", "request": STRETCH | {"strain": 4.9}}
     address = client.post(JOBS, json=body).headers["location"]
     last = followed(client, address)
-    assert (last["state"], last["problem"]["field"]) == ("failed", "material")
+    assert (last["state"], last["problem"]["field"]) == ("failed", "strain")
     assert client.get(address).json() == last
     assert client.get(f"{address}/result").status_code == 409
     assert client.get(f"{JOBS}/no-such-job").json()["field"] == "job"

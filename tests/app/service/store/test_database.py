@@ -32,7 +32,7 @@ def database(place: Path | str) -> Iterator[Database]:
 
 @pytest.fixture
 def file(tmp_path: Path) -> Iterator[Database]:
-    """What only SQLite does."""
+    """A database of the kind that is one file."""
     with opened(tmp_path, migrated=False) as database:
         yield database
 
