@@ -1,5 +1,6 @@
 """Files of 3D views to give away: pictures, pages that need no service, recordings, solids."""
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -24,6 +25,7 @@ from .views import View, new_view
 FRAME_S = 0.14
 PICTURE_TIMEOUT_S = 25.0
 MAX_SHARED_STITCHES = 40_000
+PAGE_TITLE = "Knitted fabric in 3D"
 PAGE_POLICY = (
     """<meta http-equiv="Content-Security-Policy" content="default-src 'none'; """
     "script-src 'unsafe-inline' 'wasm-unsafe-eval' data: blob:; style-src 'unsafe-inline'; "
@@ -98,7 +100,8 @@ def shared_page(
     several."""
     with _recorded(request, computed, supplies.context(cancelled=cancelled)) as serializer:
         page: str = serializer.as_html(dark_mode=request.dark)
-    return with_scripts(page, PAGE_POLICY).encode()
+    named = re.sub(r"<title>[^<]*</title>", f"<title>{PAGE_TITLE}</title>", page, count=1)
+    return with_scripts(named, PAGE_POLICY).encode()
 
 
 def shared_recording(

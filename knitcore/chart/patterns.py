@@ -30,15 +30,15 @@ def welt(knits: int, purls: int) -> StitchChart:
 
 
 PATTERNS = (
-    _pattern("stockinette", "Stockinette", "K", "Even segments both ways: the stiffest; it curls."),
-    _pattern("garter", "Garter", "P K", "Odd segments wale-wise: stretches along the wales."),
-    _pattern("rib", "1×1 rib", "KP", "Odd segments course-wise: the softest along the course."),
-    _pattern("seed", "Seed", "KP PK", "Odd segments both ways: soft both ways, lies flat."),
-    Pattern("rib-2-2", "2×2 rib", rib(2, 2), "Pulls in more and stretches more than 1×1."),
+    _pattern("stockinette", "Stockinette", "K", "Smooth, and the edges curl."),
+    _pattern("garter", "Garter", "P K", "Ridges across: stretchy along the columns; lies flat."),
+    _pattern("rib", "1×1 rib", "KP", "Upright ribs: stretchy along the rows; draws in."),
+    _pattern("seed", "Seed", "KP PK", "A grain of single bumps: soft both ways; lies flat."),
+    Pattern("rib-2-2", "2×2 rib", rib(2, 2), "Deeper ribs than 1×1: folds, and draws in more."),
     Pattern("rib-3-1", "3×1 rib", rib(3, 1), "A wide face with a narrow hinge."),
     Pattern("rib-3-3", "3×3 rib", rib(3, 3), "Folds deeply; draws in strongly."),
     Pattern(
-        "welt-2-2", "2-row welts", welt(2, 2), "Ridges that shorten the cloth along the wales."
+        "welt-2-2", "2-row welts", welt(2, 2), "Ridges that shorten the cloth along its columns."
     ),
     _pattern("basket", "Basket 2×2", "PPKK PPKK KKPP KKPP", "Blocks of two; thick and springy."),
     _pattern("moss", "Moss", "PK PK KP KP", "Seed, with each row knitted twice."),

@@ -22,7 +22,7 @@ STATES = """() => Object.fromEntries([...document.querySelectorAll("[data-result
 
 
 def results(page: Page) -> dict[str, str]:
-    """What each result says of itself: why it does not count, or that it is empty or current."""
+    """Read why each result does not count, or that it is empty or current."""
     states = page.evaluate(STATES)
     assert isinstance(states, dict)
     return states

@@ -117,7 +117,11 @@ export function create(studio, context) {
 
   /** @param {DesignSummary} design */
   const card = (design) => {
-    const name = h("span", { class: "card-name ellipsis", title: design.name }, design.name);
+    const name = h(
+      "span",
+      { class: "card-name ellipsis", title: design.name, onclick: () => open.click() },
+      design.name,
+    );
     const here = design.id === keeper.remoteId;
     const frame = h("span", { class: "card-picture centred muted", "data-id": design.id }, deleted && icon("trash"));
     pictures.observe(frame);

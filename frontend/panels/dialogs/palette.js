@@ -66,6 +66,11 @@ function entries(context) {
       perform: () => (crosses.value = !crosses.value),
     })),
     ...PLOTS.map(([id, label, words]) => ({ label, words, perform: () => byId(id).click() })),
+    {
+      label: "Your gauge: count your swatch",
+      words: "gauge stitches rows per 10 cm",
+      perform: () => byId("own-gauge-stitches").focus(),
+    },
     ...Object.entries(POSE_WORDS).map(([pose, words]) => ({
       label: `Show the cloth: ${POSES[/** @type {Pose} */ (pose)].toLowerCase()}`,
       words: `3D pose ${words}`,

@@ -13,7 +13,15 @@ import { byId, h } from "../../elements/dom.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 
 /** @type {Record<string, string>} */
-const NAMES = { K: "stockinette", "P/K": "garter", KP: "1×1 rib", "PK/KP": "seed" };
+const NAMES = {
+  K: "stockinette",
+  "P/K": "garter",
+  "K/P": "garter",
+  KP: "1×1 rib",
+  PK: "1×1 rib",
+  "PK/KP": "seed",
+  "KP/PK": "seed",
+};
 /** Pixels of movement after which a press is a drag. */
 const DRAG_PX = 5;
 

@@ -7,6 +7,7 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
+import { nameOf } from "../inverse/apply.js";
 import { action } from "../../actions/registry.js";
 import { hasRoom } from "../../actions/selection.js";
 import { nextRegionColour } from "../../state/palette.js";
@@ -178,7 +179,7 @@ export function create(studio, context) {
         },
       },
       h("option", { value: "", selected: !own }, "None: as painted"),
-      own && !known && h("option", { value: own, selected: true }, "Its own pattern"),
+      own && !known && h("option", { value: own, selected: true }, nameOf(own.replaceAll("\n", "/"))),
       ...patterns.map(({ name, motif }) =>
         h(
           "option",

@@ -101,7 +101,13 @@ def _regions(
     yield Label(MARGIN_MM, 22.0, f"{size}, {_in_cm(at_rest)}", 3.4)
     yield Label(MARGIN_MM, 26.0, f"{material.name} ({material.identifier})", 3.0)
     places = (MARGIN_MM, 62.0, 84.0, 124.0, 164.0)
-    head = ("region", "stitches", "Y course, N/mm", "Y wale, N/mm", "1/Y course × wale, mm/N")
+    head = (
+        "region",
+        "stitches",
+        "stiffness, rows, N/mm",
+        "columns, N/mm",
+        "gives, rows × columns, mm/N",
+    )
     yield from _row(places, head, 30.0)
     yield Lines(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
     y = 37.0
@@ -121,7 +127,12 @@ def _regions(
         yield Label(MARGIN_MM, y, f"… and {left_out} more, in the maps only.", 3.0)
     yield from _maps(piece, material, aspect, y + 5.0)
     top = y + 86.0
-    yield Label(MARGIN_MM, top - 2.0, "extensibility, 1/Y course wide and 1/Y wale high", 3.0)
+    yield Label(
+        MARGIN_MM,
+        top - 2.0,
+        "extensibility: as wide as it gives along rows, as high as along columns",
+        3.0,
+    )
     yield from field_shapes(
         piece,
         regions,
@@ -159,10 +170,10 @@ def _numbers(
     yield Label(
         MARGIN_MM,
         27.0,
-        f"segments: course-wise {course.even} even, {course.odd} odd; "
-        f"wale-wise {wale.even} even, {wale.odd} odd",
+        f"segments along rows: {course.even} even, {course.odd} odd; "
+        f"along columns: {wale.even} even, {wale.odd} odd",
     )
-    rows = [("", "along the rows (course)", "along the columns (wale)")]
+    rows = [("", "along the rows", "along the columns")]
     for label, value in _NUMBERS:
         along_rows, along_columns = (_value(*value(prediction.along(d))) for d in Direction)
         rows.append((label, along_rows, along_columns))

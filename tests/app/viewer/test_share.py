@@ -32,6 +32,7 @@ def test_a_page_needs_nothing_but_itself(client: TestClient) -> None:
     assert 'filename="fabric.html"' in answer.headers["content-disposition"]
     assert "<html" in answer.text
     assert 'src="http' not in answer.text
+    assert "<title>Knitted fabric in 3D</title>" in answer.text
     assert "default-src 'none'" in answer.text.split("<script", 1)[0]
 
 
