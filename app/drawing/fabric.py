@@ -230,7 +230,7 @@ class Drawing:
 
     @property
     def is_whole(self) -> bool:
-        """Whether all stitches are drawn as yarn."""
+        """Return whether all stitches are drawn as yarn."""
         return self.part.shapes.index.shape == self.ground.shape
 
     @property
