@@ -8,7 +8,8 @@ from fastapi.testclient import TestClient
 from app.operations.chart.predict import PredictRequest
 from app.requests.charts import size_of
 from app.service.api.operations import MAX_LIGHT
-from app.viewer.sheet import build_drawing
+from app.viewer.share import shared_solid
+from app.viewer.sheet import build_back, build_drawing
 from tests.app.clients import state_of
 from tests.app.rest import draw, post, solid
 
@@ -41,7 +42,7 @@ def test_what_is_given_away_of_a_view_is_made_in_a_worker(
     client: TestClient, computed: list[Any]
 ) -> None:
     solid(client, {"chart": "KP", "material": "acrylic"})
-    assert len(computed) == 1
+    assert [job for job, *_ in computed if job is not build_back] == [shared_solid]
 
 
 def test_the_size_of_a_request_counts_texts_and_named_fabrics() -> None:
