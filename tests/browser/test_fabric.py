@@ -10,7 +10,14 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from knitcore.draw.instances import COARSE_LEVELS
-from tests.browser.conftest import CHART, COLUMNS, ROWS, TIMEOUT_MS, open_small_chart
+from tests.browser.conftest import (
+    CHART,
+    COLOURED_CLOTH,
+    COLUMNS,
+    ROWS,
+    TIMEOUT_MS,
+    open_small_chart,
+)
 from tests.browser.page import (
     coloured,
     complaints,
@@ -305,6 +312,8 @@ def test_the_chart_is_worn_on_a_limb_of_the_girths_given(flat_studio: Page) -> N
     flat_studio.click("#tab-limb")
     expect(flat_studio.locator(".limb-girths input")).to_have_count(4)
     flat_studio.get_by_label("Girth 2", exact=True).fill("70")
+    flat_studio.click("#fabric-colours-button")
+    flat_studio.click("#yarn-chart")
     with sent_view(flat_studio, '"colour":"pressure"') as shown:
         flat_studio.click("#limb-wear")
     assert shown.value.ok, shown.value.text()
@@ -357,6 +366,7 @@ def test_two_designs_never_show_each_other(browser: Browser, service: str) -> No
             viewport={"width": 1280, "height": 720}, reduced_motion="reduce"
         )
         context.set_default_timeout(TIMEOUT_MS)
+        context.add_init_script(COLOURED_CLOTH)
         page = open_small_chart(context.new_page(), service, "\n".join([chart] * 8))
         contexts.append((context, page))
     for _, page in contexts:

@@ -1,17 +1,16 @@
 """Mechanics on the page: stretch tests, their intervals, measured curves, targets."""
 
-import os
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials import MeasuredCurve, material, save_material_file
+from knitcore.materials import MeasuredCurve, material
+from knitcore.materials.material_document import MaterialDocument
 from tests.browser.conftest import flat, open_small_chart
 from tests.browser.page import Chart, kept_chart
 
@@ -49,7 +48,7 @@ def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
     figures = page.locator("#stretch-figures .interval")
     expect(figures).to_have_count(3)  # force, stress and waist
     for k in range(3):
-        expect(figures.nth(k)).to_have_text(re.compile(INTERVAL))
+        expect(figures.nth(k)).to_have_text(re.compile(rf"{INTERVAL}|× less or more"))
     chart = Chart(page)
     readout = page.locator("#readout")
     page.mouse.move(*chart.at(5, 6))
@@ -119,20 +118,17 @@ def test_a_repeat_of_a_simulated_material_is_relaxed_while_painting_pauses(
 
 
 @pytest.fixture
-def own_material() -> Iterator[str]:
-    """Name of a material file that the service offers, with one measured curve."""
+def own_material(visitor: Page, service: str) -> Iterator[str]:
+    """Name of a material of a user, with one measured curve."""
     acrylic = material("acrylic")
     curve = MeasuredCurve((0.0, 0.1, 0.2, 0.3), (0.0, 0.006, 0.013, 0.022), pulls=4)
     fabrics = {**acrylic.fabrics}
     fabrics[Fabric.GARTER] = replace(fabrics[Fabric.GARTER], measured={Direction.WALE: curve})
-    folder = Path(os.environ["KNITCORE_DATA_DIR"]) / "materials"
-    folder.mkdir(exist_ok=True)
-    file = folder / "mine.json"
-    save_material_file(
-        replace(acrylic, identifier="mine", name="My acrylic", fabrics=fabrics), file
-    )
-    yield "My acrylic"
-    file.unlink()
+    mine = replace(acrylic, identifier="mine", name="My acrylic", fabrics=fabrics)
+    document = MaterialDocument.from_material(mine).model_dump(mode="json")
+    added = visitor.request.post(f"{service}api/v1/materials", data=document).json()
+    yield mine.name
+    visitor.request.delete(f"{service}api/v1/materials/{added['identifier']}")
 
 
 @pytest.mark.slow
