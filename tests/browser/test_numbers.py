@@ -126,9 +126,10 @@ def own_material(visitor: Page, service: str) -> Iterator[str]:
     fabrics[Fabric.GARTER] = replace(fabrics[Fabric.GARTER], measured={Direction.WALE: curve})
     mine = replace(acrylic, identifier="mine", name="My acrylic", fabrics=fabrics)
     document = MaterialDocument.from_material(mine).model_dump(mode="json")
-    added = visitor.request.post(f"{service}api/v1/materials", data=document).json()
+    materials = f"{service}api/v1/materials"
+    added = visitor.request.post(materials, data=document).json()
     yield mine.name
-    visitor.request.delete(f"{service}api/v1/materials/{added['identifier']}")
+    visitor.request.delete(f"{materials}/{added['id']}")
 
 
 @pytest.mark.slow
