@@ -12,17 +12,21 @@ import { icon } from "../elements/icons.js";
 /** @type {Record<KeepState["kind"], {label: string, icon: IconName, title: string}>} */
 const LOOKS = {
   new: { label: "", icon: "check", title: "" },
-  waiting: { label: "Saving …", icon: "saving", title: "Kept in this browser; on its way to the service" },
-  sending: { label: "Saving …", icon: "saving", title: "Kept in this browser; on its way to the service" },
+  waiting: { label: "Saving …", icon: "saving", title: "Saved in this browser; on its way to the service" },
+  sending: { label: "Saving …", icon: "saving", title: "Saved in this browser; on its way to the service" },
   kept: { label: "Saved", icon: "check", title: "Saved by the service. Click for versions." },
   offline: {
-    label: "Kept here",
+    label: "Saved here only",
     icon: "offline",
-    title: "The service cannot be reached: kept in this browser, and delivered when it is back",
+    title: "The service cannot be reached: saved in this browser, and delivered when it is back",
   },
-  refused: { label: "Not saved", icon: "warning", title: "The service does not save this; it is kept in this browser" },
-  conflict: { label: "Choose …", icon: "warning", title: "Also changed elsewhere: choose what to keep" },
-  shared: { label: "Shared", icon: "share", title: "Opened by a link; changes are not kept" },
+  refused: {
+    label: "Not saved",
+    icon: "warning",
+    title: "The service does not save this; it is saved in this browser only",
+  },
+  conflict: { label: "Choose …", icon: "warning", title: "Also changed elsewhere: choose which to use" },
+  shared: { label: "Shared", icon: "share", title: "Opened by a link; changes are not saved" },
 };
 
 /** @param {ActionContext} context */

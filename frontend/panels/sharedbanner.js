@@ -18,7 +18,7 @@ export function sharedBanner(host, { keeper, studio }) {
     host.replaceChildren(
       icon("share"),
       h("strong", {}, "Shared with you."),
-      "Look, paint and stretch as you like; what you change is not kept.",
+      "Look, paint and stretch as you like; what you change is not saved.",
       h("span", { class: "spacer" }),
     );
     if (state.mode === "copy") {

@@ -58,7 +58,7 @@ export function create(studio, { keeper, open }) {
     list,
   );
 
-  const remote = () => keptName(keeper, status, "; versions are kept there.");
+  const remote = () => keptName(keeper, status, "; versions are saved there.");
   const load = async () => {
     const id = keeper.remoteId;
     const listed = id ? await attempt(status, () => designs.versions(id), load) : { versions: [] };
@@ -79,7 +79,7 @@ export function create(studio, { keeper, open }) {
     return listRow(
       picture,
       version.name,
-      `${ago(version.created_at)}${version.automatic ? " · kept automatically" : ""}`,
+      `${ago(version.created_at)}${version.automatic ? " · saved automatically" : ""}`,
       textButton(
         "compare",
         "Compare",
