@@ -118,7 +118,8 @@ export class Keeper {
     const unsent = drafts.get(kept.id);
     const outcome = unsent && combine(unsent, kept);
     const document = outcome?.kind === "conflict" ? unsent?.document : outcome?.parcel.document;
-    this.#show({ id: kept.id, remote, base: kept.document, document: document ?? kept.document }, !!unsent);
+    const parcel = { id: kept.id, remote, base: kept.document, document: document ?? kept.document };
+    this.#show({ ...parcel, sent: unsent?.sent }, !!unsent); // what left before may arrive only now
     if (outcome?.kind === "conflict") this.#clash(outcome);
   }
 
