@@ -19,8 +19,12 @@ const LABELS = {
 };
 const UNITS = /_(mm|n|g_per_m|n_per_mm|mn_mm2|tex|mmhg|s|n_mm2|deg)$/;
 
+/** Names of files and places in them, which are no fields. */
+const IN_A_FILE = /\.(csv|txt|tsv|xlsx?|h5|hdf5|json|ks?|knitout|png|jpe?g|gif|bmp|tiff?|webp)\b|\s/i;
+
 /** @param {string} field such as request.garment.wrist_mm */
 export function labelOf(field) {
+  if (IN_A_FILE.test(field)) return field;
   const parts = field.split(".").filter((part) => !/^\d+$/.test(part));
   const last = parts.at(-1) ?? field;
   const words = last.replace(UNITS, "").replaceAll("_", " ");
@@ -67,7 +71,7 @@ export function plainly(problem) {
   return {
     ...problem,
     detail: joined && directions(numbers(joined)),
-    remedy: remedy && directions(numbers(remedy.replaceAll(field, label.toLowerCase()))),
+    remedy: remedy && directions(numbers(remedy.replaceAll(field, label === field ? field : label.toLowerCase()))),
   };
 }
 

@@ -25,7 +25,7 @@ def test_a_repeat_of_the_atlas_is_shown_applied_and_dragged_onto_the_chart(
     for _ in range(3):
         flat_studio.keyboard.press("ArrowRight")
     expect(flat_studio.locator("#inverse-detail")).to_contain_text("Along rows")
-    expect(flat_studio.locator("#inverse-detail")).to_contain_text("transfers")
+    expect(flat_studio.locator("#inverse-detail")).to_contain_text("moves between beds")
     flat_studio.click("#atlas-apply")
     filled = kept_chart(flat_studio)
     assert filled != CHART

@@ -33,3 +33,11 @@ test("what the library says keeps its sentence, in knitters' directions", () => 
   const other = { title: "Not now", detail: "The computation took longer than 120 s." };
   assert.deepEqual(plainly(other), other);
 });
+
+test("a file keeps its name", () => {
+  for (const name of ["photo.png", "course.csv, column force", "Prüfung 3.xlsx", "H15_depth_in_um.csv"]) {
+    assert.equal(labelOf(name), name);
+  }
+  const of = { title: TITLE, field: "photo.png", detail: "photo.png: is too small.", remedy: "Give photo.png anew." };
+  assert.deepEqual(plainly(of), { ...of, detail: "photo.png is too small." });
+});

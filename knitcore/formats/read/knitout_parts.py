@@ -21,6 +21,8 @@ from knitcore.formats.read.knitout_machine import Loop
 PATTERNED, TWO_BEDS = 4.0, 0.01
 CLEARLY_SMALLER = 0.5
 """A section with less than this part of the main one's weight, before or after it, is waste."""
+MOST_TUCKS = 4
+"""Tucks between two links of a bind-off."""
 
 Carriers = tuple[str, ...]
 
@@ -62,6 +64,8 @@ def bound_off_by(loops: Iterable[Loop]) -> set[Loop]:
     for loop in loops:
         if _is_linked(loop) or _begins_chain(loop):
             links.add(loop)
+        elif loop in links:
+            continue
         elif (before := _neighbour(loop, "before")) in links and before in loop.parents:
             tag = [loop, *_following(loop)]
             if len({(o.bed, o.needle) for o in tag}) == 1:
@@ -97,9 +101,11 @@ def _begins_chain(loop: Loop) -> bool:
 def _neighbour(loop: Loop, side: Literal["before", "after"]) -> Loop | None:
     """The next stitch on the strand: some bind-offs tuck between two links."""
     beside: Loop | None = getattr(loop, side)
-    while beside is not None and beside.kind == "tuck":
+    for _ in range(MOST_TUCKS):
+        if beside is None or beside.kind != "tuck":
+            return beside
         beside = getattr(beside, side)
-    return beside
+    return None
 
 
 def _following(loop: Loop) -> Iterator[Loop]:
