@@ -1,17 +1,17 @@
 /**
  * A picture becomes a chart: how its cells lie, what is dark, and how that looks, before it is taken.
  *
- * @import {Grid} from "../../grid/grid.js"
  * @import {Problem} from "../../types.js"
  * @import {ActionContext} from "../../actions/action.js"
  */
 
 import { pixel, readPalette } from "../../state/palette.js";
 import { plainDesign } from "../../design/design.js";
-import { MAX_SIDE } from "../../grid/grid.js";
+import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
 import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../grid/picture.js";
-import { h } from "../../elements/dom.js";
-import { refusal } from "../../api.js";
+import { h, remark } from "../../elements/dom.js";
+import { ApiError, api, refusal } from "../../api.js";
+import { uploaded } from "../../services/yarns.js";
 import { dialog } from "../../widgets/dialog.js";
 import { sizeFields } from "../../widgets/fields.js";
 import { textButton } from "../../widgets/buttons.js";
@@ -43,8 +43,26 @@ export async function importPicture(context, file) {
     width,
     height,
     aspect: context.studio.material.value?.fabrics.stockinette ?? null,
+    ...(await readByService(file)),
   });
   return null;
+}
+
+/**
+ * The chart that the service's reader sees in a picture, as the command line does, and what it says of it. Without
+ * it, as offline, cells are looked for here.
+ *
+ * @param {File} file
+ * @returns {Promise<{seen: Grid | null, notes: readonly string[]}>}
+ */
+async function readByService(file) {
+  try {
+    const { chart, notes } = await api.run("import", { file: await uploaded(file) });
+    return { seen: isChartText(chart) ? Grid.fromText(chart) : null, notes };
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    return { seen: null, notes: error.offline ? [] : [error.problem.detail ?? error.problem.title] };
+  }
 }
 
 /**
@@ -52,13 +70,15 @@ export async function importPicture(context, file) {
  * @param {string} name
  * @param {ImageBitmap} bitmap
  * @param {{values: Uint8Array, width: number, height: number,
- *   aspect: {stitch_course_mm: number | null, stitch_wale_mm: number | null} | null}} picture
+ *   aspect: {stitch_course_mm: number | null, stitch_wale_mm: number | null} | null,
+ *   seen: Grid | null, notes: readonly string[]}} picture
  */
-function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height, aspect }) {
+function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height, aspect, seen, notes }) {
   document.getElementById("picture-dialog")?.remove();
   const stitch = (aspect?.stitch_wale_mm ?? 0.8) / (aspect?.stitch_course_mm ?? 1);
   const each = Math.max(bitmap.width, bitmap.height) <= MAX_SIDE;
-  const detected = detectedGrid(values, width, height);
+  const isPixels = seen?.columns === bitmap.width && seen.rows === bitmap.height;
+  const detected = isPixels ? null : (seen ?? detectedGrid(values, width, height));
   const guess = Math.min(60, width);
   const cells =
     detected ??
@@ -94,13 +114,14 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
     size[side].addEventListener("input", () => follow(side));
   }
   size.show(cells);
+  const best = bestThreshold(values);
   const threshold = h("input", {
     type: "range",
     class: "slider grows",
     id: "picture-threshold",
     min: 1,
     max: 255,
-    value: bestThreshold(values),
+    value: best,
     oninput: () => show(),
   });
   const share = h("output", { class: "figures muted", for: "picture-threshold" });
@@ -157,8 +178,12 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
   const read = () => {
     const cells = size.read();
     apply.disabled = replace.disabled = !cells;
+    if (!cells) return null;
+    const { columns, rows } = cells;
     const tones = { threshold: threshold.valueAsNumber, inverted: inverted.checked };
-    return cells && stitchesOf(values, width, height, { ...cells, ...tones });
+    const isAsSeen = seen?.columns === columns && seen.rows === rows && tones.threshold === best;
+    if (!seen || !isAsSeen) return stitchesOf(values, width, height, { ...cells, ...tones });
+    return Grid.build(rows, columns, (row, column) => Boolean(seen.purl[row * columns + column]) !== tones.inverted);
   };
   const show = () => {
     const grid = read();
@@ -229,6 +254,7 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
       h("label", { class: "check" }, knitted, "as it is knitted in this yarn"),
     ),
     size.problem,
+    notes.length > 0 && remark(notes.join(" ")),
     h(
       "div",
       { class: "picture-tone line wrap gap-12" },

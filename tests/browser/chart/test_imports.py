@@ -3,12 +3,14 @@
 import io
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
 
+from knitcore.formats.read.chart_files import read_noted_chart
 from tests.browser.page import drop, kept_chart, kept_design
 
 
@@ -61,6 +63,28 @@ def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
     assert kept_chart(flat_studio) != TEXT
     flat_studio.click("#action-undo")
     assert kept_chart(flat_studio) == TEXT
+
+
+@pytest.mark.slow
+def test_the_page_reads_a_picture_as_the_command_line_does(
+    flat_studio: Page, tmp_path: Path
+) -> None:
+    colours = np.where(CELLS[..., None] > 0, (255, 182, 193), (255, 255, 255)).astype(np.uint8)
+    framed = np.full((3 * 20 + 60, 5 * 20 + 60, 3), 255, np.uint8)  # a margin around drawn cells
+    framed[29:-30, 29:-30] = 90
+    for row, column in np.ndindex(CELLS.shape):
+        top, left = 30 + 20 * row, 30 + 20 * column
+        framed[top : top + 19, left : left + 19] = colours[row, column]
+    for name, pixels in (("two-light.png", colours), ("framed.png", framed)):
+        Image.fromarray(pixels).save(tmp_path / name)
+        chart, notes = read_noted_chart(tmp_path / name)
+        assert chart.text == TEXT
+        drop(flat_studio, name, "image/png", (tmp_path / name).read_bytes())
+        dialog = flat_studio.locator("#picture-dialog")
+        for note in notes:
+            expect(dialog).to_contain_text(note)
+        flat_studio.click("#picture-replace")
+        assert kept_chart(flat_studio) == TEXT
 
 
 def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> None:
