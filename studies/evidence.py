@@ -295,15 +295,13 @@ def without_tester(claims: list[Claim]) -> str:
     return f"""\
 ## A yarn without a tester
 
-Each of the library's eight yarns left out in turn; its stockinette hangs with 0.5 and 1.5 kg on
-110 mm, both ways (`python -m studies.without_tester`). The strains are those of its law with the
-errors assumed for such photos, 8 %.
+Each of the eight yarns left out in turn; its stockinette hangs with 0.5 and 1.5 kg on 110 mm, both
+ways, with the errors assumed for such photos (`python -m studies.without_tester`).
 
 {table(head, rows)}
 
-The intervals, as wide as the other seven yarns need when they are left out, hold {own:.0%} of the
-extensions of stockinette and {others:.0%} of the others. *Not shown*: real photos, creep, and yarns
-unlike these eight.
+The intervals hold {own:.0%} of the extensions of stockinette and {others:.0%} of the others. *Not
+shown*: real photos, creep.
 """
 
 
