@@ -78,6 +78,7 @@ def test_a_sleeve_has_graded_pressure_fabrics_and_sizes(flat_studio: Page) -> No
     garment = planned.value.post_data_json["garment"]
     assert garment["body"] == "garter"
     assert [mmhg for _, mmhg in garment["mmhg_profile"]][-1] == 8
+    expect(page.locator("#planner-make")).to_be_enabled()
     expect(page.locator("#planner-facts")).to_contain_text("does not keep to")
     page.locator("#planner-facts summary", has_text="Table of sizes").click()
     page.click("#planner-sizes-run")
