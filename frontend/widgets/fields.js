@@ -37,12 +37,13 @@ export const textLine = (label, value, changed, more) =>
  *
  * @param {string} prefix of their ids
  * @param {number} most a side
- * @param {() => void} changed
+ * @param {(side: "columns" | "rows") => void} changed called with the side that was typed
  */
 export function sizeFields(prefix, most, changed) {
-  /** @param {string} label @param {string} id */
+  /** @param {string} label @param {"columns" | "rows"} id */
   const field = (label, id) => {
-    const input = numberField({ id: `${prefix}-${id}`, min: 1, max: most, required: true, oninput: changed });
+    const oninput = () => changed(id);
+    const input = numberField({ id: `${prefix}-${id}`, min: 1, max: most, required: true, oninput });
     return { input, row: h("label", { class: "field stack gap-4" }, h("span", {}, label), input) };
   };
   const columns = field("Stitches", "columns");

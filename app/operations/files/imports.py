@@ -10,7 +10,7 @@ from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
-from knitcore.formats.read.chart_files import Aspect, PictureScale, read_chart, read_noted_piece
+from knitcore.formats.read.chart_files import Aspect, PictureReading, read_chart, read_noted_piece
 
 from ...context import Context
 from ...requests.base import NoRequest, RequestModel, ResultModel
@@ -36,6 +36,16 @@ class ImportRequest(RequestModel):
         Aspect.KEEP,
         description="How a picture's rows follow from its columns: stitches counted as squares, or "
         "as high as they are knitted, or freely.",
+    )
+    dark_below: int | None = Field(
+        None,
+        ge=1,
+        le=255,
+        description="Grey below which a stitch of a picture is dark, of 255; without it, the grey "
+        "or colour that parts the stitches best.",
+    )
+    light_is_purl: bool = Field(
+        False, description="In a picture the light stitches are the purls, not the dark ones."
     )
     material: MaterialName = Field(
         "acrylic", description="Its stockinette gives the stitches their size for `as-knitted`."
@@ -71,7 +81,7 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
         If it holds no chart.
     """
     with stored([request.file]) as (path,):
-        design, notes = design_in(path, _scale(request, context))
+        design, notes = design_in(path, _reading(request, context))
     chart = StitchChart.parse(design.chart)
     return ImportResult(
         **dict(design),
@@ -82,20 +92,25 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
     )
 
 
-def _scale(request: ImportRequest, context: Context) -> PictureScale | None:
-    """The size that is asked of a picture, if any is."""
-    is_knitted = request.aspect is Aspect.AS_KNITTED
-    if request.columns is None and request.rows is None and not is_knitted:
-        return None
+def _reading(request: ImportRequest, context: Context) -> PictureReading | None:
+    """How a picture is to be read, if that is said."""
     ratio = None
-    if is_knitted:
+    if request.aspect is Aspect.AS_KNITTED:
         record = context.material(request.material).record(Fabric.STOCKINETTE)
         ratio = record.stitch_wale_mm / record.stitch_course_mm
-    return PictureScale(request.columns, request.rows, request.aspect, ratio)
+    reading = PictureReading(
+        request.columns,
+        request.rows,
+        request.aspect,
+        ratio,
+        dark_below=request.dark_below,
+        light_is_purl=request.light_is_purl,
+    )
+    return reading if reading != PictureReading() else None
 
 
 def design_in(
-    path: Path, scale: PictureScale | None = None
+    path: Path, reading: PictureReading | None = None
 ) -> tuple[ImportedDesign, tuple[str, ...]]:
     """The parts of a design that a file holds, and the notes of its reader.
 
@@ -106,7 +121,7 @@ def design_in(
     """
     if path.suffix.lower() == ".json":
         return ImportedDesign.of(read_design(path), chart=read_chart(path).text), ()
-    content = read_noted_piece(path, scale)
+    content = read_noted_piece(path, reading)
     piece, notes = content.piece, content.notes
     if not piece.is_plain:
         outline = "" if piece.is_rectangle else "an outline, and "

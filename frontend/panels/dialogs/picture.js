@@ -1,241 +1,173 @@
 /**
- * A picture becomes a chart: how its cells lie, what is dark, and how that looks, before it is taken.
+ * A picture becomes a chart: the service reads it, as the command line does, and its chart is shown before it is
+ * taken.
  *
- * @import {Problem} from "../../types.js"
+ * @import {ImportRequest, ImportResult, Problem} from "../../types.js"
  * @import {ActionContext} from "../../actions/action.js"
+ *
+ * @typedef {Omit<ImportRequest, "file">} Reading
+ * @typedef {{name: string, bitmap: ImageBitmap | null, own: ImportResult | null,
+ *   read: (reading: Reading, signal?: AbortSignal) => Promise<ImportResult>}} Picture
+ *   bitmap is null where the browser cannot show it, own where it shows no stitches by itself
  */
 
 import { pixel, readPalette } from "../../state/palette.js";
 import { plainDesign } from "../../design/design.js";
 import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
-import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../grid/picture.js";
 import { h, remark } from "../../elements/dom.js";
-import { ApiError, api, refusal } from "../../api.js";
+import { ApiError, api } from "../../api.js";
+import { Latest } from "../../services/latest.js";
 import { uploaded } from "../../services/yarns.js";
 import { dialog } from "../../widgets/dialog.js";
 import { sizeFields } from "../../widgets/fields.js";
 import { textButton } from "../../widgets/buttons.js";
+import { problemBox } from "../../widgets/problem.js";
 
-/** Larger pictures are made smaller before they are looked at. */
-const MAX_PIXELS = 1600;
+const TYPING_MS = 150;
+/** Stitches across a photo, until another number is typed. */
+const PHOTO_COLUMNS = 60;
 
 /**
  * @param {ActionContext} context
  * @param {File} file
- * @returns {Promise<Problem | null>} when the dialog is open, or what is wrong
+ * @returns {Promise<Problem | null>} null when the dialog is open, or what is wrong
  */
 export async function importPicture(context, file) {
-  /** @type {ImageBitmap} */
-  let bitmap;
+  const picture = await uploaded(file);
+  const material = context.studio.materialId.value;
+  /** @type {Picture["read"]} */
+  const read = (reading, signal) => api.run("import", { file: picture, material, ...reading }, signal);
+  /** @type {ImportResult | null} */
+  let own = null;
   try {
-    bitmap = await createImageBitmap(file);
-  } catch {
-    return refusal(`${file.name} is not a picture that this browser can read.`, "Use a PNG file.");
+    own = await read({});
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    if (error.problem.field !== "columns") return { ...error.problem, title: "This chart cannot be imported" };
   }
-  const scale = Math.min(1, MAX_PIXELS / Math.max(bitmap.width, bitmap.height));
-  const width = Math.max(1, Math.round(bitmap.width * scale));
-  const height = Math.max(1, Math.round(bitmap.height * scale));
-  const canvas = new OffscreenCanvas(width, height);
-  const drawing = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  drawing.drawImage(bitmap, 0, 0, width, height);
-  pictureDialog(context, file.name, bitmap, {
-    values: greys(drawing.getImageData(0, 0, width, height)),
-    width,
-    height,
-    aspect: context.studio.material.value?.fabrics.stockinette ?? null,
-    ...(await readByService(file)),
-  });
+  const bitmap = await createImageBitmap(file).catch(() => null);
+  pictureDialog(context, { name: file.name, bitmap, own, read });
   return null;
 }
 
-/**
- * The chart that the service's reader sees in a picture, as the command line does, and what it says of it. Without
- * it, as offline, cells are looked for here.
- *
- * @param {File} file
- * @returns {Promise<{seen: Grid | null, notes: readonly string[]}>}
- */
-async function readByService(file) {
-  try {
-    const { chart, notes } = await api.run("import", { file: await uploaded(file) });
-    return { seen: isChartText(chart) ? Grid.fromText(chart) : null, notes };
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    return { seen: null, notes: error.offline ? [] : [error.problem.detail ?? error.problem.title] };
-  }
-}
-
-/**
- * @param {ActionContext} context
- * @param {string} name
- * @param {ImageBitmap} bitmap
- * @param {{values: Uint8Array, width: number, height: number,
- *   aspect: {stitch_course_mm: number | null, stitch_wale_mm: number | null} | null,
- *   seen: Grid | null, notes: readonly string[]}} picture
- */
-function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height, aspect, seen, notes }) {
+/** @param {ActionContext} context @param {Picture} picture */
+function pictureDialog({ studio, keeper }, { name, bitmap, own, read }) {
   document.getElementById("picture-dialog")?.remove();
-  const stitch = (aspect?.stitch_wale_mm ?? 0.8) / (aspect?.stitch_course_mm ?? 1);
-  const each = Math.max(bitmap.width, bitmap.height) <= MAX_SIDE;
-  const isPixels = seen?.columns === bitmap.width && seen.rows === bitmap.height;
-  const detected = isPixels ? null : (seen ?? detectedGrid(values, width, height));
-  const guess = Math.min(60, width);
-  const cells =
-    detected ??
-    (each
-      ? { columns: bitmap.width, rows: bitmap.height }
-      : { columns: guess, rows: Math.min(MAX_SIDE, Math.max(1, Math.round((guess * height) / width / stitch))) });
+  const stitchSize = studio.material.value?.fabrics.stockinette;
+  const stitch = (stitchSize?.stitch_wale_mm ?? 0.8) / (stitchSize?.stitch_course_mm ?? 1);
+  /** The side that was typed last. The other follows from it; both from the picture if none was. */
+  let typed = /** @type {"columns" | "rows" | null} */ (own ? null : "columns");
+  /** The chart on show. @type {Grid | null} */
+  let grid = null;
+  const latest = new Latest(TYPING_MS);
 
-  /** Rows of a column that keep the picture's proportions: of squares, or of stitches as they are knitted. */
-  const proportion = () => height / width / (knitted.checked ? stitch : 1);
-  /** The other side follows the one that was typed. @param {"columns" | "rows"} typed */
-  const follow = (typed) => {
-    const { columns, rows } = size;
-    const [from, to] = typed === "columns" ? [columns, rows] : [rows, columns];
-    const ratio = typed === "columns" ? proportion() : 1 / proportion();
-    const other = Math.round(from.valueAsNumber * ratio);
-    if (locked.checked && from.valueAsNumber >= 1) to.value = String(Math.min(MAX_SIDE, Math.max(1, other)));
-    show();
-  };
-  const locked = h("input", {
-    type: "checkbox",
-    id: "picture-locked",
-    checked: true,
-    onchange: () => follow("columns"),
-  });
-  const knitted = h("input", {
-    type: "checkbox",
-    id: "picture-knitted",
-    checked: !detected && !each,
-    onchange: () => follow("columns"),
-  });
-  const size = sizeFields("picture", MAX_SIDE, () => show());
-  for (const side of /** @type {const} */ (["columns", "rows"])) {
-    size[side].addEventListener("input", () => follow(side));
-  }
-  size.show(cells);
-  const best = bestThreshold(values);
+  /** @param {string} id @param {boolean} checked */
+  const check = (id, checked) => h("input", { type: "checkbox", id: `picture-${id}`, checked, onchange: () => ask() });
+  const locked = check("locked", true);
+  const knitted = check("knitted", !own && Boolean(stitchSize));
+  const given = check("given", false);
+  const inverted = check("inverted", false);
   const threshold = h("input", {
     type: "range",
     class: "slider grows",
     id: "picture-threshold",
+    "aria-label": "Grey below which a stitch is a purl",
     min: 1,
     max: 255,
-    value: best,
-    oninput: () => show(),
+    value: 128,
+    oninput: () => {
+      given.checked = true;
+      ask();
+    },
   });
+  const size = sizeFields("picture", MAX_SIDE, (side) => {
+    typed = side;
+    ask();
+  });
+  size.show(own ?? { columns: PHOTO_COLUMNS, rows: PHOTO_COLUMNS });
   const share = h("output", { class: "figures muted", for: "picture-threshold" });
-  const inverted = h("input", { type: "checkbox", id: "picture-inverted", onchange: () => show() });
-  const preview = h("canvas", { class: "picture-preview", id: "picture-preview", role: "img" });
-  const asKnitted = h("canvas", { class: "picture-preview", id: "picture-as-knitted", role: "img" });
-  /** The chart in squares, and as it is knitted in this yarn. */
-  const views = [
-    { canvas: preview, high: 1, words: "The chart in squares" },
-    { canvas: asKnitted, high: stitch, words: "As it is knitted" },
-  ];
-  const source = h("canvas", { class: "picture-preview", role: "img", "aria-label": `The picture ${name}` });
-  /** @param {(grid: Grid) => string} use says where the old chart is */
-  const take = (use) => {
-    const grid = read();
-    if (!grid) return;
-    element.close();
-    const before = use(grid);
-    studio.tell(`Imported ${grid.columns} stitches × ${grid.rows} rows from ${name}. ${before}`);
-  };
-  const apply = textButton(
-    null,
-    "New design",
-    () =>
-      take((grid) => {
-        keeper.openNew(plainDesign(name.replace(/\.[^.]*$/, "") || "Picture", grid.text, studio.materialId.value));
-        return "The design before it is still among your designs.";
-      }),
-    { class: "button primary", id: "picture-apply" },
-  );
-  const replace = textButton(
-    null,
-    "Replace this chart",
-    () =>
-      take((grid) => {
-        studio.document.replace(grid, "Import");
-        return "Undo brings the old chart back.";
-      }),
-    { id: "picture-replace" },
-  );
+  const notes = remark("");
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const views = previews(stitch);
 
-  /** @param {string} id @param {string} label @param {{columns: number, rows: number}} cells */
-  const sizeButton = (id, label, cells) =>
+  /** What is asked of the picture. @returns {Reading} */
+  const reading = () => {
+    const { columns, rows } = size;
+    const how = {
+      dark_below: given.checked ? threshold.valueAsNumber : null,
+      light_is_purl: inverted.checked,
+      aspect: /** @type {Reading["aspect"]} */ (knitted.checked ? "as-knitted" : "keep"),
+    };
+    if (!typed) return how;
+    if (locked.checked) return { ...how, [typed]: size[typed].valueAsNumber };
+    return { ...how, aspect: "free", columns: columns.valueAsNumber, rows: rows.valueAsNumber };
+  };
+  const ask = () => {
+    latest.cancel();
+    show(null);
+    if (typed && !size.read()) return;
+    share.textContent = "Reading …";
+    latest.run(
+      async (signal) => take(await read(reading(), signal)),
+      ({ problem }) => status.replaceChildren(problemBox(problem)),
+    );
+  };
+  /** @param {ImportResult} result */
+  const take = (result) => {
+    size.show(result);
+    notes.textContent = result.notes?.join(" ") ?? "";
+    if (size.read() && isChartText(result.chart)) show(Grid.fromText(result.chart));
+  };
+  /** @param {Grid | null} chart */
+  const show = (chart) => {
+    grid = chart;
+    apply.disabled = replace.disabled = !grid;
+    share.textContent = "";
+    status.replaceChildren();
+    if (!grid) return;
+    share.textContent = `${Math.round((100 * grid.purl.reduce((sum, p) => sum + p, 0)) / grid.purl.length)} % purl`;
+    views.show(grid, share.textContent);
+  };
+
+  /** @param {string} id @param {string} label @param {(grid: Grid) => string} use says where the old chart is */
+  const taking = (id, label, use) =>
     textButton(
       null,
       label,
       () => {
+        if (!grid) return;
+        element.close();
+        studio.tell(`Imported ${grid.columns} stitches × ${grid.rows} rows from ${name}. ${use(grid)}`);
+      },
+      { id, class: id === "picture-apply" ? "button primary" : "button" },
+    );
+  const apply = taking("picture-apply", "New design", (chart) => {
+    keeper.openNew(plainDesign(name.replace(/\.[^.]*$/, "") || "Picture", chart.text, studio.materialId.value));
+    return "The design before it is still among your designs.";
+  });
+  const replace = taking("picture-replace", "Replace this chart", (chart) => {
+    studio.document.replace(chart, "Import");
+    return "Undo brings the old chart back.";
+  });
+
+  /** @param {string} id @param {string} label @param {{columns: number, rows: number}} cells @param {typeof typed} side */
+  const sizeButton = (id, label, cells, side) =>
+    textButton(
+      null,
+      label,
+      () => {
+        [typed, knitted.checked] = [side, false];
         size.show(cells);
-        show();
+        ask();
       },
       { id },
     );
-
-  const read = () => {
-    const cells = size.read();
-    apply.disabled = replace.disabled = !cells;
-    if (!cells) return null;
-    const { columns, rows } = cells;
-    const tones = { threshold: threshold.valueAsNumber, inverted: inverted.checked };
-    const isAsSeen = seen?.columns === columns && seen.rows === rows && tones.threshold === best;
-    if (!seen || !isAsSeen) return stitchesOf(values, width, height, { ...cells, ...tones });
-    return Grid.build(rows, columns, (row, column) => Boolean(seen.purl[row * columns + column]) !== tones.inverted);
-  };
-  const show = () => {
-    const grid = read();
-    if (!grid) return;
-    const purls = grid.purl.reduce((sum, p) => sum + p, 0);
-    share.textContent = `${Math.round((100 * purls) / grid.purl.length)} % purl`;
-    for (const { canvas, words } of views) {
-      canvas.ariaLabel = `${words}: ${grid.columns} stitches × ${grid.rows} rows, ${share.textContent}`;
-    }
-    const palette = readPalette();
-    const [knit, purl] = [pixel(palette.knit), pixel(palette.dark ? [216, 206, 194] : [92, 80, 68])];
-    const image = new ImageData(grid.columns, grid.rows);
-    const pixels = new Uint32Array(image.data.buffer);
-    for (let row = 0, i = 0; row < grid.rows; row++) {
-      const line = (grid.rows - 1 - row) * grid.columns;
-      for (let column = 0; column < grid.columns; column++, i++) pixels[line + column] = grid.purl[i] ? purl : knit;
-    }
-    const small = new OffscreenCanvas(grid.columns, grid.rows);
-    /** @type {OffscreenCanvasRenderingContext2D} */ (small.getContext("2d")).putImageData(image, 0, 0);
-    for (const { canvas, high: tall } of views) {
-      fit(canvas, grid.columns, grid.rows * tall, (context, wide, high) => {
-        context.imageSmoothingEnabled = wide < grid.columns;
-        context.drawImage(small, 0, 0, wide, high);
-        const [cellWide, cellHigh] = [wide / grid.columns, high / grid.rows];
-        if (cellWide < 6) return;
-        context.fillStyle = palette.dark ? "rgb(0 0 0 / 0.4)" : "rgb(60 45 30 / 0.2)";
-        for (let c = 1; c < grid.columns; c++) context.fillRect(Math.round(c * cellWide), 0, 1, high);
-        for (let r = 1; r < grid.rows; r++) context.fillRect(0, Math.round(r * cellHigh), wide, 1);
-      });
-    }
-  };
-
+  const pixels = bitmap && { columns: bitmap.width, rows: bitmap.height };
+  const isPixels = own?.columns === pixels?.columns && own?.rows === pixels?.rows;
   const element = dialog(
     "picture-dialog",
     "Import a picture",
-    h(
-      "div",
-      { class: "picture-pair stack" },
-      h(
-        "figure",
-        {},
-        source,
-        h("figcaption", { class: "muted ellipsis small" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`),
-      ),
-      h("figure", {}, preview, h("figcaption", { class: "muted small" }, "The chart in squares, from the face")),
-      h(
-        "figure",
-        {},
-        asKnitted,
-        h("figcaption", { class: "muted small" }, `As knitted: a stitch is ${stitch.toFixed(2)} times as high as wide`),
-      ),
-    ),
+    h("div", { class: "picture-pair stack" }, bitmap && original(name, bitmap), ...views.figures),
     h(
       "div",
       { class: "fields" },
@@ -243,8 +175,10 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
       h(
         "div",
         { class: "picture-sizes flex wrap gap-8" },
-        each && sizeButton("picture-each", "A pixel a stitch", { columns: bitmap.width, rows: bitmap.height }),
-        detected && sizeButton("picture-found", `Grid found: ${detected.columns} × ${detected.rows}`, detected),
+        pixels &&
+          Math.max(pixels.columns, pixels.rows) <= MAX_SIDE &&
+          sizeButton("picture-each", "A pixel a stitch", pixels, "columns"),
+        own && !isPixels && sizeButton("picture-found", `Grid found: ${own.columns} × ${own.rows}`, own, null),
       ),
     ),
     h(
@@ -254,15 +188,16 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
       h("label", { class: "check" }, knitted, "as it is knitted in this yarn"),
     ),
     size.problem,
-    notes.length > 0 && remark(notes.join(" ")),
+    notes,
     h(
       "div",
       { class: "picture-tone line wrap gap-12" },
-      h("label", { for: "picture-threshold" }, "Purl if darker than"),
+      h("label", { class: "check" }, given, "Purl if darker than"),
       threshold,
       share,
       h("label", { class: "check" }, inverted, "Light is purl"),
     ),
+    status,
     h(
       "div",
       { class: "dialog-buttons" },
@@ -271,14 +206,80 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
       apply,
     ),
   );
-  element.addEventListener("close", () => element.remove());
+  element.addEventListener("close", () => {
+    latest.cancel();
+    element.remove();
+  });
   element.showModal();
-  fit(source, bitmap.width, bitmap.height, (context, wide, high) => {
+  if (own) take(own);
+  else ask();
+  size.columns.focus();
+}
+
+/** The picture as it came. @param {string} name @param {ImageBitmap} bitmap */
+function original(name, bitmap) {
+  const canvas = h("canvas", { class: "picture-preview", role: "img", "aria-label": `The picture ${name}` });
+  fit(canvas, bitmap.width, bitmap.height, (context, wide, high) => {
     context.imageSmoothingEnabled = wide < bitmap.width;
     context.drawImage(bitmap, 0, 0, wide, high);
   });
-  show();
-  size.columns.focus();
+  return figure(canvas, `${name}, ${bitmap.width} × ${bitmap.height} pixels`, "ellipsis");
+}
+
+/** @param {HTMLCanvasElement} canvas @param {string} caption @param {string} [style] of the caption */
+const figure = (canvas, caption, style = "") =>
+  h("figure", {}, canvas, h("figcaption", { class: `muted small ${style}` }, caption));
+
+/**
+ * The chart in squares, and as it is knitted in this yarn.
+ *
+ * @param {number} stitch height of a stitch over its width
+ */
+function previews(stitch) {
+  /** @param {string} id */
+  const canvas = (id) => h("canvas", { class: "picture-preview", id, role: "img" });
+  const [preview, asKnitted] = [canvas("picture-preview"), canvas("picture-as-knitted")];
+  const views = [
+    { canvas: preview, tall: 1, words: "The chart in squares" },
+    { canvas: asKnitted, tall: stitch, words: "As it is knitted" },
+  ];
+  return {
+    figures: [
+      figure(preview, "The chart in squares, from the face"),
+      figure(asKnitted, `As knitted: a stitch is ${stitch.toFixed(2)} times as high as wide`),
+    ],
+    /** @param {Grid} grid @param {string} share of purls, in words */
+    show: (grid, share) => {
+      const palette = readPalette();
+      const small = drawn(grid, palette);
+      for (const { canvas, tall, words } of views) {
+        canvas.ariaLabel = `${words}: ${grid.columns} stitches × ${grid.rows} rows, ${share}`;
+        fit(canvas, grid.columns, grid.rows * tall, (context, wide, high) => {
+          context.imageSmoothingEnabled = wide < grid.columns;
+          context.drawImage(small, 0, 0, wide, high);
+          const [cellWide, cellHigh] = [wide / grid.columns, high / grid.rows];
+          if (cellWide < 6) return;
+          context.fillStyle = palette.dark ? "rgb(0 0 0 / 0.4)" : "rgb(60 45 30 / 0.2)";
+          for (let c = 1; c < grid.columns; c++) context.fillRect(Math.round(c * cellWide), 0, 1, high);
+          for (let r = 1; r < grid.rows; r++) context.fillRect(0, Math.round(r * cellHigh), wide, 1);
+        });
+      }
+    },
+  };
+}
+
+/** A chart with a pixel for a stitch. @param {Grid} grid @param {ReturnType<typeof readPalette>} palette */
+function drawn({ rows, columns, purl }, palette) {
+  const [light, dark] = [pixel(palette.knit), pixel(palette.dark ? [216, 206, 194] : [92, 80, 68])];
+  const image = new ImageData(columns, rows);
+  const pixels = new Uint32Array(image.data.buffer);
+  for (let row = 0, i = 0; row < rows; row++) {
+    const line = (rows - 1 - row) * columns;
+    for (let column = 0; column < columns; column++, i++) pixels[line + column] = purl[i] ? dark : light;
+  }
+  const canvas = new OffscreenCanvas(columns, rows);
+  /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d")).putImageData(image, 0, 0);
+  return canvas;
 }
 
 /**

@@ -50,20 +50,24 @@ class Aspect(StrEnum):
 
 
 @dataclass(frozen=True)
-class PictureScale:
-    """The size of the chart that a picture becomes.
+class PictureReading:
+    """How a picture becomes a chart.
 
     Attributes
     ----------
     columns, rows : stitches; of the two, one may follow from the other. None: as in the picture.
     aspect : how it follows.
     stitch_ratio : height over width of a knitted stitch, for ``as-knitted``.
+    dark_below : grey below which a stitch is dark, 0 to 255. None: what parts the stitches best.
+    light_is_purl : whether the light stitches are the purls, not the dark ones.
     """
 
     columns: int | None = None
     rows: int | None = None
     aspect: Aspect = Aspect.KEEP
     stitch_ratio: float | None = None
+    dark_below: float | None = None
+    light_is_purl: bool = False
 
 
 def read_chart(path: str | Path) -> StitchChart:
@@ -90,7 +94,7 @@ def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
     return content.chart, content.notes
 
 
-def read_noted_piece(path: str | Path, scale: PictureScale | None = None) -> PieceInFile:
+def read_noted_piece(path: str | Path, reading: PictureReading | None = None) -> PieceInFile:
     """The chart in a file, with its outline and its yarns, and the notes of the reader.
 
     Parameters
@@ -98,7 +102,7 @@ def read_noted_piece(path: str | Path, scale: PictureScale | None = None) -> Pie
     path : ``.txt`` (a chart of letters or signs, written rows or KnitSpeak), ``.ks`` (KnitSpeak), a
         picture such as ``.png`` (one pixel a stitch, or a drawn grid), ``.json`` (a design) or
         ``.k`` / ``.knitout`` (a knitout program).
-    scale : the size of the chart that a picture becomes; nothing to other files.
+    reading : how a picture becomes a chart; nothing to other files.
 
     Raises
     ------
@@ -109,7 +113,7 @@ def read_noted_piece(path: str | Path, scale: PictureScale | None = None) -> Pie
     if file.suffix.lower() in _PICTURES:
         from knitcore.formats.read.picture import read_picture  # needs Pillow
 
-        return PieceInFile(*read_picture(file, scale))
+        return PieceInFile(*read_picture(file, reading))
     return _READERS[file.suffix.lower()](file)
 
 

@@ -15,7 +15,7 @@ from PIL import Image, ImageOps, UnidentifiedImageError
 from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
-from knitcore.formats.read.chart_files import Aspect, PictureScale
+from knitcore.formats.read.chart_files import Aspect, PictureReading
 from knitcore.formats.write.png import TEXT_KEY
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
@@ -43,7 +43,9 @@ _PLAIN_LIGHT, _PLAIN_DARK = 170.0, 84.0
 """Tones beyond which nobody asks which is the light one."""
 
 
-def read_picture(file: Path, scale: PictureScale | None = None) -> tuple[Piece, tuple[str, ...]]:
+def read_picture(
+    file: Path, reading: PictureReading | None = None
+) -> tuple[Piece, tuple[str, ...]]:
     """The piece of a picture, and notes on how it was read.
 
     Raises
@@ -55,7 +57,7 @@ def read_picture(file: Path, scale: PictureScale | None = None) -> tuple[Piece, 
         with Image.open(file, formats=_FORMATS) as image:
             _check_pixels(image)  # before any pixel is decoded
             text = image.info.get(TEXT_KEY)
-            if isinstance(text, str) and image.mode == "P" and scale is None:
+            if isinstance(text, str) and image.mode == "P" and reading is None:
                 return _own(np.asarray(image)[::-1].astype(np.intp), text, file.name), ()
             notes = list(_lost(image, has_yarns=isinstance(text, str)))
             is_own = image.mode == "1" or isinstance(text, str)
@@ -72,12 +74,12 @@ def read_picture(file: Path, scale: PictureScale | None = None) -> tuple[Piece, 
         ) from None
     if is_clear:
         notes.append("Transparent pixels are read as knits; an outline is not taken from them.")
-    if not is_own and (scale is None or (scale.columns is None and scale.rows is None)):
+    reading = reading or PictureReading()
+    if not is_own and reading.columns is None and reading.rows is None:
         colours, border_notes = _without_border(colours)
         notes += border_notes
-    scale = scale or PictureScale()
-    columns, rows, size_notes = _size(colours, scale, is_own=is_own, is_drawn=is_drawn)
-    purl, tone_notes = _purls(_cells(colours, rows, columns))
+    columns, rows, size_notes = _size(colours, reading, is_own=is_own, is_drawn=is_drawn)
+    purl, tone_notes = _purls(_cells(colours, rows, columns), reading)
     chart = StitchChart(purl[::-1])
     return Piece.plain(chart), (*notes, *size_notes, *tone_notes)
 
@@ -127,33 +129,33 @@ def _colours(image: Image.Image) -> tuple[Array, bool]:
 
 
 def _size(
-    colours: Array, scale: PictureScale, *, is_own: bool, is_drawn: bool
+    colours: Array, reading: PictureReading, *, is_own: bool, is_drawn: bool
 ) -> tuple[int, int, list[str]]:
     """Columns and rows of the chart, and notes on them."""
     height, width = colours.shape[:2]
-    columns, rows = scale.columns, scale.rows
+    columns, rows = reading.columns, reading.rows
     if columns is None and rows is None:
         across, down, notes = _size_shown(colours, is_own=is_own, is_drawn=is_drawn)
-        if scale.aspect is not Aspect.AS_KNITTED:
+        if reading.aspect is not Aspect.AS_KNITTED:
             check_chart_size(down, across)
             return across, down, notes
         columns, height, width = across, down, across
     else:
         notes = []
     ratio = height / width
-    if scale.aspect is Aspect.AS_KNITTED:
-        if scale.stitch_ratio is None:
+    if reading.aspect is Aspect.AS_KNITTED:
+        if reading.stitch_ratio is None:
             problem = "the size of a knitted stitch is not known."
             raise InputError("aspect", problem, "Name a material that knits stockinette.")
-        ratio /= scale.stitch_ratio
-        how = f"stitches are {scale.stitch_ratio:.2f} times as high as wide, as knitted"
+        ratio /= reading.stitch_ratio
+        how = f"stitches are {reading.stitch_ratio:.2f} times as high as wide, as knitted"
     else:
         how = "stitches counted as squares"
     if columns is not None and rows is not None:
         change = rows / columns / ratio
-        if scale.aspect is not Aspect.FREE and abs(change - 1) > max(0.05, 0.5 / rows):
+        if reading.aspect is not Aspect.FREE and abs(change - 1) > max(0.05, 0.5 / rows):
             notes.append(f"Rows and columns stretch the picture {change:.2f} times in height.")
-    elif scale.aspect is Aspect.FREE:
+    elif reading.aspect is Aspect.FREE:
         missing = "rows" if rows is None else "columns"
         raise InputError(missing, "is needed for a free aspect.", "Give rows and columns.")
     elif rows is None:
@@ -318,12 +320,31 @@ def _middles(length: int, count: int) -> tuple[Indices, Indices]:
     return first, np.maximum(first + 1, np.floor(starts + 3 * size / 4).astype(np.intp))
 
 
-def _purls(cells: Array) -> tuple[Mask, list[str]]:
-    """The darker of the two groups of cells, and notes."""
+def _purls(cells: Array, reading: PictureReading) -> tuple[Mask, list[str]]:
+    """The darker of the two groups of cells, or the lighter one if that is asked, and notes."""
     tones = cells @ _LUMINANCE
-    values = cells.reshape(-1, 3)
+    if reading.dark_below is not None:
+        return (tones < reading.dark_below) != reading.light_is_purl, []
+    dark, share = _two_groups(cells, tones)
+    if share == 0:
+        return _one_colour(tones, reading)
+    light_mean, dark_mean = cells[~dark].mean(axis=0), cells[dark].mean(axis=0)
+    notes = []
+    if float(dark_mean @ _LUMINANCE) > _PLAIN_DARK or float(light_mean @ _LUMINANCE) < _PLAIN_LIGHT:
+        knit, purl, which = _name(light_mean), _name(dark_mean), "darker"
+        if reading.light_is_purl:
+            knit, purl, which = purl, knit, "lighter"
+        notes.append(f"{knit} is read as knit, the {which} {purl} as purl.")
+    if share < _CLEAR:
+        notes.append("The picture has more than two clear tones: compare the chart with it.")
+    return dark != reading.light_is_purl, notes
+
+
+def _two_groups(cells: Array, tones: Array) -> tuple[Mask, float]:
+    """The darker of two groups of cells, and the variance that they explain; 0 for one colour."""
     dark, share = _darker(tones)
     if share < _CLEAR:
+        values = cells.reshape(-1, 3)
         axis = np.linalg.eigh(np.cov(values.T))[1][:, -1] if len(values) > 1 else _LUMINANCE
         other, other_share = _darker(cells @ axis)
         if other_share > share:
@@ -331,17 +352,9 @@ def _purls(cells: Array) -> tuple[Mask, list[str]]:
             if tones[dark].mean() > tones[~dark].mean():
                 dark = ~dark
     if share == 0 or not dark.any() or dark.all():
-        return _one_colour(tones)
-    means = values[dark.ravel()].mean(axis=0), values[~dark.ravel()].mean(axis=0)
-    if share < _CLEAR and float(np.abs(means[0] - means[1]).max()) < _NOISE:
-        return _one_colour(tones)
-    notes = []
-    low, high = (float(mean @ _LUMINANCE) for mean in means)
-    if low > _PLAIN_DARK or high < _PLAIN_LIGHT:
-        notes.append(f"{_name(means[1])} is read as knit, the darker {_name(means[0])} as purl.")
-    if share < _CLEAR:
-        notes.append("The picture has more than two clear tones: compare the chart with it.")
-    return dark, notes
+        return dark, 0.0
+    apart = float(np.abs(cells[dark].mean(axis=0) - cells[~dark].mean(axis=0)).max())
+    return dark, share if share >= _CLEAR or apart >= _NOISE else 0.0
 
 
 def _darker(values: Array) -> tuple[Mask, float]:
@@ -363,11 +376,12 @@ def _darker(values: Array) -> tuple[Mask, float]:
     return np.asarray(values <= sorted_values[best]), float(between[best]) / variance
 
 
-def _one_colour(tones: Array) -> tuple[Mask, list[str]]:
+def _one_colour(tones: Array, reading: PictureReading) -> tuple[Mask, list[str]]:
     is_dark = float(tones.mean()) < 128
-    kind = "purls: it is dark" if is_dark else "knits: it is light"
+    is_purl = is_dark != reading.light_is_purl
+    kind = f"{'purls' if is_purl else 'knits'}: it is {'dark' if is_dark else 'light'}"
     note = f"The picture has one colour, so all stitches are {kind}."
-    return np.full(tones.shape, is_dark), [note]
+    return np.full(tones.shape, is_purl), [note]
 
 
 def _name(colour: Array) -> str:

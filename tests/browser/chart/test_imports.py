@@ -7,9 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from PIL import Image
 from playwright.sync_api import Page, expect
 
+from app.cli.main import main
 from knitcore.formats.read.chart_files import read_noted_chart
 from tests.browser.page import drop, kept_chart, kept_design
 
@@ -39,6 +41,7 @@ def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
     flat_studio.fill("#picture-columns", "0")
     expect(flat_studio.locator("#picture-apply")).to_be_disabled()
     flat_studio.click("#picture-found")
+    expect(flat_studio.locator("#picture-apply")).to_be_enabled()
     before = kept_design(flat_studio)["id"]
     flat_studio.press("#picture-columns", "Enter")
     assert kept_chart(flat_studio) == TEXT
@@ -50,6 +53,7 @@ def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
     flat_studio.fill("#picture-columns", "10")
     expect(flat_studio.locator("#picture-rows")).to_have_value("6")  # proportions are kept
     flat_studio.check("#picture-knitted")
+    expect(flat_studio.locator("#picture-rows")).not_to_have_value("6")
     knitted = int(flat_studio.input_value("#picture-rows"))
     assert knitted > 6  # a stitch is wider than high
     expect(flat_studio.locator("#picture-as-knitted")).to_have_attribute(
@@ -58,6 +62,9 @@ def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
     flat_studio.uncheck("#picture-locked")
     flat_studio.fill("#picture-columns", "4")
     expect(flat_studio.locator("#picture-rows")).to_have_value(str(knitted))
+    expect(flat_studio.locator("#picture-preview")).to_have_attribute(
+        "aria-label", re.compile(f"4 stitches × {knitted} rows")
+    )
     flat_studio.click("#picture-replace")
     expect(dialog).to_have_count(0)
     assert kept_chart(flat_studio) != TEXT
@@ -87,12 +94,47 @@ def test_the_page_reads_a_picture_as_the_command_line_does(
         assert kept_chart(flat_studio) == TEXT
 
 
+@pytest.mark.slow
+def test_a_photo_becomes_the_same_chart_on_the_page_and_on_the_command_line(
+    flat_studio: Page, tmp_path: Path
+) -> None:
+    page, file = flat_studio, tmp_path / "photo.jpg"
+    Image.effect_mandelbrot((130, 97), (-2, -1, 1, 1), 20).save(file)
+
+    def rows(count: int) -> None:
+        page.uncheck("#picture-knitted")
+        page.fill("#picture-rows", str(count))
+
+    def tones() -> None:
+        page.check("#picture-inverted")
+        page.fill("#picture-threshold", "90")
+
+    def free() -> None:
+        page.uncheck("#picture-locked")
+        page.fill("#picture-columns", "20")
+        page.fill("#picture-rows", "31")
+
+    for act, *options in (
+        (lambda: None, "--columns=60", "--aspect=as-knitted"),
+        (lambda: page.fill("#picture-columns", "33"), "--columns=33", "--aspect=as-knitted"),
+        (lambda: rows(31), "--rows=31"),
+        (tones, "--columns=60", "--aspect=as-knitted", "--light-is-purl", "--dark-below=90"),
+        (free, "--columns=20", "--rows=31", "--aspect=free"),
+    ):
+        drop(page, file.name, "image/jpeg", file.read_bytes())
+        expect(page.locator("#picture-apply")).to_be_enabled()
+        act()
+        page.click("#picture-replace")
+        expected = CliRunner().invoke(main, ["import", str(file), *options]).stdout
+        assert kept_chart(page) == expected.strip()
+
+
 def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> None:
     before = kept_design(flat_studio)
     messages = flat_studio.locator("#messages")
     old = {"format": "knitcore-design", "version": 2, "name": "Old", "material": "cotton"}
     for name, kind, content, message in (
-        ("broken.png", "image/png", b"\x89PNG nonsense", "not a picture"),
+        ("broken.png", "image/png", b"\x89PNG nonsense", "not a readable PNG"),
         ("empty.txt", "text/plain", b"", "is empty"),
         ("ragged.txt", "text/plain", b"KP\nKPK", "line 2 has 3 stitches"),
         ("program.bin", "", b"\x00\x01\x02", "is not a text file"),

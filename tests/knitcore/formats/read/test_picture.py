@@ -7,7 +7,7 @@ import pytest
 from PIL import Image, ImageDraw, ImageOps
 
 from knitcore import InputError, StitchChart
-from knitcore.formats.read.chart_files import Aspect, PictureScale
+from knitcore.formats.read.chart_files import Aspect, PictureReading
 from knitcore.formats.read.picture import read_picture
 from knitcore.formats.write.png import write_png
 from knitcore.garment.piece import Piece, PieceYarn
@@ -52,7 +52,7 @@ def sheet(sign: str, line: int, grey: int = 0) -> Image.Image:
     return image
 
 
-def read(image: Image.Image, file: Path, scale: PictureScale | None = None) -> tuple[Piece, str]:
+def read(image: Image.Image, file: Path, scale: PictureReading | None = None) -> tuple[Piece, str]:
     """The piece of a picture after it was saved, and its notes."""
     image.save(file)
     piece, notes = read_picture(file, scale)
@@ -114,16 +114,16 @@ def test_one_colour_is_told_even_with_noise(tone: int, kind: str, tmp_path: Path
 @pytest.mark.parametrize(
     ("scale", "size", "note"),
     [
-        (PictureScale(columns=32), (32, 24), "24 rows keep"),
-        (PictureScale(rows=6), (8, 6), "8 columns keep"),
-        (PictureScale(16, None, Aspect.AS_KNITTED, 0.75), (16, 16), "0.75 times as high as wide"),
-        (PictureScale(None, None, Aspect.AS_KNITTED, 0.75), (16, 16), "A grid"),
-        (PictureScale(16, 24), (16, 24), "stretch the picture 2.00 times"),
-        (PictureScale(16, 24, Aspect.FREE), (16, 24), ""),
+        (PictureReading(columns=32), (32, 24), "24 rows keep"),
+        (PictureReading(rows=6), (8, 6), "8 columns keep"),
+        (PictureReading(16, None, Aspect.AS_KNITTED, 0.75), (16, 16), "0.75 times as high as wide"),
+        (PictureReading(None, None, Aspect.AS_KNITTED, 0.75), (16, 16), "A grid"),
+        (PictureReading(16, 24), (16, 24), "stretch the picture 2.00 times"),
+        (PictureReading(16, 24, Aspect.FREE), (16, 24), ""),
     ],
 )
 def test_proportions_are_kept(
-    scale: PictureScale, size: tuple[int, int], note: str, tmp_path: Path
+    scale: PictureReading, size: tuple[int, int], note: str, tmp_path: Path
 ) -> None:
     piece, notes = read(drawn(), tmp_path / "chart.png", scale)
     assert (piece.chart.columns, piece.chart.rows) == size
@@ -133,15 +133,37 @@ def test_proportions_are_kept(
 @pytest.mark.parametrize(
     ("scale", "says"),
     [
-        (PictureScale(columns=16, aspect=Aspect.FREE), "needed for a free aspect"),
-        (PictureScale(columns=16, aspect=Aspect.AS_KNITTED), "not known"),
+        (PictureReading(columns=16, aspect=Aspect.FREE), "needed for a free aspect"),
+        (PictureReading(columns=16, aspect=Aspect.AS_KNITTED), "not known"),
     ],
 )
 def test_a_size_that_does_not_follow_is_refused(
-    scale: PictureScale, says: str, tmp_path: Path
+    scale: PictureReading, says: str, tmp_path: Path
 ) -> None:
     with pytest.raises(InputError, match=says):
         read(drawn(), tmp_path / "chart.png", scale)
+
+
+@pytest.mark.parametrize(
+    ("reading", "dark"),
+    [
+        (PictureReading(light_is_purl=True), ~PURL),
+        (PictureReading(dark_below=1), np.zeros_like(PURL)),
+        (PictureReading(dark_below=1, light_is_purl=True), np.ones_like(PURL)),
+    ],
+)
+def test_tones_are_parted_as_it_is_said(
+    reading: PictureReading, dark: np.ndarray, tmp_path: Path
+) -> None:
+    piece, _ = read(toned(20, 230), tmp_path / "chart.png", reading)
+    assert np.array_equal(piece.chart.purl[::-1], dark)
+
+
+def test_notes_follow_light_purls(tmp_path: Path) -> None:
+    light = PictureReading(light_is_purl=True)
+    assert read(toned(5, 40), tmp_path / "a.png", light)[1].endswith("the lighter #282828 as purl.")
+    plain = toned(240, 240)
+    assert "all stitches are purls: it is light" in read(plain, tmp_path / "b.png", light)[1]
 
 
 def test_rows_of_blocks_without_lines_are_all_counted(tmp_path: Path) -> None:
@@ -174,7 +196,7 @@ def test_a_picture_of_this_library_keeps_outline_and_yarns(tmp_path: Path) -> No
     file = tmp_path / "own.png"
     file.write_bytes(write_png(piece))
     assert read_picture(file) == (piece, ())
-    assert "yarns are lost: it is scaled" in read_picture(file, PictureScale(columns=8))[1][0]
+    assert "yarns are lost: it is scaled" in read_picture(file, PictureReading(columns=8))[1][0]
     with Image.open(file) as image:
         saved = image.convert("RGBA")
     saved.save(file)
