@@ -22,6 +22,7 @@ pytestmark = [
     pytest.mark.skipif(bool(missing()), reason=f"not installed here: {', '.join(missing())}"),
 ]
 
+PATIENCE_S = 150.0
 PULL = {"chart": "KP/PK", "material": "acrylic", "direction": "wale", "strain": 0.1, "steps": 2}
 
 
@@ -39,7 +40,7 @@ def running() -> Iterator[Composition]:
 def _signed_in(running: Composition, token: str) -> Iterator[httpx.Client]:
     """A browser that opened the page with a token, through the proxy."""
     options: dict[str, Any] = {"headers": {"Origin": running.url}, "follow_redirects": True}
-    with httpx.Client(base_url=running.url, timeout=150, **options) as client:
+    with httpx.Client(base_url=running.url, timeout=PATIENCE_S, **options) as client:
         assert client.get(f"/?token={token}").status_code == 200
         assert client.get("/api/v1/session").json()["user"] == "ada"
         yield client
@@ -70,8 +71,11 @@ def _painted(client: httpx.Client, design: dict[str, Any]) -> str:
 def test_sign_in_paint_stretch_back_up_restore_upgrade(
     running: Composition, tmp_path: Path
 ) -> None:
-    assert httpx.get(f"{running.url}/readyz").status_code == 200
-    assert httpx.post(f"{running.url}/api/v1/predict", json=PULL).status_code == 401
+    assert httpx.get(f"{running.url}/readyz", timeout=PATIENCE_S).status_code == 200
+    assert (
+        httpx.post(f"{running.url}/api/v1/predict", json=PULL, timeout=PATIENCE_S).status_code
+        == 401
+    )
     token = json.loads(running.knitcore("token", "create", "ada", "--json"))["token"]
     document = {"name": "Cuff", "material": "acrylic", "chart": "KP\nPK"}
     yarn = MaterialDocument.from_material(material("acrylic")).model_dump(mode="json")
@@ -118,7 +122,7 @@ def test_sign_in_paint_stretch_back_up_restore_upgrade(
 
 
 def _until_ready(running: Composition) -> None:
-    deadline = time.monotonic() + 150
-    while httpx.get(f"{running.url}/readyz").status_code != 200:
+    deadline = time.monotonic() + PATIENCE_S
+    while httpx.get(f"{running.url}/readyz", timeout=PATIENCE_S).status_code != 200:
         assert time.monotonic() < deadline
         time.sleep(0.2)
