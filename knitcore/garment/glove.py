@@ -2,10 +2,10 @@
 
 Columns run from the forearm to the finger tips, rows around the hand: half of the thumb, the backs
 of the fingers from index to little finger, their fronts in the reverse order, and the other half of
-the thumb, which is grafted to the first row. Stockinette lies around the wrist along its stiff
-direction, the wales; rib lets the fingers bend, garter lets the hand close, and seed lets the thumb
-move both ways. Between fingers a few rows end at the crotch, and between thumb and hand a gusset of
-seed tapers from the thumb down to its crotch on either side. Thumb and gusset begin at the wrist
+the thumb, which is grafted to the first row. The paper's has stockinette around the wrist along its
+stiff direction, the wales; rib lets the fingers bend, garter lets the hand close, and seed lets the
+thumb move both ways. Between fingers a few rows end at the crotch, and between thumb and hand a
+gusset tapers from the thumb down to its crotch on either side. Thumb and gusset begin at the wrist
 support, not at the cuff, so that they do not widen the wrist. Steps at the finger tips are on
 right-side rows and steps at the wrist on wrong-side rows, which begin there: stitches are bound off
 and cast on without cutting the yarn.
@@ -45,7 +45,7 @@ class Hand:
 
     Attributes
     ----------
-    cuff_mm : garter edge on the forearm.
+    cuff_mm : edge on the forearm.
     wrist_mm : length of the wrist support.
     wrist_circumference_mm : around the wrist, for the pressure there.
     palm_mm : from the support to the crotch of the fingers.
@@ -97,6 +97,27 @@ class Hand:
 
 
 @dataclass(frozen=True)
+class GloveFabrics:
+    """Fabrics of a glove's parts; the defaults are those of the paper's.
+
+    Attributes
+    ----------
+    support : around the wrist.
+    hand : of the hand and the cuff.
+    thumb : of the thumb and its gusset.
+    fingers : of all four.
+    """
+
+    support: Fabric = Fabric.STOCKINETTE
+    hand: Fabric = Fabric.GARTER
+    thumb: Fabric = Fabric.SEED
+    fingers: Fabric = Fabric.RIB
+
+
+STUDY_FABRICS = GloveFabrics()
+
+
+@dataclass(frozen=True)
 class GloveLayout:
     """Stitches of a glove: columns from the forearm, rows of its parts.
 
@@ -121,12 +142,14 @@ class GloveLayout:
     finger_tips: tuple[int, ...]
 
     @classmethod
-    def of(cls, hand: Hand, gauges: GaugeSet, ease: float) -> GloveLayout:
+    def of(
+        cls, hand: Hand, gauges: GaugeSet, ease: float, fabrics: GloveFabrics = STUDY_FABRICS
+    ) -> GloveLayout:
         """Stitches for a hand: along it by the gauge of each part's own fabric, around it by that
-        of the fingers (rib) and the thumb (seed)."""
-        palm, seed, rib = (gauges[f] for f in (Fabric.GARTER, Fabric.SEED, Fabric.RIB))
+        of fingers and thumb."""
+        palm, thumb, finger = (gauges[f] for f in (fabrics.hand, fabrics.thumb, fabrics.fingers))
         cuff = palm.stitches_for(hand.cuff_mm)
-        support = cuff + gauges[Fabric.STOCKINETTE].stitches_for(hand.wrist_mm)
+        support = cuff + gauges[fabrics.support].stitches_for(hand.wrist_mm)
         thumb_crotch = support + palm.stitches_for(hand.thumb_crotch_mm)
         crotch = max(support + palm.stitches_for(hand.palm_mm), thumb_crotch + 1)
         return cls(
@@ -134,13 +157,14 @@ class GloveLayout:
             support=support,
             thumb_crotch=thumb_crotch,
             crotch=crotch,
-            thumb_tip=thumb_crotch + seed.stitches_for(hand.thumb.length_mm),
-            thumb_rows=seed.rows_for(hand.thumb.circumference_mm / 2 * (1 + ease), multiple=2),
-            gusset_ends=tuple(_gusset(hand, seed, thumb_crotch)),
+            thumb_tip=thumb_crotch + thumb.stitches_for(hand.thumb.length_mm),
+            thumb_rows=thumb.rows_for(hand.thumb.circumference_mm / 2 * (1 + ease), multiple=2),
+            gusset_ends=tuple(_gusset(hand, thumb, thumb_crotch)),
             finger_rows=tuple(
-                rib.rows_for(f.circumference_mm / 2 * (1 + ease), multiple=2) for f in hand.fingers
+                finger.rows_for(f.circumference_mm / 2 * (1 + ease), multiple=2)
+                for f in hand.fingers
             ),
-            finger_tips=tuple(crotch + rib.stitches_for(f.length_mm) for f in hand.fingers),
+            finger_tips=tuple(crotch + finger.stitches_for(f.length_mm) for f in hand.fingers),
         )
 
     @property
@@ -171,6 +195,7 @@ def glove(
     ease: float = -0.10,
     mmhg: float | None = None,
     gauges: GaugeSet | None = None,
+    fabrics: GloveFabrics = STUDY_FABRICS,
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
     """The plan of a glove.
@@ -182,13 +207,14 @@ def glove(
     ease : of fingers and thumb.
     mmhg : target pressure of the wrist support; a note gives the rows for it.
     gauges : the knitter's; by default the material's own.
+    fabrics : of its parts.
     linear_density_tex : for the mass of yarn.
 
     Notes
     -----
     Stitches along the hand come from the gauge of each part's own fabric, rows around it from the
-    fingers' (rib) and the thumb's (seed); misfits are reported, and the pressure
-    on the wrist is that of the resulting rows.
+    fingers' and the thumb's; misfits are reported, and the pressure on the wrist is that of the
+    resulting rows.
 
     Raises
     ------
@@ -197,8 +223,8 @@ def glove(
     """
     check_range("ease", ease, MIN_EASE, MAX_EASE, what="an ease for a glove")
     gauges = gauges or GaugeSet.of_material(material)
-    palm = gauges[Fabric.GARTER]
-    layout = GloveLayout.of(hand, gauges, ease)
+    support_gauge = gauges[fabrics.support]
+    layout = GloveLayout.of(hand, gauges, ease, fabrics)
     cuff, support = layout.cuff, layout.support
     thumb_crotch, crotch, ends = layout.thumb_crotch, layout.crotch, layout.ends
 
@@ -214,19 +240,19 @@ def glove(
     is_thumb = beyond & (kinds == "thumb")
     is_finger = (column >= crotch) & (kinds == "finger")
     parts = (
-        Part("cuff", column < cuff, Fabric.GARTER),
-        Part("wrist support", (column >= cuff) & ~beyond, Fabric.STOCKINETTE),
-        Part("hand", beyond & ~is_thumb & ~is_gusset & ~is_finger, Fabric.GARTER),
-        Part("thumb", is_thumb, Fabric.SEED),
-        Part("thumb gusset", is_gusset, Fabric.SEED),
-        Part("fingers", is_finger, Fabric.RIB),
+        Part("cuff", column < cuff, fabrics.hand),
+        Part("wrist support", (column >= cuff) & ~beyond, fabrics.support),
+        Part("hand", beyond & ~is_thumb & ~is_gusset & ~is_finger, fabrics.hand),
+        Part("thumb", is_thumb, fabrics.thumb),
+        Part("thumb gusset", is_gusset, fabrics.thumb),
+        Part("fingers", is_finger, fabrics.fingers),
     )
     around = wrist_rows.stop - wrist_rows.start
     pressed = worn(
         material,
-        Fabric.STOCKINETTE,
+        fabrics.support,
         Direction.WALE,
-        around * gauges[Fabric.STOCKINETTE].stitch_wale_mm,
+        around * support_gauge.stitch_wale_mm,
         hand.wrist_circumference_mm,
         at_mm=hand.cuff_mm + hand.wrist_mm / 2,
         part="wrist support",
@@ -241,16 +267,16 @@ def glove(
         worn=(pressed,),
         closing="graft the last row to the first along the thumb, join the wrist's two edges, and "
         "seam finger tips and sides",
-        notes=_notes(hand, around, palm, ease, material)
-        + _wrist_notes(pressed, gauges[Fabric.STOCKINETTE], material, around, mmhg),
+        notes=_notes(hand, around, gauges[fabrics.hand], ease, material, fabrics.hand)
+        + _wrist_notes(pressed, support_gauge, material, around, mmhg, fabrics.support),
         linear_density_tex=linear_density_tex,
     )
 
 
-def _gusset(hand: Hand, seed: Gauge, thumb_crotch: int) -> list[int]:
+def _gusset(hand: Hand, thumb: Gauge, thumb_crotch: int) -> list[int]:
     """Columns at which the gusset's rows end on one side of the thumb, two of each length."""
-    height = round(hand.gusset_mm / seed.stitch_course_mm)
-    steps = round(hand.gusset_girth_mm / 2 / seed.stitch_wale_mm / 2)
+    height = round(hand.gusset_mm / thumb.stitch_course_mm)
+    steps = round(hand.gusset_girth_mm / 2 / thumb.stitch_wale_mm / 2)
     if height < 1 or steps < 1:
         return []
     lengths = [round(height * (1 - step / steps)) for step in range(steps)]
@@ -258,7 +284,7 @@ def _gusset(hand: Hand, seed: Gauge, thumb_crotch: int) -> list[int]:
 
 
 def _notes(
-    hand: Hand, rows: int, garter: Gauge, ease: float, material: Material
+    hand: Hand, rows: int, palm: Gauge, ease: float, material: Material, fabric: Fabric
 ) -> tuple[str, ...]:
     notes = [
         "Knit the wrist support on 2.0 mm needles (US 0) and the rest on 2.75 mm (US 2), as in the "
@@ -267,17 +293,17 @@ def _notes(
         else "The study's glove has its wrist support on 2.0 mm needles and the rest on 2.75 mm. "
         f"The material {STUDY_GLOVE} was measured on both, {material.identifier} on one."
     ]
-    around = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
+    around = palm.rows_for(hand.palm_circumference_mm * (1 + ease))
     if abs(rows / around - 1) > PALM_TOLERANCE:
         notes.append(
             f"The fingers need {rows} rows around the hand, the palm's circumference {around} rows "
-            "of garter: change the ease of the palm, or the circumferences of the fingers."
+            f"of {fabric}: change the ease of the palm, or the circumferences of the fingers."
         )
     return tuple(notes)
 
 
 def _wrist_notes(
-    pressed: Worn, gauge: Gauge, material: Material, rows: int, mmhg: float | None
+    pressed: Worn, gauge: Gauge, material: Material, rows: int, mmhg: float | None, support: Fabric
 ) -> tuple[str, ...]:
     """A note on the rows that the wrist support needs for a pressure."""
     if pressed.pressure is None:
@@ -289,7 +315,7 @@ def _wrist_notes(
             return (f"{loose} Give a target pressure to see how many rows that takes.",)
     if mmhg is None:
         return ()
-    rest = Fit(mmhg=mmhg).rest_mm(pressed.worn_mm, material, Fabric.STOCKINETTE, Direction.WALE)
+    rest = Fit(mmhg=mmhg).rest_mm(pressed.worn_mm, material, support, Direction.WALE)
     needed = gauge.rows_for(rest, multiple=2)
     if needed >= rows:
         return (f"For {mmhg:g} mmHg the wrist support takes {needed} rows; it has {rows}.",)

@@ -18,7 +18,14 @@ from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
-from knitcore.garment.glove import CROTCH_ROWS, GloveLayout, Hand, glove
+from knitcore.garment.glove import (
+    CROTCH_ROWS,
+    STUDY_FABRICS,
+    GloveFabrics,
+    GloveLayout,
+    Hand,
+    glove,
+)
 from knitcore.garment.limb import LimbPlace, place_on
 from knitcore.garment.plan import GarmentPlan
 from knitcore.materials import Material
@@ -71,7 +78,12 @@ class GloveOnHand:
 
 
 def glove_on_hand(
-    hand: Hand, material: Material, *, ease: float = -0.10, gauges: GaugeSet | None = None
+    hand: Hand,
+    material: Material,
+    *,
+    ease: float = -0.10,
+    gauges: GaugeSet | None = None,
+    fabrics: GloveFabrics = STUDY_FABRICS,
 ) -> GloveOnHand:
     """A glove on the hand that it is made for.
 
@@ -83,24 +95,24 @@ def glove_on_hand(
         If measurements or ease cannot be used, or the material lacks a fabric.
     """
     gauges = gauges or GaugeSet.of_material(material)
-    plan = glove(hand, material, ease=ease, gauges=gauges)
+    plan = glove(hand, material, ease=ease, gauges=gauges, fabrics=fabrics)
     rows, columns = plan.shaped.stitch.shape
     heights = np.zeros((rows, columns))
-    fabrics: NDArray[np.object_] = np.full((rows, columns), None, dtype=object)
+    fabric_at: NDArray[np.object_] = np.full((rows, columns), None, dtype=object)
     for region, fabric in zip(plan.regions, plan.fabrics, strict=True):
         cells = region.cells & plan.shaped.stitch
-        heights[cells], fabrics[cells] = gauges[fabric].stitch_wale_mm, fabric
+        heights[cells], fabric_at[cells] = gauges[fabric].stitch_wale_mm, fabric
     corners = _hidden(rows, columns, hand)
     mmhg = np.full((rows, columns), np.nan)
     parts: dict[str, LimbPlace] = {}
-    loops = list(_loops(hand, GloveLayout.of(hand, gauges, ease), heights))
+    loops = list(_loops(hand, GloveLayout.of(hand, gauges, ease, fabrics), heights))
     fitted = _fits(material)
     for loop in loops:
         loop.lay(heights, corners)
         for column, name, place_at in loop.places():
-            for fabric in {cell for cell in fabrics[loop.rows, column] if cell is not None}:
+            for fabric in {cell for cell in fabric_at[loop.rows, column] if cell is not None}:
                 place = fitted(fabric, *place_at, float(heights[loop.rows, column].sum()))
-                mmhg[loop.rows[fabrics[loop.rows, column] == fabric], column] = _middle(place)
+                mmhg[loop.rows[fabric_at[loop.rows, column] == fabric], column] = _middle(place)
                 if name not in parts or place.lock_up_share > parts[name].lock_up_share:
                     parts[name] = place
     return GloveOnHand(plan, corners, mmhg, parts, tuple(loop.skin() for loop in loops))

@@ -80,11 +80,13 @@ def test_a_sleeve_has_graded_pressure_fabrics_and_sizes(flat_studio: Page) -> No
     assert [mmhg for _, mmhg in garment["mmhg_profile"]][-1] == 8
     expect(page.locator("#planner-make")).to_be_enabled()
     expect(page.locator("#planner-facts")).to_contain_text("does not keep to")
-    page.locator("#planner-facts summary", has_text="Table of sizes").click()
-    page.click("#planner-sizes-run")
+    page.check("#planner-sizes-shown")
     rows = page.locator("#planner-sizes tbody tr")
     expect(rows).to_have_count(5)
     assert rows.first.inner_text() != rows.last.inner_text()
+    page.get_by_label("Wider by, in percent").fill("9")
+    expect(page.locator("#planner-make")).to_be_enabled()
+    expect(rows).to_have_count(5)
     _plan_again(page, "wrist-brace")
     expect(page.get_by_label("Around the wrist")).to_have_value("181")
 

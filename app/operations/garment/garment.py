@@ -1,178 +1,29 @@
 """Garments from measurements."""
 
-import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import click
 from pydantic import Field
 
-from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.formats.designs.design_file import DesignFile, write_design
 from knitcore.formats.designs.garment_design import design_of_plan
-from knitcore.garment.gauge import Gauge, GaugeLength, GaugeSet
-from knitcore.garment.glove import Finger, Hand, glove
+from knitcore.garment.gauge import Gauge
 from knitcore.garment.plan import GarmentPlan
-from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
-from knitcore.garment.worn_piece import Fit, Worn
+from knitcore.garment.worn_piece import Worn
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import log_interval
 
 from ...cli.options import out_option
 from ...context import Context
-from ...requests.base import Ends, IntervalResult, RequestModel, ResultModel
-from ...requests.charts import CellLines, ChartLines, MaterialName, RepeatText
-from ...requests.fabrics import Extensibility, LawsRequest, Moduli
+from ...requests.base import Ends, IntervalResult, ResultModel
+from ...requests.charts import CellLines, ChartLines, RepeatText
+from ...requests.fabrics import Extensibility, Moduli
 from ..registry import Command, Operation
-
-Length = Annotated[float, Field(gt=0, le=2000)]
-OfHand = Annotated[float, Field(gt=0, le=500)]
-Ease = Annotated[float, Field(ge=-0.6, le=1)]
-TargetProfile = Annotated[
-    list[tuple[float, Annotated[float, Field(gt=0, le=300)]]] | None,
-    Field(
-        min_length=1,
-        max_length=100,
-        description="Graded target pressure: pairs [position_mm, mmHg] along the limb; takes "
-        "precedence over one target.",
-    ),
-]
-TargetPressure = Annotated[
-    float | None,
-    Field(gt=0, le=300, description="Target pressure; takes precedence over the ease."),
-]
-
-
-class GaugeCount(RequestModel):
-    """A gauge counted on a swatch."""
-
-    stitches: float = Field(gt=0, le=1000)
-    rows: float = Field(gt=0, le=1000)
-    per: Literal["10 cm", "4 in", "5 cm"] = "10 cm"
-    fabric: Fabric = Field(Fabric.STOCKINETTE, description="Repeat of the swatch.")
-
-    def gauge(self) -> Gauge:
-        """The gauge as an object of the library."""
-        return Gauge.of_count(self.stitches, self.rows, _LENGTHS[self.per])
-
-
-_LENGTHS = {
-    "10 cm": GaugeLength.TEN_CM,
-    "4 in": GaugeLength.FOUR_INCHES,
-    "5 cm": GaugeLength.FIVE_CM,
-}
-
-
-class Template(RequestModel):
-    """Tightness of a garment."""
-
-    ease: Ease = -0.15
-    target_mmhg: TargetPressure = None
-
-    @property
-    def fit(self) -> Fit:
-        """The fit as an object of the library."""
-        return Fit(self.ease, self.target_mmhg)
-
-
-class WristBrace(Template):
-    """A brace, knitted sideways and grafted."""
-
-    template: Literal["wrist-brace"]
-    wrist_mm: Length
-    length_mm: Length
-    edge_mm: Annotated[float, Field(ge=0, le=500)] = 15.0
-    support: Fabric = Fabric.STOCKINETTE
-    edge: Fabric = Fabric.GARTER
-
-    def plan(self, **yarn: Any) -> GarmentPlan:
-        """The garment's plan, for a material, gauges and a linear density."""
-        return self.pass_to(wrist_brace, fit=self.fit, **yarn)
-
-
-class Graded(Template):
-    """A tube along a limb, whose pressure may change along it."""
-
-    mmhg_profile: TargetProfile = None
-    body: Fabric = Fabric.STOCKINETTE
-    hem: Fabric = Fabric.RIB
-
-    @property
-    def fit(self) -> Fit:
-        """The fit as an object of the library."""
-        return Fit(self.ease, self.mmhg_profile or self.target_mmhg)
-
-
-class SockLeg(Graded):
-    """The leg of a sock."""
-
-    template: Literal["sock-leg"]
-    ankle_mm: Length
-    calf_mm: Length
-    length_mm: Length
-
-    def plan(self, **yarn: Any) -> GarmentPlan:
-        """The garment's plan for a yarn."""
-        return self.pass_to(sock_leg, fit=self.fit, **yarn)
-
-
-class Limb(Graded):
-    """A sleeve for any limb."""
-
-    template: Literal["limb"]
-    profile: list[tuple[float, Length]] = Field(
-        min_length=2,
-        max_length=200,
-        description="Pairs [position_mm, circumference_mm] along the limb.",
-    )
-    hem_mm: Annotated[float, Field(ge=0, le=500)] = 40.0
-
-    def plan(self, **yarn: Any) -> GarmentPlan:
-        """The garment's plan for a yarn."""
-        girths = [Girth(at, around) for at, around in self.profile]
-        return self.pass_to(limb_tube, "sleeve", girths, fit=self.fit, **yarn)
-
-
-class FingerSize(RequestModel):
-    """Measurements of one finger."""
-
-    length_mm: OfHand
-    circumference_mm: OfHand
-
-
-_HAND = Hand()
-
-
-class Glove(Template):
-    """The therapeutic glove; measurements default to an adult's hand."""
-
-    template: Literal["glove"]
-    cuff_mm: OfHand = _HAND.cuff_mm
-    wrist_mm: OfHand = _HAND.wrist_mm
-    wrist_circumference_mm: OfHand = _HAND.wrist_circumference_mm
-    palm_mm: OfHand = _HAND.palm_mm
-    thumb_crotch_mm: OfHand = _HAND.thumb_crotch_mm
-    palm_circumference_mm: OfHand = _HAND.palm_circumference_mm
-    gusset_mm: Annotated[float, Field(ge=0, le=200)] = _HAND.gusset_mm
-    gusset_girth_mm: Annotated[float, Field(ge=0, le=100)] = _HAND.gusset_girth_mm
-    thumb: FingerSize | None = None
-    fingers: list[FingerSize] | None = Field(None, min_length=4, max_length=4)
-    ease: Ease = -0.10
-
-    @property
-    def hand(self) -> Hand:
-        """The hand as an object of the library."""
-        fingers = self.fingers and tuple(finger.pass_to(Finger) for finger in self.fingers)
-        thumb = self.thumb and self.thumb.pass_to(Finger)
-        return self.pass_to(Hand, thumb=thumb or _HAND.thumb, fingers=fingers or _HAND.fingers)
-
-    def plan(self, **yarn: Any) -> GarmentPlan:
-        """The garment's plan for a yarn."""
-        return glove(self.hand, ease=self.ease, mmhg=self.target_mmhg, **yarn)
-
+from .sizes import SizeResult, SizeSteps, size_lines, sizes_of
+from .templates import LENGTHS, AnyTemplate, KnitterRequest, measured_options, read_measured
 
 MATERIAL_ERRORS = (
     "Sizes: the material's gauge, with one aspect ratio of stitches for all yarns (8 %); "
@@ -184,29 +35,17 @@ SWATCH_ERRORS = (
 )
 
 
-class KnitterRequest(LawsRequest):
-    """The yarn, and how somebody knits it."""
-
-    material: MaterialName
-    gauge: GaugeCount | None = Field(
-        None, description="The knitter's gauge; the material's by default."
-    )
-
-    def gauges(self, material: Material) -> GaugeSet:
-        """The gauges of the four fabrics."""
-        if self.gauge is None:
-            return GaugeSet.of_material(material)
-        return GaugeSet.of_material(material, self.gauge.gauge(), self.gauge.fabric)
-
-
 class GarmentRequest(KnitterRequest):
     """A template with measurements, and the yarn."""
 
-    garment: Annotated[WristBrace | SockLeg | Limb | Glove, Field(discriminator="template")]
+    garment: AnyTemplate
     linear_density_tex: float | None = Field(
         None, gt=0, lt=1e5, description="Linear density of the yarn (g/km), for its mass."
     )
     intarsia: bool = Field(False, description="Knit each fabric with a yarn of its own.")
+    sizes: SizeSteps | None = Field(
+        None, description="Steps between sizes, for a table of them in the result and the design."
+    )
 
 
 class RegionResult(Moduli, Extensibility):
@@ -278,6 +117,7 @@ class GarmentResult(IntervalResult):
     yarn_interval_g: Ends | None
     notes: list[str]
     warnings: list[str] = Field(description="Notes on borders between regions of different gauge.")
+    sizes: list[SizeResult] = Field([], description="The garment in every size, where asked.")
     design: DesignFile = Field(description="The garment as a project file, ready to edit.")
 
 
@@ -292,7 +132,13 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
     material = context.material(request.material)
     gauges = request.gauges(material)
     tex = request.linear_density_tex
-    plan = request.garment.plan(material=material, gauges=gauges, linear_density_tex=tex)
+    yarn: dict[str, Any] = {"material": material, "gauges": gauges, "linear_density_tex": tex}
+    plan = request.garment.plan(**yarn)
+    sizes = (
+        sizes_of(request.garment, request.sizes, lambda template: template.plan(**yarn))
+        if request.sizes
+        else []
+    )
     return GarmentResult.of(
         plan,
         rows=plan.shaped.chart.rows,
@@ -309,7 +155,8 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
         yarn_interval_g=plan.yarn.mass_interval_g,
         interval_source=SWATCH_ERRORS if request.gauge else MATERIAL_ERRORS,
         warnings=[misfit.text for misfit in plan.misfits],
-        design=request.pass_to(design_of_plan, plan),
+        sizes=sizes,
+        design=request.pass_to(design_of_plan, plan, notes=tuple(size_lines(sizes))),
     )
 
 
@@ -342,7 +189,7 @@ def _regions(plan: GarmentPlan, material: Material, tex: float | None) -> list[R
 
 def _gauge(fabric: Fabric, gauge: Gauge) -> GaugeResult:
     counts = {}
-    for name, length in _LENGTHS.items():
+    for name, length in LENGTHS.items():
         per = name.replace(" ", "_")
         counts[f"stitches_per_{per}"], counts[f"rows_per_{per}"] = gauge.counts(length)
     return GaugeResult.of(gauge, fabric=fabric, **counts)
@@ -354,55 +201,26 @@ def _worn(place: Worn) -> WornResult:
     return WornResult.of(place, **vars(pressure))
 
 
-def measured_options(command: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
-    """Options of a garment's measurements; :func:`read_measured` reads them."""
-    for option in (
-        click.option("--per", type=click.Choice(list(_LENGTHS)), default="10 cm"),
-        click.option("--gauge", metavar="STSxROWS", help="The knitter's own gauge, such as 22x30."),
-        click.option(
-            "--set",
-            "settings",
-            multiple=True,
-            metavar="NAME=VALUE",
-            help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
-        ),
-    ):
-        command = option(command)
-    return command
-
-
-def read_measured(
-    template: str, settings: tuple[str, ...], gauge: str | None, per: str
-) -> dict[str, object]:
-    """Fields ``garment`` and ``gauge`` of a request.
-
-    Raises
-    ------
-    InputError
-        If a setting is none.
-    """
-    values: dict[str, object] = {"template": template}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise InputError("set", f"{setting!r} is not a setting.", "Write NAME=VALUE.")
-        try:
-            values[name] = json.loads(value)
-        except json.JSONDecodeError:
-            values[name] = value
-    fields: dict[str, object] = {"garment": values}
-    if gauge is not None:
-        stitches, _, rows = gauge.lower().replace("×", "x").partition("x")
-        fields["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
-    return fields
-
-
 @click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))
 @measured_options
+@click.option(
+    "--sizes",
+    nargs=2,
+    type=float,
+    metavar="WIDER LONGER",
+    help="A table of sizes, each so many percent wider and longer than the one before.",
+)
 def _garment_fields(
-    template: str, settings: tuple[str, ...], gauge: str | None, per: str
+    template: str,
+    settings: tuple[str, ...],
+    gauge: str | None,
+    per: str,
+    sizes: tuple[float, float] | None,
 ) -> dict[str, object]:
-    return read_measured(template, settings, gauge, per)
+    fields = read_measured(template, settings, gauge, per)
+    if sizes is not None:
+        fields["sizes"] = {"wider_percent": sizes[0], "longer_percent": sizes[1]}
+    return fields
 
 
 @out_option("-o", "--out", help="Write a design (.json).")
@@ -426,7 +244,7 @@ def _lines(r: GarmentResult) -> list[str]:
         for region in r.regions
     ]
     lines += [_pressure(place) for place in r.worn]
-    return lines
+    return [*lines, *size_lines(r.sizes)]
 
 
 def _pressure(place: WornResult) -> str:
@@ -449,7 +267,7 @@ OPERATION = Operation(
     },
     command=Command(
         _lines,
-        names={"garment": None, "gauge": None, "linear_density_tex": "--tex"},
+        names={"garment": None, "gauge": None, "sizes": None, "linear_density_tex": "--tex"},
         fields=_garment_fields,
         run=_command,
     ),

@@ -6,7 +6,6 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from knitcore.chart.fabric import Fabric
 from knitcore.draw.body import Body
 from knitcore.garment.worn_glove import GloveOnHand, glove_on_hand, prediction_of
 from knitcore.materials.law_uncertainty import in_a_sentence
@@ -18,8 +17,8 @@ from ...drawing.computed import PosedView
 from ...requests.base import IntervalResult
 from ..perform import Viewed
 from ..registry import Command, Operation
-from .garment import Glove, KnitterRequest, measured_options, read_measured
 from .limb import HEADING, LimbPlaceResult
+from .templates import Glove, KnitterRequest, measured_options, read_measured
 
 SIMPLE = (
     "Fingers and thumb are cylinders, palm and forearm straight in front and behind. Every part is "
@@ -67,7 +66,7 @@ def glove(request: GloveRequest, context: Context) -> Viewed[GloveResult]:
 
 def _result(worn: GloveOnHand, request: GloveRequest, context: Context) -> GloveResult:
     rows, columns = worn.mmhg.shape
-    support = prediction_of(Fabric.STOCKINETTE, context.material(request.material))
+    support = prediction_of(request.garment.support_fabric, context.material(request.material))
     return GloveResult(
         interval_source=in_a_sentence(support.stretch_errors),
         id=OPERATION.key(request),
@@ -92,7 +91,11 @@ def _too_tight(worn: GloveOnHand) -> tuple[str, ...]:
 def _worn(request: GloveRequest, context: Context) -> GloveOnHand:
     material = context.material(request.material)
     return glove_on_hand(
-        request.garment.hand, material, ease=request.garment.ease, gauges=request.gauges(material)
+        request.garment.hand,
+        material,
+        ease=request.garment.ease,
+        gauges=request.gauges(material),
+        fabrics=request.garment.fabrics,
     )
 
 

@@ -28,6 +28,7 @@ export function facts(garment, unit) {
     remark(
       "Sizes are those of each fabric by itself, from which its stitches are counted. In the piece its neighbours widen or narrow it; a pattern gives those sizes.",
     ),
+    ...sizes(garment),
     ...pressure(garment, unit),
     h(
       "ul",
@@ -36,6 +37,33 @@ export function facts(garment, unit) {
       ...garment.notes.map((words) => h("li", {}, icon("info"), words)),
       h("li", {}, icon("info"), `To close: ${garment.closing}.`),
     ),
+  ];
+}
+
+/** Stitches and rows of each size, where they were asked for. @param {GarmentResult} garment @returns {Node[]} */
+function sizes({ sizes: all, regions: parts }) {
+  if (!all?.length) return [];
+  return [
+    table(
+      { class: "planner-table figures full-width small", id: "planner-sizes" },
+      ["Size", "Stitches × rows", "Yarn", ...parts.map(({ name }) => name)],
+      h(
+        "tbody",
+        {},
+        ...all.map((size) =>
+          tableRow(
+            size.name,
+            `${size.columns} × ${size.rows}`,
+            `${figure(size.yarn_m)} m`,
+            ...parts.map(({ name }) => {
+              const part = size.parts.find((other) => other.name === name);
+              return part ? `${part.columns} × ${part.rows}` : "–";
+            }),
+          ),
+        ),
+      ),
+    ),
+    remark("The whole chart, then the longest row and column of each part. The table goes into the design's note."),
   ];
 }
 

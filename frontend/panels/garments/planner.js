@@ -19,7 +19,6 @@ import { LengthField, choice, labelled, numberField, sameWords, selectField } fr
 import { drawGarment } from "./preview.js";
 import { facts } from "./facts.js";
 import { DIGITS, FINGER, LIMB, TEMPLATES } from "./templates.js";
-import { sizes } from "./sizes.js";
 import { problemBox } from "../../widgets/problem.js";
 
 const TYPING_MS = 250;
@@ -88,7 +87,7 @@ export function create(studio, { keeper }) {
     min: "1",
     max: "300",
     step: "1",
-    placeholder: "the same",
+    placeholder: "same",
     "aria-label": "Pressure at the upper end in mmHg",
     oninput: changed,
   });
@@ -130,6 +129,23 @@ export function create(studio, { keeper }) {
   const [per, of] = [select("Counted over", ["10 cm", "4 in", "5 cm"]), select("Fabric of the swatch", FABRICS)];
   const counted = ["sts ×", rows, "rows per", per, "of", of];
   const gaugeRow = h("div", { class: "line wrap gap-6", hidden: true }, stitches, ...counted);
+  const inSizes = h("input", {
+    type: "checkbox",
+    id: "planner-sizes-shown",
+    onchange: () => {
+      stepsRow.hidden = !inSizes.checked;
+      changed();
+    },
+  });
+  /** @param {string} label @param {string} value */
+  const step = (label, value) =>
+    numberField({ min: "0", max: "20", step: "0.5", value, "aria-label": label, oninput: changed });
+  const [wider, longer] = [step("Wider by, in percent", "5"), step("Longer by, in percent", "3")];
+  const stepsRow = h(
+    "div",
+    { class: "line wrap gap-6", hidden: true },
+    ...["Each", wider, "% wider and", longer, "% longer than the one before"],
+  );
 
   // --- what comes of it -------------------------------------------------------------------------
   const canvas = h("canvas", { role: "img", id: "planner-preview", "aria-label": "The garment, laid flat" });
@@ -197,6 +213,8 @@ export function create(studio, { keeper }) {
         h("label", { class: "planner-check line gap-8" }, own, "My own gauge"),
         gaugeRow,
         h("label", { class: "planner-check line gap-8" }, intarsia, "A colour for each fabric (intarsia)"),
+        h("label", { class: "planner-check line gap-8" }, inSizes, "A table of sizes, XS to XL"),
+        stepsRow,
       ),
       h(
         "section",
@@ -384,6 +402,9 @@ export function create(studio, { keeper }) {
       : null,
     linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
     intarsia: intarsia.checked,
+    sizes: inSizes.checked
+      ? { wider_percent: wider.valueAsNumber || 0, longer_percent: longer.valueAsNumber || 0 }
+      : null,
   });
   const belonging = new Belonging(studio, () => ({ wish: request() }));
   belonging.marks(result, "planner");
@@ -412,7 +433,7 @@ export function create(studio, { keeper }) {
       "aria-label",
       `${fitted.name}: ${fitted.columns} stitches by ${fitted.rows} rows, with ${fitted.regions.map(({ name }) => name).join(", ")}`,
     );
-    result.replaceChildren(...facts(fitted, unit), sizes(request, fitted));
+    result.replaceChildren(...facts(fitted, unit));
   }
 
   showTemplate();

@@ -31,11 +31,16 @@ export const TEMPLATES = [
   {
     id: "glove",
     name: "Therapeutic glove",
-    note: "One flat piece, knitted sideways from the thumb around the hand and grafted. Stockinette holds the wrist along its stiff direction; seed lies at the thumb, rib along the fingers, garter over the hand.",
+    note: "One flat piece, knitted sideways from the thumb around the hand and grafted. In the study stockinette holds the wrist along its stiff direction; seed lies at the thumb, rib along the fingers, garter over the hand.",
     material: "glove-wool:glove",
     ease: -0.1,
     fingers: true,
-    fabrics: [],
+    fabrics: [
+      { key: "support_fabric", label: "Wrist support", fabric: "stockinette" },
+      { key: "hand_fabric", label: "Hand and cuff", fabric: "garter" },
+      { key: "thumb_fabric", label: "Thumb", fabric: "seed" },
+      { key: "finger_fabric", label: "Fingers", fabric: "rib" },
+    ],
     measures: [
       { key: "wrist_circumference_mm", label: "Around the wrist", value: 165, of: WRIST, body: "wrist" },
       {

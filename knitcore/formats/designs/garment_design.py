@@ -12,7 +12,9 @@ YARN_NAMES = dict(zip(FABRIC_COLOURS.values(), ("blue", "orange", "green", "purp
 """One colour a fabric, as the study's glove; its seed was pink."""
 
 
-def design_of_plan(plan: GarmentPlan, material: str, *, intarsia: bool = False) -> DesignFile:
+def design_of_plan(
+    plan: GarmentPlan, material: str, *, intarsia: bool = False, notes: tuple[str, ...] = ()
+) -> DesignFile:
     """The document of a plan, editable like any chart.
 
     Parameters
@@ -20,6 +22,7 @@ def design_of_plan(plan: GarmentPlan, material: str, *, intarsia: bool = False) 
     plan : from a template.
     material : its identifier.
     intarsia : whether each fabric has a yarn of its own.
+    notes : for the knitter, after the plan's own.
     """
     regions = [
         DesignRegion(
@@ -36,7 +39,7 @@ def design_of_plan(plan: GarmentPlan, material: str, *, intarsia: bool = False) 
         name=plan.name[:1].upper() + plan.name[1:],
         material=material,
         chart=plan.shaped.chart.text,
-        note="\n".join(_notes(plan)),
+        note="\n".join([*_notes(plan), *notes]),
         outline=None if plan.shaped.is_rectangle else plan.shaped.outline,
         regions=regions,
     )

@@ -11,7 +11,7 @@ from knitcore.formats.read.knitout_reader import verified
 from knitcore.formats.read.written_reader import read_piece_rows
 from knitcore.formats.write.written_pattern import write_rows
 from knitcore.garment.gauge import Gauge, GaugeSet
-from knitcore.garment.glove import CROTCH_ROWS, Hand, glove
+from knitcore.garment.glove import CROTCH_ROWS, GloveFabrics, Hand, glove
 from knitcore.garment.piece import Piece
 from knitcore.garment.plan import GarmentPlan
 from knitcore.garment.regions import Region, fill_regions, misfits, region_numbers, yarn_use
@@ -63,6 +63,21 @@ def test_fingers_are_parted_by_crotches() -> None:
     palm = int(np.flatnonzero(fingers.any(axis=0))[0])
     assert np.count_nonzero(ends == palm) == 6 * CROTCH_ROWS
     assert ends[0] == ends[-1] < ends.max()
+
+
+def test_parts_of_the_glove_take_other_fabrics() -> None:
+    ribbed = GloveFabrics(support=Fabric.RIB, thumb=Fabric.GARTER, fingers=Fabric.SEED)
+    plan = glove(Hand(), WOOL, fabrics=ribbed)
+    fabrics = dict(zip((region.name for region in plan.regions), plan.fabrics, strict=True))
+    assert fabrics == {
+        "cuff": Fabric.GARTER,
+        "wrist support": Fabric.RIB,
+        "hand": Fabric.GARTER,
+        "thumb": Fabric.GARTER,
+        "thumb gusset": Fabric.GARTER,
+        "fingers": Fabric.SEED,
+    }
+    assert plan.worn[0].rest_mm > PLANS[0].worn[0].rest_mm
 
 
 def test_the_glove_is_shaped_where_rows_begin() -> None:

@@ -1,6 +1,7 @@
 """Garments over REST and on the command line."""
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -92,3 +93,44 @@ def test_sizes_and_yarn_have_intervals_and_a_swatch_narrows_those_of_sizes(
         widths.append(high / low)
         assert "gauge" in planned["interval_source"]
     assert widths[1] < widths[0]
+
+
+def test_sizes_are_counted_and_the_design_carries_them(client: TestClient) -> None:
+    garment = {"template": "limb", "profile": [[0, 180], [200, 260]], "hem_mm": 30}
+    request = {"garment": garment, "material": "acrylic"}
+    steps = {"wider_percent": 6.0, "longer_percent": 4.0}
+    planned = post(client, "garment", request | {"sizes": steps})
+    sizes = {size["name"]: size for size in planned["sizes"]}
+    assert list(sizes) == ["XS", "S", "as measured", "L", "XL"]
+    assert sizes["as measured"]["columns"] == planned["columns"]
+    assert sizes["as measured"]["yarn_m"] == planned["yarn_m"]
+    large = {"template": "limb", "profile": [[0, 180 * 1.06], [208, 260 * 1.06]], "hem_mm": 30}
+    alone = post(client, "garment", {"garment": large, "material": "acrylic"})
+    assert (sizes["L"]["columns"], sizes["L"]["rows"]) == (alone["columns"], alone["rows"])
+    parts = {part["name"]: part for part in sizes["L"]["parts"]}
+    assert parts["body"]["rows"] < sizes["L"]["rows"]
+    counts = "; ".join(f"{size['columns']} × {size['rows']}" for size in sizes.values())
+    assert f"Whole: {counts}." in planned["design"]["note"]
+    words = "limb", "--material=acrylic", "--sizes", "6", "4"
+    settings = [f"--set={k}={json.dumps(v)}" for k, v in garment.items() if k != "template"]
+    assert run("garment", *words, *settings) == planned
+
+
+@pytest.mark.parametrize("garment", REQUESTS, ids=lambda garment: garment["template"])
+def test_a_larger_body_has_more_stitches_along_and_around(
+    client: TestClient, garment: dict[str, object]
+) -> None:
+    request = {"garment": garment, "material": "acrylic", "sizes": {"longer_percent": 6.0}}
+    sizes = post(client, "garment", request)["sizes"]
+    for smaller, larger in pairwise(sizes):
+        assert smaller["columns"] < larger["columns"]
+        assert smaller["rows"] < larger["rows"]
+        assert smaller["yarn_m"] < larger["yarn_m"]
+
+
+def test_a_size_that_cannot_be_planned_is_named(client: TestClient) -> None:
+    garment = {"template": "glove", "wrist_circumference_mm": 490}
+    request = {"garment": garment, "material": "acrylic", "sizes": {"wider_percent": 20.0}}
+    answer = client.post("/api/v1/garment", json=request)
+    assert answer.status_code == 422, answer.text
+    assert "size XL cannot be planned" in answer.json()["detail"]
