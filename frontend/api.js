@@ -2,8 +2,7 @@
  * The service's REST API, typed. Every failure is an {@link ApiError} that says what, why and what
  * to do, or the browser's own AbortError if the call was given up.
  *
- * @import {Box} from "./grid/grid.js"
- * @import {CameraSide, Extensions, JobStatus, MaterialDetail, Operations, Problem, SignedIn, VersionResult, ViewRequest,
+ * @import {CameraSide, Extensions, JobStatus, MarkRequest, MaterialDetail, Operations, Problem, SignedIn, VersionResult, ViewRequest,
  *   ViewResult} from "./types.js"
  */
 
@@ -144,8 +143,8 @@ export const api = {
   /** @type {(design: string, body: ViewRequest) => Promise<ViewResult>} */
   view: (design, body) => call(`/views/${encodeURIComponent(design)}`, { method: "PUT", body }),
 
-  /** Outline stitches in the 3D view, or none. @type {(design: string, box: Box | null) => Promise<void>} */
-  mark: (design, box) => call(`/views/${encodeURIComponent(design)}/mark`, { method: "PUT", body: { box } }),
+  /** Outline stitches in the 3D view. @type {(design: string, body: MarkRequest) => Promise<void>} */
+  mark: (design, body) => call(`/views/${encodeURIComponent(design)}/mark`, { method: "PUT", body }),
 
   /** @type {(design: string, side: CameraSide) => Promise<void>} */
   look: (design, side) => call(`/views/${encodeURIComponent(design)}/camera`, { method: "PUT", body: { side } }),

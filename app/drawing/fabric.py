@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.draw.body import Body
 from knitcore.draw.instances import MAX_STITCHES
 from knitcore.draw.lattice import Lattice
@@ -33,14 +33,27 @@ SOLID_LEVELS = ((1_000, 33, 8), (4_000, 17, 6), (10_000, 11, 5))
 MAX_SOLID = SOLID_LEVELS[-1][0]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Box:
-    """Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise."""
+    """Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise.
+
+    ``part`` (rows, columns) of the box is True where a stitch is one of them; None if all are.
+    """
 
     row0: int
     column0: int
     row1: int
     column1: int
+    part: Mask | None = None
+
+
+_SIDES = (
+    ((-1, 0), (-1, -1), (1, -1)),
+    ((1, 0), (-1, 1), (1, 1)),
+    ((0, -1), (-1, -1), (-1, 1)),
+    ((0, 1), (1, -1), (1, 1)),
+)
+"""Where the next stitch lies, (rows, columns), and the ends of the side to it, (x, y)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,19 +124,22 @@ class Ground:
         row, column = np.unravel_index(distance.argmin(), distance.shape)
         return (int(row), int(column)) if distance[row, column] < BESIDE else None
 
-    def box_corners_mm(self, box: Box) -> Array:
-        """Corners of some stitches' outline in the scene, (4, 2)."""
-        rows, columns = self.shape
-        row0, row1 = (int(np.clip(r, 0, rows - 1)) for r in (box.row0, box.row1 - 1))
-        column0, column1 = (int(np.clip(c, 0, columns - 1)) for c in (box.column0, box.column1 - 1))
-        corners = ((row0, column0), (row0, column1), (row1, column1), (row1, column0))
-        half = 0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-        return np.array(
-            [
-                self.centres_mm[at] + side * self.sizes_mm[at] - self.middle_mm
-                for at, side in zip(corners, half, strict=True)
-            ]
-        )
+    def outline_mm(self, box: Box) -> Array:
+        """Sides of some stitches beyond which there is none of them, (sides, 2 ends, 2)."""
+        where = slice(box.row0, box.row1), slice(box.column0, box.column1)
+        marked = np.zeros(self.shape, dtype=bool)
+        rows, columns = marked[where].shape
+        marked[where] = True if box.part is None else box.part[:rows, :columns]
+        if self.drawn is not None:
+            marked &= self.drawn
+        around = np.pad(marked, 1)
+        sides = []
+        for (up, right), *ends in _SIDES:
+            beyond = around[1 + up : 1 + up + len(marked), 1 + right : 1 + right + marked.shape[1]]
+            bare = marked & ~beyond
+            half = 0.5 * np.array(ends)[None] * self.sizes_mm[bare][:, None]
+            sides.append(self.centres_mm[bare][:, None] - self.middle_mm + half)
+        return np.concatenate(sides)
 
 
 @dataclass(frozen=True, eq=False)

@@ -88,10 +88,9 @@ class SceneWriter:
             if box is None or ground is None or not ground.is_flat:
                 self._put("mark", None)
                 return
-            corners, top = ground.box_corners_mm(box), ground.top_mm
-            loops = [np.column_stack([corners, np.full(4, z)]) for z in (top, -top)]
-            pairs = np.concatenate([np.stack([c, np.roll(c, -1, axis=0)], axis=1) for c in loops])
-            self._put_lines("mark", _units(pairs), MARK, 3.0)
+            sides, top = ground.outline_mm(box), ground.top_mm
+            ends = [np.insert(sides, 2, z, axis=2) for z in (top, -top)]
+            self._put_lines("mark", _units(np.concatenate(ends)), MARK, 3.0)
 
     def look(self, side: CameraSide) -> None:
         """Turn everybody's camera to a side."""

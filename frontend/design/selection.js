@@ -16,6 +16,15 @@ export function selects({ row0, column0, row1, column1, mask }, row, column) {
   return !mask || mask[(row - row0) * (column1 - column0) + column - column0] === 1;
 }
 
+/** Lines of x and . of a selection's box, the top row first; null if all is selected. @param {Selection} selection */
+export function selectedLines({ row0, column0, row1, column1, mask }) {
+  if (!mask) return null;
+  const [rows, columns] = [row1 - row0, column1 - column0];
+  const line = (/** @type {number} */ row) =>
+    Array.from(mask.subarray(row * columns, (row + 1) * columns), (marked) => (marked ? "x" : ".")).join("");
+  return Array.from({ length: rows }, (_, k) => line(rows - 1 - k)).join("\n");
+}
+
 /** The selected stitches of a chart, by index. @param {Selection} selection @param {Grid} grid @returns {number[]} */
 export function selectedCells(selection, grid) {
   const cells = [];

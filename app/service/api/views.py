@@ -13,12 +13,16 @@ from fastapi.responses import StreamingResponse
 from pydantic import Field
 from starlette.datastructures import State
 
+from knitcore.base.arrays import Mask
+from knitcore.base.errors import InputError
+from knitcore.garment.shaped import outline_marks
+
 from ...drawing.computed import PosedView, StretchView
 from ...drawing.design_view import ViewRequest, ViewResult, build_scene, is_large
 from ...drawing.fabric import Box, Drawing
 from ...operations.perform import Reply
 from ...requests.base import RequestModel
-from ...requests.charts import size_of_chart
+from ...requests.charts import OutlineInput, size_of_chart
 from ...viewer.balls import Picture
 from ...viewer.camera import CameraSide
 from ...viewer.scene import STILL_S, round_length_mm
@@ -76,6 +80,9 @@ class MarkRequest(RequestModel):
     """Stitches to outline."""
 
     box: BoxInput | None = None
+    part: OutlineInput = Field(
+        None, description="The stitches of the box: lines of x and ., the top row first; or all."
+    )
 
 
 class CameraRequest(RequestModel):
@@ -149,10 +156,20 @@ async def _show_back(
         await _in(_drawing, view.writer.show_back, drawing, picture)
 
 
+def _part(box: BoxInput, lines: str | None) -> Mask | None:
+    """The stitches of a box that are outlined, from the bottom."""
+    if lines is None:
+        return None
+    part = outline_marks(lines)
+    if part.shape != (box.row1 - box.row0, box.column1 - box.column0):
+        raise InputError("part", "it is not as large as the box.", "Give a mark for every stitch.")
+    return part
+
+
 @router.put("/views/{design}/mark", status_code=204, summary="Outline stitches")
 async def put_mark(design: DesignId, body: MarkRequest, request: Request) -> None:
     """Outline stitches on both sides of the fabric; without a box nothing is outlined."""
-    box = body.box.pass_to(Box) if body.box else None
+    box = body.box.pass_to(Box, part=_part(body.box, body.part)) if body.box else None
     await asyncio.to_thread(_view(design, request).writer.mark, box)
 
 

@@ -326,7 +326,7 @@ function pressureBar({ most, warning }) {
     "div",
     { class: "fabric-pressure stack gap-2", id: "fabric-pressure" },
     warning && h("strong", { class: "problem-text", role: "alert" }, warning),
-    h("span", { class: "line gap-6 figures" }, "0", bar, `${figure(most, 2)} mmHg`),
+    h("span", { class: "line gap-6 figures" }, "0", bar, `${figure(most, 2)} mmHg, middle estimate`),
   );
 }
 

@@ -3,12 +3,13 @@
  * on the fabric, and a stitch that is clicked on the fabric is shown in the chart.
  *
  * @import {ChartView} from "../../chart/view.js"
- * @import {Box} from "../../grid/grid.js"
+ * @import {MarkRequest} from "../../types.js"
  * @import {Studio} from "../../state/studio.js"
  */
 
 import { ApiError, api } from "../../api.js";
 import { paced } from "../../core/paced.js";
+import { selectedLines } from "../../design/selection.js";
 
 /** How often outlines follow the pointer. */
 const PERIOD_MS = 150;
@@ -62,34 +63,39 @@ export class ViewLink {
   async mark() {
     const { studio } = this;
     if (studio.document.painting || this.#sending || !this.#events) return;
-    const box = this.#boxToMark();
-    const key = JSON.stringify(box && [box, studio.step.value]);
+    const mark = this.#mark();
+    const key = this.#keyOf(mark);
     if (key === this.#marked) return;
     this.#sending = true;
     try {
-      await api.mark(studio.designId, box);
+      await api.mark(studio.designId, mark);
       this.#marked = key;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // the next change tries again
     } finally {
       this.#sending = false;
     }
-    if (JSON.stringify(this.#boxToMark() && [this.#boxToMark(), studio.step.value]) !== key) void this.mark();
+    if (this.#keyOf(this.#mark()) !== key) void this.mark();
   }
 
-  /** @returns {Box | null} */
-  #boxToMark() {
+  /** @param {MarkRequest} mark */
+  #keyOf(mark) {
+    return JSON.stringify(mark.box && [mark, this.studio.step.value]);
+  }
+
+  /** What is to be outlined. @returns {MarkRequest} */
+  #mark() {
     const { studio, view } = this;
     const { grid } = studio.document;
     const cell = this.hooks.slow() && studio.seeing.clickedStitch.value !== view.hover.value ? null : view.hover.value;
     if (cell && grid.has(...cell)) {
       const [row, column] = cell;
-      return { row0: row, column0: column, row1: row + 1, column1: column + 1 };
+      return { box: { row0: row, column0: column, row1: row + 1, column1: column + 1 } };
     }
     const selection = studio.selection.value;
-    if (!selection) return null;
+    if (!selection) return { box: null };
     const { row0, column0, row1, column1 } = selection;
-    return { row0, column0, row1, column1 };
+    return { box: { row0, column0, row1, column1 }, part: selectedLines(selection) };
   }
 
   /** @param {number} row @param {number} column */

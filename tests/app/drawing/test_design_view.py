@@ -23,9 +23,22 @@ def scene_of(
 
 def test_outlines_stay_on_the_fabric() -> None:
     ground = scene_of(SMALL).ground
-    corners = ground.box_corners_mm(Box(0, 0, 3, 4))
-    np.testing.assert_allclose(np.ptp(corners, axis=0), ground.extent_mm, rtol=1e-6)
-    np.testing.assert_allclose(ground.box_corners_mm(Box(0, 0, 99, 99)), corners)
+    sides = ground.outline_mm(Box(0, 0, 3, 4))
+    assert len(sides) == 2 * (3 + 4)
+    np.testing.assert_allclose(np.ptp(sides.reshape(-1, 2), axis=0), ground.extent_mm, rtol=1e-6)
+    np.testing.assert_allclose(ground.outline_mm(Box(0, 0, 99, 99)), sides)
+    assert len(ground.outline_mm(Box(7, 7, 8, 8))) == 0
+
+
+def test_an_outline_follows_the_stitches_of_a_part() -> None:
+    ground = scene_of(SMALL).ground
+    cross = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]]) > 0
+    sides = ground.outline_mm(Box(0, 0, 3, 3, cross))
+    assert len(sides) == 12
+    ends, counts = np.unique(sides.reshape(-1, 2).round(3), axis=0, return_counts=True)
+    assert (counts == 2).all(), ends  # one closed line
+    outlined = SMALL | {"outline": "xxxx\nxxxx\n.xx."}
+    assert len(scene_of(outlined).ground.outline_mm(Box(0, 0, 1, 4))) == 6
 
 
 def test_a_huge_chart_is_drawn_around_its_focus() -> None:

@@ -100,6 +100,10 @@ def test_marks_and_cameras_need_an_open_view(client: TestClient) -> None:
             answer = client.put(f"/api/v1/views/{design}/{path}", json=body)
             assert answer.status_code == status
         draw(client, design)
+    box |= {"column1": 3}
+    for part, status in (("x.\n.x", 204), ("x..", 422)):
+        body = {"box": box, "part": part}
+        assert client.put(f"/api/v1/views/{design}/mark", json=body).status_code == status
 
 
 @pytest.mark.parametrize("chart", ["K", "KPPK\nKKPP\nPKPK"])
