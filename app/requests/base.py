@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 _HALF = re.compile("[\ud800-\udfff]")
 """Half of a character, which texts of JSON may hold but no answer and no database."""
+_NUL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
+"""An escaped NUL; backslashes before it may be escaped themselves."""
 UNIT = "_n_per_mm"
 
 
@@ -49,7 +51,7 @@ def read(model: Any, content: bytes | str) -> Any:
     """
     try:
         sent = TypeAdapter(model).validate_json(content)
-        json.loads(content, object_pairs_hook=unrepeated)
+        decoded(content)
         return sent
     except json.JSONDecodeError as error:
         fault = {"type": "json_invalid", "loc": ("body",), "ctx": {"error": error.msg}}
@@ -61,15 +63,24 @@ def read(model: Any, content: bytes | str) -> Any:
         ) from None
 
 
-def unrepeated(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object of JSON, whose names differ: which of two values was meant, nobody can say.
+def decoded(content: bytes | str) -> Any:
+    """The values of JSON that somebody sent.
 
-    Its texts have whole characters.
+    Names differ within an object: which of two values was meant, nobody can say. Texts have whole
+    characters and no NUL, which PostgreSQL does not take.
 
     Raises
     ------
     json.JSONDecodeError
     """
+    if isinstance(content, bytes):
+        content = content.decode(json.detect_encoding(content), "surrogatepass")
+    if "\\u0000" in content and _NUL.search(content):
+        raise json.JSONDecodeError("a text holds the character NUL, \\u0000", "", 0)
+    return json.loads(content, object_pairs_hook=_object)
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     values = dict(pairs)
     for name, value in pairs:
         for part in (name, value):

@@ -55,9 +55,7 @@ class ExportRequest(DesignLayout, LawsRequest):
         None, description="Known gauge of the chart; its relaxed size is estimated if left out."
     )
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
-    note: str = Field(
-        "", max_length=20_000, pattern=r"^[^\x00]*$", description="Note to print with the chart."
-    )
+    note: str = Field("", max_length=20_000, description="Note to print with the chart.")
     linear_density_tex: float | None = Field(
         None, gt=0, lt=1e5, description="Linear density of the yarn, for its mass."
     )

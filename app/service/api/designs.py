@@ -80,12 +80,7 @@ def get_designs(
         bool, Query(description="List deleted designs that can be recovered instead.")
     ] = False,
     q: Annotated[
-        str,
-        Query(
-            max_length=200,
-            pattern=r"^[^\x00]*$",  # which PostgreSQL does not take
-            description="List only designs whose name contains this.",
-        ),
+        str, Query(max_length=200, description="List only designs whose name contains this.")
     ] = "",
 ) -> DesignPage:
     """Return a page of summaries; `next_cursor` gets the next one."""

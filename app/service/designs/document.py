@@ -21,7 +21,7 @@ Name = Annotated[
 MaterialId = Annotated[
     str, Field(min_length=1, max_length=80, pattern=r"^[^\x00-\x1f]+$", examples=["acrylic"])
 ]
-Note = Annotated[str, Field(max_length=20_000, pattern=r"^[^\x00]*$")]
+Note = Annotated[str, Field(max_length=20_000)]
 MAX_RUNS = 20_000
 
 

@@ -24,7 +24,7 @@ DesignId = Annotated[
     ),
 ]
 Limit = Annotated[int, Query(ge=1, le=200)]
-Cursor = Annotated[str | None, Query(max_length=100, pattern=r"^[^\x00]*$")]
+Cursor = Annotated[str | None, Query(max_length=100)]
 Key = Annotated[
     str | None,
     Header(

@@ -6,7 +6,6 @@ a design, it is decoded in its turn, one at a time, and has a lower limit. Decod
 would not help: Python runs one at a time.
 """
 
-import json
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +15,7 @@ from fastapi.routing import APIRoute
 from pydantic import WrapValidator
 from starlette.types import Message, Receive
 
-from ...requests.base import unrepeated
+from ...requests.base import decoded
 from ...requests.charts import MAX_FIELD
 from ..identity import current_user
 from ..limits.fair_queue import FairLock
@@ -60,14 +59,14 @@ class BoundedRoute(APIRoute):
                 raise _too_large(MAX_DECODED_BYTES)
             content = await request.body()
             if len(content) <= SMALL_BYTES:
-                return await handle(_Unrepeated(request.scope, request.receive, content))
+                return await handle(_Decoded(request.scope, request.receive, content))
             if self.to_worker:
                 return await handle(_Uncut(request.scope, request.receive, content))
             if len(content) > MAX_DECODED_BYTES:
                 raise _too_large(MAX_DECODED_BYTES)
             lock: FairLock = request.app.state.large_bodies
             async with lock.turn(current_user.get()):
-                return await handle(_Unrepeated(request.scope, request.receive, content))
+                return await handle(_Decoded(request.scope, request.receive, content))
 
         return bounded
 
@@ -87,12 +86,12 @@ class _Received(Request):
         self._body = content
 
 
-class _Unrepeated(_Received):
-    """A request in whose JSON no name may come twice in one object."""
+class _Decoded(_Received):
+    """A request whose JSON is decoded by our rules."""
 
     async def json(self) -> Any:
         """The body, decoded."""
-        return json.loads(self._body, object_pairs_hook=unrepeated)
+        return decoded(self._body)
 
 
 class _Uncut(_Received):

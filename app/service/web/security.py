@@ -81,8 +81,8 @@ VIEW_POLICY = "; ".join(
 )
 
 
-class StrangeHostError(RefusedError):
-    """Error: the Host header names none of the service's names."""
+class StrangeAddressError(RefusedError):
+    """Error: the address or its host cannot be one of this service."""
 
     status = 400
 
@@ -212,12 +212,13 @@ class AccessControl:
             await unexpected(error)(scope, receive, send)
 
     def _check(self, scope: Scope, *, has_pass: bool) -> None:
-        """Refuse other names, changes from pages of other sites, and bodies that are too large."""
+        """Refuse other names, changes from pages of other sites, bodies that are too large, and
+        addresses with a NUL, which PostgreSQL does not take."""
         headers = Headers(scope=scope)
         hosts = headers.getlist("host")
         host = hosts[0] if len(hosts) == 1 else ""
         if not self._knows(host):
-            raise StrangeHostError(
+            raise StrangeAddressError(
                 "This service does not have that host name.", field="host", remedy=HOST_REMEDY
             )
         origin = headers.get("origin")
@@ -225,6 +226,10 @@ class AccessControl:
         own = has_pass or origin is None or _place_of(origin) == host.lower()
         if changes and not own:
             raise RefusedError("The request comes from a page of another site.", field="origin")
+        if "\0" in scope["path"] or b"%00" in scope.get("query_string", b""):
+            raise StrangeAddressError(
+                "The address holds the character NUL.", field="address", remedy="Leave %00 out."
+            )
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > self.settings.max_body_bytes:
             raise TooLargeError(

@@ -122,3 +122,6 @@ def test_no_character_is_a_surprise_to_either_database(
             client.get("/api/v1/designs", headers={"Cookie": f"knitcore_session={sent}"})
         )
     assert max(answer.status_code for answer in answers) < 500
+    if "\0" in text:
+        assert {answer.status_code for answer in answers[: len(bodies)]} == {422}
+        assert {answer.status_code for answer in answers[len(bodies) : -1]} == {400}

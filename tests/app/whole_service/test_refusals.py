@@ -35,8 +35,8 @@ PIECE: dict[str, Any] = {
 }
 RIB = {"name": "Cuff", "material": "acrylic", "chart": "KPKP\nKPKP"}
 NO_DESIGNS: tuple[dict[str, Any], ...] = (
-    {"chart": "KQ"}, {"name": ""}, {"name": "a\u0000b"}, {"name": "x" * 201}, {"version": 3},
-    {"format": "other"}, {"owner": "eve"}, {"note": "a\u0000b"},
+    {"chart": "KQ"}, {"name": ""}, {"name": "a\u0001b"}, {"name": "x" * 201}, {"version": 3},
+    {"format": "other"}, {"owner": "eve"},
 )  # fmt: skip
 NO_FIELD = {"values": [1.0, 2.0], "low": 0, "high": 1}
 ELSEWHERE = {"id": "a", "name": "A", "colour": "#ff0000", "runs": [[7, 0, 1]]}
@@ -54,6 +54,8 @@ REQUESTS: list[tuple[str, dict[str, Any], str, str]] = [
     ("charts/parse", {"text": "KP\nK"}, "chart", ""),
     ("charts/parse", {"text": ""}, "chart", ""),
     ("charts/parse", {"text": 5}, "text", ""),
+    ("charts/parse", {"text": "K\u0000"}, "body", "NUL"),
+    ("designs", RIB | {"note": "a\\\u0000b"}, "body", "NUL"),
     ("charts/parse", {}, "text", ""),
     ("charts/parse", {"text": "K", "extra": 1}, "extra", ""),
     ("predict", YARN | {"chart": "KX"}, "chart", ""),

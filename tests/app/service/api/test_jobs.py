@@ -22,7 +22,7 @@ CROSSED = {
 }
 YARN = {"name": "mine", "bending_modulus_n_mm2": 0.03, "diameter_mm": 1.4}
 REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
-    "a NUL in a chart": ("relax", CHART | {"chart": "KP\u0000"}, "chart"),
+    "a NUL in a chart": ("relax", CHART | {"chart": "KP\u0000"}, "body"),
     "half a character in a chart": ("relax", CHART | {"chart": "KP\ud800"}, "body"),
     "an unknown yarn": ("stretch", PULL | {"material": "steel", "strain": 0.1}, "material"),
     "a yarn that is gone": ("bend", CHART | {"material": "own:x.000000"}, "material"),

@@ -1,0 +1,23 @@
+"""JSON that somebody sent."""
+
+import json
+
+import pytest
+
+from app.requests.base import decoded
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_no_text_holds_a_nul_wherever_it_stands(encoding: str) -> None:
+    for value in ("\0", {"a": "b\0"}, {"\0": 1}, ["a", ["\\\0"]]):
+        with pytest.raises(json.JSONDecodeError, match="NUL"):
+            decoded(json.dumps(value).encode(encoding))
+    for value in ("\\u0000", ["\\\\u0000", "u0000", "\u0001"], "KP"):
+        assert decoded(json.dumps(value).encode(encoding)) == value
+
+
+def test_a_name_comes_once_and_characters_are_whole() -> None:
+    assert decoded('{"a": {"a": 1}}') == {"a": {"a": 1}}
+    for text, why in (('{"a": 1, "a": 2}', "twice"), ('{"a": "\\ud800"}', "half of a character")):
+        with pytest.raises(json.JSONDecodeError, match=why):
+            decoded(text)
