@@ -32,11 +32,6 @@ STRETCH = {"chart": GARTER, "material": "acrylic", "direction": "wale", "strain"
 
 
 @pytest.fixture
-def database(sqlite_database: Database) -> Database:
-    return sqlite_database
-
-
-@pytest.fixture
 def runner(database: Database, compute: Compute) -> JobRunner:
     return runner_of(database, compute)
 
