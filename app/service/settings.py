@@ -26,7 +26,7 @@ from .memory import machine_bytes
 SECRETS = Path("/run/secrets")
 """Folder in which container engines put secrets."""
 OTHERS = ("CONFIG", "SECRETS_DIR", "STUDY_DATA", "WORKER_NICENESS")
-OF_TESTS = ("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES")
+OF_TESTS = ("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES", "SOAK_S")
 """Variables of the environment that are no settings."""
 
 

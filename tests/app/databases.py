@@ -9,7 +9,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-from sqlalchemy import create_engine, text
+from sqlalchemy import NullPool, create_engine, text
 
 from app.service.store.database import Database
 from app.service.store.schema import migrate
@@ -31,7 +31,8 @@ def opened(place: Path | str, *, migrated: bool = True) -> Iterator[Database]:
 def empty(url: str) -> Iterator[str]:
     """The URL of an empty database of its own on the server at a URL."""
     name = f"knit_{secrets.token_hex(6)}"
-    server = create_engine(url, isolation_level="AUTOCOMMIT")
+    # no connection is kept: the server may be away for a while
+    server = create_engine(url, isolation_level="AUTOCOMMIT", poolclass=NullPool)
     try:
         with server.connect() as connection:
             connection.execute(text(f"CREATE DATABASE {name}"))
