@@ -89,7 +89,8 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
     from ..service import memory
     from ..service.main import create_app
     from ..service.web.unread import WatchedProtocol
-    from ..viewer.incoming import MAX_PICTURE_BYTES
+    from ..viewer.incoming import MAX_BYTES
+    from ..viewer.sockets import SizedProtocol
 
     sys.setswitchinterval(SWITCH_S)
     memory.keep_no_large_blocks()
@@ -112,10 +113,10 @@ def serve_on(settings: Settings, listener: socket.socket, database: Database) ->
             server_header=False,
             log_config=None,
             http=WatchedProtocol,
-            ws="websockets-sansio",
+            ws=SizedProtocol,
             limit_concurrency=max(64, _raise_handles() - SPARE_HANDLES),
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
-            ws_max_size=MAX_PICTURE_BYTES,
+            ws_max_size=MAX_BYTES,
             ws_max_queue=2,
             # longer than clients and proxies keep theirs, or they send on one that closes just then
             timeout_keep_alive=75,

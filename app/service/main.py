@@ -18,6 +18,7 @@ from fastapi import FastAPI
 from ..context import Context
 from ..operations.chart.predict import PredictRequest, predict
 from ..viewer import relay
+from ..viewer.incoming import MOST_OPENINGS, OPENINGS_PER_S
 from ..viewer.views import Views
 from . import VERSION, health, memory
 from .api import routers
@@ -31,7 +32,7 @@ from .designs.watching import Watched
 from .jobs.runner import JobRunner
 from .jobs.store import JobStore
 from .limits.fair_queue import FairLock
-from .limits.user_limits import USER_LIMITS, ConcurrencyLimit
+from .limits.user_limits import USER_LIMITS, ConcurrencyLimit, RateLimit
 from .problems import PROBLEM_RESPONSES, StoreError
 from .settings import Settings
 from .store.database import Database
@@ -137,6 +138,7 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
     app.state.database = database
     app.state.stopping = False
     app.state.concurrency = ConcurrencyLimit()
+    app.state.view_openings = RateLimit(OPENINGS_PER_S, MOST_OPENINGS)
     app.state.watched = Watched()
     app.state.passes = ViewPasses()
     app.state.metrics = Metrics(_gauges(app))

@@ -16,6 +16,9 @@ MAX_PICTURE_BYTES = 16_000_000
 PER_S, BURST = 300.0, 1_200
 """Most messages of one browser, per second and at once. While the view is turned it sends one for
 each frame."""
+OPENINGS_PER_S, MOST_OPENINGS = 3.0, 60
+"""Most connections that one user opens, per second and at once. A page that has lost its view tries
+again once a second."""
 
 PNG_HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
 ONE_PIXEL = bytes.fromhex(

@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import logging
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from types import NoneType
@@ -20,8 +21,9 @@ from ..service.designs.parameters import DesignId, private_name
 from ..service.identity import current_user
 from ..service.limits.user_limits import ConcurrencyLimit, OverLimitError, RateLimit
 from ..service.web.page import script_tag
-from .incoming import BURST, PER_S, RefusedMessageError, passed_on
+from .incoming import BURST, MAX_BYTES, MAX_PICTURE_BYTES, PER_S, RefusedMessageError, passed_on
 from .private_port import RELAY_HEADERS
+from .sockets import ALLOW
 from .views import View, Views
 
 log = logging.getLogger("knitcore.app")
@@ -90,6 +92,10 @@ async def client_page(design: DesignId, request: Request) -> Response:
 async def relay(socket: WebSocket, design: DesignId) -> None:
     """Carry messages between a browser and the design's viser server."""
     views: Views = socket.app.state.views
+    openings: RateLimit = socket.app.state.view_openings
+    if openings.take(current_user.get())[1]:
+        await socket.close(code=1013, reason="Views are opened too often.")
+        return
     name = private_name(design)
     view = await _opened(views, name)
     if view is None:
@@ -134,8 +140,12 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
     rate = RateLimit(PER_S, BURST)
     code = 1000
 
+    allow: Callable[[int], None] = socket.scope.get("extensions", {}).get(ALLOW, lambda _: None)
+
     async def outwards() -> None:
         async for message in inner:
+            # the message that asks for a picture comes this way, too
+            allow(MAX_BYTES if view.picture is None else MAX_PICTURE_BYTES)
             if isinstance(message, bytes):
                 await socket.send_bytes(message)
             else:

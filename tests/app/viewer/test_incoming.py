@@ -10,10 +10,12 @@ import pytest
 import zstandard
 from fastapi.testclient import TestClient
 from PIL import Image
+from starlette.websockets import WebSocketDisconnect
 
 from app.viewer.incoming import (
     MAX_BYTES,
     MAX_PICTURE_BYTES,
+    MOST_OPENINGS,
     ONE_PIXEL,
     RefusedMessageError,
     WantedPicture,
@@ -160,3 +162,11 @@ def test_a_browser_that_floods_a_view_is_disconnected(client: TestClient) -> Non
     with _shown(client, "a-loud-view") as socket:
         socket.send_text("no message at all")
         assert socket.receive_bytes()  # others are not disturbed
+
+
+def test_a_browser_that_opens_views_too_often_waits(client: TestClient) -> None:
+    state_of(client).view_openings.spend("local", MOST_OPENINGS)
+    draw(client, "a-view-too-many")
+    with pytest.raises(WebSocketDisconnect) as refused, watching(client, "/view/a-view-too-many"):
+        pass
+    assert refused.value.code == 1013
