@@ -1,5 +1,5 @@
 /**
- * Messages at the foot of the page, and the banner while the service is away.
+ * Messages above the chart, at the foot of a narrow page, and the banner while the service is away.
  *
  * @import {Studio} from "../state/studio.js"
  */

@@ -85,12 +85,12 @@ def test_the_readout_is_whole_and_the_chart_keeps_still(flat_studio: Page) -> No
     assert flat_studio.locator("#chart").bounding_box() == before
 
 
-def test_messages_do_not_cover_a_dock(flat_studio: Page) -> None:
+def test_messages_cover_neither_stitches_nor_a_dock(flat_studio: Page) -> None:
     keep_messages(flat_studio)
     flat_studio.keyboard.press("Control+a")
     flat_studio.click("#selection-make-repeat")
     expect(flat_studio.locator(".message")).to_be_visible()
-    assert comes_inside(flat_studio, ".message", "#chart-host")
+    assert comes_inside(flat_studio, ".message", "#overlays")
 
 
 def test_the_label_in_the_stiffness_map_stays_off_the_axis(flat_studio: Page) -> None:
