@@ -20,6 +20,8 @@ Colour = tuple[int, int, int]
 
 STILL_S = 0.4
 """Tubes that a stretch has flattened are drawn again after this time without another change."""
+REFRAMED = 0.05
+"""Change of a cloth's size, as a logarithm, from which on it is framed again."""
 MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
@@ -49,7 +51,7 @@ class SceneWriter:
         self._cloth = ShownStitches(server)
         self._timer: threading.Timer | None = None
         self._layers: dict[str, Any] = {}
-        self._framed: tuple[float, ...] | None = None
+        self._framed: tuple[tuple[int, int], Array] | None = None
         self._side = CameraSide.FACE
         self.coarse = self._laid_coarse = False
 
@@ -75,10 +77,7 @@ class SceneWriter:
             if face is None:  # the back that is there is replaced by the next
                 self._draw_sheet("back", ground, None)
             self._draw_scale(ground)
-            room = _room(ground)
-            if room != self._framed:
-                self._framed = room
-                self._place_camera(everybody=False)
+            self._frame(ground)
         return stitches
 
     def mark(self, box: Box | None) -> None:
@@ -131,6 +130,16 @@ class SceneWriter:
                 self._timer.daemon = True
                 self._timer.start()
             return stitches
+
+    def _frame(self, ground: Ground) -> None:
+        """Place the cameras again that nobody has turned, where a cloth is of another size."""
+        size = ground.framed_mm
+        if self._framed is not None and self._framed[0] == ground.shape:
+            change = np.abs(np.log(size / self._framed[1]))
+            if change.max() < REFRAMED:
+                return
+        self._framed = ground.shape, size
+        self._place_camera(everybody=False)
 
     def _place_camera(self, *, everybody: bool) -> None:
         if self._drawing is None:
@@ -249,12 +258,6 @@ def round_length_mm(width_mm: float) -> float:
     length = width_mm / 5
     power = 10.0 ** np.floor(np.log10(length))
     return float(power * max(step for step in (1, 2, 5) if power * step <= length * (1 + 1e-9)))
-
-
-def _room(ground: Ground) -> tuple[float, ...]:
-    """The size that the camera was placed for; until it changes the camera stays as turned."""
-    room = ground.extent_mm if ground.rests else ground.room_mm
-    return ground.shape if room is None else (*ground.shape, *room.round(1).tolist())
 
 
 def _units(points_mm: Array) -> NDArray[np.float32]:

@@ -157,6 +157,20 @@ def test_a_moved_camera_keeps_its_place_until_reset(view: View) -> None:
     assert np.linalg.norm(client.camera.position) > 2 * np.linalg.norm(close)
 
 
+def test_a_cloth_of_another_size_is_framed_again(view: View) -> None:
+    (client,) = view.server.get_clients().values()
+    rows = ["K" * 12] * 12
+
+    def place_for(*lines: str) -> np.ndarray:
+        _show(view, SMALL | {"chart": "\n".join(lines)})
+        return np.array(client.camera.position)
+
+    client.camera.position = np.array(view.server.initial_camera.position)
+    plain = place_for(*rows)
+    assert np.array_equal(plain, place_for("K" * 11 + "P", *rows[1:]))
+    assert not np.allclose(plain, place_for(*["KP" * 6] * 12), rtol=0.05)
+
+
 def test_the_light_between_the_yarn_is_sent_with_its_corners(
     view: View, monkeypatch: pytest.MonkeyPatch
 ) -> None:
