@@ -40,12 +40,13 @@ _TOWARDS: dict[CameraSide, tuple[tuple[float, float, float], tuple[float, float,
 }
 
 
-def stand(side: CameraSide, extent: Array) -> tuple[Array, Array, Array]:
+def stand(side: CameraSide, extent: Array, below: float = 0.0) -> tuple[Array, Array, Array]:
     """Position, target and up direction of a camera that sees the whole fabric.
 
     Parameters
     ----------
     extent : width and height of the fabric, whose middle is the origin.
+    below : how far below it there is something to be seen, too, in the same unit.
 
     Returns
     -------
@@ -59,12 +60,14 @@ def stand(side: CameraSide, extent: Array) -> tuple[Array, Array, Array]:
     if side is CameraSide.EDGE:
         height = 0.3 * width
     needed = MARGIN * max(height, width / ASPECT) / 2
+    if side is not CameraSide.EDGE:
+        needed = max(needed, (height / 2 + below) / (1 - LIFT))
     aim = LIFT * needed * up
     return aim + direction * (needed / np.tan(FIELD_OF_VIEW / 2) + nearer), aim, up
 
 
 def place_camera(
-    server: viser.ViserServer, side: CameraSide, extent: Array, *, everybody: bool
+    server: viser.ViserServer, side: CameraSide, extent: Array, below: float, *, everybody: bool
 ) -> None:
     """Place the camera, that of later ones too, so that the whole fabric is seen.
 
@@ -72,10 +75,10 @@ def place_camera(
     ----------
     server : whose cameras.
     side : from which the fabric is seen.
-    extent : width and height of the fabric.
+    extent, below : as for :func:`stand`.
     everybody : also those who have turned or moved their camera since it was placed.
     """
-    position, aim, up = stand(side, extent)
+    position, aim, up = stand(side, extent, below)
     start = server.initial_camera
     before = np.array(start.position)
     start.fov = FIELD_OF_VIEW

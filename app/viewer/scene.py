@@ -28,6 +28,8 @@ SCALE = (128, 120, 112)
 """Seen on light and on dark."""
 SCALE_BELOW = (1.8, 0.045)
 """The scale lies this many stitches below the fabric, and this share of its height at least."""
+WORDS_BELOW = 1.3
+"""Room below the fabric for the scale with its words, over how far the scale lies below it."""
 PAPER = (255, 252, 246)
 UNSHADED: dict[str, Any] = {"cast_shadow": False, "receive_shadow": False}
 SHEETS = {"face": ((1.0, 0.0, 0.0, 0.0), 0.0), "back": ((0.0, 0.0, 1.0, 0.0), 0.2)}
@@ -144,8 +146,12 @@ class SceneWriter:
     def _place_camera(self, *, everybody: bool) -> None:
         if self._drawing is None:
             return
-        extent = UNITS_PER_MM * self._drawing.ground.framed_mm
-        place_camera(self._server, self._side, extent, everybody=everybody)
+        ground = self._drawing.ground
+        extent, below = (
+            UNITS_PER_MM * ground.framed_mm,
+            UNITS_PER_MM * WORDS_BELOW * _scale_below_mm(ground),
+        )
+        place_camera(self._server, self._side, extent, below, everybody=everybody)
 
     # -- layers -------------------------------------------------------------------------------
 
@@ -195,10 +201,7 @@ class SceneWriter:
         """A line of round length below the fabric, at its right."""
         width, height = ground.extent_mm
         length = round_length_mm(float(width))
-        # The lowest loops reach below the fabric's own edge.
-        stitch = float(ground.sizes_mm[..., 1].mean())
-        away = max(SCALE_BELOW[0] * stitch, SCALE_BELOW[1] * float(height))
-        right, below = float(width) / 2, -float(height) / 2 - away
+        right, below = float(width) / 2, -float(height) / 2 - _scale_below_mm(ground)
         tick = 0.06 * length
         points = np.array(
             [
@@ -258,6 +261,12 @@ def round_length_mm(width_mm: float) -> float:
     length = width_mm / 5
     power = 10.0 ** np.floor(np.log10(length))
     return float(power * max(step for step in (1, 2, 5) if power * step <= length * (1 + 1e-9)))
+
+
+def _scale_below_mm(ground: Ground) -> float:
+    """How far the scale lies below a fabric; its lowest loops reach below its own edge."""
+    stitch = float(ground.sizes_mm[..., 1].mean())
+    return max(SCALE_BELOW[0] * stitch, SCALE_BELOW[1] * float(ground.extent_mm[1]))
 
 
 def _units(points_mm: Array) -> NDArray[np.float32]:
