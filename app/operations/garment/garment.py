@@ -1,11 +1,14 @@
 """Garments from measurements."""
 
+import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 from pydantic import Field
 
+from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.formats.designs.design_file import DesignFile, write_design
@@ -21,9 +24,9 @@ from ...context import Context
 from ...requests.base import Ends, IntervalResult, ResultModel
 from ...requests.charts import CellLines, ChartLines, RepeatText
 from ...requests.fabrics import Extensibility, Moduli
+from ...requests.garments import LENGTHS, AnyTemplate, KnitterRequest
+from ...requests.sizes import SizeResult, SizeSteps, size_lines, sizes_of
 from ..registry import Command, Operation
-from .sizes import SizeResult, SizeSteps, size_lines, sizes_of
-from .templates import LENGTHS, AnyTemplate, KnitterRequest, measured_options, read_measured
 
 MATERIAL_ERRORS = (
     "Sizes: the material's gauge, with one aspect ratio of stitches for all yarns (8 %); "
@@ -199,6 +202,49 @@ def _worn(place: Worn) -> WornResult:
     if (pressure := place.pressure) is None:
         return WornResult.of(place, strain=None, mmhg=None, kpa=None, warnings=[place.problem])
     return WornResult.of(place, **vars(pressure))
+
+
+def measured_options(command: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
+    """Options of a garment's measurements; :func:`read_measured` reads them."""
+    for option in (
+        click.option("--per", type=click.Choice(list(LENGTHS)), default="10 cm"),
+        click.option("--gauge", metavar="STSxROWS", help="The knitter's own gauge, such as 22x30."),
+        click.option(
+            "--set",
+            "settings",
+            multiple=True,
+            metavar="NAME=VALUE",
+            help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
+        ),
+    ):
+        command = option(command)
+    return command
+
+
+def read_measured(
+    template: str, settings: tuple[str, ...], gauge: str | None, per: str
+) -> dict[str, object]:
+    """Fields ``garment`` and ``gauge`` of a request.
+
+    Raises
+    ------
+    InputError
+        If a setting is none.
+    """
+    values: dict[str, object] = {"template": template}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise InputError("set", f"{setting!r} is not a setting.", "Write NAME=VALUE.")
+        try:
+            values[name] = json.loads(value)
+        except json.JSONDecodeError:
+            values[name] = value
+    fields: dict[str, object] = {"garment": values}
+    if gauge is not None:
+        stitches, _, rows = gauge.lower().replace("×", "x").partition("x")
+        fields["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
+    return fields
 
 
 @click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))

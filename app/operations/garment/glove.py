@@ -15,10 +15,11 @@ from ...cli.options import out_option
 from ...context import Context
 from ...drawing.computed import PosedView
 from ...requests.base import IntervalResult
+from ...requests.garments import Glove, KnitterRequest
 from ..perform import Viewed
 from ..registry import Command, Operation
+from .garment import measured_options, read_measured
 from .limb import HEADING, LimbPlaceResult
-from .templates import Glove, KnitterRequest, measured_options, read_measured
 
 SIMPLE = (
     "Fingers and thumb are cylinders, palm and forearm straight in front and behind. Every part is "

@@ -7,8 +7,8 @@ from pydantic import Field
 from knitcore.base.errors import InputError
 from knitcore.garment.plan import GarmentPlan
 
-from ...requests.base import RequestModel, ResultModel
-from .templates import Template
+from .base import RequestModel, ResultModel
+from .garments import Template
 
 AS_MEASURED = "as measured"
 SIZES = {"XS": -2, "S": -1, AS_MEASURED: 0, "L": 1, "XL": 2}

@@ -1,14 +1,10 @@
-"""Templates of garments with their measurements, and how the command line reads them."""
+"""Templates of garments with their measurements, and the knitter."""
 
-import json
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-import click
 from pydantic import Field
 
-from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.garment.gauge import Gauge, GaugeLength, GaugeSet
 from knitcore.garment.glove import STUDY_FABRICS, Finger, GloveFabrics, Hand, glove
@@ -17,9 +13,9 @@ from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worn_piece import Fit
 from knitcore.materials import Material
 
-from ...requests.base import RequestModel
-from ...requests.charts import MaterialName
-from ...requests.fabrics import LawsRequest
+from .base import RequestModel
+from .charts import MaterialName
+from .fabrics import LawsRequest
 
 Length = Annotated[float, Field(gt=0, le=2000)]
 OfHand = Annotated[float, Field(gt=0, le=500)]
@@ -248,46 +244,3 @@ class KnitterRequest(LawsRequest):
         if self.gauge is None:
             return GaugeSet.of_material(material)
         return GaugeSet.of_material(material, self.gauge.gauge(), self.gauge.fabric)
-
-
-def measured_options(command: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
-    """Options of a garment's measurements; :func:`read_measured` reads them."""
-    for option in (
-        click.option("--per", type=click.Choice(list(LENGTHS)), default="10 cm"),
-        click.option("--gauge", metavar="STSxROWS", help="The knitter's own gauge, such as 22x30."),
-        click.option(
-            "--set",
-            "settings",
-            multiple=True,
-            metavar="NAME=VALUE",
-            help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
-        ),
-    ):
-        command = option(command)
-    return command
-
-
-def read_measured(
-    template: str, settings: tuple[str, ...], gauge: str | None, per: str
-) -> dict[str, object]:
-    """Fields ``garment`` and ``gauge`` of a request.
-
-    Raises
-    ------
-    InputError
-        If a setting is none.
-    """
-    values: dict[str, object] = {"template": template}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise InputError("set", f"{setting!r} is not a setting.", "Write NAME=VALUE.")
-        try:
-            values[name] = json.loads(value)
-        except json.JSONDecodeError:
-            values[name] = value
-    fields: dict[str, object] = {"garment": values}
-    if gauge is not None:
-        stitches, _, rows = gauge.lower().replace("×", "x").partition("x")
-        fields["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
-    return fields
