@@ -1,8 +1,8 @@
 """Clients that do not read: memory of the service, and how long another user waits meanwhile.
 
-Two hundred and forty connections ask for one stored result of 11.6 MB and read nothing of it. A
-user lists designs all the while. Every figure is printed with its target; the exit code is 1 if
-one is missed.
+Two hundred and forty connections of Mallory ask for one stored result of 11.6 MB and read nothing
+of it; those beyond her limit are refused. Alice lists designs all the while. Every figure is
+printed with its target; the exit code is 1 if one is missed.
 
     python -m studies.speed.unread
 """
@@ -23,6 +23,7 @@ from app.service.jobs.document import JobState
 from app.service.jobs.store import JobStore
 from app.service.store.database import Database
 from app.service.store.schema import migrate
+from app.service.web.sessions import Tokens
 from scripts.serving import Service
 from studies.speed.service import Figures, resident_mb
 
@@ -32,28 +33,33 @@ SECONDS = 20.0
 MORE_MB, WAIT_MS = 100.0, 250.0
 
 
-def stored_result(folder: Path) -> str:
-    """Put a done job into a new database; returns its id."""
+def stored_result(folder: Path) -> tuple[str, dict[str, str]]:
+    """Put a done job of Mallory's into a new database; returns its id, and tokens by user."""
     (folder / "data").mkdir()
     digits = "".join(random.Random(1).choices("0123456789", k=RESULT_BYTES - 2))
     with closing(Database(f"sqlite:///{folder / 'data' / 'knitcore.sqlite3'}")) as database:
         migrate(database)
         store = JobStore(database, "main")
-        job = store.add("local", "relax", "{}", "key", JobState.WAITING).id
+        job = store.add("mallory", "relax", "{}", "key", JobState.WAITING).id
         store.finish(job, "relax", "key", gzip.compress(f'"{digits}"'.encode(), 1))
-    return job
+        tokens = {name: Tokens(database).create(name).token for name in ("alice", "mallory")}
+    return job, tokens
 
 
 def main() -> int:
     figures = Figures()
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
-        job = stored_result(Path(name))
-        service = Service(Path(name))
+        job, tokens = stored_result(Path(name))
+        service = Service(Path(name), require_login="true")
         client = stack.enter_context(service.running())
+        client.headers["Authorization"] = f"Bearer {tokens['alice']}"
         address = client.base_url.host, client.base_url.port or 80
         client.get("/api/v1/designs?limit=1").raise_for_status()
         before_mb = most_mb = resident_mb(service.pid)
-        head = f"GET /api/v1/jobs/{job}/result HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode()
+        head = (
+            f"GET /api/v1/jobs/{job}/result HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+            f"Authorization: Bearer {tokens['mallory']}\r\n\r\n"
+        ).encode()
         for _ in range(CONNECTIONS):
             unread = stack.enter_context(socket.create_connection(address))
             unread.sendall(head)
