@@ -48,6 +48,8 @@ VIEW_STYLE = """<style>
 OPENING_S = 8.0
 """Time for which a browser waits for a view: its page may load before its first scene is made."""
 LOOK_AGAIN_S = 0.05
+REFUSED_AFTER_S = 1.0
+"""Time for which one who opens views too often waits for the refusal, before trying once more."""
 ENDS = (NoneType, asyncio.CancelledError, WebSocketDisconnect, websockets.ConnectionClosed)
 """Ends of the two directions of a connection, whichever side left."""
 
@@ -94,6 +96,7 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
     views: Views = socket.app.state.views
     openings: RateLimit = socket.app.state.view_openings
     if openings.take(current_user.get())[1]:
+        await asyncio.sleep(REFUSED_AFTER_S)
         await socket.close(code=1013, reason="Views are opened too often.")
         return
     name = private_name(design)

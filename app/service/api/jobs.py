@@ -2,12 +2,13 @@
 
 import asyncio
 import contextlib
-from collections.abc import AsyncGenerator
-from typing import Annotated
+from collections.abc import AsyncGenerator, Iterator
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
+from starlette.types import Receive, Scope, Send
 
 from ..compute.answers import Answers
 from ..designs.conditions import ConflictError
@@ -16,6 +17,7 @@ from ..jobs.document import JobPage, JobState, JobStatus
 from ..jobs.kinds import JobRequest, JobResult, accepted, read_job
 from ..jobs.runner import JobRunner
 from ..limits.fair_queue import FairLock
+from ..limits.user_limits import ConcurrencyLimit
 from ..problems import NotFoundError, Problem
 from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
 from ..web.events import event_stream, stream_of
@@ -101,6 +103,18 @@ async def _states(
             status = await runner.status(owner, job)
 
 
+class _HeldResponse(StreamingResponse):
+    """A streamed answer that is counted until it ends."""
+
+    def __init__(self, held: contextlib.ExitStack, parts: Iterator[bytes], **more: Any) -> None:
+        super().__init__(parts, **more)
+        self._held = held
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        with self._held:
+            await super().__call__(scope, receive, send)
+
+
 @router.get(
     "/jobs/{job}/result",
     summary="The result of a job",
@@ -110,6 +124,15 @@ async def _states(
 )
 async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request) -> Response:
     """Return the same JSON as the operation's own address; `kind` names the operation."""
+    uses: ConcurrencyLimit = request.app.state.concurrency
+    with contextlib.ExitStack() as held:
+        held.enter_context(uses.hold("results", owner))
+        return await _result(job, runner, owner, request, held)
+
+
+async def _result(
+    job: str, runner: JobRunner, owner: str, request: Request, held: contextlib.ExitStack
+) -> Response:
     status = await runner.status(owner, job)
     if status.state is not JobState.DONE:
         raise ConflictError(
@@ -133,7 +156,7 @@ async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request)
     else:
         parts, size = result.unpacked(), await asyncio.to_thread(lambda: result.unpacked_bytes)
     headers["Content-Length"] = str(size)
-    return StreamingResponse(parts, media_type="application/json", headers=headers)
+    return _HeldResponse(held.pop_all(), parts, media_type="application/json", headers=headers)
 
 
 @router.delete("/jobs/{job}", summary="Cancel a job")

@@ -31,7 +31,15 @@ def _use(owner: str, state: Any) -> dict[str, Use]:
     concurrency: ConcurrencyLimit = state.concurrency
     used = {
         name: float(concurrency.held(name, owner))
-        for name in ("connections", "watchers", "streams", "pictures", "body_bytes", "unsent_bytes")
+        for name in (
+            "connections",
+            "watchers",
+            "streams",
+            "pictures",
+            "results",
+            "body_bytes",
+            "unsent_bytes",
+        )
     }
     used |= {
         "memory_bytes": state.compute.queue.held(owner) * state.settings.worker_memory_bytes,

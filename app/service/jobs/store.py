@@ -7,7 +7,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Row,
+    Select,
+    bindparam,
+    func,
+    insert,
+    select,
+    update,
+)
 
 from ..designs.conditions import Retry, once
 from ..limits.user_limits import USER_LIMITS, OverLimitError
@@ -19,6 +29,8 @@ from .document import JobPage, JobState, JobStatus
 WAITING, RUNNING = OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 PART_BYTES = 65_536
 """Part of a result that is read from the database at once."""
+NOTED_EACH_S = 600.0
+"""Time after which a use of a result is noted again."""
 KEPT_S = 30 * 86_400.0
 ORPHANED_S = 60.0
 """A process not seen for this long, by the clock of the database, counts as gone; the others take
@@ -73,6 +85,12 @@ class StoredResult:
         with self.database.read() as connection:
             row = results.c.key == self.key
             return self.database.backend.part_of(connection, results.c.body, row, start, size)
+
+
+def _stored(key: str) -> Select[tuple[int, bool]]:
+    """A result's size, and whether its last use was noted long ago."""
+    is_stale = results.c.used_at < now() - NOTED_EACH_S
+    return select(results.c.size_bytes, is_stale.label("is_stale")).where(results.c.key == key)
 
 
 class JobStore:
@@ -244,22 +262,24 @@ class JobStore:
         """The result of a job, or None if it is not stored."""
         with self._database.read() as connection:
             key = _job(connection, owner, job).key
-            size = select(results.c.size_bytes).where(results.c.key == key)
-            size_bytes: int | None = connection.execute(size).scalar()
-        if size_bytes is None:
+            stored = connection.execute(_stored(key)).one_or_none()
+        if stored is None:
             return None
-        self._used(key)
-        return StoredResult(self._database, key, size_bytes)
+        self._used(key, stored.is_stale)
+        return StoredResult(self._database, key, stored.size_bytes)
 
     def knows(self, key: str) -> bool:
         """Return whether the result of this content is stored; if so, renew its time of use."""
         with self._database.read() as connection:
-            stored = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
+            stored = connection.execute(_stored(key)).one_or_none()
         if stored is not None:
-            self._used(key)
+            self._used(key, stored.is_stale)
         return stored is not None
 
-    def _used(self, key: str) -> None:
+    def _used(self, key: str, is_stale: bool) -> None:
+        """Note that a result is used; every time would be a change of the database each."""
+        if not is_stale:
+            return
         used = update(results).where(results.c.key == key).values(used_at=now())
         with contextlib.suppress(StoreError):  # with a full disk it can still be read
             self._database.write(lambda connection: connection.execute(used))

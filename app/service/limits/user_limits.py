@@ -81,6 +81,7 @@ class UserLimits:
     watchers : browsers that show views.
     streams : event streams followed, of jobs and of views.
     pictures : pictures of views that are being taken.
+    results : stored results that are being sent.
     jobs : jobs that wait in the background.
     designs : designs kept, deleted ones included.
     versions : versions kept of one design.
@@ -101,6 +102,7 @@ class UserLimits:
     watchers: int = 32
     streams: int = 32
     pictures: int = 2
+    results: int = 16
     jobs: int = 100
     designs: int = 5_000
     versions: int = 500

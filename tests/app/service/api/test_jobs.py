@@ -1,4 +1,4 @@
-"""A job accepts exactly what its operation accepts."""
+"""A job accepts exactly what its operation accepts, and its result is sent to few at once."""
 
 import json
 import re
@@ -10,7 +10,10 @@ from fastapi.testclient import TestClient
 from app.context import Context
 from app.operations.registry import operations
 from app.service.jobs.kinds import KINDS, JobOf, accepted
+from app.service.limits.user_limits import USER_LIMITS
 from app.service.web.bodies import SMALL_BYTES
+from tests.app.clients import state_of
+from tests.app.running import wait_until
 
 CHART = {"chart": "KP/PK", "material": "acrylic"}
 PULL = CHART | {"direction": "wale", "steps": 2}
@@ -71,3 +74,19 @@ def test_every_example_is_accepted(context: Context) -> None:
             request = operation.request.model_validate(operation.example)
             job = JobOf.model_construct(kind=kind, request=request)
             assert accepted(job, context)[0] == kind
+
+
+def test_a_user_reads_few_results_at_once(client: TestClient) -> None:
+    job = {"kind": "stretch", "request": PULL | {"strain": 0.1}}
+    address = client.post("/api/v1/jobs", json=job).json()["id"]
+    result = f"/api/v1/jobs/{address}/result"
+    wait_until(lambda: client.get(result).status_code == 200)
+    uses = state_of(client).concurrency
+    with uses.growing("results", "local") as count:
+        count(USER_LIMITS.results)
+        refused = client.get(result)
+        assert (refused.status_code, refused.json()["field"]) == (429, "results")
+    assert client.get(result).status_code == 200
+    known = {"If-None-Match": client.get(result).headers["ETag"]}
+    assert client.get(result, headers=known).status_code == 304
+    assert uses.held("results", "local") == 0

@@ -7,7 +7,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from sqlalchemy import update
+from sqlalchemy import select, update
 
 from app.service.compute.compute import Compute
 from app.service.jobs import runner as runner_module
@@ -17,7 +17,7 @@ from app.service.jobs.store import JobStore
 from app.service.limits.user_limits import OverLimitError, UserLimits
 from app.service.problems import StoreError
 from app.service.store.database import Database
-from app.service.store.tables import jobs
+from app.service.store.tables import jobs, results
 from tests.app.service.jobs.helpers import counted, ended, runner_of, status_when, task, until
 
 
@@ -151,7 +151,15 @@ def test_the_longest_unused_results_make_room(database: Database) -> None:
         status = store.add("ada", "work", "{}", f"k{number}", JobState.WAITING)
         assert store.finish(status.id, "work", f"k{number}", os.urandom(1000))
         time.sleep(0.002)
-    assert store.knows("k0")
+    ago = update(results).values(used_at=results.c.used_at - 2 * store_module.NOTED_EACH_S)
+    database.write(lambda c: c.execute(ago))
+    used_at = select(results.c.used_at).where(results.c.key == "k0")
+    noted = []
+    for _ in range(2):
+        assert store.knows("k0")
+        with database.read() as connection:
+            noted.append(connection.execute(used_at).scalar())
+    assert noted[0] == noted[1]  # not at every use
     store.tidy(most_bytes=2100)
     assert [store.knows(f"k{n}") for n in range(3)] == [True, False, True]
 
