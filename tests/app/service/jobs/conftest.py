@@ -5,6 +5,7 @@ import pytest
 from app.service.compute.compute import Compute
 from app.service.compute.processes import processes
 from app.service.jobs.kinds import KINDS
+from app.service.store.database import Database
 from tests.app.jobs import WORK
 
 
@@ -18,3 +19,12 @@ def compute() -> Iterator[Compute]:
     pool = Compute(processes(2), timeout_s=60)
     yield pool
     pool.close()
+
+
+@pytest.fixture(
+    params=["sqlite", pytest.param("postgres", marks=[pytest.mark.postgres, pytest.mark.slow])]
+)
+def database(request: pytest.FixtureRequest) -> Database:
+    """An empty database with its tables; the runner waits so often that PostgreSQL is slow here."""
+    database: Database = request.getfixturevalue(f"{request.param}_database")
+    return database
