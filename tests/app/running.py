@@ -33,6 +33,12 @@ class Service(serving.Service):
     def __init__(self, folder: Path, **settings: str) -> None:
         super().__init__(folder, **{"workers": "1"} | settings)
 
+    def unexpected(self) -> str:
+        """What its log says from its first unexpected error on, in part."""
+        log = self.log.read_text(encoding="utf-8")
+        start = log.find("unexpected error")
+        return "" if start < 0 else log[start : start + 10_000]
+
 
 def python(
     *arguments: str | Path, check: bool = True, env: Mapping[str, str] | None = None, **options: Any

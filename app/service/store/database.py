@@ -23,7 +23,7 @@ from sqlalchemy import (
     text,
     tuple_,
 )
-from sqlalchemy.exc import DatabaseError, InterfaceError, OperationalError
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from knitcore.base.errors import InputError
@@ -308,16 +308,16 @@ def holder(url: str, process: str) -> str | None:
 def _failures() -> Iterator[None]:
     try:
         yield
-    except DatabaseError as error:
+    except (DBAPIError, PoolTimeoutError) as error:
         reason = str(error).splitlines()[0]
         if any(words in reason for words in DAMAGED):
             log.error("the database is damaged: %s", reason)
             raise _damaged() from error
-        if not isinstance(error, FAILURES):
+        # a lost connection can end a statement with an error of any kind
+        is_lost = isinstance(error, DBAPIError) and error.connection_invalidated
+        if not (is_lost or isinstance(error, FAILURES)):
             raise
         raise _failed(reason) from error
-    except FAILURES as error:
-        raise _failed(str(error).splitlines()[0]) from error
 
 
 def _do(connection: Connection, action: Action) -> tuple[Any, Exception | None]:

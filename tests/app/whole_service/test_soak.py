@@ -215,7 +215,7 @@ def test_a_long_day(place: Path | str, tmp_path: Path) -> None:
             before = _needs(services, 0.1 * SOAK_S)
             time.sleep(0.2 * SOAK_S)
             after = _needs(services, 0.1 * SOAK_S)
-        assert crowd.faults == []
+        assert crowd.faults == [], [service.unexpected() for service in services]
         strokes = 0
         for painter, service in crowd.painters:
             with httpx.Client(

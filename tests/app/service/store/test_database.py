@@ -13,7 +13,7 @@ import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import Connection, event, text
-from sqlalchemy.exc import IntegrityError
+from sqlalchemy.exc import DBAPIError, IntegrityError, ProgrammingError
 from sqlalchemy.schema import CreateIndex, CreateTable
 
 from app.service.problems import StoreError
@@ -149,6 +149,16 @@ def test_a_full_disk_refuses_only_what_does_not_fit(file: Database) -> None:
     with database.read() as connection:
         assert connection.execute(text("SELECT count(*) FROM big")).scalar() == 2
         assert connection.exec_driver_sql("PRAGMA integrity_check").scalar() == "ok"
+
+
+@pytest.mark.parametrize("kind", [DBAPIError, ProgrammingError])
+def test_a_lost_connection_is_a_failure_of_the_database_whatever_ended_the_statement(
+    sqlite_database: Database, kind: type[DBAPIError]
+) -> None:
+    for is_lost, error in ((True, StoreError), (False, kind)):
+        cause = Exception("no result")
+        with pytest.raises(error), sqlite_database.failures():
+            raise kind("SELECT 1", None, cause, connection_invalidated=is_lost)
 
 
 def test_reasons_reveal_no_addresses() -> None:
