@@ -93,7 +93,7 @@ coverage: $(VENV)/.installed-tests page ## Tell which lines the default suite ru
 	$(BIN)/coverage report
 
 test-hard: $(VENV)/.installed-tests ## Kill the service 50 times, send thousands of hostile requests, take disk, database and workers away
-	dpkg -s postgresql >/dev/null 2>&1 || apt-get install -y --no-install-recommends postgresql
+	dpkg -s postgresql >/dev/null 2>&1 || apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends postgresql
 	$(BIN)/pytest -m postgres tests/app
 	KNITCORE_KILLS=50 KNITCORE_OUTAGE_S=30 KNITCORE_SCHEMA_EXAMPLES=60 KNITCORE_SOAK_S=1800 $(BIN)/pytest -s \
 		tests/app/whole_service/test_faults.py tests/app/whole_service/test_documented.py tests/app/whole_service/test_soak.py \
