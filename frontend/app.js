@@ -131,8 +131,10 @@ studio.materialId.watch(loadMaterial);
 
 const loadLists = async () => {
   try {
-    const [{ materials }, { patterns }] = await Promise.all([api.materials(), api.patterns()]);
+    const lists = /** @type {const} */ ([api.materials(), api.patterns(), api.extensions()]);
+    const [{ materials }, { patterns }, { largest_charts }] = await Promise.all(lists);
     studio.materials.value = materials;
+    studio.largest.value = largest_charts;
     await nextTask();
     studio.shelf.value = patterns
       .filter(({ repeat }) => isChartText(repeat.replaceAll("/", "\n")))

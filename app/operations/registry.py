@@ -64,6 +64,8 @@ class Operation(Generic[Request, Result]):
     heavy : whether it always takes long enough to need a worker process, as every job does; others
         go there with large charts only.
     job : whether it can run in the background.
+    most_stitches : stitches of the largest chart over REST, where it has a limit of its own;
+        ``run`` or the request refuses larger ones.
     command : on the command line, where :mod:`app.cli.main` lists it.
     """
 
@@ -76,6 +78,7 @@ class Operation(Generic[Request, Result]):
     path: str | None = ""
     heavy: bool = False
     job: bool = False
+    most_stitches: int | None = None
     command: Command | None = None
 
     @property

@@ -15,7 +15,7 @@ export class Signal {
   set value(next) {
     if (Object.is(next, this.#value)) return;
     this.#value = next;
-    for (const listener of this.#listeners) listener(next);
+    for (const listener of this.#listeners) listener(this.#value); // one of them may have changed it again
   }
 
   /**

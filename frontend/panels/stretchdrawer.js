@@ -17,11 +17,6 @@ import { numberField, segmented, selectField } from "../widgets/fields.js";
 
 /** @typedef {"%" | "N"} Unit of a pull */
 
-/** The largest chart that the service pulls. */
-const MAX_STITCHES = 40_000;
-const TOO_LARGE =
-  "This chart is too large for a stretch test, which takes up to 40,000 stitches, such as 200 × 200. Try a part of it as a design of its own.";
-
 /** What the field says in each unit at first. */
 const DEFAULTS = { "%": "30", N: "2" };
 /** What the service pulls at most. */
@@ -229,18 +224,16 @@ export function stretchdrawer(host, studio, stretcher) {
       const rest = ` ${[outcome, ...(value.messages ?? [])].join(" ")}`;
       const warned = value.first_taut && h("span", { class: "warned" }, icon("warning"), lockUp);
       note.append(h("span", {}, warned ?? lockUp, rest));
-    } else if (tooLarge()) note.append(icon("info"), TOO_LARGE);
+    } else if (tooLarge()) note.append(icon("info"), tooLarge());
     else note.append("Pull the chart along its rows or columns and see where it gives.");
-    run.disabled = !busy && tooLarge();
+    run.disabled = !busy && tooLarge() !== "";
     host.classList.toggle("busy", busy);
     if (busy) folded(false);
   };
   const waiting = () => stretcher.progress.value === null;
-  const tooLarge = () => {
-    const { rows, columns } = studio.document.grid;
-    return rows * columns > MAX_STITCHES;
-  };
+  const tooLarge = () => studio.tooLarge("stretch", "a stretch test");
   studio.document.onChange(({ resized }) => resized && show());
+  studio.largest.listen(show);
   studio.stretch.watch(show);
   studio.step.listen(showStep);
   stretcher.progress.watch((share) => {

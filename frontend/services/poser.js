@@ -20,6 +20,16 @@ const PATIENCE_S = [0.03, 40];
 
 /** @type {Record<string, (studio: Studio, signal: AbortSignal) => AsyncGenerator<Posed>>} */
 const SHAPES = { lying, worn, pulled, hung };
+/** What the service computes for a pose, and what that is for a knitter. @type {Record<string, [string, string]>} */
+const OPERATIONS = {
+  lying: ["curl", "its shape unpinned"],
+  worn: ["limb", "its shape on the body"],
+  pulled: ["curl", "its curling edges"],
+  hung: ["hang", "its shape as it hangs"],
+};
+
+/** Say why the piece cannot be shown in a pose; "" if it can. @param {Studio} studio @param {string} pose */
+export const hindrance = (studio, pose) => (pose in OPERATIONS ? studio.tooLarge(...OPERATIONS[pose]) : "");
 
 /** @param {Studio} studio */
 export function startPoser(studio) {
@@ -38,6 +48,13 @@ export function startPoser(studio) {
     const words = now === "pulled" ? "Stretched" : POSES[now];
     posed.value = fits && old ? { ...old, words, converged: false } : null;
     if (!shapes) return;
+    const why = hindrance(studio, now);
+    if (why) {
+      studio.tell(why);
+      pose.value = "flat";
+      curling.value = false;
+      return;
+    }
     latest.run(
       async (signal) => {
         for await (const shape of shapes(studio, signal)) {

@@ -52,6 +52,8 @@ export class Studio {
     this.materialId = new Signal(design.material);
     this.material = new Signal(/** @type {MaterialDetail | null} */ (null));
     this.materials = new Signal(/** @type {MaterialSummary[]} */ ([]));
+    /** Stitches of the largest chart that an operation takes, where it has a limit. */
+    this.largest = new Signal(/** @type {Record<string, number>} */ ({}));
 
     /** @type {Signal<Tool>} */
     this.tool = new Signal(TOOLS.find(({ id }) => id === settings.tool) ?? TOOLS[0]);
@@ -251,6 +253,23 @@ export class Studio {
   paintWith(ink) {
     this.ink.value = ink;
     if (!["stroke", "shape", "once"].includes(this.tool.value.mode)) this.tool.value = pencil;
+  }
+
+  /**
+   * Say why an operation does not take the chart; "" if it does.
+   *
+   * @param {string} operation
+   * @param {string} what it is for a knitter
+   */
+  tooLarge(operation, what) {
+    const { rows, columns } = this.document.grid;
+    const most = this.largest.value[operation] ?? Infinity;
+    if (rows * columns <= most) return "";
+    const side = Math.floor(Math.sqrt(most));
+    return (
+      `This chart is too large for ${what}, which takes up to ${most.toLocaleString("en")} stitches, ` +
+      `such as ${side} × ${side}. Try a part of it as a design of its own.`
+    );
   }
 
   /** Show a message to the user. @param {Problem} problem */

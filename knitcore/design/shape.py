@@ -34,7 +34,7 @@ TRIES = 72
 _STEPS = 4
 _PALETTE = 40
 _DAMPING = 0.8
-_MAX_STITCHES = 10_000
+MAX_SHAPED_STITCHES = 10_000
 OFF = 0.03
 """Smallest error of a width, over the width at rest, that a message reports."""
 
@@ -359,9 +359,9 @@ def _checked(
         raise InputError("width", problem, "Give every width as a multiple of the width at rest.")
     lines = (across, len(target)) if direction is Direction.COURSE else (len(target), across)
     check_chart_size(*lines)
-    if across < 3 or across * len(target) > _MAX_STITCHES:
+    if across < 3 or across * len(target) > MAX_SHAPED_STITCHES:
         problem = f"{across} x {len(target)} stitches are too many to pull repeatedly."
-        remedy = f"Use at least 3 across and at most {_MAX_STITCHES} stitches."
+        remedy = f"Use at least 3 across and at most {MAX_SHAPED_STITCHES} stitches."
         raise InputError("across", problem, remedy)
     check_positive("strain", strain, what="a stretch", most=5)
     check_range("smallest_band", smallest_band, 1, len(target), "lines")

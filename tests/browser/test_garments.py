@@ -131,7 +131,9 @@ def test_formats_of_extensions_are_offered(flat_studio: Page) -> None:
     card = house | {"group": "knitcore.exporters", "offers": ["punchcard"]}
     page.route(
         "**/api/v1/extensions",
-        lambda route: route.fulfill(json={"extensions": [card], "largest_exports": {}}),
+        lambda route: route.fulfill(
+            json={"extensions": [card], "largest_exports": {}, "largest_charts": {}}
+        ),
     )
     page.keyboard.press("Control+E")
     expect(page.get_by_role("group", name="From extensions")).to_contain_text("knit-house 1.0")

@@ -201,3 +201,22 @@ def fill_first_part(page: Page, law: ConstitutiveLaw) -> None:
     page.click("#fill-run")
     expect(page.locator("#fill-answer")).to_contain_text("On the chart now")
     page.click("#fill-keep")
+
+
+def test_what_a_chart_is_too_large_for_is_said_before_the_button(
+    visitor: Page, service: str
+) -> None:
+    page = open_design(visitor, service, chart="\n".join(["K" * 250] * 200))
+    expect(page.locator(".stretch-note")).to_contain_text("up to 40,000 stitches")
+    expect(page.locator("#stretch-run")).to_be_disabled()
+    page.keyboard.press("Shift+W")
+    expect(page.locator("#fill-run")).to_be_disabled()
+    page.click("#fill-outline")
+    expect(page.locator("#outline-run")).to_be_disabled()
+    expect(page.locator("#panel-fill")).to_contain_text("such as 100 × 100")
+    page.keyboard.press("Escape")
+    lying = page.locator("#fabric-lying")
+    expect(lying).to_have_attribute("title", re.compile("too large"))
+    lying.click(force=True)
+    expect(page.locator("#messages")).to_contain_text("takes up to 10,000 stitches")
+    expect(page.locator("#fabric-flat")).to_have_attribute("aria-checked", "true")

@@ -158,6 +158,7 @@ OPERATION = Operation(
     curl,
     tag="mechanics",
     summary="Curling and folding of a piece",
+    most_stitches=MAX_STITCHES,
     example={"chart": {"fabric": "stockinette", "columns": 6, "rows": 4}, "material": "acrylic"},
     job=True,
     command=Command(

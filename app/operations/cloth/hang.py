@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from knitcore.cloth.space.curl import TIME_LIMIT_S
+from knitcore.cloth.space.curl import MAX_STITCHES, TIME_LIMIT_S
 from knitcore.cloth.space.hang import HungBy
 from knitcore.cloth.space.hang import hang as hang_piece
 from knitcore.garment.shaped import outline_marks
@@ -88,6 +88,7 @@ OPERATION = Operation(
     hang,
     tag="mechanics",
     summary="Shape of a piece that hangs under its own weight",
+    most_stitches=MAX_STITCHES,
     example={
         "chart": {"fabric": "garter", "columns": 6, "rows": 8},
         "material": "acrylic",

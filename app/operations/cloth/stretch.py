@@ -352,6 +352,7 @@ OPERATION = Operation(
     stretch,
     tag="stretch",
     summary="Pull a chart between two clamps",
+    most_stitches=MAX_STITCHES,
     example={
         "chart": {"fabric": "garter", "columns": 4, "rows": 4},
         "material": "acrylic",

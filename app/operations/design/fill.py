@@ -15,7 +15,7 @@ from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
 from knitcore.design.part_targets import PartTarget, target_maps
-from knitcore.design.shape import fill_shape
+from knitcore.design.shape import MAX_SHAPED_STITCHES, fill_shape
 from knitcore.formats.read.stitch_maps import read_target_moduli
 from knitcore.garment.shaped import outline_marks
 
@@ -387,6 +387,7 @@ FILL = Operation(
     fill,
     tag="design",
     summary="A chart for a map of target stiffness",
+    most_stitches=MAX_STITCHES,
     example={
         "material": "acrylic",
         "modulus_course_n_per_mm": [[0.2, 0.2, 0.2, 0.2], [0.2, 0.2, 0.2, 0.2]],
@@ -404,6 +405,7 @@ SHAPE = Operation(
     shape,
     tag="design",
     summary="A chart that takes a target outline when it is stretched",
+    most_stitches=MAX_SHAPED_STITCHES,
     example={
         "material": "acrylic",
         "strain": 0.2,

@@ -10,7 +10,7 @@ from knitcore.materials import Material
 from ...context import Context
 from ...requests.base import NoRequest, ResultModel
 from ...service import VERSION
-from ..registry import Command, Operation
+from ..registry import Command, Operation, operations
 from .export import MAX_STITCHES
 
 KINDS: dict[Group, type[Offer]] = {Group.MATERIALS: Material, Group.EXPORTERS: Exporter}
@@ -27,11 +27,14 @@ class ExtensionResult(ResultModel):
 
 
 class Extensions(ResultModel):
-    """All extensions, and how much the service exports."""
+    """All extensions, and how large a chart the service takes."""
 
     extensions: list[ExtensionResult]
     largest_exports: dict[str, int] = Field(
         description="Stitches of the largest chart over REST, for formats that have a limit."
+    )
+    largest_charts: dict[str, int] = Field(
+        description="Stitches of the largest chart over REST, for operations that have a limit."
     )
 
 
@@ -48,7 +51,12 @@ def extensions(request: NoRequest, context: Context) -> Extensions:
             except ExtensionError as error:
                 problem = str(error)
             results.append(ExtensionResult.of(extension, offers=offers, problem=problem))
-    return Extensions(extensions=results, largest_exports=MAX_STITCHES)
+    limits = {name: operation.most_stitches for name, operation in operations().items()}
+    return Extensions(
+        extensions=results,
+        largest_exports=MAX_STITCHES,
+        largest_charts={name: most for name, most in limits.items() if most is not None},
+    )
 
 
 def _lines(result: Extensions) -> list[str]:

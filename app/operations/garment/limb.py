@@ -285,6 +285,7 @@ OPERATION = Operation(
     limb,
     tag="mechanics",
     summary="Fit and pressure of a knitted tube along a limb",
+    most_stitches=MAX_STITCHES,
     example={
         "chart": "KP",
         "material": "acrylic",

@@ -5,6 +5,7 @@
  * @import {CameraSide} from "../../types.js"
  */
 
+import { hindrance } from "../../services/poser.js";
 import { POSES } from "../../state/seeing.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
@@ -51,6 +52,16 @@ export function toolbar(studio, look, request) {
   );
   const poses = segmented("Shape", segments, pose.value, (id) => (pose.value = id));
   pose.listen(poses.show);
+  const showHindrances = () => {
+    HINTS.forEach(([id, hint], at) => {
+      const why = hindrance(studio, id);
+      const segment = poses.element.children[at];
+      segment.setAttribute("aria-disabled", String(why !== ""));
+      segment.setAttribute("title", why || hint);
+    });
+  };
+  studio.document.onChange(({ resized }) => resized && showHindrances());
+  studio.largest.watch(showHindrances);
   const { root, setItems } = menu({
     id: "fabric-colours",
     label: "Colours of the yarn",

@@ -20,7 +20,7 @@ import { selectedCells } from "../../design/selection.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { nameOf, repeatPicture } from "./apply.js";
-import { field, form, verdict } from "./form.js";
+import { field, fillButton, form, verdict } from "./form.js";
 import { Run } from "../../widgets/jobrun.js";
 
 const SHOWN_PATCHES = 6;
@@ -345,11 +345,7 @@ export function fromStiffness(studio) {
         h("label", { class: "check" }, scattered, "Allow irregular patterns (closer match, harder to knit by hand)"),
         h("label", { class: "check" }, large, "Allow larger patterns (the first time takes up to a minute)"),
       ),
-      h(
-        "div",
-        { class: "inverse-bar inverse-start" },
-        h("button", { class: "button primary", type: "submit", id: "fill-run" }, "Fill"),
-      ),
+      fillButton(studio, "fill-run", "fill", "a fill"),
     ),
     run.element,
     answer,

@@ -13,6 +13,27 @@ export function form(submit, ...content) {
   return h("form", { class: "inverse-form", onsubmit }, ...content);
 }
 
+/**
+ * The button that fills the chart, and why it cannot where the chart is too large.
+ *
+ * @param {import("../../state/studio.js").Studio} studio
+ * @param {string} id of the button
+ * @param {string} operation
+ * @param {string} what it is for a knitter
+ */
+export function fillButton(studio, id, operation, what) {
+  const button = h("button", { class: "button primary", type: "submit", id }, "Fill");
+  const note = h("p", { class: "muted small" });
+  const show = () => {
+    note.textContent = studio.tooLarge(operation, what);
+    button.disabled = note.textContent !== "";
+    note.hidden = !button.disabled;
+  };
+  studio.document.onChange(({ resized }) => resized && show());
+  studio.largest.watch(show);
+  return h("div", { class: "inverse-bar inverse-start" }, button, note);
+}
+
 /** How near an answer comes. @param {boolean} good @param {string} words */
 export const verdict = (good, words) =>
   h(

@@ -12,7 +12,7 @@ import { Grid } from "../../grid/grid.js";
 import { drawing, h } from "../../elements/dom.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
-import { field, form, verdict } from "./form.js";
+import { field, fillButton, form, verdict } from "./form.js";
 import { segmented } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
 import { textButton } from "../../widgets/buttons.js";
@@ -22,7 +22,6 @@ const HEIGHT = 200;
 const PAD = { left: 34, right: 10, top: 10, bottom: 48 };
 const LOW = 0.7;
 const HIGH = 1.05;
-const MAX_STITCHES = 10_000;
 /** Where the handles stand, as shares of the length; the clamps hold the ends. */
 const PLACES = [0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9];
 
@@ -138,14 +137,6 @@ export function fromOutline(studio) {
 
   const fill = async () => {
     const { rows, columns } = studio.document.grid;
-    if (rows * columns > MAX_STITCHES) {
-      run.say({
-        title: "The chart is too large for this",
-        detail: `It is pulled about a hundred times; ${rows * columns} stitches would take too long.`,
-        remedy: `Use at most ${MAX_STITCHES} stitches, such as 100 × 100.`,
-      });
-      return;
-    }
     const lines = direction === "wale" ? rows : columns;
     answer.replaceChildren();
     reached = null;
@@ -256,11 +247,7 @@ export function fromOutline(studio) {
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
         h("label", { class: "check" }, "bands of at least", band, "lines"),
       ),
-      h(
-        "div",
-        { class: "inverse-bar inverse-start" },
-        h("button", { class: "button primary", type: "submit", id: "outline-run" }, "Fill"),
-      ),
+      fillButton(studio, "outline-run", "shape", "an outline, for which it is pulled a hundred times"),
     ),
     run.element,
     answer,

@@ -19,6 +19,7 @@ function studio() {
     materialId: signal("acrylic"),
     request: { chart: "KP", material: "acrylic" },
     currentStrain: () => null,
+    tooLarge: () => "",
     document: {
       grid: { rows: 1, columns: 2 },
       outlineText: null,
@@ -94,4 +95,15 @@ test("the first shape begins at the old one, and the last one at nothing", async
     [old, first, last].map(({ converged }) => converged),
     [false, false, true],
   );
+});
+
+test("a chart that is too large for a pose stays flat, and the reason is said", () => {
+  const page = studio();
+  const said = /** @type {string[]} */ ([]);
+  page.tooLarge = (/** @type {string} */ operation) => `too large for ${operation}`;
+  page.tell = (/** @type {string} */ words) => said.push(words);
+  startPoser(page);
+  page.seeing.pose.value = "lying";
+  assert.equal(page.seeing.pose.value, "flat");
+  assert.deepEqual(said, ["too large for curl"]);
 });

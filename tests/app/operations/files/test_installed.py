@@ -10,6 +10,7 @@ from app.context import Context
 from app.operations.files.export import MAX_STITCHES, ExportRequest, export
 from knitcore.base.errors import InputError
 from knitcore.base.extensions import Group
+from knitcore.cloth.space.curl import MAX_STITCHES as LARGEST_CURLED
 from tests.app.command_line import printed, run
 from tests.extension_package import install, install_example
 
@@ -51,4 +52,5 @@ def test_the_list_shows_what_is_wrong(
     assert listed["knit-house"]["problem"] is None
     assert "ModuleNotFoundError" in listed["gone"]["problem"]
     assert answer["largest_exports"] == MAX_STITCHES
+    assert answer["largest_charts"]["curl"] == LARGEST_CURLED
     assert "gone (bad 2.0)" in printed("extensions").stdout
