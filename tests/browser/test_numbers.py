@@ -68,11 +68,13 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     expect(source).to_have_text(LEARNED)
     guessed = size.inner_text()
     source.click()
+    expect(page.locator("#gauge-brings")).to_contain_text("narrows the size")
     page.fill("#own-gauge-stitches", "25")
     page.fill("#own-gauge-rows", "36")
     page.press("#own-gauge-rows", "Enter")
     expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(size).to_have_text("4.80")  # 12 stitches
+    expect(page.locator("#gauge-brings")).to_contain_text("Fill use the computed size")
     with page.expect_request("**/api/v1/jobs") as sent:
         page.click("#stretch-run")
     counted = {"stitches_per_10_cm": 25, "rows_per_10_cm": 36}

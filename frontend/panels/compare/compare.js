@@ -103,7 +103,8 @@ export function create(studio, { keeper }) {
           sides.map(async ({ which, yarnId }) => {
             const sidePiece = await piece(studio, keeper, which.value);
             const material = yarnId || sidePiece.material;
-            return { piece: { ...sidePiece, material }, answers: await answers(sidePiece.scope, material, signal) };
+            const answered = await answers(sidePiece.scope, material, studio.gauges, signal);
+            return { piece: { ...sidePiece, material }, answers: answered };
           }),
         );
         if (signal.aborted) return;

@@ -84,11 +84,13 @@ function opened(design) {
 /**
  * @param {Scope} scope
  * @param {string} material
+ * @param {Studio["gauges"]} gauges
  * @param {AbortSignal} signal
  * @returns {Promise<Answers>}
  */
-export async function answers({ grid, shaped }, material, signal) {
-  const body = { chart: grid.text, material };
+export async function answers({ grid, shaped }, material, gauges, signal) {
+  const cloth = { chart: grid.text, material };
+  const body = { ...cloth, gauge: gauges.of(cloth) };
   const [predicted, course, wale] = await Promise.all([
     api.run("predict", { ...body, ...shaped }, signal),
     api.run("curve", { ...body, direction: "course" }, signal),

@@ -12,6 +12,8 @@ import { numberField } from "../../widgets/fields.js";
 
 /** Half of a 90 % interval of a size that was counted, as a share of it. */
 const COUNTED = 0.05;
+const COUNTS =
+  "It counts here, in curves, stretch tests, Compare and files. 3D, hanging, wearing and Fill use the computed size.";
 
 /**
  * `show` fills in what is known, and says what a count would bring.
@@ -45,10 +47,10 @@ export function ownGauge(studio) {
     brings,
   );
   const show = (/** @type {PredictResult | null} */ predicted) => {
-    brings.textContent = predicted ? gain(predicted) : "";
-    if (element.contains(document.activeElement)) return;
     const known = studio.gauges.changes.value ? studio.gauges.of(cloth()) : null;
     const counted = known?.known_by === "relaxation" ? null : known;
+    brings.textContent = counted ? COUNTS : predicted ? gain(predicted) : "";
+    if (element.contains(document.activeElement)) return;
     stitches.value = counted ? String(counted.stitches_per_10_cm) : "";
     rows.value = counted ? String(counted.rows_per_10_cm) : "";
   };
