@@ -1,4 +1,4 @@
-"""Take the screenshots in docs/images: the page and each of its panels, light and dark.
+"""Take the screenshots that the docs show: the page and each of its panels, light or dark.
 
 ``python -m scripts.screenshots [NAME …]`` needs Chromium and Node; names make only these pictures.
 """
@@ -19,6 +19,7 @@ from scripts.serving import CHROMIUM, FLAGS, FORCED, Service
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
+DOCS = "".join(file.read_text("utf-8") for file in (ROOT / "README.md", *ROOT.glob("docs/*.md")))
 MAX_BYTES = 200_000
 SCREEN: ViewportSize = {"width": 1440, "height": 900}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
@@ -120,18 +121,6 @@ def cut_off(page: Page) -> None:
         page.route(address, lambda route: route.abort())
 
 
-def exported(page: Page) -> None:
-    """The first page of the pattern that the page exports."""
-    page.keyboard.press("Control+e")
-    page.check("input[value='pattern-svg']")
-    with page.expect_download() as download:
-        page.click("#export-make")
-    drawing = download.value.path().read_text(encoding="utf-8")
-    page.goto("about:blank")
-    sheet = "<style>body { margin: 0 } #sheet { width: 800px; height: 1131px; overflow: hidden }"
-    page.set_content(f"{sheet} svg {{ width: 800px; height: auto }}</style><div id=sheet>{drawing}")
-
-
 ATLAS = ".inverse-plot[data-count]:not([data-count='0'])"
 COMPARED = "#compare-dialog:not(.busy) #compare-plot .main-svg"
 NEW = press("Shift+N")
@@ -139,11 +128,6 @@ WHOLE: dict[str, Scene] = {
     "page": scene(None, drawn),
     "glove": scene(None, NEW, click("#gallery-glove"), click("#overlay-fabrics"), drawn),
     "fabric": scene("#fabric", drawn),
-    "fill": scene(
-        None, press("Shift+W"), click("#part-add"), pause(800), choose("#part-0-like", "seed"),
-        click("#fill-run"), there("#fill-keep", 120_000), drawn,
-    ),
-    "pattern": scene("#sheet", drawn, exported),
     "offline": scene(None, drawn, cut_off, press("x"), there("#offline"), pause(2500)),
 }  # fmt: skip
 """Pictures with the fabric in 3D, each from its own visit."""
@@ -168,7 +152,6 @@ PARTS: dict[str, Scene] = {
     ),
     "help": opened("Keys and tools", "#help-dialog"),
     "commands": scene("#palette-dialog", press("Control+k"), there("#palette-dialog")),
-    "resize": opened("Size and new chart", "#resize-dialog"),
     "import": opened("Import a chart", "#import-dialog"),
     "exports": opened("Export, all formats", "#export-dialog"),
     "garments": opened("Plan a garment", "#planner-dialog", "#planner-facts:not(.busy) table"),
@@ -262,7 +245,8 @@ def palette(image: Image.Image, colours: int) -> Image.Image:
 
 
 def pictures(browser: Browser, url: str, theme: Literal["light", "dark"], names: list[str]) -> None:
-    """All wanted pictures in one theme."""
+    """All pictures of these names that the docs show in a theme."""
+    names = [name for name in names if f"images/{name}-{theme}.png" in DOCS]
     page = visit(browser, url, theme, flat=True)
     for name in [name for name in PARTS if name in names]:
         picture(page, PARTS[name], f"{name}-{theme}")

@@ -48,6 +48,7 @@ PATH = re.compile(rf"`((?:[\w.-]+/)*[\w.-]+\.(?:js|mjs|py)|(?:[\w.-]+/)+|(?:{ROO
 DOTTED = re.compile(r"`((?:knitcore|app|scripts|studies)(?:\.\w+)+)`")
 BUILT = {"frontend/dist"}
 """Folders that are made."""
+MOST_WORDS = 35_000
 
 
 def _id(page: Path) -> str:
@@ -183,6 +184,17 @@ def test_links_between_pages_lead_somewhere(page: Path) -> None:
     targets = re.findall(r"\]\(((?!https?:|mailto:|#)[^)#\s]+)", page.read_text())
     places = [(page.parent / target).resolve() for target in targets]
     assert not [to for to in places if not to.exists() and not {to, *to.parents} & {*MADE}]
+
+
+def test_pages_show_every_picture() -> None:
+    shown = "".join(page.read_text() for page in PAGES)
+    pictures = [*ROOT.glob("docs/images/*"), *ROOT.glob("docs/figures/*")]
+    assert not [picture.name for picture in pictures if picture.name not in shown]
+
+
+def test_the_docs_are_no_longer_than_a_person_reads() -> None:
+    words = sum(len(page.read_text().split()) for page in ROOT.glob("docs/*.md"))
+    assert words <= MOST_WORDS
 
 
 @pytest.mark.parametrize("page", [*PAGES, *MORE_PAGES], ids=_id)

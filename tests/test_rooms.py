@@ -77,6 +77,25 @@ def test_a_room_imports_from_lower_floors_only(room: Path) -> None:
     assert used & known <= below
 
 
+MOST_FILES = 15
+"""Modules of a folder that one can still survey."""
+
+
+def test_a_folder_is_surveyed_at_a_glance() -> None:
+    folders = [path for top in ("knitcore", "app") for path in (ROOT / top).rglob("*/")]
+    files = {folder: [*folder.glob("*.py")] for folder in folders}
+    assert not [
+        folder.name
+        for folder, modules in files.items()
+        if len([module for module in modules if module.stem != "__init__"]) > MOST_FILES
+    ]
+
+
+def test_no_two_modules_of_the_library_have_one_name() -> None:
+    names = [file.stem for file in (ROOT / "knitcore").rglob("*.py") if file.stem != "__init__"]
+    assert len(names) == len(set(names))
+
+
 def test_the_library_does_not_import_the_service() -> None:
     outside = {"app", "fastapi", "starlette", "uvicorn", "sqlalchemy", "viser"}
     for file in (ROOT / "knitcore").rglob("*.py"):

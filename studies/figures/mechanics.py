@@ -66,26 +66,6 @@ def reduced_symmetry() -> None:
     save(axes, "reduced-symmetry")
 
 
-def wide_rib() -> None:
-    """Width and strain of 2x2 rib against stress."""
-    width, extension = panels(2)
-    stress = np.linspace(0, 0.2, 201)
-    for text, name, colour, style in (
-        ("KKPP", "2×2 rib", FABRICS[Fabric.RIB], "-"),
-        ("KP", "1×1 rib", MUTED, "--"),
-    ):
-        along = predict(StitchChart.parse(text), material("acrylic")).course
-        strain = along.strain(stress)
-        width.plot(stress, along.relaxed_mm * (1 + strain), style, color=colour, label=name)
-        extension.plot(stress, strain, style, color=colour, label=name)
-    width.set(title="width of a stitch, acrylic", xlabel="stress, N/mm", ylabel="mm")
-    extension.set(title="strain course-wise", xlabel="stress, N/mm", ylabel="strain")
-    for axes in (width, extension):
-        axes.set(xlim=(0, 0.2), ylim=(0, None))
-    width.legend(loc="lower right")
-    save(width, "wide-rib")
-
-
 def continuity() -> None:
     """Strain of charts that change little by little, in acrylic at 0.05 N/mm."""
     purls, ribs = panels(2)
@@ -119,5 +99,4 @@ def _strains(charts: Iterable[StitchChart], direction: Direction) -> list[float]
 if __name__ == "__main__":
     laws()
     reduced_symmetry()
-    wide_rib()
     continuity()
