@@ -2,6 +2,7 @@
  * What the browser keeps: the design and the page's settings. Written after every step, so a reload,
  * a crash of the service or a failed request loses nothing.
  *
+ * @import {GaugeInput} from "../types.js"
  * @import {Content, ShelfItem} from "./design.js"
  *
  * @typedef {{id: string, name: string, material: string, note?: string,
@@ -14,8 +15,11 @@ import { History } from "./history.js";
 const DESIGN = "knitcore.design";
 const HISTORY = "knitcore.history";
 const SHELF = "knitcore.shelf";
+const GAUGES = "knitcore.gauges";
 const SETTINGS = "knitcore.settings";
 const HISTORY_LIMIT = 1_000_000;
+/** Characters of all gauges, whose cloths are charts. */
+const GAUGES_LIMIT = 200_000;
 
 /**
  * What is read of an entry; where there is none, it is damaged, or storage is closed to us, something else.
@@ -58,9 +62,9 @@ export const loadHistory = () => stored(HISTORY, History.parse, new History());
 export const saveDesign = (design, history) =>
   put([DESIGN, JSON.stringify(design)], [HISTORY, history.serialised(HISTORY_LIMIT)]);
 
-/** Forget the design, its history and the own patterns: somebody else may use this browser next. */
+/** Forget the design, its history, own patterns and gauges: somebody else may use this browser next. */
 export function forgetDesign() {
-  for (const key of [DESIGN, HISTORY, SHELF]) localStorage.removeItem(key);
+  for (const key of [DESIGN, HISTORY, SHELF, GAUGES]) localStorage.removeItem(key);
 }
 
 /** @template {object} T @param {T} defaults @returns {T} */
@@ -76,6 +80,17 @@ export const loadShelf = () =>
 
 /** @param {readonly ShelfItem[]} shelf */
 export const saveShelf = (shelf) => put([SHELF, JSON.stringify(shelf)]);
+
+/** @returns {[cloth: string, gauge: GaugeInput][]} the last one last */
+export const loadGauges = () =>
+  stored(GAUGES, (text) => JSON.parse(text ?? "[]").filter((/** @type {unknown} */ entry) => Array.isArray(entry)), []);
+
+/** Those that were counted first are left out where there are too many. @param {[cloth: string, gauge: GaugeInput][]} gauges */
+export function saveGauges(gauges) {
+  let room = GAUGES_LIMIT;
+  const latest = gauges.toReversed().filter(([cloth]) => (room -= cloth.length) >= 0);
+  put([GAUGES, JSON.stringify(latest.reverse())]);
+}
 
 /** A random UUID, also where the page is not served over a secure origin. */
 export function newIdentifier() {

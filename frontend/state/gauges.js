@@ -1,6 +1,7 @@
 /**
  * Gauges that somebody counted on knitted cloth, or that a relaxation found. Each is known for its
- * stitches and yarn: painting leaves it behind, and undoing finds it again.
+ * stitches and yarn: painting leaves it behind, and undoing finds it again. The browser keeps those
+ * that were counted.
  *
  * @import {GaugeInput} from "../types.js"
  *
@@ -8,11 +9,12 @@
  */
 
 import { Signal } from "../core/signal.js";
+import { loadGauges, saveGauges } from "../design/store.js";
 
 export class Gauges {
-  /** @type {Map<string, GaugeInput>} */ #known = new Map();
+  /** @type {Map<string, GaugeInput>} */ #known = new Map(loadGauges());
   /** How often one was given or taken back. */
-  changes = new Signal(0);
+  changes = new Signal(this.#known.size);
 
   /** @param {Cloth} cloth @returns {GaugeInput | null} */
   of({ chart, material }) {
@@ -24,6 +26,7 @@ export class Gauges {
     const key = `${material}\n${chart}`;
     if (gauge) this.#known.set(key, gauge);
     else this.#known.delete(key);
+    saveGauges([...this.#known].filter(([, { known_by }]) => known_by !== "relaxation"));
     this.changes.value += 1;
   }
 }

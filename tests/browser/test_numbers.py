@@ -90,6 +90,9 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     page.keyboard.press("Control+z")
     expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(page.locator("#own-gauge-stitches")).to_have_value("25")
+    page.reload()
+    expect(source).to_have_text(f"{LEARNED} and a known size")
+    source.click()
     for field in ("stitches", "rows"):
         page.fill(f"#own-gauge-{field}", "")
         page.press(f"#own-gauge-{field}", "Enter")

@@ -23,3 +23,17 @@ test("a gauge can be taken back, and both are heard", () => {
   assert.equal(gauges.of(RIB), null);
   assert.equal(heard, 2);
 });
+
+test("counted gauges outlast the page, relaxed ones do not", () => {
+  const kept = new Map();
+  globalThis.localStorage = /** @type {any} */ ({
+    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
+    setItem: (/** @type {string} */ key, /** @type {string} */ text) => kept.set(key, text),
+  });
+  const gauges = new Gauges();
+  gauges.keep(RIB, COUNTED);
+  gauges.keep({ ...RIB, chart: "KK" }, { ...COUNTED, known_by: "relaxation" });
+  const again = new Gauges();
+  assert.deepEqual(again.of(RIB), COUNTED);
+  assert.equal(again.of({ ...RIB, chart: "KK" }), null);
+});
