@@ -206,7 +206,7 @@ def _of_tube(
     repeat = shaped.continued().repeat_cut()
     patched = max(repeat.rows, repeat.columns) > SIDE
     evenly = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round()
-    listed = np.union1d(evenly.astype(int), np.argmax([_highest(place) for place in tube.places]))
+    listed = np.union1d(evenly.astype(int), np.argmax([p.highest_mmhg for p in tube.places]))
     return LimbResult.of(
         tube,
         **_fit([tube.places[k] for k in listed], tube.places, tube.length_mm),
@@ -223,17 +223,12 @@ def _of_tube(
 
 def _too_tight(places: Sequence[LimbPlace]) -> tuple[str, ...]:
     """A warning if the tube presses too hard somewhere."""
-    return too_tight(max(map(_highest, places)))
-
-
-def _highest(place: LimbPlace) -> float:
-    """Upper end of the pressure at a place, mmHg; 0 where there is none."""
-    return 0.0 if place.pressure is None else MMHG_PER_KPA * place.pressure.kpa.high
+    return too_tight(max(place.highest_mmhg for place in places))
 
 
 def _view(tube: TubeOnLimb, around: Direction) -> PosedView:
     rows, columns = (n - 1 for n in tube.corners_mm.shape[:2])
-    lines = np.array([_highest(place) for place in tube.places], dtype=np.float32)
+    lines = np.array([place.highest_mmhg for place in tube.places], dtype=np.float32)
     return PosedView(
         tube.corners_mm.astype(np.float32),
         Body.around(tube.limb_mm),
