@@ -84,8 +84,8 @@ def worn_tube(
     sizes = neighbourhood_sizes(chart, material)
     if not by_row:
         sizes = sizes.transpose(1, 0, 2)[..., ::-1]
-    sizes = np.where(inside[..., None], sizes, 0.0)
-    rests, heights = sizes[..., 0].sum(axis=1), sizes[..., 1].sum(axis=1) / inside.sum(axis=1)
+    rests = sizes[..., 0].sum(axis=1, where=inside)
+    heights = sizes[..., 1].mean(axis=1, where=inside)
     predictions = patches_of(chart, material).lines(around)
     places, along_mm = [], [0.0]
     for line, (rest, height) in enumerate(zip(rests.tolist(), heights.tolist(), strict=True)):
@@ -96,8 +96,9 @@ def worn_tube(
         along_limb = 0.0 if place.pressure is None else place.pressure.axial_strain_free
         along_mm.append(along_mm[-1] + height * (1.0 + along_limb))
     rings = _between(np.array([max(p.rest_mm, p.girth_mm) for p in places])) / (2.0 * np.pi)
-    shares = np.cumsum(sizes[..., 0], axis=1) / rests[:, None]
-    angles = 2.0 * np.pi * _between(np.pad(shares, ((0, 0), (1, 0)))) - np.pi
+    ends = np.pad(np.cumsum(sizes[..., 0], axis=1), ((0, 0), (1, 0)))
+    begins = np.take_along_axis(ends, inside.argmax(axis=1)[:, None], axis=1)
+    angles = 2.0 * np.pi * _between((ends - begins) / rests[:, None]) - np.pi
     bare = BARE * places[-1].girth_mm
     reached = np.array([-bare, *along_mm, along_mm[-1] + bare])
     radius = limb.girth_mm(reached) / (2.0 * np.pi)

@@ -118,6 +118,7 @@ def test_a_shaped_tube_has_the_stitches_of_its_rows() -> None:
     rests = np.array([place.rest_mm for place in tube.places])
     assert np.ptp(counts) > 10
     assert rests / counts == pytest.approx(np.full(len(counts), rests[0] / counts[0]))
+    assert np.isfinite(lying(tube.corners_mm).frames).all()
     edges = stitch.argmax(axis=1)
     around = np.arctan2(tube.corners_mm[..., 0], tube.corners_mm[..., 2])
     steps = [2 * np.pi / counts[row] for row in (0, -1)]
