@@ -86,7 +86,7 @@ def test_every_place_of_a_sleeve_is_shown_and_choices_outlast_another_garment(
         page.get_by_label("Circumference there").last.fill(str(girth))
     with page.expect_response("**/garment") as planned:
         page.locator("input[name=planner-fit][value=ease]").check(force=True)
-    page.get_by_label("Ease in percent").fill("-20")
+    page.get_by_label("Ease, %").fill("-20")
     page.get_by_label("Body", exact=True).select_option("garter")
     expect(page.locator("#planner-make")).to_be_enabled()
     count = len(planned.value.json()["worn"])
@@ -94,9 +94,9 @@ def test_every_place_of_a_sleeve_is_shown_and_choices_outlast_another_garment(
     expect(page.locator("#planner-pressure tbody tr")).to_have_count(count)
     _plan_again(page, "sock-leg")
     expect(page.get_by_label("Body", exact=True)).to_have_value("garter")
-    expect(page.get_by_label("Ease in percent")).to_have_value("-20")
+    expect(page.get_by_label("Ease, %")).to_have_value("-20")
     _plan_again(page, "glove")
-    expect(page.get_by_label("Ease in percent")).to_have_value("5")
+    expect(page.get_by_label("Ease of fingers and thumb, %")).to_have_value("5")
 
 
 @pytest.mark.slow

@@ -72,7 +72,6 @@ export function create(studio, { keeper }) {
     min: "-60",
     max: "100",
     step: "1",
-    "aria-label": "Ease in percent",
     oninput: () => {
       chosenFits.set(easeOf(), ease.value);
       changed();
@@ -84,7 +83,6 @@ export function create(studio, { keeper }) {
     max: "300",
     step: "1",
     value: String(TARGET_MMHG),
-    "aria-label": "Target pressure in mmHg",
     oninput: changed,
   });
   const graded = numberField({
