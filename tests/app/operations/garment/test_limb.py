@@ -75,13 +75,18 @@ def test_a_planned_sleeve_is_worn_with_the_stitches_of_its_rows(
 
 
 def test_the_highest_pressure_is_among_the_places_and_in_the_warning(client: TestClient) -> None:
-    bump = [(0, 165), (70, 165), (77, 240), (84, 165), (200, 165)]
+    bump = [(0, 165), (70, 165), (77, 200), (84, 165), (200, 165)]
     girths = [{"at_mm": at, "girth_mm": girth} for at, girth in bump]
     tall = {"chart": {"fabric": "stockinette", "columns": 40, "rows": 60}, "girths": girths}
     worn = post(client, "limb", TUBE | tall)
     highest = max(place["mmhg"][1] for place in worn["places"] if place["mmhg"])
     assert highest > worn["limit_mmhg"]
     assert f"by up to {highest:.0f} mmHg" in worn["notes"][0]
+    locked = [girth | {"girth_mm": 2.5 * girth["girth_mm"]} for girth in girths]
+    worn = post(client, "limb", TUBE | tall | {"girths": locked})
+    assert "can stretch no further" in worn["notes"][0]
+    view = {"chart": tall["chart"], "material": "acrylic", "curl": {"id": worn["id"]}}
+    solid(client, view | {"colour": "pressure"})
 
 
 def test_limb_at_the_command_line(tmp_path: Path) -> None:
