@@ -20,7 +20,8 @@ class PosedView:
     ----------
     corners_mm : (rows + 1, columns + 1, 3) corners of the stitches.
     body : what it rests on, if that is to be seen.
-    mmhg : (rows, columns) pressure on the limb; NaN where there is none. None if it is not worn.
+    mmhg : (rows, columns) pressure on the limb; NaN where there is none, infinite where the fabric
+        can stretch no further. None if it is not worn.
     """
 
     corners_mm: Floats

@@ -110,8 +110,8 @@ def stitch_colours(
     if colour is Colour.PRESSURE:
         if mmhg is None:
             raise InputError("colour", "needs a tube on a limb.", "Compute one and name its id.")
-        pressed = np.nan_to_num(mmhg)
-        return sequential(pressed, 0.0, float(pressed.max()))
+        most = float(mmhg[np.isfinite(mmhg)].max(initial=1.0))
+        return sequential(np.nan_to_num(mmhg, posinf=most), 0.0, most)
     return _kinds(colour, stitch_table(material), palette)[surroundings(chart)]
 
 

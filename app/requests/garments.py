@@ -7,7 +7,7 @@ from pydantic import Field
 
 from knitcore.chart.fabric import Fabric
 from knitcore.garment.gauge import Gauge, GaugeLength, GaugeSet
-from knitcore.garment.glove import STUDY_FABRICS, Finger, GloveFabrics, Hand, glove
+from knitcore.garment.glove import EASE, STUDY_FABRICS, Finger, GloveFabrics, Hand, glove
 from knitcore.garment.plan import GarmentPlan
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worn_piece import Fit
@@ -198,7 +198,7 @@ class Glove(Template):
     hand_fabric: Fabric = Field(STUDY_FABRICS.hand, description="Fabric of the hand and the cuff.")
     thumb_fabric: Fabric = STUDY_FABRICS.thumb
     finger_fabric: Fabric = STUDY_FABRICS.fingers
-    ease: Ease = -0.10
+    ease: Ease = EASE
 
     @property
     def fabrics(self) -> GloveFabrics:

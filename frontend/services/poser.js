@@ -7,7 +7,7 @@
  * @import {Studio} from "../state/studio.js"
  */
 
-import { api } from "../api.js";
+import { ApiError, api } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "./latest.js";
 import { figure, percent } from "../core/format.js";
@@ -17,6 +17,14 @@ import { REST } from "../state/studio.js";
 const DELAY_MS = 25;
 /** CPU time of the first shape, and that after which the second is shown as a preview, too. */
 const PATIENCE_S = [0.03, 40];
+
+const CHANGED = {
+  type: "input",
+  title: "This glove cannot be shown on the hand",
+  status: 422,
+  detail: "Its stitches or its yarn were changed since it was planned, and its fit is known only as planned.",
+  remedy: "Plan the glove with other fabrics or in another yarn, or undo the changes.",
+};
 
 /** @type {Record<string, (studio: Studio, signal: AbortSignal) => AsyncGenerator<Posed>>} */
 const SHAPES = { lying, worn, pulled, hung };
@@ -46,7 +54,7 @@ export function startPoser(studio) {
     const fits = old?.pose === now && old.rows === rows && old.columns === columns;
     // What was said of it in numbers does not hold any more.
     const words = now === "pulled" ? "Stretched" : POSES[now];
-    posed.value = fits && old ? { ...old, words, converged: false } : null;
+    posed.value = fits && old ? { ...old, words, pressure: undefined, converged: false } : null;
     if (!shapes) return;
     const why = hindrance(studio, now);
     if (why) {
@@ -145,7 +153,7 @@ async function* worn(studio, signal) {
   const { rows, columns } = studio.document.grid;
   const hand = gloveOf(studio);
   if (hand) {
-    const { id, parts, notes } = await api.run("glove", hand, signal);
+    const { id, parts, limit_mmhg, notes } = await api.run("glove", hand, signal);
     yield {
       pose: "worn",
       id,
@@ -153,36 +161,41 @@ async function* worn(studio, signal) {
       columns,
       converged: true,
       note: notes.at(-1) ?? "",
-      ...pressed(parts, notes, "hand"),
+      ...pressed(parts, limit_mmhg, notes, "hand"),
     };
     return;
   }
-  const { id, places, notes } = await api.run("limb", { ...studio.request, ...studio.limb }, signal);
+  const request = { ...studio.request, outline: studio.document.outlineText, ...studio.limb };
+  const { id, places, limit_mmhg, notes } = await api.run("limb", request, signal);
   if (!id) return;
   const note = notes.find((words) => !isWarning(words)) ?? "";
-  yield { pose: "worn", id, rows, columns, converged: true, note, ...pressed(places, notes, "body") };
+  yield { pose: "worn", id, rows, columns, converged: true, note, ...pressed(places, limit_mmhg, notes, "body") };
 }
 
 /** Whether a note of the service warns of a pressure that can stop the blood. @param {string} note */
 export const isWarning = (note) => note.includes("stop the blood");
 
 /**
- * What to say of a garment that is worn; its brightest stitches have the middle of the range of pressures.
+ * What to say of a garment that is worn; its brightest stitches have the highest pressure of all ranges.
  *
  * @param {{mmhg: [number, number] | null}[]} places
+ * @param {number} limit above which the blood can stop, mmHg
  * @param {string[]} notes
  * @param {string} where
  * @returns {Pick<Posed, "words" | "pressure">}
  */
-function pressed(places, notes, where) {
-  const most = Math.max(0, ...places.map(({ mmhg }) => (mmhg ? (mmhg[0] + mmhg[1]) / 2 : 0)));
-  if (!most) return { words: `On the ${where}: loose` };
-  return { words: `Pressure on the ${where}`, pressure: { most, warning: notes.filter(isWarning).join(" ") } };
+function pressed(places, limit, notes, where) {
+  const most = Math.max(0, ...places.map(({ mmhg }) => mmhg?.[1] ?? 0));
+  const warning = notes.filter(isWarning).join(" ");
+  if (!most && !warning) return { words: `On the ${where}: loose` };
+  return { words: `Pressure on the ${where}`, pressure: { most, limit, warning } };
 }
 
-/** The hand that the chart is a glove for, in the material of the design. @param {Studio} studio */
+/** The hand that the chart is a glove for; null if it is none. @param {Studio} studio */
 function gloveOf(studio) {
   const glove = studio.seeing.glove.value;
-  if (!glove || studio.document.outlineText !== glove.outline) return null;
-  return { ...glove.request, material: studio.materialId.value };
+  const { outlineText, grid } = studio.document;
+  if (!glove?.chart || outlineText !== glove.outline) return null;
+  if (grid.text !== glove.chart || studio.materialId.value !== glove.request.material) throw new ApiError(CHANGED);
+  return glove.request;
 }

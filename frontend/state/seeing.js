@@ -9,18 +9,19 @@
  * @typedef {"flat" | "lying" | "worn" | "hung" | "tested"} Pose of the fabric in 3D: held flat, as it lies, on
  *   the body, hanging from its top edge, a piece of it over an edge or a disc
  * @typedef {{pose: Pose | "pulled", id: string, rows: number, columns: number, converged: boolean, words: string,
- *   note: string, piece?: {chart: string, outline: string}, pressure?: {most: number, warning: string}}} Posed a
- *   shape that was computed, and what to say of it; the piece is another than the chart; the pressure, mmHg, is
- *   that of its brightest stitches
+ *   note: string, piece?: {chart: string, outline: string}, pressure?: {most: number, limit: number, warning: string}}} Posed a
+ *   shape that was computed, and what to say of it; the piece is another than the chart; the most pressure, mmHg,
+ *   is that of its brightest stitches, and above the limit it can stop the blood
  * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb
- * @typedef {{request: import("../types.js").GloveRequest, outline: string}} PlannedGlove the hand for which
- *   a glove was made, and the glove's outline
+ * @typedef {{request: import("../types.js").GloveRequest, outline: string, chart: string}} PlannedGlove the hand
+ *   for which a glove was made, and the glove's outline and stitches
  * @typedef {"light" | "hand" | "firm"} HandPull how hard a hand pulls
  * @typedef {"stitch" | "block" | "region"} Groups what an extensibility rectangle stands for
  */
 
 import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../design/store.js";
+import { Grid } from "../grid/grid.js";
 
 /** Names of the poses. @type {Record<Pose, string>} */
 export const POSES = { flat: "Flat", lying: "Unpinned", worn: "On the body", hung: "Hanging", tested: "In a test" };
@@ -74,7 +75,7 @@ export class Seeing {
         girths: settings.girths,
       }),
     );
-    /** The glove that was planned last: designs with its outline are worn on its hand. */
+    /** The glove that was planned last: designs with its outline and stitches are worn on its hand. */
     this.glove = new Signal(settings.glove);
     /** The stitch that was clicked in the 3D view last. */
     this.clickedStitch = new Signal(/** @type {Cell | null} */ (null));
@@ -85,5 +86,15 @@ export class Seeing {
     this.glove.listen((glove) => saveSettings({ glove }));
     this.limb.listen(({ direction, girths }) => saveSettings({ limbAround: direction, girths }));
     this.block.listen((block) => saveSettings({ block }));
+  }
+
+  /**
+   * A glove was planned.
+   *
+   * @param {import("../types.js").GloveRequest} request
+   * @param {Pick<import("../types.js").DesignDocument, "chart" | "outline">} design
+   */
+  planned(request, { chart, outline }) {
+    if (outline) this.glove.value = { request, outline, chart: Grid.fromText(chart).text };
   }
 }

@@ -32,6 +32,8 @@ const SETTINGS = { overlay: "fabrics", rectangles: false, tool: "pencil", size: 
 
 /** Girths of a limb that a tube of the chart sits on firmly, over its size at rest. */
 const SNUG = [1.12, 1.25];
+/** Intervals along a shaped chart between the girths that fit it. */
+const SHAPED = 4;
 
 /** @param {Pick<MaterialSummary, "fabrics">} yarn */
 export const isComplete = ({ fabrics }) => Object.keys(fabrics).length === 4;
@@ -163,14 +165,21 @@ export class Studio {
 
   /** A limb of the chart's size that grows a little along it. @returns {GirthAt[]} */
   get snugLimb() {
-    const { rows, columns } = this.document.grid;
+    const { grid, outline, shaped } = this.document;
+    const { rows, columns } = grid;
     const size = this.prediction.value.value;
-    const [course, wale] = [columns * (size?.relaxed_course_mm ?? 1), rows * (size?.relaxed_wale_mm ?? 1)];
-    const [around, long] = this.seeing.limb.value.direction === "course" ? [course, wale] : [wale, course];
-    return [
-      { at_mm: 0, girth_mm: Math.round(SNUG[0] * around) },
-      { at_mm: Math.max(1, Math.round(long)), girth_mm: Math.round(SNUG[1] * around) },
-    ];
+    const [course, wale] = [size?.relaxed_course_mm ?? 1, size?.relaxed_wale_mm ?? 1];
+    const byRow = this.seeing.limb.value.direction === "course";
+    const [lines, wide, high] = byRow ? [rows, course, wale] : [columns, wale, course];
+    const counts = new Uint32Array(lines);
+    outline.forEach((inside, i) => (counts[byRow ? Math.floor(i / columns) : i % columns] += inside));
+    const intervals = shaped ? SHAPED : 1;
+    return Array.from({ length: intervals + 1 }, (_, i) => {
+      const along = i / intervals;
+      const around = wide * counts[Math.min(lines - 1, Math.floor(along * lines))];
+      const girth = (SNUG[0] + along * (SNUG[1] - SNUG[0])) * around;
+      return { at_mm: Math.max(i, Math.round(along * lines * high)), girth_mm: Math.round(girth) };
+    });
   }
 
   /** The yarns whose four fabrics were all measured or estimated: they can be mixed in a chart. */

@@ -138,7 +138,7 @@ export function choice(name, label, choices, chosen, changed) {
   );
 }
 
-/** @param {string} label @param {Node} field @param {string} [hint] */
+/** @param {Child} label @param {Node} field @param {string} [hint] */
 export const labelled = (label, field, hint) =>
   h(
     "label",

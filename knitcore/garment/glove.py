@@ -13,10 +13,12 @@ and cast on without cutting the yarn.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
@@ -27,8 +29,15 @@ from knitcore.materials import Material
 
 CROTCH_ROWS = 2
 PALM_TOLERANCE = 0.10
+EASE = 0.05
+"""Ease of fingers and thumb unless given. Rows of a finger come in fours, some 11 mm around: the
+nearest count may be 9 % tighter, and a finger of wool 8 % too tight is pressed by over 30 mmHg."""
 MIN_EASE, MAX_EASE = -0.4, 0.3
 STUDY_GLOVE = "glove-wool:glove"
+FINGERS = ("index finger", "middle finger", "ring finger", "little finger")
+SUPPORT = "wrist support"
+
+GirthAlong = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -188,11 +197,85 @@ class GloveLayout:
         return ends + half[::-1]
 
 
+@dataclass(frozen=True, eq=False)
+class PartOnHand:
+    """Stitches of a glove that lie around one part of the hand.
+
+    Attributes
+    ----------
+    names : of the part, by the first column of each.
+    rows : around it, from the thumb's side over the back.
+    first : its first column.
+    at_mm : (columns + 1,) distances of the edges of its columns from where the part begins.
+    begins_mm : where that is, from the glove's edge.
+    girth_mm : at distances from there.
+    """
+
+    names: dict[int, str]
+    rows: Indices
+    first: int
+    at_mm: Array
+    begins_mm: float
+    girth_mm: GirthAlong
+
+    def places(self) -> Iterator[tuple[int, str, float, float]]:
+        """Columns, each with its part's name, its distance from the glove's edge and its girth."""
+        name = ""
+        for column, at in enumerate(0.5 * (self.at_mm[1:] + self.at_mm[:-1]), self.first):
+            name = self.names.get(column, name)
+            yield column, name, float(self.begins_mm + at), float(self.girth_mm(at))
+
+
+def parts_on_hand(hand: Hand, layout: GloveLayout) -> Iterator[PartOnHand]:
+    """Arm with the base of the thumb, then thumb, palm and the four fingers."""
+    rows, side = len(layout.ends), layout.side
+    support_mm = hand.cuff_mm + hand.wrist_mm
+    thumb_mm, crotch_mm = support_mm + hand.thumb_crotch_mm, support_mm + hand.palm_mm
+    at = np.interp(
+        np.arange(layout.crotch + 1),
+        [0, layout.cuff, layout.support, layout.thumb_crotch, layout.crotch],
+        [0.0, hand.cuff_mm, support_mm, thumb_mm, crotch_mm],
+    )
+    root_mm = hand.palm_circumference_mm + 2.0 * hand.thumb.circumference_mm / np.pi
+
+    def arm(at_mm: Array) -> Array:
+        girths = hand.wrist_circumference_mm, root_mm
+        return np.interp(at_mm, (support_mm, thumb_mm), girths)
+
+    def thumb(at_mm: Array) -> Array:
+        more = np.clip(1.0 - at_mm / max(hand.gusset_mm, 1e-9), 0.0, 1.0)
+        return np.asarray(hand.thumb.circumference_mm + hand.gusset_girth_mm * more)
+
+    def even(girth_mm: float) -> GirthAlong:
+        return lambda at_mm: np.full(np.shape(at_mm), girth_mm)
+
+    names = {0: "cuff", layout.cuff: SUPPORT, layout.support: "base of the thumb"}
+    yield PartOnHand(names, np.arange(rows), 0, at[: layout.thumb_crotch + 1], 0.0, arm)
+    half = layout.thumb_rows + len(layout.gusset_ends)
+    around = np.concatenate([np.arange(rows - half, rows), np.arange(half)])
+    first = layout.thumb_crotch
+    along = np.linspace(0.0, hand.thumb.length_mm, layout.thumb_tip - first + 1)
+    yield PartOnHand({first: "thumb"}, around, first, along, thumb_mm, thumb)
+    palm = np.arange(side, rows - side)
+    girth = even(hand.palm_circumference_mm)
+    yield PartOnHand({first: "hand"}, palm, first, at[first:] - thumb_mm, thumb_mm, girth)
+    begin, first = 0, layout.crotch
+    for name, finger, count, tip in zip(
+        FINGERS, hand.fingers, layout.finger_rows, layout.finger_tips, strict=True
+    ):
+        back, front = palm[begin : begin + count], palm[::-1][begin : begin + count][::-1]
+        along = np.linspace(0.0, finger.length_mm, tip - first + 1)
+        girth = even(finger.circumference_mm)
+        around = np.concatenate([back, front])
+        yield PartOnHand({first: name}, around, first, along, crotch_mm, girth)
+        begin += count + CROTCH_ROWS
+
+
 def glove(
     hand: Hand,
     material: Material,
     *,
-    ease: float = -0.10,
+    ease: float = EASE,
     mmhg: float | None = None,
     gauges: GaugeSet | None = None,
     fabrics: GloveFabrics = STUDY_FABRICS,
@@ -213,8 +296,8 @@ def glove(
     Notes
     -----
     Stitches along the hand come from the gauge of each part's own fabric, rows around it from the
-    fingers' and the thumb's; misfits are reported, and the pressure on the wrist is that of the
-    resulting rows.
+    fingers' and the thumb's; misfits are reported, and the pressure on every part of the hand is
+    that of the resulting rows, where the part is nearest to its lock-up.
 
     Raises
     ------
@@ -241,36 +324,55 @@ def glove(
     is_finger = (column >= crotch) & (kinds == "finger")
     parts = (
         Part("cuff", column < cuff, fabrics.hand),
-        Part("wrist support", (column >= cuff) & ~beyond, fabrics.support),
+        Part(SUPPORT, (column >= cuff) & ~beyond, fabrics.support),
         Part("hand", beyond & ~is_thumb & ~is_gusset & ~is_finger, fabrics.hand),
         Part("thumb", is_thumb, fabrics.thumb),
         Part("thumb gusset", is_gusset, fabrics.thumb),
         Part("fingers", is_finger, fabrics.fingers),
     )
     around = wrist_rows.stop - wrist_rows.start
-    pressed = worn(
-        material,
-        fabrics.support,
-        Direction.WALE,
-        around * support_gauge.stitch_wale_mm,
-        hand.wrist_circumference_mm,
-        at_mm=hand.cuff_mm + hand.wrist_mm / 2,
-        part="wrist support",
-    )
+    stitch = (column >= start) & (column < tips[:, None])
+    pressed = _worn(hand, layout, stitch, parts, material, gauges)
     return make_plan(
         "therapeutic glove",
-        (column >= start) & (column < tips[:, None]),
+        stitch,
         parts,
         material,
         gauges,
         around=Direction.WALE,
-        worn=(pressed,),
+        worn=tuple(pressed.values()),
         closing="graft the last row to the first along the thumb, join the wrist's two edges, and "
         "seam finger tips and sides",
         notes=_notes(hand, around, gauges[fabrics.hand], ease, material, fabrics.hand)
-        + _wrist_notes(pressed, support_gauge, material, around, mmhg, fabrics.support),
+        + _wrist_notes(pressed[SUPPORT], support_gauge, material, around, mmhg, fabrics.support),
         linear_density_tex=linear_density_tex,
     )
+
+
+def _worn(
+    hand: Hand,
+    layout: GloveLayout,
+    stitch: Mask,
+    parts: tuple[Part, ...],
+    material: Material,
+    gauges: GaugeSet,
+) -> dict[str, Worn]:
+    """Every part of the hand where the glove is nearest to its lock-up, by name."""
+    heights = np.sum([gauges[p.fabric].stitch_wale_mm * (p.cells & stitch) for p in parts], axis=0)
+    lock_ups = {p.fabric: material.law(p.fabric).lock_up_strain(Direction.WALE) for p in parts}
+    shares: dict[str, float] = {}
+    pressed: dict[str, Worn] = {}
+    for on_hand in parts_on_hand(hand, layout):
+        for column, name, at, girth in on_hand.places():
+            rest = float(heights[on_hand.rows, column].sum())
+            here = on_hand.rows, column
+            for fabric in {p.fabric for p in parts if (p.cells[here] & stitch[here]).any()}:
+                share = (girth / rest - 1.0) / lock_ups[fabric]
+                if share > shares.get(name, -np.inf):
+                    shares[name] = share
+                    place = worn(material, fabric, Direction.WALE, rest, girth, at_mm=at, part=name)
+                    pressed[name] = place
+    return pressed
 
 
 def _gusset(hand: Hand, thumb: Gauge, thumb_crotch: int) -> list[int]:

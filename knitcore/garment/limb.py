@@ -189,6 +189,13 @@ class LimbPlace:
         """Circumference of the tube over that of the limb, minus one: negative where stretched."""
         return self.rest_mm / self.girth_mm - 1.0
 
+    @property
+    def highest_mmhg(self) -> float:
+        """Upper end of the pressure: 0 where it is loose, infinite where the chart is locked."""
+        if self.pressure is None:
+            return math.inf if self.ease < 0.0 else 0.0
+        return MMHG_PER_KPA * self.pressure.kpa.high
+
 
 def on_limb(
     along: Along,

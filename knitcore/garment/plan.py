@@ -19,6 +19,7 @@ from knitcore.garment.regions import (
 from knitcore.garment.shaped import ShapedChart
 from knitcore.garment.worn_piece import Worn
 from knitcore.materials import Material
+from knitcore.mechanics.pressure import too_tight_parts
 
 FABRIC_COLOURS = {
     Fabric.STOCKINETTE: "#3b6fb6",
@@ -116,13 +117,18 @@ def make_plan(
         around=around,
         worn=worn,
         closing=closing,
-        notes=notes,
+        notes=(*_too_tight(worn), *notes),
         misfits=misfits(regions, sizes, stitch),
         numbers=region_numbers(shaped, regions, material),
         yarn=_scaled(
             yarn_use(shaped, material, linear_density_tex=linear_density_tex), gauges.length_factor
         ),
     )
+
+
+def _too_tight(worn: tuple[Worn, ...]) -> tuple[str, ...]:
+    """A warning that names the parts that press too hard."""
+    return too_tight_parts([(place.part, place.highest_mmhg) for place in worn])
 
 
 def _scaled(use: YarnUse, factor: float) -> YarnUse:

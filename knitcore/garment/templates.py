@@ -18,7 +18,7 @@ MAX_CHANGE = 2
 """Largest number of stitches that a row gains or loses: one at each edge."""
 SNUG = Fit()
 KEEPS = 0.2
-"""How far a ribbing may be off the target, as a share, and still keep to it."""
+"""How far an edge may be off the target, as a share, and still keep to it."""
 PLACES = 5
 """Number of positions along a limb at which the pressure is given, besides those measured."""
 
@@ -128,12 +128,12 @@ def limb_tube(
     )
 
 
-def _off_target(place: Worn, mmhg: float | None) -> str:
-    """A note if a ribbing, which has the stitches of the body, misses its target pressure."""
+def _off_target(place: Worn, mmhg: float | None, body: str = "body") -> str:
+    """A note if an edge, which has the stitches of the body, misses its target pressure."""
     if mmhg is None:
         return ""
-    wish = f"The {place.part} does not keep to the {mmhg:.0f} mmHg of the body"
-    remedy = "Knit it in the fabric of the body to keep to it."
+    wish = f"The {place.part} does not keep to the {mmhg:.0f} mmHg of the {body}"
+    remedy = f"Knit it in the fabric of the {body} to keep to it."
     if place.pressure is None:
         return f"{wish}: {place.problem} {remedy}"
     low, high = place.pressure.mmhg.low, place.pressure.mmhg.high
@@ -224,15 +224,24 @@ def wrist_brace(
         Part("support", (column >= wide) & (column < columns - wide), support),
         Part("edge at the hand", column >= columns - wide, edge),
     )
-    pressed = worn(
-        material,
-        support,
-        Direction.WALE,
-        rows * gauge.stitch_wale_mm,
-        wrist_mm,
-        at_mm=length_mm / 2,
-        part="support",
-    )
+    edge_mm = wide * gauge.stitch_course_mm
+    pressed = [
+        worn(
+            material,
+            part.fabric,
+            Direction.WALE,
+            rows * gauges[part.fabric].stitch_wale_mm,
+            wrist_mm,
+            at_mm=at,
+            part=part.name,
+        )
+        for part, at in zip(
+            parts, (edge_mm / 2, length_mm / 2, length_mm - edge_mm / 2), strict=True
+        )
+        if part.cells.any()
+    ]
+    mmhg = fit.mmhg_at(length_mm / 2)
+    edges = [w for w in pressed if w.part != "support"]
     return make_plan(
         "wrist brace",
         np.ones((rows, columns), dtype=bool),
@@ -240,8 +249,9 @@ def wrist_brace(
         material,
         gauges,
         around=Direction.WALE,
-        worn=(pressed,),
+        worn=tuple(pressed),
         closing="graft the last row to the first",
+        notes=tuple(n for w in edges if (n := _off_target(w, mmhg, "support"))),
         linear_density_tex=linear_density_tex,
     )
 

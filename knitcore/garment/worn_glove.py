@@ -14,26 +14,28 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array, Indices
+from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.glove import (
     CROTCH_ROWS,
+    EASE,
     STUDY_FABRICS,
+    GirthAlong,
     GloveFabrics,
     GloveLayout,
     Hand,
+    PartOnHand,
     glove,
+    parts_on_hand,
 )
 from knitcore.garment.limb import LimbPlace, place_on
 from knitcore.garment.plan import GarmentPlan
 from knitcore.materials import Material
-from knitcore.mechanics.pressure import MMHG_PER_KPA
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Prediction
 
-FINGERS = ("index finger", "middle finger", "ring finger", "little finger")
 SIDES = 48
 """Number of sides with which the surface of a part is drawn."""
 WRIST_DEPTH, HAND_DEPTH = 0.22, 0.13
@@ -52,7 +54,6 @@ GATHERED = 0.05
 Curve = Callable[[Array, Array], Array]
 """Points (…, 3), mm, of a part of the hand: at shares of the way around it, from the thumb's side
 over the back, and at distances from where it begins, mm."""
-GirthAlong = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +65,8 @@ class GloveOnHand:
     plan : of the glove.
     corners_mm : (rows + 1, columns + 1, 3) corners of the stitches; corners without a stitch have
         no meaning. The face is outside.
-    mmhg : (rows, columns) pressure, the middle between free and fixed along the hand; NaN where
-        there is none.
+    mmhg : (rows, columns) pressure, the upper end of its range; infinite where a fabric is locked,
+        NaN where there is no stitch.
     parts : the place of each part where it is nearest to its lock-up.
     body_mm : (rings, sides, 3) of every part of the hand, closed around.
     """
@@ -81,7 +82,7 @@ def glove_on_hand(
     hand: Hand,
     material: Material,
     *,
-    ease: float = -0.10,
+    ease: float = EASE,
     gauges: GaugeSet | None = None,
     fabrics: GloveFabrics = STUDY_FABRICS,
 ) -> GloveOnHand:
@@ -109,11 +110,13 @@ def glove_on_hand(
     fitted = _fits(material)
     for loop in loops:
         loop.lay(heights, corners)
-        for column, name, place_at in loop.places():
-            for fabric in {cell for cell in fabric_at[loop.rows, column] if cell is not None}:
-                place = fitted(fabric, *place_at, float(heights[loop.rows, column].sum()))
-                mmhg[loop.rows[fabric_at[loop.rows, column] == fabric], column] = _middle(place)
-                if name not in parts or place.lock_up_share > parts[name].lock_up_share:
+        around = loop.part.rows
+        for column, name, at_mm, girth_mm in loop.part.places():
+            rest_mm = float(heights[around, column].sum())
+            for fabric in {cell for cell in fabric_at[around, column] if cell is not None}:
+                place = fitted(fabric, at_mm, girth_mm, rest_mm)
+                mmhg[around[fabric_at[around, column] == fabric], column] = place.highest_mmhg
+                if name not in parts or _tightness(place) > _tightness(parts[name]):
                     parts[name] = place
     return GloveOnHand(plan, corners, mmhg, parts, tuple(loop.skin() for loop in loops))
 
@@ -144,69 +147,53 @@ def _fits(material: Material) -> Callable[[Fabric, float, float, float], LimbPla
     return fitted
 
 
-def _middle(place: LimbPlace) -> float:
-    """Pressure, the middle between free and fixed along the hand, mmHg."""
-    if place.pressure is None:
-        return np.nan
-    return 0.5 * MMHG_PER_KPA * (place.pressure.kpa.low + place.pressure.kpa.high)
+def _tightness(place: LimbPlace) -> tuple[float, float]:
+    """Nearness to the lock-up, and for loose places to the limb."""
+    return place.lock_up_share, -place.ease
 
 
 @dataclass(frozen=True, eq=False)
 class _Loop:
-    """Stitches that lie around one part of the hand.
+    """Stitches that lie around one part of the hand, in space.
 
     Parameters
     ----------
-    names : of the part, by the first column of each.
-    rows : around it, from the thumb's side over the back.
-    first : its first column.
-    at_mm : (columns + 1,) distances of the edges of its columns from where the part begins.
-    begins_mm : where that is, from the glove's edge.
-    girth_mm, curve : of the part.
+    part : which stitches.
+    curve : of the part.
     grown : (columns + 1, rows) share of its height that a row has there; None if all do, but those
         that have ended.
     """
 
-    names: dict[int, str]
-    rows: Indices
-    first: int
-    at_mm: Array
-    begins_mm: float
-    girth_mm: GirthAlong
+    part: PartOnHand
     curve: Curve
     grown: Array | None = None
 
-    def places(self) -> Iterator[tuple[int, str, tuple[float, float]]]:
-        """Columns, each with its part's name, its distance from the glove's edge and its girth."""
-        name = ""
-        for column, at in enumerate(0.5 * (self.at_mm[1:] + self.at_mm[:-1]), self.first):
-            name = self.names.get(column, name)
-            yield column, name, (float(self.begins_mm + at), float(self.girth_mm(at)))
-
     def lay(self, heights_mm: Array, corners_mm: Array) -> None:
         """Set the corners of its stitches, but not the first of a part that leaves another."""
-        count = len(self.at_mm) - 1
+        part = self.part
+        count = len(part.at_mm) - 1
         for k in range(0 if self.grown is not None else 1, count + 1):
             # rows that end are still there at the edge where they do, those that grow already
             column = k - 1 if self.grown is None else min(k, count - 1)
-            own = heights_mm[self.rows, self.first + column]
+            own = heights_mm[part.rows, part.first + column]
             own = own if self.grown is None else own * self.grown[k]
-            at = self.at_mm[k]
-            wide = max(1.0, float(own.sum() / self.girth_mm(at)))
+            at = part.at_mm[k]
+            wide = max(1.0, float(own.sum() / part.girth_mm(at)))
             around = np.append(0.0, np.cumsum(own)) / own.sum()
             lower, upper = around[:-1] + _INSIDE, around[1:] - _INSIDE
             middle = self.curve(np.arange(0.0, 1.0, 0.125), np.full(8, at)).mean(axis=0)
             there = own > 0.0
-            for rows, share in ((self.rows, lower), (self.rows + 1, upper)):
+            for rows, share in ((part.rows, lower), (part.rows + 1, upper)):
                 points = self.curve(share[there], np.full(np.count_nonzero(there), at))
-                corners_mm[rows[there], self.first + k] = middle + wide * (points - middle)
+                corners_mm[rows[there], part.first + k] = middle + wide * (points - middle)
 
     def skin(self) -> Array:
         """Rings of the part's surface, (rings, sides, 3), closed at both ends."""
-        reach = float(self.girth_mm(self.at_mm[-1])) * TIP / (2.0 * np.pi)
+        ends_mm = self.part.at_mm[-1]
+        reach = float(self.part.girth_mm(ends_mm)) * TIP / (2.0 * np.pi)
         before = [-BARE_MM] if self.grown is not None else []
-        beyond = [] if self.grown is not None else self.at_mm[-1] + reach * np.array([0.5, 0.9])
-        at = np.concatenate([before, self.at_mm, beyond])
+        beyond = [] if self.grown is not None else ends_mm + reach * np.array([0.5, 0.9])
+        at = np.concatenate([before, self.part.at_mm, beyond])
         share = (np.arange(SIDES) + 0.5) / SIDES
         rings = self.curve(*np.broadcast_arrays(share[None], at[:, None]))
         ends = np.broadcast_to(rings[[0, -1]].mean(axis=1, keepdims=True), (2, SIDES, 3))
@@ -219,46 +206,39 @@ _INSIDE = 1e-9
 
 def _loops(hand: Hand, layout: GloveLayout, heights_mm: Array) -> Iterator[_Loop]:
     """The parts, each after the part that it leaves."""
-    rows = len(heights_mm)
-    support_mm = hand.cuff_mm + hand.wrist_mm
-    thumb_mm, crotch_mm = support_mm + hand.thumb_crotch_mm, support_mm + hand.palm_mm
-    columns = np.arange(layout.crotch + 1)
-    at = np.interp(
-        columns,
-        [0, layout.cuff, layout.support, layout.thumb_crotch, layout.crotch],
-        [0.0, hand.cuff_mm, support_mm, thumb_mm, crotch_mm],
-    )
-    trunk_at, palm_at = at[: layout.thumb_crotch + 1], at[layout.thumb_crotch :] - thumb_mm
-    side = layout.side
-    grown = np.ones((len(trunk_at), rows))
-    risen = np.clip((trunk_at - support_mm) / hand.thumb_crotch_mm, GATHERED, 1.0)
-    grown[:, : side - 1] = grown[:, rows - side + 1 :] = risen[:, None]
-    trunk_girth, trunk, thumb_root = _trunk(hand)
-    yield _Loop(
-        {0: "cuff", layout.cuff: "wrist support", layout.support: "base of the thumb"},
-        np.arange(rows), 0, trunk_at, 0.0, trunk_girth, trunk, grown,
-    )  # fmt: skip
-    around = heights_mm[:, layout.thumb_crotch - 1]
-    shares = _shares(around)
-    yield _thumb(hand, layout, around, trunk, thumb_root)
+    trunk, thumb, palm, *fingers = parts_on_hand(hand, layout)
+    rows, side = len(heights_mm), layout.side
+    risen = (trunk.at_mm - hand.cuff_mm - hand.wrist_mm) / hand.thumb_crotch_mm
+    grown = np.ones((len(trunk.at_mm), rows))
+    grown[:, : side - 1] = np.clip(risen, GATHERED, 1.0)[:, None]
+    grown[:, rows - side + 1 :] = grown[:, :1]
+    trunk_curve, thumb_root = _trunk(hand, trunk.girth_mm)
+    yield _Loop(trunk, trunk_curve, grown)
+    shares = _shares(heights_mm[:, layout.thumb_crotch - 1])
+    half = len(thumb.rows) // 2
+    leaves_mm = thumb.begins_mm
+    tube = _tube(thumb_root, leaves_mm, THUMB_ANGLE, thumb.girth_mm, hand.thumb.length_mm)
 
-    def palm_girth(at_mm: Array) -> Array:
-        return np.full(np.shape(at_mm), hand.palm_circumference_mm)
+    def of_trunk(share: Array) -> Array:
+        return np.asarray(shares[half] * (2.0 * share - 1.0))
+
+    def own_thumb(share: Array, at_mm: Array) -> Array:
+        return tube(share + 0.5, at_mm)  # from the crotch
+
+    yield _Loop(thumb, _leaving(trunk_curve, leaves_mm, of_trunk, own_thumb, THUMB_ANGLE))
 
     def own_palm(share: Array, at_mm: Array) -> Array:
-        flat = _section(share, palm_girth(share), HAND_DEPTH * palm_girth(share))
-        return np.stack([flat[..., 0], thumb_mm + at_mm, flat[..., 1]], axis=-1)
+        girth = palm.girth_mm(share)
+        flat = _section(share, girth, HAND_DEPTH * girth)
+        return np.stack([flat[..., 0], leaves_mm + at_mm, flat[..., 1]], axis=-1)
 
-    palm = _leaving(
-        trunk, thumb_mm, lambda s: shares[side] + (1.0 - 2.0 * shares[side]) * s, own_palm, 0.0
-    )
-    palm_rows = np.arange(side, rows - side)
-    yield _Loop(
-        {layout.thumb_crotch: "hand"}, palm_rows, layout.thumb_crotch, palm_at, thumb_mm,
-        palm_girth, palm,
-    )  # fmt: skip
-    around = heights_mm[palm_rows, layout.crotch - 1]
-    yield from _fingers(hand, layout, palm_rows, around, palm, palm_at[-1])
+    def beside_thumb(share: Array) -> Array:
+        return np.asarray(shares[side] + (1.0 - 2.0 * shares[side]) * share)
+
+    palm_curve = _leaving(trunk_curve, leaves_mm, beside_thumb, own_palm, 0.0)
+    yield _Loop(palm, palm_curve)
+    around = heights_mm[palm.rows, layout.crotch - 1]
+    yield from _fingers(hand, fingers, _shares(around), palm_curve, palm.at_mm[-1])
 
 
 def _shares(heights_mm: Array) -> Array:
@@ -266,69 +246,25 @@ def _shares(heights_mm: Array) -> Array:
     return np.asarray(np.append(0.0, np.cumsum(heights_mm)) / heights_mm.sum())
 
 
-def _thumb(hand: Hand, layout: GloveLayout, heights_mm: Array, trunk: Curve, root: float) -> _Loop:
-    """The thumb with its gusset, which leaves the trunk where its rows are ``heights_mm`` high."""
-    rows, shares = len(heights_mm), _shares(heights_mm)
-    leaves_mm = hand.cuff_mm + hand.wrist_mm + hand.thumb_crotch_mm
-    half = layout.thumb_rows + len(layout.gusset_ends)
-
-    def girth(at_mm: Array) -> Array:
-        more = np.clip(1.0 - at_mm / max(hand.gusset_mm, 1e-9), 0.0, 1.0)
-        return np.asarray(hand.thumb.circumference_mm + hand.gusset_girth_mm * more)
-
-    tube = _tube(root, leaves_mm, THUMB_ANGLE, girth, hand.thumb.length_mm)
-
-    def own(share: Array, at_mm: Array) -> Array:
-        return tube(share + 0.5, at_mm)  # from the crotch
-
-    return _Loop(
-        {layout.thumb_crotch: "thumb"},
-        np.concatenate([np.arange(rows - half, rows), np.arange(half)]),
-        layout.thumb_crotch,
-        np.linspace(0.0, hand.thumb.length_mm, layout.thumb_tip - layout.thumb_crotch + 1),
-        leaves_mm,
-        girth,
-        _leaving(trunk, leaves_mm, lambda s: shares[half] * (2.0 * s - 1.0), own, THUMB_ANGLE),
-    )
-
-
 def _fingers(
-    hand: Hand,
-    layout: GloveLayout,
-    palm_rows: Indices,
-    heights_mm: Array,
-    palm: Curve,
-    palm_mm: float,
+    hand: Hand, fingers: list[PartOnHand], shares: Array, palm: Curve, palm_mm: float
 ) -> Iterator[_Loop]:
-    """The fingers, which leave the palm at its end, where its rows are ``heights_mm`` high."""
-    shares = _shares(heights_mm)
-    crotch_mm = hand.cuff_mm + hand.wrist_mm + hand.palm_mm
+    """The fingers, which leave the palm at its end, where its rows have these shares."""
     begin = 0
-    places = zip(
-        FINGERS, hand.fingers, layout.finger_rows, layout.finger_tips, _roots(hand), strict=True
-    )
-    for name, finger, count, tip, (root, angle) in places:
-        back = palm_rows[begin : begin + count]
-        front = palm_rows[::-1][begin : begin + count][::-1]
+    for part, finger, (root, angle) in zip(fingers, hand.fingers, _roots(hand), strict=True):
+        count = len(part.rows) // 2
         ends = float(shares[begin]), float(shares[begin + count])
-
-        def girth(at_mm: Array, around_mm: float = finger.circumference_mm) -> Array:
-            return np.full(np.shape(at_mm), around_mm)
 
         def of_palm(share: Array, ends: tuple[float, float] = ends) -> Array:
             across = (ends[1] - ends[0]) * np.where(share < 0.5, 2.0 * share, 2.0 * share - 1.0)
             return np.where(share < 0.5, ends[0] + across, 1.0 - ends[1] + across)
 
-        tube = _tube(root, crotch_mm, angle, girth, finger.length_mm)
-        yield _Loop(
-            {layout.crotch: name}, np.concatenate([back, front]), layout.crotch,
-            np.linspace(0.0, finger.length_mm, tip - layout.crotch + 1), crotch_mm, girth,
-            _leaving(palm, palm_mm, of_palm, tube, angle),
-        )  # fmt: skip
+        tube = _tube(root, part.begins_mm, angle, part.girth_mm, finger.length_mm)
+        yield _Loop(part, _leaving(palm, palm_mm, of_palm, tube, angle))
         begin += count + CROTCH_ROWS
 
 
-def _trunk(hand: Hand) -> tuple[GirthAlong, Curve, float]:
+def _trunk(hand: Hand, girth: GirthAlong) -> tuple[Curve, float]:
     """Forearm, wrist and palm with the thumb's base, and where the thumb's axis leaves it."""
     support_mm = hand.cuff_mm + hand.wrist_mm
     stations = support_mm, support_mm + hand.thumb_crotch_mm
@@ -338,15 +274,12 @@ def _trunk(hand: Hand) -> tuple[GirthAlong, Curve, float]:
     # the little finger's side is straight, the thumb's goes out
     outer = _half_width(palm + 2.0 * thumb, depths[1]) - _half_width(palm, depths[1])
 
-    def girth(at_mm: Array) -> Array:
-        return np.interp(at_mm, stations, (wrist, palm + 2.0 * thumb))
-
     def curve(share: Array, at_mm: Array) -> Array:
         flat = _section(share, girth(at_mm), np.interp(at_mm, stations, depths))
         aside = np.interp(at_mm, stations, (0.0, outer))
         return np.stack([flat[..., 0] + aside, at_mm, flat[..., 1]], axis=-1)
 
-    return girth, curve, _half_width(palm, depths[1]) + 2.0 * outer - 0.5 * thumb
+    return curve, _half_width(palm, depths[1]) + 2.0 * outer - 0.5 * thumb
 
 
 def _roots(hand: Hand) -> Iterator[tuple[float, float]]:

@@ -1,5 +1,6 @@
 """The pressure of a garment where it is worn, and the width that gives a target pressure."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -41,6 +42,13 @@ class Worn:
     def ease(self) -> float:
         """Rest over worn circumference, minus one: negative where the garment is stretched."""
         return self.rest_mm / self.worn_mm - 1
+
+    @property
+    def highest_mmhg(self) -> float:
+        """Upper end of the pressure: 0 where it is loose, infinite where the fabric is locked."""
+        if self.pressure is None:
+            return math.inf if self.ease < 0 else 0.0
+        return self.pressure.mmhg.high
 
 
 def worn(

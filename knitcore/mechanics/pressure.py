@@ -13,6 +13,7 @@ measurements.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from scipy.optimize import brentq
@@ -77,8 +78,8 @@ def worn_strain(rest_mm: float, worn_mm: float) -> float:
     if worn_mm < rest_mm:
         raise InputError(
             "worn_mm",
-            f"{worn_mm:g} mm is smaller than the unworn {rest_mm:g} mm: the tube is loose.",
-            "Give a tube that is smaller than the limb.",
+            f"the tube is loose, {rest_mm:.4g} mm around unworn on a limb of {worn_mm:.4g} mm.",
+            "Make it smaller if it is to press.",
         )
     return worn_mm / rest_mm - 1
 
@@ -133,14 +134,24 @@ def limb_pressure(
 
 
 def too_tight(mmhg: float, where: str = "It") -> tuple[str, ...]:
-    """A warning of a pressure that can stop the blood, in a sentence; none below."""
+    """A warning of a pressure that can stop the blood; infinite where the fabric is locked."""
     if mmhg <= CAPILLARY_MMHG:
         return ()
+    amount = f"up to {mmhg:.0f} mmHg"
+    if math.isinf(mmhg):
+        amount = "more than can be computed, as its fabric can stretch no further"
     return (
-        f"{where} may press by up to {mmhg:.0f} mmHg. Above {CAPILLARY_MMHG:.0f} mmHg, at which "
+        f"{where} may press by {amount}. Above {CAPILLARY_MMHG:.0f} mmHg, at which "
         "blood enters the capillaries of a finger, it can stop the blood: make it looser, or ask "
         "a doctor.",
     )
+
+
+def too_tight_parts(highest: Sequence[tuple[str, float]]) -> tuple[str, ...]:
+    """A warning that names the parts that press too hard, from pairs of a part and mmHg."""
+    names = dict.fromkeys(name for name, mmhg in highest if mmhg > CAPILLARY_MMHG)
+    most = max((mmhg for _, mmhg in highest), default=0.0)
+    return too_tight(most, f"Too tight: {', '.join(names)}. It")
 
 
 def rest_circumference(

@@ -48,7 +48,8 @@ def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: 
 def test_a_brace_for_a_pressure_shows_its_pressure(flat_studio: Page) -> None:
     page = flat_studio
     _plan(page, "wrist-brace")
-    support = page.locator("#planner-pressure tbody tr")
+    support = page.locator("#planner-pressure tbody tr").nth(1)
+    expect(page.locator("#planner-facts")).to_contain_text("edge at the hand does not keep to the")
     expect(support).to_contain_text("mmHg")
     expect(support).to_contain_text("170 mm")
     by_pressure = support.inner_text()
@@ -60,6 +61,42 @@ def test_a_brace_for_a_pressure_shows_its_pressure(flat_studio: Page) -> None:
     problem = page.locator("#planner-dialog .problem")
     expect(problem).to_contain_text("Around the wrist: enter 80 to 350 mm.")
     expect(page.locator("#planner-make")).to_be_disabled()
+
+
+def test_a_glove_tells_where_it_is_too_tight(flat_studio: Page) -> None:
+    """Its default does not; every part is in the table."""
+    page = flat_studio
+    _plan(page, "glove")
+    places = page.locator("#planner-pressure tbody tr")
+    expect(places).to_have_count(9)
+    warning = page.locator("#planner-facts [role=alert]")
+    expect(warning).to_have_count(0)
+    page.get_by_label("Ease of fingers and thumb, %").fill("-15")
+    expect(warning).to_contain_text("little finger. It may press by up to")
+    expect(places.last).to_contain_text("mmHg")
+
+
+def test_every_place_of_a_sleeve_is_shown_and_choices_outlast_another_garment(
+    flat_studio: Page,
+) -> None:
+    page = flat_studio
+    _plan(page, "limb")
+    for girth in (280, 290, 300, 310, 320):
+        page.click("#planner-add")
+        page.get_by_label("Circumference there").last.fill(str(girth))
+    with page.expect_response("**/garment") as planned:
+        page.locator("input[name=planner-fit][value=ease]").check(force=True)
+    page.get_by_label("Ease, %").fill("-20")
+    page.get_by_label("Body", exact=True).select_option("garter")
+    expect(page.locator("#planner-make")).to_be_enabled()
+    count = len(planned.value.json()["worn"])
+    assert count > 9
+    expect(page.locator("#planner-pressure tbody tr")).to_have_count(count)
+    _plan_again(page, "sock-leg")
+    expect(page.get_by_label("Body", exact=True)).to_have_value("garter")
+    expect(page.get_by_label("Ease, %")).to_have_value("-20")
+    _plan_again(page, "glove")
+    expect(page.get_by_label("Ease of fingers and thumb, %")).to_have_value("5")
 
 
 @pytest.mark.slow

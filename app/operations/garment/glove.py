@@ -9,7 +9,7 @@ from pydantic import Field
 from knitcore.draw.body import Body
 from knitcore.garment.worn_glove import GloveOnHand, glove_on_hand, prediction_of
 from knitcore.materials.law_uncertainty import in_a_sentence
-from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA, too_tight
+from knitcore.mechanics.pressure import CAPILLARY_MMHG, ELASTIC_MEAN, too_tight_parts
 
 from ...cli.options import out_option
 from ...context import Context
@@ -19,7 +19,7 @@ from ...requests.garments import Glove, KnitterRequest
 from ..perform import Viewed
 from ..registry import Command, Operation
 from .garment import measured_options, read_measured
-from .limb import HEADING, LimbPlaceResult
+from .limb import HEADING, LIMIT, LimbPlaceResult
 
 SIMPLE = (
     "Fingers and thumb are cylinders, palm and forearm straight in front and behind. Every part is "
@@ -47,6 +47,7 @@ class GloveResult(IntervalResult):
     rows: int
     columns: int
     parts: list[GlovePart]
+    limit_mmhg: float = Field(CAPILLARY_MMHG, description=LIMIT)
     notes: list[str]
 
 
@@ -80,13 +81,7 @@ def _result(worn: GloveOnHand, request: GloveRequest, context: Context) -> Glove
 
 def _too_tight(worn: GloveOnHand) -> tuple[str, ...]:
     """A warning that names the parts that press too hard."""
-    highest = {
-        name: MMHG_PER_KPA * place.pressure.kpa.high
-        for name, place in worn.parts.items()
-        if place.pressure is not None
-    }
-    tight = [name for name, mmhg in highest.items() if too_tight(mmhg)]
-    return too_tight(max(highest.values(), default=0.0), f"Too tight: {', '.join(tight)}")
+    return too_tight_parts([(name, place.highest_mmhg) for name, place in worn.parts.items()])
 
 
 def _worn(request: GloveRequest, context: Context) -> GloveOnHand:

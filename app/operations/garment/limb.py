@@ -22,8 +22,10 @@ from knitcore.garment.limb import (
     MeasuredLimb,
     on_limb,
 )
+from knitcore.garment.shaped import ShapedChart, outline_marks
+from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import in_a_sentence
-from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA, too_tight
+from knitcore.mechanics.pressure import CAPILLARY_MMHG, ELASTIC_MEAN, MMHG_PER_KPA, too_tight
 from knitcore.prediction.patches import SIDE
 from knitcore.prediction.predict import predict
 
@@ -31,13 +33,14 @@ from ...cli.options import out_option
 from ...context import Context
 from ...drawing.computed import PosedView
 from ...requests.base import Ends, IntervalResult, RequestModel, ResultModel
-from ...requests.charts import to_chart
+from ...requests.charts import OutlineInput
 from ...requests.fabrics import FabricRequest
 from ..perform import Viewed
 from ..registry import Command, Operation
 
 MAX_STITCHES = 40_000
 """Largest number of stitches of a chart that is itself the tube."""
+LIMIT = "Pressure above which the garment can stop the blood in the capillaries."
 FREE_ALONG = (
     "Nothing holds the tube along the limb here, so it shortens freely; friction may keep it "
     "longer."
@@ -68,6 +71,7 @@ class TubeGirth(RequestModel):
 class LimbRequest(FabricRequest):
     """A tube of a chart, and a limb by its girths."""
 
+    outline: OutlineInput = None
     direction: Direction = Field(
         Direction.COURSE, description="Direction of the chart that runs around the limb."
     )
@@ -139,15 +143,17 @@ class LimbResult(IntervalResult):
         None, description="Length of the whole chart on the limb, held by nothing along it."
     )
     relaxed_length_mm: float | None = None
+    limit_mmhg: float = Field(CAPILLARY_MMHG, description=LIMIT)
     notes: list[str]
 
 
 def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
     """Ease, pressure by Laplace's law and nearness to lock-up at 21 places along a limb.
 
-    With `rest_mm` at every place, the chart is a repeat of a tube of these sizes. Without, the
-    whole chart is the tube: its first row is where the limb begins, or its first column where the
-    columns run around it. The 3D view can show such a tube.
+    With `rest_mm` at every place, the chart is a repeat of a tube of these sizes: of a chart with
+    an outline, the largest rectangle inside. Without, the whole chart is the tube, every row with
+    the stitches inside the outline: its first row is where the limb begins, or its first column
+    where the columns run around it. The 3D view can show such a tube.
 
     Raises
     ------
@@ -156,11 +162,12 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
         a tube, or the material lacks a fabric of the chart.
     """
     rests = [g.rest_mm for g in request.girths if g.rest_mm is not None]
-    answer = predict(*request.fabric(context))
+    shaped, material = _shaped(request, context)
+    answer = predict(shaped.rectangle_inside() if rests else shaped.continued(), material)
     source = in_a_sentence(answer.stretch_errors)
     if not rests:
         tube = _tube(request, context)
-        return Viewed(_of_tube(tube, request, source), _view(tube, request.direction))
+        return Viewed(_of_tube(tube, shaped, request, source), _view(tube, request.direction))
     if len(rests) < len(request.girths):
         raise InputError(
             "girths", "some places have a rest_mm and others none.", "Give it for all, or for none."
@@ -178,18 +185,28 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
     )
 
 
-def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
+def _shaped(request: LimbRequest, context: Context) -> tuple[ShapedChart, Material]:
     chart, material = request.fabric(context)
-    check_stitches(chart.stitches, MAX_STITCHES)
+    if request.outline is None:
+        return ShapedChart.rectangle(chart), material
+    return ShapedChart(chart, outline_marks(request.outline)), material
+
+
+def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
+    shaped, material = _shaped(request, context)
+    check_stitches(shaped.chart.stitches, MAX_STITCHES)
     girths = request.girths
     on = MeasuredLimb(tuple(g.at_mm for g in girths), tuple(g.girth_mm for g in girths))
-    return worn_tube(chart, material, on, request.direction)
+    return worn_tube(shaped.chart, material, on, request.direction, stitches=shaped.stitch)
 
 
-def _of_tube(tube: TubeOnLimb, request: LimbRequest, source: str) -> LimbResult:
-    repeat = to_chart(request.chart).repeat_cut()
+def _of_tube(
+    tube: TubeOnLimb, shaped: ShapedChart, request: LimbRequest, source: str
+) -> LimbResult:
+    repeat = shaped.continued().repeat_cut()
     patched = max(repeat.rows, repeat.columns) > SIDE
-    listed = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
+    evenly = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round()
+    listed = np.union1d(evenly.astype(int), np.argmax([p.highest_mmhg for p in tube.places]))
     return LimbResult.of(
         tube,
         **_fit([tube.places[k] for k in listed], tube.places, tube.length_mm),
@@ -206,15 +223,12 @@ def _of_tube(tube: TubeOnLimb, request: LimbRequest, source: str) -> LimbResult:
 
 def _too_tight(places: Sequence[LimbPlace]) -> tuple[str, ...]:
     """A warning if the tube presses too hard somewhere."""
-    pressed = [place.pressure.kpa.high for place in places if place.pressure is not None]
-    return too_tight(MMHG_PER_KPA * max(pressed, default=0.0))
+    return too_tight(max(place.highest_mmhg for place in places))
 
 
 def _view(tube: TubeOnLimb, around: Direction) -> PosedView:
     rows, columns = (n - 1 for n in tube.corners_mm.shape[:2])
-    pressures = [place.pressure for place in tube.places]
-    kpa = np.array([np.nan if p is None else (p.kpa.low + p.kpa.high) / 2 for p in pressures])
-    lines = (MMHG_PER_KPA * kpa).astype(np.float32)
+    lines = np.array([place.highest_mmhg for place in tube.places], dtype=np.float32)
     return PosedView(
         tube.corners_mm.astype(np.float32),
         Body.around(tube.limb_mm),
@@ -262,8 +276,9 @@ def _and_write(request: LimbRequest, context: Context, out: Path | None) -> View
     if out is not None:
         if any(girth.rest_mm is not None for girth in request.girths):
             raise InputError("out", "needs a tube that is the whole chart.", "Leave REST out.")
-        chart, material = request.fabric(context)
-        out.write_bytes(write_curled_glb(chart, _tube(request, context).corners_mm, material))
+        shaped, material = _shaped(request, context)
+        corners_mm = _tube(request, context).corners_mm
+        out.write_bytes(write_curled_glb(shaped.chart, corners_mm, material, shaped.stitch))
     return limb(request, context)
 
 

@@ -11,7 +11,7 @@ import { ApiError, api } from "../../api.js";
 import { atRest, shownOverlay } from "../../state/overlays.js";
 import { onTheme, readPalette } from "../../state/palette.js";
 import { along } from "../../core/directions.js";
-import { figure } from "../../core/format.js";
+import { figure, percent } from "../../core/format.js";
 import { batlow } from "../../state/colormaps.js";
 import { h, nextTask } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
@@ -318,15 +318,26 @@ export function fabricview(host, studio, view) {
   };
 }
 
-/** The colours of pressure, and a warning where it is too much. @param {{most: number, warning: string}} pressure */
-function pressureBar({ most, warning }) {
+/**
+ * The colours of pressure with a line at the limit, and a warning where it is too much.
+ *
+ * @param {{most: number, limit: number, warning: string}} pressure
+ */
+function pressureBar({ most, limit, warning }) {
   const bar = h("span", { class: "gradient" });
+  const end = `${figure(most, 2)} mmHg at most`;
+  if (limit < most) {
+    const line = h("span", { class: "pressure-limit" });
+    line.style.left = percent(limit / most).replace(" ", "");
+    bar.append(line);
+  }
   bar.style.backgroundImage = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => batlow.css(i / 16))})`;
   return h(
     "div",
     { class: "fabric-pressure stack gap-2", id: "fabric-pressure" },
     warning && h("strong", { class: "problem-text", role: "alert" }, warning),
-    h("span", { class: "line gap-6 figures" }, "0", bar, `${figure(most, 2)} mmHg, middle estimate`),
+    most > 0 &&
+      h("span", { class: "line gap-6 figures" }, "0", bar, limit < most ? `${end}; limit ${figure(limit, 2)}` : end),
   );
 }
 

@@ -32,9 +32,12 @@ export function create(studio, { keeper, open }) {
     garments,
   );
 
-  /** @param {DesignDocument} design */
-  const begin = (design) => {
+  /** @param {DesignDocument} design @param {import("./examples.js").GarmentExample} [example] that it is made from */
+  const begin = (design, example) => {
     element.close();
+    if (example?.id === "glove") {
+      studio.seeing.planned({ garment: { template: "glove" }, material: example.material }, design);
+    }
     keeper.openNew(design, { keep: false });
     studio.tell(`${design.name}: paint on it, or pull it below.`);
   };
@@ -85,9 +88,10 @@ export function create(studio, { keeper, open }) {
       fitted.set(example.id, { ...plan.design, name, material, note });
     }
     garments.replaceChildren(
-      ...GARMENTS.flatMap(({ id, name, note }) => {
+      ...GARMENTS.flatMap((example) => {
+        const { id, name, note } = example;
         const design = fitted.get(id);
-        return design ? [card(id, name, note, thumbnail(design), () => begin(design))] : [];
+        return design ? [card(id, name, note, thumbnail(design), () => begin(design, example))] : [];
       }),
       card("measured", "To measure", "A brace, sock, sleeve or glove from your measurements.", icon("yarn"), () => {
         element.close();

@@ -10,8 +10,6 @@ import { icon } from "../../elements/icons.js";
 import { isWarning } from "../../services/poser.js";
 import { table, tableRow } from "../../widgets/table.js";
 
-const MAX_PLACES = 9;
-
 /** @param {GarmentResult} garment @param {string} unit mm or in @returns {Node[]} */
 export function facts(garment, unit) {
   const { columns, rows, stitches, yarn_m, yarn_g, gauges } = garment;
@@ -34,7 +32,7 @@ export function facts(garment, unit) {
       "ul",
       { class: "planner-notes plain-list stack gap-5 small" },
       ...garment.warnings.map((words) => h("li", { class: "warned" }, icon("warning"), words)),
-      ...garment.notes.map((words) => h("li", {}, icon("info"), words)),
+      ...garment.notes.filter((words) => !isWarning(words)).map((words) => h("li", {}, icon("info"), words)),
       h("li", {}, icon("info"), `To close: ${garment.closing}.`),
     ),
   ];
@@ -94,36 +92,43 @@ function regions({ regions: all }, unit) {
 }
 
 /** @param {GarmentResult} garment @param {string} unit @returns {Node[]} */
-function pressure({ worn }, unit) {
+function pressure({ worn, notes }, unit) {
   if (!worn.length) return [];
-  const shown = worn.slice(0, MAX_PLACES);
-  const all = [...new Set(shown.flatMap(({ warnings }) => warnings))];
-  const [tight, warned] = [all.filter(isWarning), all.filter((words) => !isWarning(words))];
+  const pressed = worn.filter(({ ease }) => ease < 0);
+  const warned = [...new Set(pressed.flatMap(({ warnings }) => warnings))].filter((words) => !isWarning(words));
   return [
-    ...tight.map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
+    ...notes.filter(isWarning).map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
     table(
       { class: "planner-table figures full-width small", id: "planner-pressure" },
       ["Where it is worn", "Garment", "Limb", "Ease", "Pressure"],
       h(
         "tbody",
         {},
-        ...shown.map((place) =>
+        ...worn.map((place) =>
           tableRow(
             `${place.part}, ${long(place.at_mm, unit)}`,
             long(place.rest_mm, unit),
             long(place.worn_mm, unit),
             percent(place.ease),
-            place.mmhg && place.kpa ? `${span(place.mmhg)} mmHg (${span(place.kpa)} kPa)` : "none",
+            place.mmhg && place.kpa
+              ? `${span(place.mmhg)} mmHg (${span(place.kpa)} kPa)`
+              : place.ease < 0
+                ? "not known"
+                : "loose",
           ),
         ),
       ),
     ),
-    h(
-      "details",
-      { class: "planner-warnings small" },
-      h("summary", {}, `About the pressure (${warned.length})`),
-      h("ul", {}, ...warned.map((words) => h("li", {}, words))),
-    ),
+    ...(warned.length
+      ? [
+          h(
+            "details",
+            { class: "planner-warnings small" },
+            h("summary", {}, `About the pressure (${warned.length})`),
+            h("ul", {}, ...warned.map((words) => h("li", {}, words))),
+          ),
+        ]
+      : []),
   ];
 }
 

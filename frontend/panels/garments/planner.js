@@ -62,6 +62,8 @@ export function create(studio, { keeper }) {
   const fabrics = h("div", { class: "stack gap-6", id: "planner-fabrics" });
   /** What was entered for parts of the body and other measures, in mm, for the next template that needs it. @type {Map<string, number>} */
   const kept = new Map();
+  /** Fabrics that were chosen, by part, and the eases of a tube and of fingers. @type {Map<string, string>} */
+  const chosenFits = new Map();
   /** @type {() => Record<string, string>} */
   let ofParts = () => ({});
   const about = h("p", { class: "muted" });
@@ -70,8 +72,10 @@ export function create(studio, { keeper }) {
     min: "-60",
     max: "100",
     step: "1",
-    "aria-label": "Ease in percent",
-    oninput: changed,
+    oninput: () => {
+      chosenFits.set(easeOf(), ease.value);
+      changed();
+    },
   });
   const target = numberField({
     id: "planner-target",
@@ -79,7 +83,6 @@ export function create(studio, { keeper }) {
     max: "300",
     step: "1",
     value: String(TARGET_MMHG),
-    "aria-label": "Target pressure in mmHg",
     oninput: changed,
   });
   const graded = numberField({
@@ -92,8 +95,10 @@ export function create(studio, { keeper }) {
     oninput: changed,
   });
   let byPressure = true;
-  const easeRow = labelled("Ease, %", ease, "negative is tighter");
-  const targetRow = labelled("Target pressure, mmHg", target);
+  const [easeName, targetName] = [h("span", {}), h("span", {})];
+  const easeOf = () => (template.fingers ? "ease of fingers" : "ease");
+  const easeRow = labelled(easeName, ease, "negative is tighter");
+  const targetRow = labelled(targetName, target);
   const gradedRow = labelled("At the upper end, mmHg", graded, "falls or rises evenly");
   const fit = choice("planner-fit", "How tight", { ease: "by ease", pressure: "by pressure" }, "pressure", (value) => {
     byPressure = value === "pressure";
@@ -157,8 +162,7 @@ export function create(studio, { keeper }) {
     () => {
       if (!garment) return;
       element.close();
-      const { outline } = garment.design;
-      if (template.id === "glove" && outline) studio.seeing.glove.value = { request: hand, outline };
+      if (template.id === "glove") studio.seeing.planned(hand, garment.design);
       keeper.openNew(/** @type {DesignDocument} */ (garment.design)); // a plan has a material
       studio.tell(
         `${garment.design.name}: ${garment.columns} stitches × ${garment.rows} rows. The design before it is still among your designs.`,
@@ -228,6 +232,8 @@ export function create(studio, { keeper }) {
   );
   /** A glove's ease is that of its fingers; the pressure is shown for its wrist. */
   function showFit() {
+    easeName.textContent = template.fingers ? "Ease of fingers and thumb, %" : "Ease, %";
+    targetName.textContent = template.fingers ? "Pressure at the wrist, mmHg" : "Target pressure, mmHg";
     easeRow.hidden = byPressure && template.id !== "glove";
     targetRow.hidden = !byPressure;
     gradedRow.hidden = !byPressure || !template.graded;
@@ -236,7 +242,7 @@ export function create(studio, { keeper }) {
   function showTemplate() {
     showFit();
     about.textContent = template.note;
-    ease.value = String(Math.round(template.ease * 100));
+    ease.value = chosenFits.get(easeOf()) ?? String(Math.round(template.ease * 100));
     const chosen = yarn.value;
     showMaterials(template.id === "glove" || !chosen ? template.material : chosen);
     lengths = [];
@@ -258,7 +264,9 @@ export function create(studio, { keeper }) {
     }));
     const ofFabric = template.fabrics.map((part) => {
       const fabric = select(part.label, FABRICS);
-      fabric.value = part.fabric;
+      const name = part.key.replace("_fabric", ""); // several garments have a support, or a body
+      fabric.value = chosenFits.get(name) ?? part.fabric;
+      fabric.addEventListener("change", () => chosenFits.set(name, fabric.value));
       return { ...part, select: fabric };
     });
     fabrics.replaceChildren(

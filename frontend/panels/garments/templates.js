@@ -33,7 +33,7 @@ export const TEMPLATES = [
     name: "Therapeutic glove",
     note: "One flat piece, knitted sideways from the thumb around the hand and grafted. In the study stockinette holds the wrist along its stiff direction; seed lies at the thumb, rib along the fingers, garter over the hand.",
     material: "glove-wool:glove",
-    ease: -0.1,
+    ease: 0.05,
     fingers: true,
     fabrics: [
       { key: "support_fabric", label: "Wrist support", fabric: "stockinette" },

@@ -38,10 +38,11 @@ export function limb(host, studio) {
     const sized = rest_mm ? girths.map((girth) => ({ ...girth, rest_mm })) : girths;
     const chart = rest_mm || kind !== "chart" ? grid.text : studio.request.chart;
     belonging.check(); // the tube may be another
+    const outline = rest_mm || kind !== "chart" ? null : studio.document.outlineText;
     const { basis } = belonging;
     latest.run(
       async (signal) => {
-        show(await api.run("limb", { ...studio.request, chart, direction, girths: sized }, signal));
+        show(await api.run("limb", { ...studio.request, chart, outline, direction, girths: sized }, signal));
         belonging.show(basis);
       },
       ({ problem }) => {
@@ -87,7 +88,7 @@ export function limb(host, studio) {
   const girthRow = ({ at_mm, girth_mm }, i) => {
     const field = (/** @type {string} */ name, /** @type {number} */ value, /** @type {number} */ min) =>
       numberField({ value, min, max: "3000", "aria-label": `${name} ${i + 1}`, oninput: change });
-    const remove = iconButton("close", `Leave girth ${i + 1} out`, () => {
+    const remove = iconButton("close", `Remove girth ${i + 1}`, () => {
       if (body.rows.length < 3) return;
       row.remove();
       change();
@@ -118,9 +119,10 @@ export function limb(host, studio) {
       const all = pressed.map((place) => /** @type {[number, number]} */ (place[name]));
       return [Math.min(...all.map(([low]) => low)), Math.max(...all.map(([, high]) => high))];
     };
-    const stretch = places.map(({ ease }) => 1 / (1 + ease) - 1);
+    const stretch = places.map(({ ease }) => Math.max(0, 1 / (1 + ease) - 1));
+    const stretched = new Set([percent(Math.min(...stretch)), percent(Math.max(...stretch))]);
     const words = [
-      `Stretched around the limb by ${percent(Math.max(0, Math.min(...stretch)))} to ${percent(Math.max(0, ...stretch))}.`,
+      `Stretched around the limb by ${[...stretched].join(" to ")}.`,
       `Nearest to its lock-up ${tightest_mm.toFixed(0)} mm along (${percent(Math.max(...places.map((p) => p.lock_up_share)))}).`,
       loose_mm > 0 ? `Loose over ${loose_mm.toFixed(0)} mm.` : "",
       length_mm && relaxed_length_mm
@@ -152,12 +154,12 @@ export function limb(host, studio) {
     h(
       "div",
       { class: "limb-fields flex wrap" },
-      table({ class: "limb-girths" }, ["At, mm", "Girth, mm", ""], body),
+      table({ class: "limb-girths" }, ["Distance along, mm", "Girth, mm", ""], body),
       h(
         "div",
         { class: "limb-more flex wrap gap-6" },
         h("button", { class: "button", id: "limb-add", onclick: add }, "Add a girth"),
-        labelled("Tube at rest", tube, "mm"),
+        labelled("Tube, unworn", tube, "mm"),
         labelled("Which way round?", around),
         h(
           "button",

@@ -76,7 +76,7 @@ export function findTab(studio, context) {
     const weight = selectField({ class: "text full-width", "aria-label": "Weight" }, sameWords(Object.keys(WEIGHTS)));
     weight.value = "normal";
     const load = field("Load in N/mm", 0.1, { min: "0.001", max: "0.5", step: "any" });
-    const rest = field("Tube at rest in mm", 180, { min: "1", step: "any" });
+    const rest = field("Tube, unworn, in mm", 180, { min: "1", step: "any" });
     const worn = field("Limb in mm", 220, { min: "1", step: "any" });
     const extra = h("div", { class: "target-extra line wrap small gap-6" });
     const remove = iconButton("close", "Remove this target", () => {

@@ -10,7 +10,13 @@ import { startPoser } from "../../services/poser.js";
 function studio() {
   let change = () => {};
   const signal = (/** @type {unknown} */ value) => new Signal(value);
-  const seeing = { pose: signal("flat"), posed: signal(null), limb: signal(null), curling: signal(false) };
+  const seeing = {
+    pose: signal("flat"),
+    posed: signal(null),
+    limb: signal(null),
+    curling: signal(false),
+    glove: signal(null),
+  };
   return {
     seeing,
     weight: signal(0.5),
@@ -18,10 +24,17 @@ function studio() {
     stretch: signal(null),
     materialId: signal("acrylic"),
     request: { chart: "KP", material: "acrylic" },
+    limb: { direction: "course", girths: [] },
+    online: signal(true),
+    problem: signal(null),
+    /** @param {unknown} problem */
+    tellProblem(problem) {
+      this.problem.value = problem;
+    },
     currentStrain: () => null,
     tooLarge: () => "",
     document: {
-      grid: { rows: 1, columns: 2 },
+      grid: { rows: 1, columns: 2, text: "KP" },
       outlineText: null,
       onChange: (/** @type {() => void} */ heard) => (change = heard),
     },
@@ -106,4 +119,58 @@ test("a chart that is too large for a pose stays flat, and the reason is said", 
   page.seeing.pose.value = "lying";
   assert.equal(page.seeing.pose.value, "flat");
   assert.deepEqual(said, ["too large for curl"]);
+});
+
+/** A service whose garment presses by 10 to 40 mmHg. @param {[operation: string, request: any][]} sent */
+function pressing(sent) {
+  /** @type {any} */ (api).run = (/** @type {string} */ operation, /** @type {any} */ request) => {
+    sent.push([operation, request]);
+    const place = { mmhg: [10, 40] };
+    return Promise.resolve({ id: "shape", places: [place], parts: [place], limit_mmhg: 32, notes: [] });
+  };
+}
+
+test("a shaped chart is worn with its outline, and its bar ends at the highest pressure", async () => {
+  /** @type {[string, any][]} */
+  const sent = [];
+  pressing(sent);
+  const page = studio();
+  page.document.outlineText = "x.";
+  startPoser(page);
+  const shapes = shown(page, 1);
+  page.seeing.pose.value = "worn";
+  const [{ pressure }] = await shapes;
+  assert.deepEqual([sent[0][0], sent[0][1].outline], ["limb", "x."]);
+  assert.deepEqual([pressure.most, pressure.limit], [40, 32]);
+  page.seeing.limb.value = {};
+  assert.equal(page.seeing.posed.value.pressure, undefined); // that of another limb
+  page.seeing.pose.value = "flat";
+});
+
+test("a planned glove is worn on its hand until its stitches or its yarn change", async () => {
+  /** @type {[string, any][]} */
+  const sent = [];
+  pressing(sent);
+  const page = studio();
+  page.document.outlineText = "x.";
+  page.seeing.glove.value = { outline: "x.", chart: "KP", request: { material: "acrylic" } };
+  startPoser(page);
+  const shapes = shown(page, 1);
+  page.seeing.pose.value = "worn";
+  await shapes;
+  const change = { KK: () => (page.document.grid.text = "KK"), wool: () => (page.materialId.value = "wool") };
+  for (const changed of Object.values(change)) {
+    page.document.grid.text = "KP";
+    page.problem.value = null;
+    const refused = new Promise((resolve) => page.problem.listen(resolve));
+    page.seeing.pose.value = "worn";
+    changed();
+    page.paint();
+    assert.match(/** @type {any} */ (await refused).detail, /changed since it was planned/);
+    assert.equal(page.seeing.pose.value, "flat");
+  }
+  assert.deepEqual(
+    sent.map(([operation]) => operation),
+    ["glove"],
+  );
 });

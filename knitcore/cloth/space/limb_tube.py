@@ -1,9 +1,10 @@
 """A piece closed to a tube and worn on a limb whose girth changes along its length.
 
 Around the limb a line of stitches (a row, or a column) is as long as the limb's girth there, or as
-at rest where that is more. Along the limb nothing holds it, so that it shortens as predicted
-of a strip free to narrow (:mod:`knitcore.garment.limb`). Sizes at rest are those of every stitch's
-surroundings, and so is the law (:meth:`knitcore.prediction.patches.Patches.lines`).
+at rest where that is more. Where the piece has an outline, a line has the stitches inside it. Along
+the limb nothing holds it, so that it shortens as predicted of a strip free to narrow
+(:mod:`knitcore.garment.limb`). Sizes at rest are those of every stitch's surroundings, and so is
+the law (:meth:`knitcore.prediction.patches.Patches.lines`).
 """
 
 from dataclasses import dataclass
@@ -11,18 +12,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.limb import LimbPlace, MeasuredLimb, place_on
+from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Material
 from knitcore.prediction.neighbourhood import neighbourhood_sizes
 from knitcore.prediction.predict import patches_of
 
 LEAST_AROUND = 4
 """Smallest number of stitches that can close to a tube."""
+STEEPEST = 0.25
+"""Largest share of its stitches that a line of a tube gains or loses, if more than a few."""
 SIDES = 72
 """Number of sides with which the limb's surface is drawn."""
 BARE = 0.12
@@ -50,7 +54,12 @@ class TubeOnLimb(Result):
 
 
 def worn_tube(
-    chart: StitchChart, material: Material, limb: MeasuredLimb, around: Direction = Direction.COURSE
+    chart: StitchChart,
+    material: Material,
+    limb: MeasuredLimb,
+    around: Direction = Direction.COURSE,
+    *,
+    stitches: Mask | None = None,
 ) -> TubeOnLimb:
     """The whole chart as a tube on a limb.
 
@@ -59,24 +68,24 @@ def worn_tube(
     chart : the tube, cut open; its lowest row (left column) is where the limb begins.
     limb : beyond its ends its girth stays that of the end.
     around : which direction runs around the limb: rows, or columns.
+    stitches : (rows, columns), where the chart has an outline.
 
     Raises
     ------
     InputError
-        If the chart is too narrow for a tube, or the material lacks a fabric.
+        If the chart is too narrow for a tube, its outline is not that of one tube, or the material
+        lacks a fabric.
     """
     by_row = around is Direction.COURSE
-    count = chart.columns if by_row else chart.rows
-    if count < LEAST_AROUND:
-        raise InputError(
-            "chart",
-            "is too narrow for a tube around a limb.",
-            f"Give at least {LEAST_AROUND} stitches, or let the other direction run around it.",
-        )
+    shaped = ShapedChart.rectangle(chart) if stitches is None else ShapedChart(chart, stitches)
+    inside = shaped.stitch if by_row else shaped.stitch.T
+    _check_tube(inside)
+    chart = shaped.continued()
     sizes = neighbourhood_sizes(chart, material)
     if not by_row:
         sizes = sizes.transpose(1, 0, 2)[..., ::-1]
-    rests, heights = sizes[..., 0].sum(axis=1), sizes[..., 1].mean(axis=1)
+    rests = sizes[..., 0].sum(axis=1, where=inside)
+    heights = sizes[..., 1].mean(axis=1, where=inside)
     predictions = patches_of(chart, material).lines(around)
     places, along_mm = [], [0.0]
     for line, (rest, height) in enumerate(zip(rests.tolist(), heights.tolist(), strict=True)):
@@ -87,8 +96,9 @@ def worn_tube(
         along_limb = 0.0 if place.pressure is None else place.pressure.axial_strain_free
         along_mm.append(along_mm[-1] + height * (1.0 + along_limb))
     rings = _between(np.array([max(p.rest_mm, p.girth_mm) for p in places])) / (2.0 * np.pi)
-    shares = np.cumsum(sizes[..., 0], axis=1) / rests[:, None]
-    angles = 2.0 * np.pi * _between(np.pad(shares, ((0, 0), (1, 0)))) - np.pi
+    ends = np.pad(np.cumsum(sizes[..., 0], axis=1), ((0, 0), (1, 0)))
+    begins = np.take_along_axis(ends, inside.argmax(axis=1)[:, None], axis=1)
+    angles = 2.0 * np.pi * _between((ends - begins) / rests[:, None]) - np.pi
     bare = BARE * places[-1].girth_mm
     reached = np.array([-bare, *along_mm, along_mm[-1] + bare])
     radius = limb.girth_mm(reached) / (2.0 * np.pi)
@@ -102,6 +112,31 @@ def worn_tube(
         corners, skin = (points[..., [1, 0, 2]] for points in (corners, skin))
         corners = corners.transpose(1, 0, 2)
     return TubeOnLimb(corners, tuple(places), along_mm[-1], float(heights.sum()), skin)
+
+
+def _check_tube(inside: Mask) -> None:
+    """Refuse lines (lines, stitches) around a limb that do not close to one tube."""
+    remedy = "Wear a part of it, or let the other direction run around the limb."
+    for line, marks in enumerate(inside, start=1):
+        columns = np.flatnonzero(marks)
+        if len(columns) < LEAST_AROUND:
+            raise InputError(
+                "chart",
+                "is too narrow for a tube around a limb.",
+                f"Give at least {LEAST_AROUND} stitches, or let the other direction run around it.",
+            )
+        if np.ptp(columns) >= len(columns):
+            problem = f"line {line} around the limb is in several parts, such as fingers."
+            raise InputError("outline", problem, remedy)
+    counts = inside.sum(axis=1)
+    steps = np.abs(np.diff(counts))
+    steep = steps > np.maximum(LEAST_AROUND, STEEPEST * np.minimum(counts[1:], counts[:-1]))
+    for line in np.flatnonzero(steep)[:1].tolist():
+        problem = (
+            f"it is no tube: line {line + 1} around the limb has {counts[line]} stitches, the next "
+            f"{counts[line + 1]}."
+        )
+        raise InputError("outline", problem, remedy)
 
 
 def _between(lines: Array) -> Array:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from knitcore import material
-from knitcore.garment.glove import Finger, Hand
-from knitcore.garment.worn_glove import FINGERS, GloveOnHand, glove_on_hand
+from knitcore.garment.glove import FINGERS, Finger, Hand
+from knitcore.garment.worn_glove import GloveOnHand, glove_on_hand
 
 WOOL = material("glove-wool:glove")
 HAND = Hand()
@@ -13,7 +13,7 @@ HAND = Hand()
 
 @pytest.fixture(scope="module")
 def worn() -> GloveOnHand:
-    return glove_on_hand(HAND, WOOL)
+    return glove_on_hand(HAND, WOOL, ease=-0.1)
 
 
 def test_every_stitch_has_a_place_and_its_face_outside(worn: GloveOnHand) -> None:
@@ -54,6 +54,21 @@ def test_thinner_fingers_of_the_same_glove_are_pressed_more_and_parts_are_named(
     assert tight.pressure is not None
     assert tight.ease < slack.ease
     assert slack.pressure is None or tight.pressure.kpa.low > slack.pressure.kpa.high
+
+
+@pytest.mark.parametrize("ease", [-0.15, 0.05])
+def test_the_plan_knows_the_fit_of_every_part(ease: float) -> None:
+    worn = glove_on_hand(HAND, WOOL, ease=ease)
+    planned = {place.part: place for place in worn.plan.worn}
+    assert planned.keys() == worn.parts.keys()
+    for name, place in worn.parts.items():
+        known = planned[name]
+        assert (known.at_mm, known.rest_mm, known.worn_mm) == pytest.approx(
+            (place.at_mm, place.rest_mm, place.girth_mm)
+        )
+        assert (known.pressure is None) == (place.pressure is None)
+        if known.pressure and place.pressure:
+            assert known.pressure.kpa.high == pytest.approx(place.pressure.kpa.high, rel=2e-3)
 
 
 def test_the_hands_skin_has_its_girths() -> None:

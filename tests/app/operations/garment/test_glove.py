@@ -34,7 +34,8 @@ def wrist_of(worn: dict[str, Any]) -> Any:
 
 
 def test_the_wrist_is_that_of_the_plan(worn: dict[str, Any]) -> None:
-    (planned,) = run("garment", "glove", "--material", "glove-wool:glove")["worn"]
+    plan = run("garment", "glove", "--material", "glove-wool:glove")
+    planned = next(place for place in plan["worn"] if place["part"] == "wrist support")
     wrist = wrist_of(worn)
     assert wrist["rest_mm"] == pytest.approx(planned["rest_mm"])
     assert wrist["girth_mm"] == planned["worn_mm"]
@@ -50,6 +51,6 @@ def test_parts_that_press_too_hard_are_named() -> None:
 @pytest.mark.slow
 def test_measurements_are_options_and_a_file_is_written(tmp_path: Path) -> None:
     out = tmp_path / "glove.glb"
-    small = ("--set", "wrist_circumference_mm=180", "--out", str(out))
+    small = ("--set", "wrist_circumference_mm=220", "--out", str(out))
     assert wrist_of(run("glove", "--material", "glove-wool:glove", *small))["mmhg"][0] > 0.0
     assert out.read_bytes()[:4] == b"glTF"

@@ -3,9 +3,10 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from fastapi.testclient import TestClient
 
-from tests.app.command_line import printed
+from tests.app.command_line import printed, run
 from tests.app.rest import post, solid
 
 CONE = [
@@ -47,6 +48,45 @@ def test_a_whole_chart_is_worn_and_shown(client: TestClient) -> None:
     assert (around > 165 / np.pi).all()
     colours = {tuple(colour) for colour in worn.visual.vertex_colors}
     assert len(colours) == 6 + 1  # of the rows, and of the limb
+
+
+def test_a_planned_sleeve_is_worn_with_the_stitches_of_its_rows(
+    client: TestClient, tmp_path: Path
+) -> None:
+    out, solid_of = tmp_path / "sleeve.json", tmp_path / "sleeve.glb"
+    profile = "profile=[[0,180],[120,250]]"
+    planned = run("garment", "limb", "--material=acrylic", "--set", profile, f"-o{out}")
+    request = {name: planned[name] for name in ("chart", "outline")} | {
+        "material": "acrylic",
+        "girths": [{"at_mm": 0, "girth_mm": 180}, {"at_mm": 120, "girth_mm": 250}],
+    }
+    worn = post(client, "limb", request)
+    girths = "--girth", "0:180", "--girth", "120:250", "--out", str(solid_of)
+    as_command = run("limb", str(out), "--material=acrylic", *girths)
+    assert as_command["length_mm"] == pytest.approx(worn["length_mm"])
+    assert solid_of.read_bytes()[:4] == b"glTF"
+    planned_rest = [place["rest_mm"] for place in planned["worn"] if place["part"] == "body"]
+    middle = worn["places"][len(worn["places"]) // 2]
+    assert min(planned_rest) * 0.9 < middle["rest_mm"] < max(planned_rest) * 1.1
+    rectangle = post(client, "limb", request | {"outline": None})
+    assert rectangle["places"][0]["rest_mm"] > 1.2 * worn["places"][0]["rest_mm"]
+    view = {name: request[name] for name in ("chart", "outline", "material")}
+    solid(client, view | {"curl": {"id": worn["id"]}, "colour": "pressure"})
+
+
+def test_the_highest_pressure_is_among_the_places_and_in_the_warning(client: TestClient) -> None:
+    bump = [(0, 165), (70, 165), (77, 200), (84, 165), (200, 165)]
+    girths = [{"at_mm": at, "girth_mm": girth} for at, girth in bump]
+    tall = {"chart": {"fabric": "stockinette", "columns": 40, "rows": 60}, "girths": girths}
+    worn = post(client, "limb", TUBE | tall)
+    highest = max(place["mmhg"][1] for place in worn["places"] if place["mmhg"])
+    assert highest > worn["limit_mmhg"]
+    assert f"by up to {highest:.0f} mmHg" in worn["notes"][0]
+    locked = [girth | {"girth_mm": 2.5 * girth["girth_mm"]} for girth in girths]
+    worn = post(client, "limb", TUBE | tall | {"girths": locked})
+    assert "can stretch no further" in worn["notes"][0]
+    view = {"chart": tall["chart"], "material": "acrylic", "curl": {"id": worn["id"]}}
+    solid(client, view | {"colour": "pressure"})
 
 
 def test_limb_at_the_command_line(tmp_path: Path) -> None:

@@ -6,7 +6,10 @@ import pytest
 from knitcore import Direction, InputError, StitchChart, material, predict
 from knitcore.cloth.space.limb_tube import worn_tube
 from knitcore.draw.placing import lying
+from knitcore.garment.glove import Hand, glove
 from knitcore.garment.limb import MeasuredLimb, place_on
+from knitcore.garment.templates import Girth, limb_tube
+from tests.knitcore.refusals import refuses
 
 ACRYLIC = material("acrylic")
 PLAIN = StitchChart.parse("K").tile(6, 40)
@@ -101,3 +104,41 @@ def test_too_few_stitches_make_no_tube() -> None:
 def test_impossible_limbs_are_refused(at: tuple[float, ...], girths: tuple[float, ...]) -> None:
     with pytest.raises(InputError):
         MeasuredLimb(at, girths)
+
+
+SLEEVE = limb_tube("sleeve", [Girth(0, 180), Girth(120, 250)], ACRYLIC)
+
+
+def test_a_shaped_tube_has_the_stitches_of_its_rows() -> None:
+    stitch = SLEEVE.shaped.stitch
+    plain = StitchChart(np.zeros_like(stitch))
+    limb = MeasuredLimb((0.0, 300.0), (260.0, 260.0))
+    tube = worn_tube(plain, ACRYLIC, limb, stitches=stitch)
+    counts = stitch.sum(axis=1)
+    rests = np.array([place.rest_mm for place in tube.places])
+    assert np.ptp(counts) > 10
+    assert rests / counts == pytest.approx(np.full(len(counts), rests[0] / counts[0]))
+    assert np.isfinite(lying(tube.corners_mm).frames).all()
+    edges = stitch.argmax(axis=1)
+    around = np.arctan2(tube.corners_mm[..., 0], tube.corners_mm[..., 2])
+    steps = [2 * np.pi / counts[row] for row in (0, -1)]
+    assert abs(around[0, edges[0]] + np.pi) < steps[0]
+    assert abs(around[-1, edges[-1]] + np.pi) < steps[1]
+
+
+def test_cells_outside_an_outline_change_nothing() -> None:
+    shaped = SLEEVE.shaped
+    limb = MeasuredLimb((0.0, 300.0), (200.0, 260.0))
+    other = StitchChart(shaped.chart.purl ^ ~shaped.stitch)
+    first, second = (
+        worn_tube(chart, ACRYLIC, limb, stitches=shaped.stitch) for chart in (shaped.chart, other)
+    )
+    assert first.places == second.places
+
+
+@pytest.mark.parametrize("around", Direction)
+def test_a_glove_is_no_tube(around: Direction) -> None:
+    glove_chart = glove(Hand(), ACRYLIC).shaped
+    limb = MeasuredLimb((0.0, 300.0), (200.0, 260.0))
+    with refuses("outline"):
+        worn_tube(glove_chart.chart, ACRYLIC, limb, around, stitches=glove_chart.stitch)
