@@ -24,7 +24,7 @@ export function create(studio, { keeper, open }) {
   const element = dialog(
     "gallery-dialog",
     "New design",
-    remark("Begin with one of these and change it. The design on show is kept: it stays among your designs."),
+    remark("Begin with one of these and change it. Your present design is saved."),
     status,
     h("h3", {}, "Charts"),
     examples,
