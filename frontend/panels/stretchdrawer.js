@@ -331,7 +331,7 @@ function refused({ type, title, detail, remedy, field, most }, pull) {
     "span",
     {},
     h("strong", {}, unit === "%" ? "Too far" : "Too hard"),
-    `: the first stitches lock before that. Use at most ${amount} ${unit}. `,
+    `: the first stitches run out of stretch before that. Use at most ${amount} ${unit}. `,
     h("button", { class: "link", id: "stretch-most", onclick: () => pull(amount, unit) }, `Pull by ${amount} ${unit}`),
   );
 }

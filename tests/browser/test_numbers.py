@@ -48,14 +48,14 @@ def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
     figures = page.locator("#stretch-figures .interval")
     expect(figures).to_have_count(3)  # force, stress and waist
     for k in range(3):
-        expect(figures.nth(k)).to_have_text(re.compile(rf"{INTERVAL}|× less or more"))
+        expect(figures.nth(k)).to_have_text(re.compile(rf"{INTERVAL}|times less or more"))
     chart = Chart(page)
     readout = page.locator("#readout")
     page.mouse.move(*chart.at(5, 6))
     expect(readout).to_have_text(re.compile(rf"stretch {NUMBER} % \({INTERVAL}\)"))
     page.click("#overlay-utilisation")
     page.mouse.move(*chart.at(6, 6))
-    expect(readout).to_have_text(re.compile(rf"\d+ % \({INTERVAL}\) of lock-up"))
+    expect(readout).to_have_text(re.compile(rf"\d+ % \({INTERVAL}\) of its stretch used"))
 
 
 @pytest.mark.slow

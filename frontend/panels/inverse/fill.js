@@ -201,7 +201,7 @@ export function fromStiffness(studio) {
   const show = () => {
     list.replaceChildren(
       ...(parts.length
-        ? [h("li", { class: "muted inverse-hint" }, "Modulus in N/mm, now → target"), ...parts.map(item)]
+        ? [h("li", { class: "muted inverse-hint" }, "Stiffness in N/mm, now → target"), ...parts.map(item)]
         : [
             h(
               "li",
