@@ -29,6 +29,10 @@ CROTCH_ROWS = 2
 PALM_TOLERANCE = 0.10
 MIN_EASE, MAX_EASE = -0.4, 0.3
 STUDY_GLOVE = "glove-wool:glove"
+NEEDLES = (
+    "Knit the wrist support on 2.0 mm needles (US 0) and the rest on 2.75 mm (US 2), as in the "
+    "study: each row changes needles at the edges of the support."
+)
 
 
 @dataclass(frozen=True)
@@ -267,8 +271,9 @@ def glove(
         worn=(pressed,),
         closing="graft the last row to the first along the thumb, join the wrist's two edges, and "
         "seam finger tips and sides",
-        notes=_notes(hand, around, gauges[fabrics.hand], ease, material, fabrics.hand)
-        + _wrist_notes(pressed, support_gauge, material, around, mmhg, fabrics.support),
+        notes=(NEEDLES,) if material.sample == STUDY_GLOVE else (),
+        cautions=_cautions(hand, around, gauges[fabrics.hand], ease, material, fabrics.hand)
+        + _wrist_cautions(pressed, support_gauge, material, around, mmhg, fabrics.support),
         linear_density_tex=linear_density_tex,
     )
 
@@ -283,29 +288,28 @@ def _gusset(hand: Hand, thumb: Gauge, thumb_crotch: int) -> list[int]:
     return [thumb_crotch + length for length in lengths for _ in range(2) if length > 0]
 
 
-def _notes(
+def _cautions(
     hand: Hand, rows: int, palm: Gauge, ease: float, material: Material, fabric: Fabric
 ) -> tuple[str, ...]:
-    notes = [
-        "Knit the wrist support on 2.0 mm needles (US 0) and the rest on 2.75 mm (US 2), as in the "
-        "study: each row changes needles at the edges of the support."
-        if material.sample == STUDY_GLOVE
-        else "The study's glove has its wrist support on 2.0 mm needles and the rest on 2.75 mm. "
-        f"The material {STUDY_GLOVE} was measured on both, {material.identifier} on one."
-    ]
+    cautions = []
+    if material.sample != STUDY_GLOVE:
+        cautions.append(
+            "The study's glove has its wrist support on 2.0 mm needles and the rest on 2.75 mm. "
+            f"The material {STUDY_GLOVE} was measured on both, {material.identifier} on one."
+        )
     around = palm.rows_for(hand.palm_circumference_mm * (1 + ease))
     if abs(rows / around - 1) > PALM_TOLERANCE:
-        notes.append(
+        cautions.append(
             f"The fingers need {rows} rows around the hand, the palm's circumference {around} rows "
             f"of {fabric}: change the ease of the palm, or the circumferences of the fingers."
         )
-    return tuple(notes)
+    return tuple(cautions)
 
 
-def _wrist_notes(
+def _wrist_cautions(
     pressed: Worn, gauge: Gauge, material: Material, rows: int, mmhg: float | None, support: Fabric
 ) -> tuple[str, ...]:
-    """A note on the rows that the wrist support needs for a pressure."""
+    """A caution on the rows that the wrist support needs for a pressure."""
     if pressed.pressure is None:
         loose = (
             f"The wrist support is {pressed.rest_mm:.0f} mm around, the wrist "

@@ -81,8 +81,7 @@ export function create(studio, { keeper, open }) {
       const { garment, material, name } = example;
       const plan = await attempt(status, () => api.run("garment", { garment, material }));
       if (!plan) continue;
-      const note = [...plan.notes, ...plan.warnings].join("\n");
-      fitted.set(example.id, { ...plan.design, name, material, note });
+      fitted.set(example.id, { ...plan.design, name, material });
     }
     garments.replaceChildren(
       ...GARMENTS.flatMap(({ id, name, note }) => {

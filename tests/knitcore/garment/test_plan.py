@@ -114,7 +114,7 @@ def test_the_study_glove_is_tighter_at_the_wrist() -> None:
     study = glove(Hand(), material("glove-wool:glove"), mmhg=25)
     assert study.worn[0].rest_mm < PLANS[0].worn[0].rest_mm
     assert "2.0 mm needles" in study.notes[0]
-    assert "for 25 mmhg the wrist support takes" in study.notes[-1].lower()
+    assert "for 25 mmhg the wrist support takes" in study.cautions[-1].lower()
 
 
 @pytest.mark.parametrize("mmhg", [8.0, 15.0, 25.0])
@@ -186,7 +186,7 @@ def test_tubes_follow_the_limb() -> None:
 def test_a_limb_that_widens_too_fast_is_reported() -> None:
     plan = limb_tube("cone", [Girth(0, 100), Girth(40, 500)], WOOL, hem_mm=0)
     assert set(np.diff([stop - start for start, stop in plan.shaped.spans])) <= {0, 2}
-    assert "widens faster" in plan.notes[0]
+    assert "widens faster" in plan.cautions[0]
 
 
 def test_different_gauges_are_reported_where_they_meet() -> None:
@@ -283,13 +283,13 @@ def test_pressure_is_graded_along_a_sleeve() -> None:
 
 def test_a_ribbing_that_misses_the_pressure_says_so() -> None:
     limb = [Girth(0, 200), Girth(200, 210)]
-    notes = limb_tube("s", limb, WOOL, fit=Fit(mmhg=15)).notes
-    missed = [note for note in notes if "does not keep to the 15 mmHg" in note]
+    cautions = limb_tube("s", limb, WOOL, fit=Fit(mmhg=15)).cautions
+    missed = [note for note in cautions if "does not keep to the 15 mmHg" in note]
     assert len(missed) == 2
     assert all("ribbing" in note for note in missed)
     like_body = limb_tube("s", limb, WOOL, fit=Fit(mmhg=15), hem=Fabric.STOCKINETTE)
-    assert not any("does not keep" in note for note in like_body.notes)
-    assert not any("does not keep" in note for note in limb_tube("s", limb, WOOL).notes)
+    assert not any("does not keep" in note for note in like_body.cautions)
+    assert not any("does not keep" in note for note in limb_tube("s", limb, WOOL).cautions)
 
 
 def test_a_pressure_that_can_stop_the_blood_is_warned_of() -> None:
