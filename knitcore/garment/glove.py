@@ -96,7 +96,7 @@ class Hand:
             raise InputError("fingers", "four fingers are needed.", "Give lengths and girths.")
         if self.thumb_crotch_mm >= self.palm_mm:
             problem = "the base of the thumb lies beyond that of the fingers."
-            remedy = f"Give less than palm_mm, {self.palm_mm:g} mm."
+            remedy = f"Give less than the length of the palm, {self.palm_mm:g} mm."
             raise InputError("thumb_crotch_mm", problem, remedy)
 
 
