@@ -7,15 +7,13 @@
  */
 
 import { action, shown } from "../actions/registry.js";
+import { DESIGN_NAME, shortName } from "../core/names.js";
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
 import { actionButton, iconButton } from "../widgets/buttons.js";
 import { isComplete } from "../state/studio.js";
 import { saveState } from "./savestate.js";
 import { menu } from "../widgets/menu.js";
-
-/** Characters of a design's name at most. */
-const NAME_LENGTH = 80;
 
 /** @param {HTMLElement} host @param {Studio} studio @param {ActionContext} context */
 export function topbar(host, studio, context) {
@@ -27,7 +25,7 @@ export function topbar(host, studio, context) {
     spellcheck: false,
     "aria-label": "Name of the design",
     onchange: () => {
-      studio.name.value = shortName(studio, name.value) || "Untitled";
+      studio.name.value = keptName(studio, name.value) || "Untitled";
       name.value = studio.name.value;
     },
     onkeydown: (/** @type {KeyboardEvent} */ { key }) => {
@@ -89,10 +87,9 @@ export function topbar(host, studio, context) {
 }
 
 /** A name as the service keeps it; what is cut off is said. @param {Studio} studio @param {string} text */
-function shortName(studio, text) {
-  const whole = text.trim();
-  const name = whole.slice(0, NAME_LENGTH).trimEnd();
-  if (name !== whole) studio.tell(`The name is cut to ${NAME_LENGTH} characters: “${name}”.`);
+function keptName(studio, text) {
+  const name = shortName(text, DESIGN_NAME);
+  if (name !== text.trim()) studio.tell(`The name is cut to ${DESIGN_NAME} characters: “${name}”.`);
   return name;
 }
 

@@ -20,7 +20,7 @@ import {
   yarnOf,
 } from "../../services/yarns.js";
 import { textButton } from "../../widgets/buttons.js";
-import { labelled, numberField, sameWords, selectField } from "../../widgets/fields.js";
+import { labelled, nameField, numberField, sameWords, selectField } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
 import { table, tableRow } from "../../widgets/table.js";
 import { attempt } from "../../widgets/problem.js";
@@ -47,7 +47,7 @@ export function yarnMaker(studio, made) {
   /** @param {string} title @param {string} detail */
   const say = (title, detail) => run.say({ title, detail, remedy: null });
 
-  const name = h("input", { class: "text-field grows shrinks-x rounded", id: "yarn-name", maxLength: 80 });
+  const name = nameField({ class: "text-field grows shrinks-x rounded", id: "yarn-name" });
   const bending = figure("yarn-bending", { min: "0.01", max: "10000" });
   const loop = figure("yarn-loop", { min: "1", max: "200" });
   const stiffness = figure("yarn-stiffness", { min: "0.0001", max: "100000" });
