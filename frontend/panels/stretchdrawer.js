@@ -6,6 +6,7 @@
  * @import {Direction, Problem} from "../types.js"
  */
 
+import { withKey } from "../core/pointing.js";
 import { along } from "../core/directions.js";
 import { figure, percent, percentRange, spread } from "../core/format.js";
 import { lockUpInWords } from "../core/striptest.js";
@@ -207,7 +208,7 @@ export function stretchdrawer(host, studio, stretcher) {
   const show = () => {
     const { value, busy, stale, problem } = studio.stretch.value;
     run.replaceChildren(...(busy ? [icon("stop"), "Cancel"] : [icon(direction), "Stretch"]));
-    run.title = busy ? "Cancel the test (J)" : "Pull the chart between two clamps (J)";
+    run.title = busy ? withKey("Cancel the test", "J") : withKey("Pull the chart between two clamps", "J");
     run.classList.toggle("primary", !busy);
     progress.hidden = !busy;
     const current = value !== null && !stale;
@@ -253,7 +254,7 @@ export function stretchdrawer(host, studio, stretcher) {
   stretcher.onPlay(() => {
     play.replaceChildren(icon(stretcher.playing ? "pause" : "play"));
     play.setAttribute("aria-label", stretcher.playing ? "Pause" : "Play the stretch");
-    play.title = stretcher.playing ? "Pause (Shift+J)" : "Play the stretch (Shift+J)";
+    play.title = stretcher.playing ? withKey("Pause", "Shift+J") : withKey("Play the stretch", "Shift+J");
   });
   stretcher.pause();
 }

@@ -6,7 +6,8 @@
  * @import {MaterialSummary} from "../types.js"
  */
 
-import { action, shown } from "../actions/registry.js";
+import { shown, withKey } from "../core/pointing.js";
+import { action } from "../actions/registry.js";
 import { DESIGN_NAME, shortName } from "../core/names.js";
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
@@ -56,7 +57,7 @@ export function topbar(host, studio, context) {
   const size = h("button", {
     class: "button quiet figures",
     id: "chart-size",
-    title: "Size and new chart (N)",
+    title: withKey("Size and new chart", "N"),
     onclick: () => context.open("resize"),
   });
   const showSize = () => {

@@ -5,6 +5,7 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
+import { byHand, withKey } from "../../core/pointing.js";
 import { OVERLAYS, shownOverlay } from "../../state/overlays.js";
 import { largestStrain } from "../../chart/crosses.js";
 import { groupAt, largestExtensibility, meanExtensibility } from "../../chart/rectangles.js";
@@ -17,9 +18,10 @@ import { legendOf } from "../../widgets/legend.js";
 /** Sides of the blocks that rectangles may stand for. */
 const BLOCKS = [2, 4, 8, 16];
 const READ_MS = 80;
-const IDLE = matchMedia("(pointer: coarse)").matches
-  ? "Tap or drag to paint. Two fingers move and zoom."
-  : "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.";
+const IDLE = byHand(
+  "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.",
+  "Tap or drag to paint. Two fingers move and zoom.",
+);
 
 /**
  * @param {HTMLElement} host
@@ -47,7 +49,7 @@ export function overlaybar(host, studio, view) {
     {
       class: "chip gap-6 small nowrap",
       id: "overlay-rectangles",
-      title: "Extensibility rectangles: as wide and as high as a stitch stretches along rows and columns (E)",
+      title: withKey("Extensibility rectangles: as wide and as high as a stitch stretches along rows and columns", "E"),
       onclick: () => (studio.rectangles.value = !studio.rectangles.value),
     },
     h("span", { class: "chip-rectangle", "aria-hidden": "true" }),

@@ -10,6 +10,7 @@
  * `wish` is what was asked for in words, until the numbers that it goes by have come
  */
 
+import { UNDO } from "../../core/pointing.js";
 import { ApiError, api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
 import { shortName } from "../../core/names.js";
@@ -290,7 +291,7 @@ export function fromStiffness(studio) {
       answer.replaceChildren();
       studio.tell(words);
     };
-    const keep = textButton("check", "Keep it", () => done("The chart is filled. Undo with Ctrl+Z."), {
+    const keep = textButton("check", "Use it", () => done(`The chart is filled. ${UNDO}`), {
       class: "button primary",
       id: "fill-keep",
     });
