@@ -289,17 +289,22 @@ function stretchOptions(studio) {
     "div",
     { class: "stretch-options raised rounded shadowed", id: "stretch-options", popover: "auto" },
     row("Ends", clamps),
-    row("Law", model),
-    row("Shear modulus", shear, "N/mm"),
     row("Free edges curl in 3D", curling),
-    h("p", { class: "muted small" }, "Leave the shear modulus empty unless you have measured it."),
+    h(
+      "details",
+      {},
+      h("summary", {}, "For engineers"),
+      row("Law", model),
+      row("Shear modulus", shear, "N/mm"),
+      h("p", { class: "muted small" }, "Leave the shear modulus empty unless you have measured it."),
+    ),
   );
   const button = h(
     "button",
     {
       class: "button quiet",
       id: "stretch-more",
-      title: "Ends, law and shear modulus",
+      title: "How the ends are held, and what is computed",
       popoverTargetElement: panel,
       onclick: () => {
         const { left, top } = button.getBoundingClientRect();

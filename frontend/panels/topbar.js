@@ -145,11 +145,11 @@ export function offerTour(host, { open }) {
 
 /** @param {Studio} studio @param {ActionContext} context */
 function materialMenu(studio, context) {
-  const label = h("span", { class: "ellipsis" }, "Material");
+  const label = h("span", { class: "ellipsis" }, "Yarn");
   const { root, setItems } = menu({
     id: "material",
-    label: "Material",
-    content: [h("span", { class: "muted label" }, "Material"), label, icon("down")],
+    label: "Yarn",
+    content: [h("span", { class: "muted label" }, "Yarn"), label, icon("down")],
     class: "button material-button",
   });
   const show = () => {

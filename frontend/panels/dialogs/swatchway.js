@@ -171,7 +171,7 @@ export function swatchWay(studio, made) {
         { class: "yarn-fabrics" },
         table(
           { class: "yarn-table small full-width", id: "swatch-steps" },
-          ["After", "Yarn in a stitch", "Bending modulus", `Stretch of ${fabric.value} along rows`, "Along columns"],
+          ["After", "Yarn in a stitch", "Bending stiffness", `Stretch of ${fabric.value} along rows`, "Along columns"],
           h("tbody", {}, ...lines),
         ),
       ),
@@ -285,7 +285,7 @@ export function swatchWay(studio, made) {
       else tab.firstElementChild?.removeAttribute("aria-current");
     });
     back.disabled = to === 0;
-    next.textContent = to === STEPS.length - 1 ? "Keep the yarn" : "Next";
+    next.textContent = to === STEPS.length - 1 ? "Save the yarn" : "Next";
   };
   show(0);
 
