@@ -335,7 +335,7 @@ def test_a_report_prints_every_assumption_in_a_knitters_words(
 
 
 def test_a_designs_note_is_for_the_knitter_alone() -> None:
-    """What a designer should change is said beside the plan, not in the pattern."""
+    """Changes for the designer stand beside the plan, not in the pattern."""
     plan = glove(Hand(), material("glove-wool"), mmhg=25)
     note = design_of_plan(plan, "glove-wool").note
     assert plan.cautions
