@@ -199,7 +199,7 @@ _NUMBERS: tuple[tuple[str, Callable[[Along], tuple[float, Interval]]], ...] = (
         lambda a: (a.modulus_n_per_mm, a.modulus_interval_n_per_mm),
     ),
     ("extensibility, mm/N", lambda a: (1 / a.modulus_n_per_mm, a.extensibility_interval_mm_per_n)),
-    ("contraction when pulled this way", lambda a: (a.poisson, a.poisson_interval)),
+    ("narrowing when pulled", lambda a: (a.poisson, a.poisson_interval)),
     ("stitch at rest, mm", lambda a: (a.relaxed_mm, a.relaxed_interval_mm)),
 )
 
