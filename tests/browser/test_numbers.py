@@ -109,12 +109,12 @@ def test_a_repeat_of_a_simulated_material_is_relaxed_while_painting_pauses(
     expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(page.locator("#hand-course .interval")).not_to_have_text(guessed)
     source.click()
-    expect(page.locator(".source .notes")).to_contain_text("simulation of the yarn of this chart")
+    expect(page.locator(".source .notes")).to_contain_text("simulation of the yarn")
     expect(page.locator("#own-gauge-stitches")).to_have_value("")
     page.fill("#own-gauge-stitches", "25")
     page.fill("#own-gauge-rows", "36")
     page.press("#own-gauge-rows", "Enter")
-    expect(page.locator(".source .notes")).not_to_contain_text("simulation of the yarn of this chart")
+    expect(page.locator(".source .notes")).not_to_contain_text("simulation of the yarn")
 
 
 @pytest.fixture
