@@ -46,14 +46,15 @@ test("a file keeps its name", () => {
 
 test("no remedy shows a field's name", () => {
   const root = join(import.meta.dirname, "..", "..", "..");
-  const texts = ["knitcore", "app"].flatMap((room) =>
-    readdirSync(join(root, room), { recursive: true, encoding: "utf8" })
-      .filter((path) => path.endsWith(".py"))
-      .map((path) => readFileSync(join(root, room, path), "utf8"))
-      .filter((text) => text.includes("InputError("))
-      .flatMap((text) => [...text.matchAll(/f?"((?:Give|Use|Correct|Check|Exchange|Add|Choose|Send)\b[^"\n]*)"/g)])
-      .map(([, text]) => text.replaceAll(/\{[^}]*\}/g, "7"))
-      .filter((text) => /[a-z]_[a-z]/.test(text) && !/knitcore\.|\w\(/.test(text)), // nor calls of the library
+  const texts = ["knitcore", "app"].flatMap(
+    (room) =>
+      readdirSync(join(root, room), { recursive: true, encoding: "utf8" })
+        .filter((path) => path.endsWith(".py"))
+        .map((path) => readFileSync(join(root, room, path), "utf8"))
+        .filter((text) => text.includes("InputError("))
+        .flatMap((text) => [...text.matchAll(/f?"((?:Give|Use|Correct|Check|Exchange|Add|Choose|Send)\b[^"\n]*)"/g)])
+        .map(([, text]) => text.replaceAll(/\{[^}]*\}/g, "7"))
+        .filter((text) => /[a-z]_[a-z]/.test(text) && !/knitcore\.|\w\(/.test(text)), // nor calls of the library
   );
   assert.ok(texts.length > 5);
   for (const remedy of texts) {
