@@ -172,10 +172,7 @@ class PieceTestResult(IntervalResult):
 def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
     """Fields of every result, from the library's test."""
     past = bool(test.equilibria) and test.is_past_the_law()
-    extrapolated = (
-        "Some cloth is past 98 % of its lock-up. There the law is extrapolated: do not rely on "
-        "the forces."
-    )
+    extrapolated = "Some cloth has run out of stretch: do not rely on the forces."
     return {
         "energy_n_mm": test.energy_n_mm,
         "interval_source": interval_source(test.energy.cloth.sheet, material),

@@ -1,5 +1,6 @@
 /** Designs: beginning, opening, keeping and sharing them; and from a target to a fabric. */
 
+import { DESIGN_NAME, shortName } from "../core/names.js";
 import { actionsOf } from "./action.js";
 
 const action = actionsOf("Designs");
@@ -14,7 +15,7 @@ export const DESIGNS = [
   action("share", "Share …", ["Mod+Shift+S"], { icon: "share" }, ({ open }) => open("share")),
   action("duplicate", "Duplicate this design", ["Mod+Shift+D"], { icon: "copy" }, ({ studio, keeper }) => {
     const design = studio.toDocument();
-    keeper.openNew({ ...design, name: `${design.name.slice(0, 190)} (copy)` });
+    keeper.openNew({ ...design, name: shortName(design.name, DESIGN_NAME, " (copy)") });
     studio.tell("This is the copy; the original is among your designs.");
   }),
   action("yarns", "Own yarns …", ["Shift+Y"], { icon: "yarn" }, ({ open }) => open("yarns")),

@@ -50,12 +50,6 @@ export function matches(shortcut, event) {
   );
 }
 
-/** Shortcut as this computer's keys are called. @param {string} [shortcut] empty for what has none */
-export function shown(shortcut = "") {
-  const mac = navigator.platform.startsWith("Mac");
-  return shortcut.replace("Mod+", mac ? "⌘" : "Ctrl+").replace("Escape", "Esc");
-}
-
 /** @param {ActionContext} context @param {() => boolean} isTyping */
 export function listenToKeys(context, isTyping) {
   window.addEventListener("keydown", (event) => {

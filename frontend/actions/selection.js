@@ -4,6 +4,7 @@
  * @import {Studio} from "../state/studio.js"
  */
 
+import { byHand, withKey } from "../core/pointing.js";
 import { actionsOf } from "./action.js";
 import { Clip, Floating } from "../design/floating.js";
 import { MAX_ITEMS, MAX_MOTIF } from "../design/design.js";
@@ -82,7 +83,7 @@ export const SELECTION = [
   }),
   action("copy", "Copy", ["Mod+C"], { icon: "copy", enabled: some }, ({ studio }) => {
     copyPart(studio);
-    studio.tell("Copied. Paste (Ctrl+V) puts it at the pointer.");
+    studio.tell(byHand("Copied. Paste (Mod+V) puts it at the pointer.", "Copied. Paste puts it in the chart."));
   }),
   action("cut", "Cut", ["Mod+X"], { icon: "cut", enabled: some }, ({ studio }) => {
     copyPart(studio);
@@ -93,7 +94,7 @@ export const SELECTION = [
     const { document, editing, selection } = studio;
     const { clip } = editing;
     if (!clip) {
-      studio.tell("Nothing is copied yet: select stitches, then copy them (Ctrl+C).");
+      studio.tell(`${withKey("Nothing is copied yet: select stitches, then copy them", "Mod+C")}.`);
       return;
     }
     const { grid } = document;

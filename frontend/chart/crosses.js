@@ -9,7 +9,7 @@
 
 /** Smaller blocks cannot be read. */
 const MIN_PX = 36;
-/** The longest arm of a test, over half a block. */
+/** A cross of the largest strain of a test, over its block. */
 const ROOM = 0.92;
 const STRETCHED = "rgb(24 18 14 / 0.9)";
 const NARROWED = "rgb(196 30 20 / 0.95)";
@@ -28,7 +28,7 @@ export function drawCrosses(context, viewport, studio, box) {
   if (!fields || !course || !wale) return;
   const { grid, shaped, outline } = studio.document;
   const { cellWidth: w, cellHeight: h } = viewport;
-  const size = Math.max(1, Math.ceil(MIN_PX / Math.min(w, h)));
+  const size = sideOfCrossed(viewport);
   const longest = largestStrain(fields);
   const paths = { [STRETCHED]: new Path2D(), [NARROWED]: new Path2D() };
   for (let row0 = box.row0 - (box.row0 % size); row0 < box.row1; row0 += size) {
@@ -46,9 +46,9 @@ export function drawCrosses(context, viewport, studio, box) {
         }
       }
       if (!count) continue;
-      const { x, y, width, height } = viewport.place({ row0, column0, row1, column1 }, grid);
-      const [cx, cy] = [x + width / 2, y + height / 2];
-      const arm = (ROOM * Math.min(width, height)) / 2 / longest / count;
+      const cx = viewport.x + (w * (column0 + column1)) / 2;
+      const cy = viewport.y + h * (grid.rows - (row0 + row1) / 2);
+      const arm = (ROOM * size * Math.min(w, h)) / 2 / longest / count;
       const wide = paths[across < 0 ? NARROWED : STRETCHED];
       wide.moveTo(cx - Math.abs(across) * arm, cy);
       wide.lineTo(cx + Math.abs(across) * arm, cy);
@@ -68,7 +68,11 @@ export function drawCrosses(context, viewport, studio, box) {
   }
 }
 
-/** What the longest arm of a test stands for. @param {{strain_course: number[][], strain_wale: number[][]}} fields */
+/** Stitches on a side of the block of a cross. @param {Viewport} viewport */
+export const sideOfCrossed = ({ cellWidth, cellHeight }) =>
+  Math.max(1, Math.ceil(MIN_PX / Math.min(cellWidth, cellHeight)));
+
+/** What a cross that fills its block stands for: the largest strain of a stitch in the test. @param {{strain_course: number[][], strain_wale: number[][]}} fields */
 export function largestStrain({ strain_course, strain_wale }) {
   let most = 1e-6;
   for (const steps of [strain_course, strain_wale])

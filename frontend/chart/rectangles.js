@@ -12,7 +12,7 @@
 
 /** Smaller ones cannot be read, so stitches are averaged in blocks of this many pixels. */
 const SMALLEST = 12;
-/** A region's rectangle is never larger than this many stitches. */
+/** No rectangle has room of more than this many stitches. */
 const LARGEST = 12;
 
 /**
@@ -26,15 +26,17 @@ export function drawRectangles(context, viewport, studio, box) {
   const { grid, codes } = studio.document;
   const { cellWidth: w, cellHeight: h } = viewport;
   const largest = largestExtensibility(kinds);
+  // The same for all, so that they compare.
+  const room = 0.94 * roomInStitches(studio, viewport) * Math.min(w, h);
   const path = new Path2D();
-  for (const { box: place, cells, count } of groups(studio, box, Math.min(w, h))) {
+  for (const { box: place, cells, count } of groups(studio, box, sideOfBlocks(studio, viewport))) {
     const { course, wale } = meanExtensibility(kinds, codes, cells, count);
-    const room = 0.94 * Math.min(Math.sqrt(count), LARGEST) * Math.min(w, h);
     // The square root keeps stiff fabrics visible beside ribs that give fifty times as much.
     const wide = Math.sqrt(course / largest) * room;
     const high = Math.sqrt(wale / largest) * room;
-    const { x, y, width, height } = viewport.place(place, grid);
-    path.rect(x + (width - wide) / 2, y + (height - high) / 2, wide, high);
+    const x = viewport.x + (w * (place.column0 + place.column1)) / 2;
+    const y = viewport.y + h * (grid.rows - (place.row0 + place.row1) / 2);
+    path.rect(x - wide / 2, y - high / 2, wide, high);
   }
   context.fillStyle = "rgb(255 252 246 / 0.5)";
   context.fill(path);
@@ -43,7 +45,23 @@ export function drawRectangles(context, viewport, studio, box) {
   context.stroke(path);
 }
 
-/** What a rectangle as wide as its stitch stands for, mm/N. @param {StitchKind[]} kinds */
+/** Stitches on a side of the blocks that rectangles stand for, as drawn. @param {Studio} studio @param {Viewport} viewport */
+export function sideOfBlocks({ seeing }, { cellWidth, cellHeight }) {
+  const readable = Math.max(1, Math.ceil(SMALLEST / Math.min(cellWidth, cellHeight)));
+  return seeing.groups.value === "block" ? Math.max(seeing.block.value, readable) : readable;
+}
+
+/** Stitches on a side of the square that the largest rectangle fills. @param {Studio} studio @param {Viewport} viewport */
+export function roomInStitches(studio, viewport) {
+  const { document: chart, seeing } = studio;
+  const side =
+    seeing.groups.value === "region"
+      ? Math.sqrt(Math.max(1, ...chart.regions.filter(({ hidden }) => !hidden).map(({ count }) => count)))
+      : sideOfBlocks(studio, viewport);
+  return Math.min(Math.round(side), LARGEST);
+}
+
+/** What the side of a rectangle that fills its room stands for, mm/N. @param {StitchKind[]} kinds */
 export const largestExtensibility = (kinds) =>
   Math.max(...kinds.flatMap((k) => [k.extensibility_course_mm_per_n, k.extensibility_wale_mm_per_n]));
 
@@ -53,15 +71,15 @@ export const largestExtensibility = (kinds) =>
  * @param {Studio} studio
  * @param {number} row
  * @param {number} column
+ * @param {number} size of the blocks
  * @returns {Group | null}
  */
-export function groupAt(studio, row, column) {
+export function groupAt(studio, row, column, size) {
   const { document: chart, seeing } = studio;
   if (seeing.groups.value === "region") {
     const region = chart.regionAt(chart.grid.index(row, column));
     return region ? regionGroup(studio, region) : null;
   }
-  const size = seeing.groups.value === "block" ? seeing.block.value : 1;
   return blockGroup(studio, row - (row % size), column - (column % size), size);
 }
 
@@ -85,34 +103,36 @@ export function meanExtensibility(kinds, codes, cells, count) {
 /**
  * @param {Studio} studio
  * @param {Box} box
- * @param {number} side of a stitch, in pixels
+ * @param {number} size of the blocks
  * @returns {Iterable<Group>}
  */
-function* groups(studio, box, side) {
+function* groups(studio, box, size) {
   const { document: chart, seeing } = studio;
   if (seeing.groups.value === "region") {
     for (const region of chart.regions) {
-      if (!region.hidden && region.count) yield regionGroup(studio, region);
+      const group = region.hidden ? null : regionGroup(studio, region);
+      if (group) yield group;
     }
     return;
   }
-  const readable = Math.max(1, Math.ceil(SMALLEST / side));
-  const size = seeing.groups.value === "block" ? Math.max(seeing.block.value, readable) : readable;
   for (let row = box.row0 - (box.row0 % size); row < box.row1; row += size) {
     for (let column = box.column0 - (box.column0 % size); column < box.column1; column += size) {
-      yield blockGroup(studio, row, column, size);
+      const group = blockGroup(studio, row, column, size);
+      if (group) yield group;
     }
   }
 }
 
 /**
+ * The stitches of a block, without those outside the outline; null if it has none.
+ *
  * @param {Studio} studio
  * @param {number} row0
  * @param {number} column0
  * @param {number} size
- * @returns {Group}
+ * @returns {Group | null}
  */
-function blockGroup({ document: { grid } }, row0, column0, size) {
+function blockGroup({ document: { grid, shaped, outline } }, row0, column0, size) {
   const box = {
     row0,
     column0,
@@ -121,22 +141,24 @@ function blockGroup({ document: { grid } }, row0, column0, size) {
   };
   const cells = [];
   for (let row = row0; row < box.row1; row++) {
-    for (let column = column0; column < box.column1; column++) cells.push(grid.index(row, column));
+    for (let column = column0; column < box.column1; column++) {
+      const i = grid.index(row, column);
+      if (!shaped || outline[i]) cells.push(i);
+    }
   }
-  return { box, cells, count: cells.length };
+  return cells.length ? { box, cells, count: cells.length } : null;
 }
 
-/** @param {Studio} studio @param {import("../design/regions.js").Region} region @returns {Group} */
-function regionGroup({ document: { grid } }, region) {
-  const cells = region.stitches;
+/** @param {Studio} studio @param {import("../design/regions.js").Region} region @returns {Group | null} */
+function regionGroup({ document: { grid, shaped, outline } }, region) {
+  const cells = shaped ? region.stitches.filter((i) => outline[i]) : region.stitches;
+  const count = cells.length;
+  if (!count) return null;
   let row = 0;
   let column = 0;
   for (const i of cells) {
-    row += Math.floor(i / grid.columns);
-    column += i % grid.columns;
+    row += Math.floor(i / grid.columns) / count;
+    column += (i % grid.columns) / count;
   }
-  const count = cells.length;
-  row /= count;
-  column /= count;
   return { box: { row0: row, column0: column, row1: row + 1, column1: column + 1 }, cells, count };
 }

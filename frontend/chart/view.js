@@ -15,8 +15,8 @@ import { drawGrid, drawSegments, drawSymbols } from "./marks.js";
 import { OVERLAYS } from "../state/overlays.js";
 import { pixel, readPalette } from "../state/palette.js";
 import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
-import { drawCrosses } from "./crosses.js";
-import { drawRectangles } from "./rectangles.js";
+import { drawCrosses, sideOfCrossed } from "./crosses.js";
+import { drawRectangles, roomInStitches, sideOfBlocks } from "./rectangles.js";
 import { drawRulers } from "./rulers.js";
 import { MARGIN, Viewport } from "./viewport.js";
 
@@ -32,6 +32,10 @@ export class ChartView {
   palette = readPalette();
   /** Stitch under the pointer or the keyboard's cursor. */
   hover = new Signal(/** @type {Cell | null} */ (null));
+  /** Stitches on a side of what is drawn: rectangles' blocks and room, crosses' blocks. */
+  blockSide = new Signal(1);
+  room = new Signal(1);
+  crossedSide = new Signal(1);
   /** Where something being dragged would come to lie. */
   preview = new Signal(/** @type {Box | null} */ (null));
   #layer = new ColourLayer();
@@ -63,7 +67,8 @@ export class ChartView {
         this.recolour();
       } else this.#mark(box);
       // A rectangle of several stitches reaches beyond those that changed.
-      if (studio.rectangles.value && studio.seeing.groups.value !== "stitch") this.redraw();
+      if (studio.rectangles.value && (studio.seeing.groups.value === "region" || this.blockSide.value > 1))
+        this.redraw();
     });
     for (const signal of [studio.overlay, studio.stretch, studio.step, studio.material]) {
       signal.listen(() => this.recolour());
@@ -279,6 +284,9 @@ export class ChartView {
       const style = look === "loops" ? look : studio.editing.symbols.value;
       drawSymbols(context, viewport, grid, this.#layer, around, style, viewport.mirrored);
     }
+    this.blockSide.value = sideOfBlocks(studio, viewport);
+    this.room.value = roomInStitches(studio, viewport);
+    this.crossedSide.value = sideOfCrossed(viewport);
     if (studio.rectangles.value && studio.kinds().length) {
       drawRectangles(context, viewport, studio, around);
     }

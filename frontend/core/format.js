@@ -29,7 +29,7 @@ export function spread([low, high]) {
   const times = high / low;
   if (!(low > 0) || times <= WIDE) return { text: range([low, high]), wide: false };
   const either = Math.sqrt(times);
-  return { text: `${either.toFixed(either < 3 ? 1 : 0)}× less or more`, wide: true };
+  return { text: `up to ${either.toFixed(either < 3 ? 1 : 0)} times less or more`, wide: true };
 }
 
 /**

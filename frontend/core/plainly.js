@@ -12,11 +12,15 @@ const LABELS = {
   chart: "Chart",
   target_mmhg: "Pressure",
   girth_mm: "Girth",
+  worn_mm: "Girth",
+  rest_mm: "Tube at rest",
   at_mm: "Place along the limb",
   profile: "Measurements along the limb",
   linear_density_g_per_m: "Weight of the yarn",
   linear_density_tex: "Yarn in tex",
 };
+/** The service's title of every refusal of an input. */
+const UNUSABLE = "This input cannot be used";
 const UNITS = /_(mm|n|g_per_m|n_per_mm|mn_mm2|tex|mmhg|s|n_mm2|deg)$/;
 
 /** Names of files and places in them, which are no fields. */
@@ -44,6 +48,12 @@ const directions = (text) =>
     .replaceAll("wale-wise", "along the columns")
     .replaceAll("alpha times strain", "the share of its stretch");
 
+/** A field within a sentence: no file, no function of the library, nothing in quotes. */
+const FIELD = /(?<![\w.'"])[a-z]+(?:_[a-z0-9]+)+(?![\w('"]|\.\w)/g;
+
+/** @param {string} text */
+const sentence = (text) => directions(numbers(text.replace(FIELD, (field) => labelOf(field).toLowerCase())));
+
 /** What pydantic says of a value. @type {[RegExp, string][]} */
 const SAID = [
   [/^Input should be less than.*/, "is too large."],
@@ -61,8 +71,8 @@ const SAID = [
  * @returns {P}
  */
 export function plainly(problem) {
-  const { field, detail, remedy } = problem;
-  if (!field || field === "body") return problem;
+  const { title, field, detail, remedy } = problem;
+  if (!field || field === "body") return title === UNUSABLE ? { ...problem, title: "This cannot be used" } : problem;
   const label = labelOf(field);
   const says = detail?.startsWith(`${field}: `) ? detail.slice(field.length + 2) : null;
   const [, instead] = SAID.find(([said]) => says !== null && said.test(says)) ?? [null, says];
@@ -70,8 +80,9 @@ export function plainly(problem) {
     instead === null ? detail : `${label}${/^(is|has|needs|does|lies|are)\b/.test(instead) ? " " : ": "}${instead}`;
   return {
     ...problem,
-    detail: joined && directions(numbers(joined)),
-    remedy: remedy && directions(numbers(remedy.replaceAll(field, label === field ? field : label.toLowerCase()))),
+    title: title === UNUSABLE ? `${label} cannot be used` : title,
+    detail: joined && sentence(joined),
+    remedy: remedy && sentence(remedy.replaceAll(field, label === field ? field : label.toLowerCase())),
   };
 }
 

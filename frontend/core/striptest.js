@@ -1,5 +1,5 @@
 /**
- * What a strip test says beside its curve: its lock-up in one sentence; its steps as a table.
+ * What a strip test says beside its curve: where it runs out of stretch; its steps as a table.
  *
  * @import {StretchResult} from "../types.js"
  */
@@ -20,7 +20,7 @@ export function lockUpInWords({ strain, force_n, force_interval_n, first_taut: t
   );
   const [low, high] = force_interval_n.map((ends) => (ends[after] / force_n[after]) * taut.force_n);
   const known = spread([low, high]);
-  return `The tightest stitches run out of stretch at ${percent(taut.strain)} (${figure(taut.force_n)} N${known.wide ? `, very uncertain: ${known.text}` : ""}).`;
+  return `The tightest stitches run out of stretch at ${percent(taut.strain)} (${figure(taut.force_n)} N${known.wide ? `, which may be ${known.text}` : ""}).`;
 }
 
 /**

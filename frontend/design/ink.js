@@ -8,6 +8,7 @@
  * @typedef {"none" | "across" | "up" | "both"} Symmetry "across": the left half mirrored to the right
  */
 
+import { besides } from "../core/pointing.js";
 import { Grid as ChartGrid } from "../grid/grid.js";
 import { Brush } from "../grid/stroke.js";
 
@@ -57,7 +58,7 @@ export const NO_STITCH = new Ink(
   "no-stitch",
   "No stitch",
   stitch(0),
-  "Cut the chart's outline; the right button puts stitches back",
+  besides("Cut the chart's outline", "the right button puts stitches back"),
   "outline",
 );
 

@@ -6,6 +6,7 @@
  * @import {Direction, Problem} from "../types.js"
  */
 
+import { withKey } from "../core/pointing.js";
 import { along } from "../core/directions.js";
 import { figure, percent, percentRange, spread } from "../core/format.js";
 import { lockUpInWords } from "../core/striptest.js";
@@ -202,7 +203,7 @@ export function stretchdrawer(host, studio, stretcher) {
   const show = () => {
     const { value, busy, stale, problem } = studio.stretch.value;
     run.replaceChildren(...(busy ? [icon("stop"), "Cancel"] : [icon(direction), "Stretch"]));
-    run.title = busy ? "Cancel the test (J)" : "Pull the chart between two clamps (J)";
+    run.title = busy ? withKey("Cancel the test", "J") : withKey("Pull the chart between two clamps", "J");
     run.classList.toggle("primary", !busy);
     progress.hidden = !busy;
     const current = value !== null && !stale;
@@ -246,7 +247,7 @@ export function stretchdrawer(host, studio, stretcher) {
   stretcher.onPlay(() => {
     play.replaceChildren(icon(stretcher.playing ? "pause" : "play"));
     play.setAttribute("aria-label", stretcher.playing ? "Pause" : "Play the stretch");
-    play.title = stretcher.playing ? "Pause (Shift+J)" : "Play the stretch (Shift+J)";
+    play.title = stretcher.playing ? withKey("Pause", "Shift+J") : withKey("Play the stretch", "Shift+J");
   });
   stretcher.pause();
 }
@@ -281,17 +282,22 @@ function stretchOptions(studio) {
     "div",
     { class: "stretch-options raised rounded shadowed", id: "stretch-options", popover: "auto" },
     row("Ends", clamps),
-    row("Law", model),
-    row("Shear modulus", shear, "N/mm"),
     row("Free edges curl in 3D", curling),
-    h("p", { class: "muted small" }, "Leave the shear modulus empty unless you have measured it."),
+    h(
+      "details",
+      {},
+      h("summary", {}, "For engineers"),
+      row("Law", model),
+      row("Shear modulus", shear, "N/mm"),
+      h("p", { class: "muted small" }, "Leave the shear modulus empty unless you have measured it."),
+    ),
   );
   const button = h(
     "button",
     {
       class: "button quiet",
       id: "stretch-more",
-      title: "Ends, law and shear modulus",
+      title: "How the ends are held, and what is computed",
       popoverTargetElement: panel,
       onclick: () => {
         const { left, top } = button.getBoundingClientRect();
@@ -324,7 +330,7 @@ function refused({ type, title, detail, remedy, field, most }, pull) {
     "span",
     {},
     h("strong", {}, unit === "%" ? "Too far" : "Too hard"),
-    `: the first stitches lock before that. Use at most ${amount} ${unit}. `,
+    `: the first stitches run out of stretch before that. Use at most ${amount} ${unit}. `,
     h("button", { class: "link", id: "stretch-most", onclick: () => pull(amount, unit) }, `Pull by ${amount} ${unit}`),
   );
 }

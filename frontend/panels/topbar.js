@@ -6,16 +6,15 @@
  * @import {MaterialSummary} from "../types.js"
  */
 
-import { action, shown } from "../actions/registry.js";
+import { shown, withKey } from "../core/pointing.js";
+import { action } from "../actions/registry.js";
+import { DESIGN_NAME, shortName } from "../core/names.js";
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
 import { actionButton, iconButton } from "../widgets/buttons.js";
 import { isComplete } from "../state/studio.js";
 import { saveState } from "./savestate.js";
 import { menu } from "../widgets/menu.js";
-
-/** Characters of a design's name at most. */
-const NAME_LENGTH = 80;
 
 /** @param {HTMLElement} host @param {Studio} studio @param {ActionContext} context */
 export function topbar(host, studio, context) {
@@ -27,7 +26,7 @@ export function topbar(host, studio, context) {
     spellcheck: false,
     "aria-label": "Name of the design",
     onchange: () => {
-      studio.name.value = shortName(studio, name.value) || "Untitled";
+      studio.name.value = keptName(studio, name.value) || "Untitled";
       name.value = studio.name.value;
     },
     onkeydown: (/** @type {KeyboardEvent} */ { key }) => {
@@ -58,7 +57,7 @@ export function topbar(host, studio, context) {
   const size = h("button", {
     class: "button quiet figures",
     id: "chart-size",
-    title: "Size and new chart (N)",
+    title: withKey("Size and new chart", "N"),
     onclick: () => context.open("resize"),
   });
   const showSize = () => {
@@ -89,10 +88,9 @@ export function topbar(host, studio, context) {
 }
 
 /** A name as the service keeps it; what is cut off is said. @param {Studio} studio @param {string} text */
-function shortName(studio, text) {
-  const whole = text.trim();
-  const name = whole.slice(0, NAME_LENGTH).trimEnd();
-  if (name !== whole) studio.tell(`The name is cut to ${NAME_LENGTH} characters: “${name}”.`);
+function keptName(studio, text) {
+  const name = shortName(text, DESIGN_NAME);
+  if (name !== text.trim()) studio.tell(`The name is cut to ${DESIGN_NAME} characters: “${name}”.`);
   return name;
 }
 
@@ -147,11 +145,11 @@ export function offerTour(host, { open }) {
 
 /** @param {Studio} studio @param {ActionContext} context */
 function materialMenu(studio, context) {
-  const label = h("span", { class: "ellipsis" }, "Material");
+  const label = h("span", { class: "ellipsis" }, "Yarn");
   const { root, setItems } = menu({
     id: "material",
-    label: "Material",
-    content: [h("span", { class: "muted label" }, "Material"), label, icon("down")],
+    label: "Yarn",
+    content: [h("span", { class: "muted label" }, "Yarn"), label, icon("down")],
     class: "button material-button",
   });
   const show = () => {

@@ -3,6 +3,7 @@
  * Escape ends it.
  */
 
+import { besides, byHand } from "../core/pointing.js";
 import { saveSettings } from "../design/store.js";
 import { h } from "../elements/dom.js";
 
@@ -11,12 +12,15 @@ const STOPS = [
   {
     at: "#chart-host",
     title: "This is your cloth",
-    text: "One cell is one stitch, seen from the face. Drag to paint; with the right button, the opposite. Knit beside purl makes soft joints, knit beside knit stiff ones: how they alternate is what you design with.",
+    text: `One cell is one stitch, seen from the face. ${besides("Drag to paint", "with the right button, the opposite")}. Knit beside purl makes soft joints, knit beside knit stiff ones: how they alternate is what you design with.`,
   },
   {
     at: "#rail",
     title: "Tools",
-    text: "Pencil, shapes, fill, stamps and selections. Every tool has a letter; ? lists them all, and Ctrl+K finds any command by its name.",
+    text: byHand(
+      "Pencil, shapes, fill, stamps and selections. Every tool has a letter; ? lists them all, and Mod+K finds any command by its name.",
+      "Pencil, shapes, fill, stamps and selections.",
+    ),
   },
   {
     at: "#shelf",
@@ -41,7 +45,10 @@ const STOPS = [
   {
     at: "#fabric",
     title: "Turn it in your hands",
-    text: "The loops in 3D: drag to turn, wheel to come closer, click a stitch to find it in the chart.",
+    text: byHand(
+      "The loops in 3D: drag to turn, wheel to come closer, click a stitch to find it in the chart.",
+      "The loops in 3D: drag to turn, spread two fingers to come closer, tap a stitch to find it in the chart.",
+    ),
   },
   {
     at: "#designs-button",

@@ -59,7 +59,7 @@ export function rigidityPlot(host, studio) {
     add(
       "text",
       { x: (PAD.left + width - PAD.right) / 2, y: height - 6, class: "axis middle" },
-      "Modulus along rows (N/mm)",
+      "Stiffness along rows (N/mm)",
     );
     add(
       "text",

@@ -103,7 +103,7 @@ export function startPoser(studio) {
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* lying(studio, signal) {
   for await (const shape of curled(studio, signal, null)) {
-    yield { ...shape, pose: "lying", words: "Unpinned, lying without friction" };
+    yield { ...shape, pose: "lying", words: "Unpinned (no friction with the table)" };
   }
 }
 

@@ -13,7 +13,7 @@
  *
  * @typedef {{kind: "swatches", items: {label: string, colour: string}[]}} SwatchLegend
  * @typedef {{kind: "scale", map: ColourMap, low: number, high: number, unit: string, log: boolean,
- *   label: string}} ScaleLegend
+ *   label: string, limit?: number}} ScaleLegend `limit` has a line on the bar
  *
  * @typedef {object} Overlay
  * @property {string} id
@@ -34,7 +34,10 @@ import { pixel } from "./palette.js";
 const always = () => true;
 
 /** @param {[string, string][]} items label and colour @returns {SwatchLegend} */
-const swatches = (...items) => ({ kind: "swatches", items: items.map(([label, colour]) => ({ label, colour })) });
+export const swatches = (...items) => ({
+  kind: "swatches",
+  items: items.map(([label, colour]) => ({ label, colour })),
+});
 
 /**
  * @param {ColourMap} map
@@ -43,7 +46,15 @@ const swatches = (...items) => ({ kind: "swatches", items: items.map(([label, co
  * @param {string} label
  * @returns {ScaleLegend}
  */
-const scale = (map, [low, high], unit, label, log = false) => ({ kind: "scale", map, low, high, unit, label, log });
+export const scale = (map, [low, high], unit, label, log = false) => ({
+  kind: "scale",
+  map,
+  low,
+  high,
+  unit,
+  label,
+  log,
+});
 
 /** A purl is drawn a little darker where the colour itself does not carry a number. */
 const PURL_SHADE = 0.8;
@@ -77,12 +88,14 @@ const fabrics = {
   available: always,
   colouring: (_, palette) =>
     byKind((code, quarter, p) => pixel(palette.fabrics[QUARTERS[code][quarter]], p ? PURL_SHADE : 1)),
-  legend: (_, palette) => {
-    const colours = palette.fabrics.map(css);
-    const fabrics = FABRICS.map((label, i) => ({ label, colour: colours[i] }));
-    return { kind: "swatches", items: fabrics };
-  },
+  legend: (_, palette) => fabricKey(palette),
 };
+
+/** The colours of the four fabrics. @param {Palette} palette */
+export function fabricKey(palette) {
+  const colours = palette.fabrics.map(css);
+  return swatches(...FABRICS.map((label, i) => /** @type {[string, string]} */ ([label, colours[i]])));
+}
 
 /** @type {Overlay} */
 const segments = {
@@ -106,7 +119,7 @@ function modulus(direction, label) {
     id: `modulus-${direction}`,
     label,
     short: direction === "course" ? "Rows" : "Columns",
-    hint: `Young's modulus of each stitch ${along(direction)}, on a logarithmic scale`,
+    hint: `Stiffness (Young's modulus) of each stitch ${along(direction)}, on a logarithmic scale`,
     view: direction,
     available: (studio) => studio.kinds().length === 16,
     colouring: (studio) => {
@@ -124,9 +137,9 @@ function modulus(direction, label) {
 /** How far a stitch is stiffer one way than the other. @type {Overlay} */
 const anisotropy = {
   id: "anisotropy",
-  label: "Ratio of the moduli",
+  label: "Ratio of the stiffnesses",
   short: "Ratio",
-  hint: "Modulus along the rows over modulus along the columns of each stitch, on a logarithmic scale",
+  hint: "Stiffness along the rows over stiffness along the columns of each stitch, on a logarithmic scale",
   view: "anisotropy",
   available: (studio) => studio.kinds().length === 16,
   colouring: (studio) => {
@@ -137,7 +150,7 @@ const anisotropy = {
   },
   legend: (studio) => {
     const most = Math.exp(Math.max(...studio.kinds().map((kind) => Math.abs(ratio(kind)))));
-    return scale(vik, [1 / most, most], "", "Modulus along rows over columns", true);
+    return scale(vik, [1 / most, most], "", "Stiffness along rows over columns", true);
   },
 };
 
@@ -172,16 +185,16 @@ const strain = {
 /** @type {Overlay} */
 const utilisation = {
   id: "utilisation",
-  label: "Lock-up",
-  short: "Lock-up",
-  hint: "How much of its stretch each stitch has used; red where its yarn is taut",
+  label: "Stretch used",
+  short: "Used",
+  hint: "How much of its stretch each stitch has used; red where it runs out of stretch",
   view: "utilisation",
   available: (studio) => studio.field("utilisation") !== null,
   colouring: (studio) => {
     const values = studio.field("utilisation") ?? [];
     return { each: (i) => pixel(taut.at(values[i])) };
   },
-  legend: () => scale(taut, [0, 100], "%", "Stretch used; red: run out"),
+  legend: () => scale(taut, [0, 100], "%", "Stretch used, red where it runs out"),
 };
 
 /** @type {Overlay[]} */
@@ -189,8 +202,8 @@ export const OVERLAYS = [
   stitches,
   fabrics,
   segments,
-  modulus("course", "Modulus along rows"),
-  modulus("wale", "Modulus along columns"),
+  modulus("course", "Stiffness along rows"),
+  modulus("wale", "Stiffness along columns"),
   anisotropy,
   strain,
   utilisation,

@@ -16,6 +16,7 @@
  */
 
 import { ApiError } from "../api.js";
+import { DESIGN_NAME, shortName } from "../core/names.js";
 import { forgetDesign, newIdentifier, saveDesign } from "../design/store.js";
 import { Signal } from "../core/signal.js";
 import { combine, deliver } from "./delivery.js";
@@ -394,7 +395,7 @@ export class Keeper {
           const outcome = await deliver(parcel, designs);
           if (outcome.kind === "conflict") {
             // Nobody is looking at it now: keep both.
-            const name = `${parcel.document.name.slice(0, 180)} (changed here)`;
+            const name = shortName(parcel.document.name, DESIGN_NAME, " (changed here)");
             await designs.create({ ...parcel.document, name }, newIdentifier());
             break;
           }
@@ -435,7 +436,7 @@ export class Keeper {
       await this.#send();
       return;
     }
-    const copy = await designs.create({ ...mine, name: `${mine.name.slice(0, 180)} (mine)` }, newIdentifier());
+    const copy = await designs.create({ ...mine, name: shortName(mine.name, DESIGN_NAME, " (mine)") }, newIdentifier());
     drafts.drop(this.#parcel.id);
     this.#sentChange = this.#change;
     if (choice === "theirs") {

@@ -5,6 +5,7 @@
  * @import {Tool, ToolContext} from "./tool.js"
  */
 
+import { besides, byHand } from "../core/pointing.js";
 import { ellipse, enclosed, flood, line, rectangle, thick } from "../grid/raster.js";
 
 /** @type {Tool} */
@@ -51,7 +52,10 @@ export const move = {
   label: "Move",
   icon: "move",
   key: "Shift+M",
-  hint: "Drag the selected stitches elsewhere, or push them with the arrow keys; Alt leaves a copy behind",
+  hint: byHand(
+    "Drag the selected stitches elsewhere, or push them with the arrow keys; Alt leaves a copy behind",
+    "Drag the selected stitches elsewhere",
+  ),
   mode: "move",
   spans: () => [],
 };
@@ -68,7 +72,7 @@ export const TOOLS = [
     label: "Line",
     icon: "line",
     key: "L",
-    hint: "Drag a straight line; Shift keeps it level, upright or diagonal",
+    hint: besides("Drag a straight line", "Shift keeps it level, upright or diagonal"),
     mode: "shape",
     sized: true,
     spans: ({ start, current, constrain }, { size }) =>
@@ -97,7 +101,7 @@ export const TOOLS = [
     label: "Fill",
     icon: "fill",
     key: "G",
-    hint: "Fill connected like stitches; with Shift, a connected area of one fabric",
+    hint: besides("Fill connected like stitches", "with Shift, a connected area of one fabric"),
     mode: "once",
     spans: ({ start, constrain }, context) => flood(context.grid, looks(context, constrain), start),
   },
@@ -108,7 +112,7 @@ export const TOOLS = [
     label: "Select",
     icon: "select",
     key: "M",
-    hint: "Drag a box around stitches to see their numbers or change them; Shift adds, Alt takes away",
+    hint: besides("Drag a box around stitches to see their numbers or change them", "Shift adds, Alt takes away"),
     mode: "select",
     // A click alone selects nothing.
     spans: ({ start, current, path }) => (path.length > 1 ? rectangle(start, current) : []),
@@ -118,7 +122,7 @@ export const TOOLS = [
     label: "Lasso",
     icon: "lasso",
     key: "Q",
-    hint: "Draw around stitches to select them; Shift adds, Alt takes away, both intersect",
+    hint: besides("Draw around stitches to select them", "Shift adds, Alt takes away, both intersect"),
     mode: "select",
     spans: ({ path }) => (path.length > 2 ? enclosed(path) : []),
   },
@@ -127,7 +131,7 @@ export const TOOLS = [
     label: "Wand",
     icon: "wand",
     key: "W",
-    hint: "Select a connected area of one fabric; Shift adds, Alt takes away, both intersect",
+    hint: besides("Select a connected area of one fabric", "Shift adds, Alt takes away, both intersect"),
     mode: "select",
     spans: ({ current: [row, column] }, context) =>
       context.grid.has(row, column) ? flood(context.grid, looks(context, true), [row, column]) : [],
@@ -138,7 +142,7 @@ export const TOOLS = [
     label: "Move view",
     icon: "hand",
     key: "H",
-    hint: "Drag the chart about; Space does it with any tool, the wheel zooms",
+    hint: besides("Drag the chart about", "Space does it with any tool, the wheel zooms"),
     mode: "pan",
     spans: () => [],
   },

@@ -6,7 +6,7 @@
  * @import {IconName} from "../elements/icons.js"
  */
 
-import { shown } from "../actions/registry.js";
+import { shown } from "../core/pointing.js";
 import { h } from "../elements/dom.js";
 import { icon } from "../elements/icons.js";
 

@@ -1,6 +1,7 @@
 /** Fields for numbers, names, choices, and lengths, which are kept in mm and shown in mm or inches. */
 
 import { h } from "../elements/dom.js";
+import { shortName } from "../core/names.js";
 
 /** @import {Child} from "../elements/dom.js" */
 
@@ -8,6 +9,13 @@ const MM_PER_INCH = 25.4;
 
 /** @param {Record<string, unknown>} more its properties */
 export const numberField = (more) => h("input", { type: "number", class: "number figures framed rounded", ...more });
+
+/** A field for a name. @param {Record<string, unknown>} more properties @param {number} [most] characters */
+export function nameField(more, most) {
+  const field = h("input", { type: "text", ...more });
+  field.addEventListener("change", () => (field.value = shortName(field.value, most)));
+  return field;
+}
 
 /**
  * A field for a short text, with its label in the same line.
@@ -22,12 +30,10 @@ export const textLine = (label, value, changed, more) =>
     "label",
     { class: "line-field stack gap-8" },
     h("span", {}, label),
-    h("input", {
-      type: "text",
+    nameField({
       class: "text full-width",
       value,
-      maxLength: 80,
-      onchange: (/** @type {Event} */ { target }) => changed(/** @type {HTMLInputElement} */ (target).value.trim()),
+      onchange: (/** @type {Event} */ { target }) => changed(shortName(/** @type {HTMLInputElement} */ (target).value)),
       ...more,
     }),
   );

@@ -16,9 +16,9 @@ from knitcore.materials import Material
 from knitcore.mechanics.local_moduli import stitch_table
 
 FILL = 0.94
-"""Largest side of a rectangle, over the size of its group."""
+"""Largest side of a rectangle, over the size of the largest group."""
 LARGEST = 12.0
-"""Largest size of a region's rectangle, in stitches."""
+"""Largest room of a rectangle, in stitches."""
 
 
 def stitch_labels(rows: int, columns: int, block: int = 1) -> Indices:
@@ -40,7 +40,7 @@ def extensibility_rectangles(
 
     Sides are proportional to the square root of the mean extensibility 1/Y of the group, so that
     stiff fabrics stay visible next to ribs; the largest extensibility that the material has fills
-    the group.
+    as many of the group's stitches as the largest group has.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def extensibility_rectangles(
         flat = values.reshape(len(chosen), -1)[chosen]
         return np.stack([np.bincount(group, column) / count for column in flat.T], axis=-1)
 
-    room = np.minimum(np.sqrt(count), LARGEST) * mean(placement.sizes_mm).min(axis=1)
+    room = min(np.sqrt(count.max(initial=1)), LARGEST) * mean(placement.sizes_mm).min(axis=1)
     half = 0.5 * FILL * room[:, None] * np.sqrt(mean(sides[codes]) / np.nanmax(sides))
     angle = mean(placement.angles)
     signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])

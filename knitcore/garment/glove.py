@@ -36,6 +36,10 @@ MIN_EASE, MAX_EASE = -0.4, 0.3
 STUDY_GLOVE = "glove-wool:glove"
 FINGERS = ("index finger", "middle finger", "ring finger", "little finger")
 SUPPORT = "wrist support"
+NEEDLES = (
+    "Knit the wrist support on 2.0 mm needles (US 0) and the rest on 2.75 mm (US 2), as in the "
+    "study: each row changes needles at the edges of the support."
+)
 
 GirthAlong = Callable[[Array], Array]
 
@@ -101,7 +105,7 @@ class Hand:
             raise InputError("fingers", "four fingers are needed.", "Give lengths and girths.")
         if self.thumb_crotch_mm >= self.palm_mm:
             problem = "the base of the thumb lies beyond that of the fingers."
-            remedy = f"Give less than palm_mm, {self.palm_mm:g} mm."
+            remedy = f"Give less than the length of the palm, {self.palm_mm:g} mm."
             raise InputError("thumb_crotch_mm", problem, remedy)
 
 
@@ -343,8 +347,9 @@ def glove(
         worn=tuple(pressed.values()),
         closing="graft the last row to the first along the thumb, join the wrist's two edges, and "
         "seam finger tips and sides",
-        notes=_notes(hand, around, gauges[fabrics.hand], ease, material, fabrics.hand)
-        + _wrist_notes(pressed[SUPPORT], support_gauge, material, around, mmhg, fabrics.support),
+        notes=(NEEDLES,) if material.sample == STUDY_GLOVE else (),
+        cautions=_cautions(hand, around, gauges[fabrics.hand], ease, material, fabrics.hand)
+        + _wrist_cautions(pressed[SUPPORT], support_gauge, material, around, mmhg, fabrics.support),
         linear_density_tex=linear_density_tex,
     )
 
@@ -385,29 +390,28 @@ def _gusset(hand: Hand, thumb: Gauge, thumb_crotch: int) -> list[int]:
     return [thumb_crotch + length for length in lengths for _ in range(2) if length > 0]
 
 
-def _notes(
+def _cautions(
     hand: Hand, rows: int, palm: Gauge, ease: float, material: Material, fabric: Fabric
 ) -> tuple[str, ...]:
-    notes = [
-        "Knit the wrist support on 2.0 mm needles (US 0) and the rest on 2.75 mm (US 2), as in the "
-        "study: each row changes needles at the edges of the support."
-        if material.sample == STUDY_GLOVE
-        else "The study's glove has its wrist support on 2.0 mm needles and the rest on 2.75 mm. "
-        f"The material {STUDY_GLOVE} was measured on both, {material.identifier} on one."
-    ]
+    cautions = []
+    if material.sample != STUDY_GLOVE:
+        cautions.append(
+            "The study's glove has its wrist support on 2.0 mm needles and the rest on 2.75 mm. "
+            f"The material {STUDY_GLOVE} was measured on both, {material.identifier} on one."
+        )
     around = palm.rows_for(hand.palm_circumference_mm * (1 + ease))
     if abs(rows / around - 1) > PALM_TOLERANCE:
-        notes.append(
+        cautions.append(
             f"The fingers need {rows} rows around the hand, the palm's circumference {around} rows "
             f"of {fabric}: change the ease of the palm, or the circumferences of the fingers."
         )
-    return tuple(notes)
+    return tuple(cautions)
 
 
-def _wrist_notes(
+def _wrist_cautions(
     pressed: Worn, gauge: Gauge, material: Material, rows: int, mmhg: float | None, support: Fabric
 ) -> tuple[str, ...]:
-    """A note on the rows that the wrist support needs for a pressure."""
+    """A caution on the rows that the wrist support needs for a pressure."""
     if pressed.pressure is None:
         loose = (
             f"The wrist support is {pressed.rest_mm:.0f} mm around, the wrist "

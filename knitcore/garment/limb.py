@@ -78,7 +78,7 @@ def tube_pressure(along: Along, rest_mm: float, worn_mm: float) -> TubePressure:
     axial = float(along.across_strain(free))
     tensions = _tensions(along, strain, free, axial)
     if tensions.high >= MAX_STRESS_N_PER_MM:
-        problem = f"a strain of {strain:.2f} is at or beyond the lock-up of this chart."
+        problem = f"this chart runs out of stretch before {100 * strain:.0f} %."
         raise InputError("worn_mm", problem, "Make the tube larger.")
     soft, stiff = (float(end) / free if free else 1.0 for end in along.stress_interval(strain))
     kpa = tensions.scaled(2 * math.pi / worn_mm * 1000.0)

@@ -43,7 +43,8 @@ class GarmentPlan:
     around : the direction of the material that runs around the limb.
     worn : its pressure, place by place; empty where the limb is not known.
     closing : how the piece is closed, in words.
-    notes : of shaping and assumptions.
+    notes : for the knitter.
+    cautions : for the designer: what the plan cannot do, and what to change.
     misfits : borders between regions of different gauge.
     numbers : extensibility by region.
     yarn : length and mass needed.
@@ -58,6 +59,7 @@ class GarmentPlan:
     worn: tuple[Worn, ...]
     closing: str
     notes: tuple[str, ...]
+    cautions: tuple[str, ...]
     misfits: tuple[RegionMisfit, ...]
     numbers: tuple[RegionNumbers, ...]
     yarn: YarnUse
@@ -92,6 +94,7 @@ def make_plan(
     closing: str,
     worn: tuple[Worn, ...] = (),
     notes: tuple[str, ...] = (),
+    cautions: tuple[str, ...] = (),
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
     """Fill an outline and compute its numbers.
@@ -117,7 +120,8 @@ def make_plan(
         around=around,
         worn=worn,
         closing=closing,
-        notes=(*_too_tight(worn), *notes),
+        notes=notes,
+        cautions=(*_too_tight(worn), *cautions),
         misfits=misfits(regions, sizes, stitch),
         numbers=region_numbers(shaped, regions, material),
         yarn=_scaled(

@@ -123,13 +123,14 @@ def limb_tube(
         around=Direction.COURSE,
         worn=tuple(pressed),
         closing="work in the round, or work flat and seam the edges",
-        notes=(*notes, *_too_fast(counts, shaped), *off),
+        notes=notes,
+        cautions=(*_too_fast(counts, shaped), *off),
         linear_density_tex=linear_density_tex,
     )
 
 
 def _off_target(place: Worn, mmhg: float | None, body: str = "body") -> str:
-    """A note if an edge, which has the stitches of the body, misses its target pressure."""
+    """A caution if an edge, which has the stitches of the body, misses its target pressure."""
     if mmhg is None:
         return ""
     wish = f"The {place.part} does not keep to the {mmhg:.0f} mmHg of the {body}"
@@ -144,7 +145,7 @@ def _off_target(place: Worn, mmhg: float | None, body: str = "body") -> str:
 
 
 def _too_fast(counts: list[int], shaped: list[int]) -> list[str]:
-    """A note if the limb changes faster than rows can gain or lose stitches."""
+    """A caution if the limb changes faster than rows can gain or lose stitches."""
     if shaped == counts:
         return []
     row = max(range(len(counts)), key=lambda row: abs(shaped[row] - counts[row]))
@@ -251,7 +252,7 @@ def wrist_brace(
         around=Direction.WALE,
         worn=tuple(pressed),
         closing="graft the last row to the first",
-        notes=tuple(n for w in edges if (n := _off_target(w, mmhg, "support"))),
+        cautions=tuple(n for w in edges if (n := _off_target(w, mmhg, "support"))),
         linear_density_tex=linear_density_tex,
     )
 

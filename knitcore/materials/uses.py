@@ -81,11 +81,11 @@ def _amount(material: Material) -> Use:
 
 
 def _yarn_level(material: Material) -> Use:
-    name = "curl, drape and the yarn level"
+    name = "curl, drape and yarn simulations"
     yarn = material.yarn
     missing = []
     if yarn.bending_modulus_n_mm2 is None:
-        missing.append("the bending modulus: photos of hanging yarn")
+        missing.append("the bending stiffness: photos of hanging yarn")
     if any(record.loop_length_mm is None for record in material.fabrics.values()):
         missing.append("yarn in a stitch: unravel ten")
     if missing:
@@ -94,9 +94,9 @@ def _yarn_level(material: Material) -> Use:
         yarn.bending_modulus_n_mm2 or 1.0, yarn.bending_modulus_sd_n_mm2 or 0.0
     )
     if deviation > ROUGH_LOG_BENDING:
-        return Use(name, Serves.ROUGHLY, "the bending modulus: photos of hanging yarn")
+        return Use(name, Serves.ROUGHLY, "the bending stiffness: photos of hanging yarn")
     if yarn.compression_stiffness_n_per_mm3 is None:
-        return Use(name, Serves.ROUGHLY, "the contact law: a compression test of the yarn")
+        return Use(name, Serves.ROUGHLY, "a squeezing test of the yarn")
     return Use(name, Serves.YES)
 
 

@@ -20,14 +20,14 @@ from knitcore.prediction.pure import CURL, SIZE_LOG_SD, SIZE_SD_SOURCE
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 LEARNED = (
-    "Learned from yarn-level simulations, which have no friction or set: the initial stretch and "
-    "the draw-in are the least certain."
+    "Estimated from simulations without friction: the first stretch and the width are the least "
+    "certain."
 )
 COUNT = "Your own gauge makes both more certain."
-RELAXED = "The size at rest comes from a relaxation of this chart at the yarn level."
+RELAXED = "The size at rest comes from a simulation of the yarn of this chart."
 SWEPT = (
-    "From a yarn-level simulation of this chart, which has no friction or set: the initial stretch "
-    "and the draw-in are the least certain."
+    "From a simulation of this chart without friction: the first stretch and the width are the "
+    "least certain."
 )
 LEARNED_ERRORS = "errors on charts that the model had not seen"
 KNITTED = "29 knitted swatches (KnitDB)"
@@ -54,10 +54,10 @@ def predict_mixed(
     """
     mixture, parts = learned.mixture, learned.mixture.parts
     source = Source.LEARNED if size is None else Source.LEARNED_OF_SIZE
-    taught, note = "learned from yarn-level simulations of mixed charts", LEARNED
+    taught, note = "estimated from simulations of mixed charts", LEARNED
     errors = LEARNED_ERRORS
     if swept is not None:
-        source, taught, note = Source.SWEPT, "from a yarn-level stretch of this chart", SWEPT
+        source, taught, note = Source.SWEPT, "from a simulated stretch of this chart", SWEPT
         errors = KnownBy.RELAXATION.errors
     known_by = None if size is None else size.known_by
     pure = 1 - float(composition.mixed)  # near a pure fabric that fabric's own uncertainty counts

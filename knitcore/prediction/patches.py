@@ -98,7 +98,7 @@ class Patches:
             wale=wale,
             shear_modulus_n_per_mm=float(share @ [patch.shear_modulus_n_per_mm for patch in flat]),
             method=f"{len(self.predictions[0])} x {len(self.predictions)} patches, in series along "
-            "the pull and side by side across it; mixed ones learned from yarn-level simulations",
+            "the pull and side by side across it; mixed ones estimated from simulations",
             stretch_errors=together(lambda patch: patch.stretch_errors),
             size_errors=together(lambda patch: patch.size_errors),
             notes=together(lambda patch: patch.notes),

@@ -91,7 +91,7 @@ def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
     view = "views/" + _design(page)
     for pose, caption, below in (
         ("flat", "Relaxed, pinned flat", 0),
-        ("lying", "Unpinned, lying without friction", 50),
+        ("lying", "Unpinned (no friction with the table)", 50),
     ):
         page.click(f"#fabric-{pose}")
         expect(page.locator(".fabric-caption")).to_contain_text(caption)
@@ -280,7 +280,7 @@ def test_a_fabric_that_was_stretched_is_also_shown_as_it_lies(flat_studio: Page)
         flat_studio.click("#fabric-lying")
     assert shown.value.ok, shown.value.text()
     expect(flat_studio.locator(".fabric-caption")).to_contain_text(
-        "Unpinned, lying without friction"
+        "Unpinned (no friction with the table)"
     )
 
 

@@ -48,14 +48,14 @@ def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
     figures = page.locator("#stretch-figures .interval")
     expect(figures).to_have_count(3)  # force, stress and waist
     for k in range(3):
-        expect(figures.nth(k)).to_have_text(re.compile(rf"{INTERVAL}|× less or more"))
+        expect(figures.nth(k)).to_have_text(re.compile(rf"{INTERVAL}|times less or more"))
     chart = Chart(page)
     readout = page.locator("#readout")
     page.mouse.move(*chart.at(5, 6))
     expect(readout).to_have_text(re.compile(rf"stretch {NUMBER} % \({INTERVAL}\)"))
     page.click("#overlay-utilisation")
     page.mouse.move(*chart.at(6, 6))
-    expect(readout).to_have_text(re.compile(rf"\d+ % \({INTERVAL}\) of lock-up"))
+    expect(readout).to_have_text(re.compile(rf"\d+ % \({INTERVAL}\) of its stretch used"))
 
 
 @pytest.mark.slow
@@ -114,12 +114,12 @@ def test_a_repeat_of_a_simulated_material_is_relaxed_while_painting_pauses(
     expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(page.locator("#hand-course .interval")).not_to_have_text(guessed)
     source.click()
-    expect(page.locator(".source .notes")).to_contain_text("relaxation of this chart")
+    expect(page.locator(".source .notes")).to_contain_text("simulation of the yarn")
     expect(page.locator("#own-gauge-stitches")).to_have_value("")
     page.fill("#own-gauge-stitches", "25")
     page.fill("#own-gauge-rows", "36")
     page.press("#own-gauge-rows", "Enter")
-    expect(page.locator(".source .notes")).not_to_contain_text("relaxation of this chart")
+    expect(page.locator(".source .notes")).not_to_contain_text("simulation of the yarn")
 
 
 @pytest.fixture

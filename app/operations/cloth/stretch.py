@@ -24,7 +24,6 @@ from knitcore.cloth.flat.margins import StretchMargins, sampled_steps, stretch_m
 from knitcore.cloth.flat.strip import load_levels
 from knitcore.draw.strained_stitches import stitch_at, stitch_states
 from knitcore.garment.shaped import outline_marks
-from knitcore.law.stiffening import EXTENSION_START
 
 from ...cli.options import out_option
 from ...context import Context
@@ -242,14 +241,12 @@ def _messages(test: StripTest) -> list[str]:
     if full and test.steps and test.is_past_the_law():
         first = next(step for step in range(test.steps) if test.is_past_the_law(step))
         messages.append(
-            f"Beyond a stretch of {100 * test.strain[first]:.0f} % the tightest cloth has used "
-            f"more than {100 * EXTENSION_START:.0f} % of its stretch: its law is extrapolated "
-            "there; do not rely on the force."
+            f"Do not rely on forces beyond a stretch of {100 * test.strain[first]:.0f} %."
         )
     elif used >= 1:
         messages.append(
-            f"alpha times strain reaches {used:.2f}, and the cloth locks at 1. The published model "
-            "leaves out the lock-up, so it continues where real cloth cannot."
+            f"The tightest stitches stretch {used:.2f} times as far as their yarn allows: the "
+            "published model leaves out where real cloth runs out of stretch."
         )
     return messages
 

@@ -118,8 +118,10 @@ class GarmentResult(IntervalResult):
     yarn_g: float | None
     yarn_interval_m: Ends = Field(description="90 % interval of the yarn's length.")
     yarn_interval_g: Ends | None
-    notes: list[str]
-    warnings: list[str] = Field(description="Notes on borders between regions of different gauge.")
+    notes: list[str] = Field(description="For the knitter.")
+    warnings: list[str] = Field(
+        description="What the plan cannot do, and borders between regions of different gauge."
+    )
     sizes: list[SizeResult] = Field([], description="The garment in every size, where asked.")
     design: DesignFile = Field(description="The garment as a project file, ready to edit.")
 
@@ -157,7 +159,7 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
         yarn_interval_m=plan.yarn.length_interval_m,
         yarn_interval_g=plan.yarn.mass_interval_g,
         interval_source=SWATCH_ERRORS if request.gauge else MATERIAL_ERRORS,
-        warnings=[misfit.text for misfit in plan.misfits],
+        warnings=[*plan.cautions, *(misfit.text for misfit in plan.misfits)],
         sizes=sizes,
         design=request.pass_to(design_of_plan, plan, notes=tuple(size_lines(sizes))),
     )

@@ -6,6 +6,7 @@
  * @import {Signal} from "../../core/signal.js"
  */
 
+import { withKey } from "../../core/pointing.js";
 import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
 import { segmented } from "../../widgets/fields.js";
@@ -59,7 +60,7 @@ export function chartstrip(host, context) {
     {
       class: "strip-select raised shrinks-x rounded",
       id: "look",
-      title: "How stitches are drawn, also in print (V)",
+      title: withKey("How stitches are drawn, also in print", "V"),
       "aria-label": "How stitches are drawn",
       onchange: () => {
         const [chosen, symbols] = look.value.split(" ");

@@ -2,11 +2,10 @@
  * What the chart's colours show: chips, the legend, and a read-out of the stitch under the pointer.
  *
  * @import {ChartView} from "../../chart/view.js"
- * @import {ScaleLegend} from "../../state/overlays.js"
- * @import {Cell} from "../../grid/raster.js"
  * @import {Studio} from "../../state/studio.js"
  */
 
+import { byHand, withKey } from "../../core/pointing.js";
 import { OVERLAYS, shownOverlay } from "../../state/overlays.js";
 import { largestStrain } from "../../chart/crosses.js";
 import { groupAt, largestExtensibility, meanExtensibility } from "../../chart/rectangles.js";
@@ -14,13 +13,15 @@ import { LINES } from "../../core/directions.js";
 import { figure, percent, percentRange, range } from "../../core/format.js";
 import { paced } from "../../core/paced.js";
 import { h } from "../../elements/dom.js";
+import { legendOf } from "../../widgets/legend.js";
 
 /** Sides of the blocks that rectangles may stand for. */
 const BLOCKS = [2, 4, 8, 16];
 const READ_MS = 80;
-const IDLE = matchMedia("(pointer: coarse)").matches
-  ? "Tap or drag to paint. Two fingers move and zoom."
-  : "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.";
+const IDLE = byHand(
+  "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.",
+  "Tap or drag to paint. Two fingers move and zoom.",
+);
 
 /**
  * @param {HTMLElement} host
@@ -48,7 +49,7 @@ export function overlaybar(host, studio, view) {
     {
       class: "chip gap-6 small nowrap",
       id: "overlay-rectangles",
-      title: "Extensibility rectangles: as wide and as high as a stitch stretches along rows and columns (E)",
+      title: withKey("Extensibility rectangles: as wide and as high as a stitch stretches along rows and columns", "E"),
       onclick: () => (studio.rectangles.value = !studio.rectangles.value),
     },
     h("span", { class: "chip-rectangle", "aria-hidden": "true" }),
@@ -58,7 +59,7 @@ export function overlaybar(host, studio, view) {
   const crosses = h(
     "button",
     { class: "chip gap-6 small nowrap", id: "overlay-crosses", onclick: () => (crossing.value = !crossing.value) },
-    "+ Strain",
+    "Stretch crosses",
   );
   crossing.watch((on) => crosses.setAttribute("aria-pressed", String(on)));
   crossing.listen(() => show());
@@ -96,32 +97,27 @@ export function overlaybar(host, studio, view) {
       chips[i].title = available ? overlay.hint : `${overlay.hint}. ${needs}.`;
     });
     crosses.disabled = !pulled;
-    crosses.title = `Strain crosses: how far the cloth stretches along rows and columns; red where it narrows${
+    crosses.title = `Stretch crosses: how far the cloth stretches along rows and columns; red where it narrows${
       pulled ? "" : `. ${needs}.`
     }`;
-    const content = shown.legend(studio, view.palette);
-    legend.replaceChildren(
-      ...(content.kind === "scale"
-        ? scale(content)
-        : content.items.map(({ label, colour }) => {
-            const key = h("span", { class: "key" });
-            key.style.background = colour;
-            return h("span", { class: "legend-item gap-5" }, key, label);
-          })),
-    );
+    legend.replaceChildren(...legendOf(shown.legend(studio, view.palette)));
     if (studio.rectangles.value) {
       legend.append(
         h(
           "label",
           { class: "legend-item gap-5" },
           h("span", { class: "chip-rectangle" }),
-          h("span", { class: "wide" }, "how far it gives:"),
+
           grouping,
         ),
         h(
           "span",
-          { class: "muted figures", title: "The sides grow as the square root of the extensibility" },
-          `widest: ${figure(largestExtensibility(studio.kinds()), 2)} mm/N`,
+          {
+            class: "muted figures",
+            id: "legend-rectangles",
+            title: "Sides grow as the square root of what a stitch gives, on one scale for all",
+          },
+          `${drawnFor(studio, view)}as large as ${square(view.room.value)}: ${figure(largestExtensibility(studio.kinds()), 2)} mm/N`,
         ),
       );
     }
@@ -132,7 +128,7 @@ export function overlaybar(host, studio, view) {
           "span",
           { class: "legend-item gap-5", id: "legend-crosses" },
           h("span", { class: "key-cross", "aria-hidden": "true" }),
-          `stretch along rows and columns, longest arm ${percent(largestStrain(fields))}`,
+          `stretch along rows and columns, as large as ${square(view.crossedSide.value)}: ${percent(largestStrain(fields))}`,
         ),
         h(
           "span",
@@ -143,11 +139,12 @@ export function overlaybar(host, studio, view) {
       );
     }
   };
-  for (const signal of [studio.overlay, studio.material, studio.rectangles]) signal.listen(show);
+  for (const signal of [studio.overlay, studio.material, studio.rectangles, groups, block]) signal.listen(show);
+  for (const signal of [view.blockSide, view.room, view.crossedSide]) signal.listen(show);
   for (const signal of [studio.rectangles, groups, block]) signal.listen(() => read());
   studio.rectangles.watch((on) => rectangles.setAttribute("aria-pressed", String(on)));
 
-  const read = () => (readout.textContent = describe(studio, view.hover.value));
+  const read = () => (readout.textContent = describe(studio, view));
   read();
   const readSoon = paced(read, READ_MS);
   view.hover.listen(readSoon);
@@ -169,7 +166,7 @@ export function overlaybar(host, studio, view) {
         "div",
         { class: "chips line wrap gap-2", role: "radiogroup", "aria-label": "Colours of the chart" },
         ...chips.slice(0, 3),
-        h("span", { class: "chip-heading small muted", "aria-hidden": "true" }, "Modulus"),
+        h("span", { class: "chip-heading small muted", "aria-hidden": "true" }, "Stiffness"),
         ...chips.slice(3, 6),
         h("span", { class: "chip-divider", "aria-hidden": "true" }),
         ...chips.slice(6),
@@ -182,30 +179,28 @@ export function overlaybar(host, studio, view) {
   return show;
 }
 
-/** @param {ScaleLegend} scale */
-function scale({ map, low, high, unit, log, label }) {
-  const gradient = h("span", { class: "gradient" });
-  const colours = Array.from({ length: 33 }, (_, i) => map.css(i / 32));
-  gradient.style.backgroundImage = `linear-gradient(to right, ${colours})`;
-  return [
-    h("span", {}, label),
-    h("span", { class: "figures" }, figure(low, 2)),
-    gradient,
-    h("span", { class: "figures" }, `${figure(high, 2)}${unit ? ` ${unit}` : ""}`),
-    log && h("span", { class: "muted" }, "log"),
-  ].filter((part) => part instanceof Node);
+/** @param {number} side */
+const square = (side) => (side === 1 ? "a stitch" : `${side} × ${side} stitches`);
+
+/** What one rectangle stands for, where the zoom is too small for what was chosen. @param {Studio} studio @param {ChartView} view */
+function drawnFor({ seeing: { groups, block } }, { blockSide }) {
+  const chosen = groups.value === "block" ? block.value : 1;
+  return groups.value === "region" || blockSide.value === chosen
+    ? ""
+    : `too small to see: drawn for ${square(blockSide.value)}, `;
 }
 
-/** @param {Studio} studio @param {Cell | null} cell */
-function describe(studio, cell) {
+/** @param {Studio} studio @param {ChartView} view */
+function describe(studio, view) {
   const { grid, codes } = studio.document;
+  const cell = view.hover.value;
   if (!cell || !grid.has(...cell)) return IDLE;
   const [row, column] = cell;
   const i = grid.index(row, column);
   const side = studio.editing.round.value || row % 2 === 0 ? "RS" : "WS";
   const parts = [`Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`];
   if (studio.rectangles.value && studio.kinds().length) {
-    parts.push(give(studio, row, column));
+    parts.push(give(studio, row, column, view.blockSide.value));
     return parts.join(" · ");
   }
   const kind = studio.kinds()[codes[i]];
@@ -220,7 +215,7 @@ function describe(studio, cell) {
   if (id === "strain" && strain !== undefined) {
     parts.push(`stretch ${percent(strain, 1)}${within("strain", 1)}`);
   } else if (id === "utilisation" && used !== undefined) {
-    parts.push(`${percent(used)}${within("utilisation")} of lock-up`);
+    parts.push(`${percent(used)}${within("utilisation")} of its stretch used`);
   } else if (kind) {
     const value = (/** @type {"course" | "wale"} */ direction) => {
       const interval = range(kind[`modulus_${direction}_interval_n_per_mm`]);
@@ -231,10 +226,17 @@ function describe(studio, cell) {
   return parts.join(" · ");
 }
 
-/** What the rectangle at a stitch says. @param {Studio} studio @param {number} row @param {number} column */
-function give(studio, row, column) {
-  const group = groupAt(studio, row, column);
-  if (!group) return "in no region";
+/**
+ * What the rectangle at a stitch says.
+ *
+ * @param {Studio} studio
+ * @param {number} row
+ * @param {number} column
+ * @param {number} size of the blocks
+ */
+function give(studio, row, column, size) {
+  const group = groupAt(studio, row, column, size);
+  if (!group) return studio.seeing.groups.value === "region" ? "in no region" : "outside the piece";
   const kinds = studio.kinds();
   const { codes } = studio.document;
   const { course, wale } = meanExtensibility(kinds, codes, group.cells, group.count);

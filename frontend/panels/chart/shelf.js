@@ -7,6 +7,7 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
+import { withKey } from "../../core/pointing.js";
 import { action } from "../../actions/registry.js";
 import { readPalette } from "../../state/palette.js";
 import { FLIP, KNIT, NO_STITCH, PURL } from "../../design/ink.js";
@@ -33,7 +34,7 @@ export function shelf(host, studio, context) {
   const fill = action("fill-part");
   const fillButton = textButton("fill", h("span", {}, "Fill chart"), () => fill.perform(context), {
     id: "fill-all",
-    title: "Fill the selection, or the whole chart, with this pattern (F)",
+    title: withKey("Fill the selection, or the whole chart, with this pattern", "F"),
   });
   const removeLabel = "Take this pattern off the shelf";
   const removeButton = iconButton(

@@ -237,7 +237,7 @@ const numbersOf = ({ predicted, curves }) =>
     const modulus = predicted[`modulus_${way}_n_per_mm`];
     const stretches = strain_interval.map(at);
     return [
-      [`Modulus, ${lines}`, "N/mm", { value: modulus, interval: predicted[`modulus_${way}_interval_n_per_mm`] }],
+      [`Stiffness, ${lines}`, "N/mm", { value: modulus, interval: predicted[`modulus_${way}_interval_n_per_mm`] }],
       [
         `Stretch at ${LOAD_N_PER_MM} N/mm, ${lines}`,
         "%",

@@ -9,8 +9,9 @@
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { designs } from "../../sync/designs.js";
+import { DESIGN_NAME } from "../../core/names.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
-import { segmented } from "../../widgets/fields.js";
+import { nameField, segmented } from "../../widgets/fields.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { ago } from "../../core/ago.js";
@@ -172,12 +173,10 @@ export function create(studio, context) {
 
   /** @param {DesignSummary} design @param {HTMLElement} name */
   const rename = (design, name) => {
-    const field = h("input", {
-      class: "text-field card-rename grows shrinks-x rounded",
-      value: design.name,
-      maxLength: 80,
-      "aria-label": "New name",
-    });
+    const field = nameField(
+      { class: "text-field card-rename grows shrinks-x rounded", value: design.name, "aria-label": "New name" },
+      DESIGN_NAME,
+    );
     const done = async () => {
       const newName = field.value.trim();
       field.replaceWith(name);

@@ -10,6 +10,7 @@ import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { designs } from "../../sync/designs.js";
 import { textButton } from "../../widgets/buttons.js";
+import { nameField } from "../../widgets/fields.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { listRow } from "../../widgets/listrow.js";
@@ -21,11 +22,9 @@ import { attempt } from "../../widgets/problem.js";
 export function create(studio, { keeper, open }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ol", { class: "rows-list", id: "versions-list" });
-  const name = h("input", {
+  const name = nameField({
     class: "text-field grows shrinks-x rounded",
     id: "version-name",
-    type: "text",
-    maxLength: 80,
     placeholder: "Name of this state, such as “before the cuff”",
     "aria-label": "Name of this state",
   });
@@ -45,7 +44,7 @@ export function create(studio, { keeper, open }) {
       },
     },
     name,
-    h("button", { class: "button primary", type: "submit", id: "version-keep" }, icon("pin"), "Keep"),
+    h("button", { class: "button primary", type: "submit", id: "version-keep" }, icon("pin"), "Save version"),
   );
   const element = dialog(
     "versions-dialog",

@@ -1,6 +1,7 @@
 /** All keys and tools. */
 
-import { ACTIONS, shown } from "../../actions/registry.js";
+import { byHand, shown } from "../../core/pointing.js";
+import { ACTIONS } from "../../actions/registry.js";
 import { api } from "../../api.js";
 import { h, remark } from "../../elements/dom.js";
 import { TOOLS } from "../../tools/tools.js";
@@ -14,7 +15,10 @@ export function create() {
     "help-dialog",
     "Keys and tools",
     remark(
-      "Paint stitches in the chart; its colours show what each will do, and the panel at the right what the whole cloth will do. The right mouse button paints the opposite stitch. The wheel zooms, Space and drag moves. With the chart focused, arrow keys move and Enter paints.",
+      `Paint stitches in the chart; its colours show what each will do, and the panel beside it what the whole cloth will do. ${byHand(
+        "The right mouse button paints the opposite stitch. The wheel zooms, Space and drag moves. With the chart focused, arrow keys move and Enter paints.",
+        "Two fingers move and zoom.",
+      )}`,
     ),
     h(
       "div",
@@ -45,6 +49,6 @@ export function create() {
   return async () => {
     element.showModal();
     const release = await api.version().catch(() => undefined); // unreachable: the line is left out
-    if (release) version.replaceChildren(`Knitcore ${release.version} · `, h("a", { href: "/docs" }, "for programs"));
+    if (release) version.replaceChildren(`Knitcore ${release.version} · `, h("a", { href: "/docs" }, "API reference"));
   };
 }

@@ -9,7 +9,8 @@
  * @typedef {{label: string, words: string, icon?: IconName, key?: string, perform: () => void}} Entry
  */
 
-import { ACTIONS, shown } from "../../actions/registry.js";
+import { shown } from "../../core/pointing.js";
+import { ACTIONS } from "../../actions/registry.js";
 import { OVERLAYS } from "../../state/overlays.js";
 import { POSES } from "../../state/seeing.js";
 import { byId, h } from "../../elements/dom.js";

@@ -14,7 +14,7 @@ import { download } from "../../services/exporter.js";
 import { inKnittersWords, marksSheet, photosRequest, stepCells, swatchYarn, texOf } from "../../services/swatches.js";
 import { adopt, identifierOf } from "../../services/yarns.js";
 import { textButton } from "../../widgets/buttons.js";
-import { labelled, numberField, sameWords, selectField } from "../../widgets/fields.js";
+import { labelled, nameField, numberField, sameWords, selectField } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
 import { attempt, problemBox } from "../../widgets/problem.js";
 import { table, tableRow } from "../../widgets/table.js";
@@ -35,8 +35,8 @@ export function swatchWay(studio, made) {
   /** @type {SwatchResult | null} */
   let known = null;
 
-  const name = h("input", { class: "text-field grows shrinks-x rounded", id: "swatch-name", maxLength: 80 });
-  const fibre = h("input", { class: "text-field shrinks-x rounded", id: "swatch-fibre", maxLength: 80 });
+  const name = nameField({ class: "text-field grows shrinks-x rounded", id: "swatch-name" });
+  const fibre = nameField({ class: "text-field shrinks-x rounded", id: "swatch-fibre" });
   const grams = figure("swatch-ball-grams");
   const metres = figure("swatch-ball-metres");
   const wraps = figure("swatch-wraps");
@@ -171,7 +171,7 @@ export function swatchWay(studio, made) {
         { class: "yarn-fabrics" },
         table(
           { class: "yarn-table small full-width", id: "swatch-steps" },
-          ["After", "Yarn in a stitch", "Bending modulus", `Stretch of ${fabric.value} along rows`, "Along columns"],
+          ["After", "Yarn in a stitch", "Bending stiffness", `Stretch of ${fabric.value} along rows`, "Along columns"],
           h("tbody", {}, ...lines),
         ),
       ),
@@ -285,7 +285,7 @@ export function swatchWay(studio, made) {
       else tab.firstElementChild?.removeAttribute("aria-current");
     });
     back.disabled = to === 0;
-    next.textContent = to === STEPS.length - 1 ? "Keep the yarn" : "Next";
+    next.textContent = to === STEPS.length - 1 ? "Save the yarn" : "Next";
   };
   show(0);
 

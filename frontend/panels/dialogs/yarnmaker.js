@@ -20,7 +20,7 @@ import {
   yarnOf,
 } from "../../services/yarns.js";
 import { textButton } from "../../widgets/buttons.js";
-import { labelled, numberField, sameWords, selectField } from "../../widgets/fields.js";
+import { labelled, nameField, numberField, sameWords, selectField } from "../../widgets/fields.js";
 import { Run } from "../../widgets/jobrun.js";
 import { table, tableRow } from "../../widgets/table.js";
 import { attempt } from "../../widgets/problem.js";
@@ -47,7 +47,7 @@ export function yarnMaker(studio, made) {
   /** @param {string} title @param {string} detail */
   const say = (title, detail) => run.say({ title, detail, remedy: null });
 
-  const name = h("input", { class: "text-field grows shrinks-x rounded", id: "yarn-name", maxLength: 80 });
+  const name = nameField({ class: "text-field grows shrinks-x rounded", id: "yarn-name" });
   const bending = figure("yarn-bending", { min: "0.01", max: "10000" });
   const loop = figure("yarn-loop", { min: "1", max: "200" });
   const stiffness = figure("yarn-stiffness", { min: "0.0001", max: "100000" });
@@ -96,17 +96,17 @@ export function yarnMaker(studio, made) {
       .filter((sample) => sample.yarn === mean.yarn)
       .map((sample) => sample.diameter_mm);
     measured = { ...measured, diameter_mm: diameters.reduce((sum, mm) => sum + mm, 0) / diameters.length };
-    const words = `k ${stiffness.value} mN/mm³, p ${exponent.value} from ${counted(mean.samples, "sample")} of ${squeezes.files?.[0]?.name}`;
-    evidence.set("contact", `Contact law ${words}.`);
+    const words = `stiffness ${stiffness.value} mN/mm³, exponent ${exponent.value} from ${counted(mean.samples, "sample")} of ${squeezes.files?.[0]?.name}`;
+    evidence.set("contact", `Squeezing test: ${words}.`);
     squeezed.textContent = [`${words}.`, ...compression.notes].join(" ");
   };
   const squeeze = async () => {
     const [file] = squeezes.files ?? [];
-    if (!file) return say("There is no test yet", "Choose the file of a compression test.");
+    if (!file) return say("There is no test yet", "Choose the file of a squeezing test.");
     compression = await run.run(
       "compression",
       await compressionRequest(file, diameter.valueAsNumber),
-      "Fitting the contact law …",
+      "Reading the squeezing test …",
     );
     const yarns = Object.keys(compression?.mean ?? {});
     which.replaceChildren(...yarns.map((yarn) => h("option", { value: yarn }, yarn)));
@@ -149,7 +149,7 @@ export function yarnMaker(studio, made) {
     if (lacking.length === FABRICS.length && !estimable) {
       return say(
         "That is not enough for a yarn",
-        "Give its bending modulus and the yarn in a stitch, or two stretch tests and the gauge of a fabric.",
+        "Give its bending stiffness and the yarn in a stitch, or two stretch tests and the gauge of a fabric.",
       );
     }
     const yarn = await attempt(status, async () => (lacking.length ? completed(known, lacking, estimable) : known));
@@ -166,7 +166,7 @@ export function yarnMaker(studio, made) {
     const text = JSON.stringify(whole);
     if (uses.some(({ serves }) => serves === "no") && text !== seen) {
       seen = text;
-      return status.replaceChildren(remark("Some uses need more. Add it, or keep the yarn as it is."), usesList(uses));
+      return status.replaceChildren(remark("Some uses need more. Add it, or save the yarn as it is."), usesList(uses));
     }
     if (await attempt(status, () => adopt(studio, whole))) made();
   };
@@ -224,7 +224,7 @@ export function yarnMaker(studio, made) {
     h(
       "details",
       { id: "yarn-bend" },
-      h("summary", {}, "Measure the bending modulus on photos"),
+      h("summary", {}, "Measure the bending stiffness on photos"),
       remark(
         "Let a known length hang over the edge of a table, 10 to 25 cm, before a plain background. Photograph it level from the side, crop the photo at the edge, and take five.",
       ),
@@ -241,7 +241,7 @@ export function yarnMaker(studio, made) {
     h(
       "details",
       { id: "yarn-squeeze" },
-      h("summary", {}, "Contact law, from a compression test (for the yarn level only)"),
+      h("summary", {}, "Squeezing test (for yarn simulations only)"),
       h(
         "div",
         { class: "yarn-facts" },
@@ -255,7 +255,7 @@ export function yarnMaker(studio, made) {
     ),
     h("h4", {}, "2. The fabrics"),
     remark(
-      "Stitches and rows per 10 cm of a swatch at rest; and, for one fabric or more, two stretch tests (CSV, XLSX or HDF5), pulled along its rows and along its columns. A fabric without tests is estimated from the bending modulus, the yarn in a stitch and the fabrics that have them.",
+      "Stitches and rows per 10 cm of a swatch at rest; and, for one fabric or more, two stretch tests (CSV, XLSX or HDF5), pulled along its rows and along its columns. A fabric without tests is estimated from the bending stiffness, the yarn in a stitch and the fabrics that have them.",
     ),
     h(
       "div",
@@ -272,7 +272,7 @@ export function yarnMaker(studio, made) {
     h(
       "div",
       { class: "dialog-buttons" },
-      textButton("yarn", "Keep the yarn", () => void make(), { class: "button primary", id: "yarn-make" }),
+      textButton("yarn", "Save the yarn", () => void make(), { class: "button primary", id: "yarn-make" }),
     ),
   );
 

@@ -146,7 +146,7 @@ export function create(studio, { view }) {
   async function run() {
     make.disabled = true;
     outcome.replaceChildren(
-      h("p", { class: "muted" }, kind.to === "knitout" ? "A virtual machine knits it …" : "One moment …"),
+      h("p", { class: "muted" }, kind.to === "knitout" ? "Checking it on a simulated machine …" : "One moment …"),
     );
     const body = {
       ...studio.toDocument(),

@@ -66,7 +66,7 @@ export const KINDS = [
   ...kinds("For a machine", [
     ["knitout", "Knitout", "for a V-bed machine; knitted on a virtual one first", ["finish"], true],
   ]),
-  ...kinds("To keep and to compute with", [
+  ...kinds("Data and files", [
     ["report", "Report", "PDF: numbers with intervals, maps, curves, assumptions, chart", PAPER],
     ["design", "Project file", "everything in this design, to open again", ["note"], true],
     ["png", "Picture", "one pixel per stitch; purls are dark, cells without a stitch transparent", []],

@@ -8,10 +8,9 @@
  */
 
 import { ApiError, api } from "../../api.js";
-import { atRest, shownOverlay } from "../../state/overlays.js";
+import { OVERLAYS, atRest, fabricKey, scale, shownOverlay, swatches } from "../../state/overlays.js";
 import { onTheme, readPalette } from "../../state/palette.js";
 import { along } from "../../core/directions.js";
-import { figure, percent } from "../../core/format.js";
 import { batlow } from "../../state/colormaps.js";
 import { h, nextTask } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
@@ -20,6 +19,7 @@ import { Still } from "./still.js";
 import { toolbar } from "./toolbar.js";
 import { POSES, wordsOf } from "../../state/seeing.js";
 import { REST } from "../../state/studio.js";
+import { legendOf } from "../../widgets/legend.js";
 import { problemText } from "../../widgets/problem.js";
 
 /** Delay before the 3D view updates: without a GPU, drawing can block painting. */
@@ -183,10 +183,11 @@ export function fabricview(host, studio, view) {
     open(`/view/${encodeURIComponent(studio.designId)}/`); // it loads while the scene is being made
     const scene = request();
     const sceneWords = words();
+    const sceneColours = coloursOf(studio);
     const text = JSON.stringify(scene);
     const until = changes;
     if (text === sent) {
-      [confirmed, changesShown] = [sceneWords, until];
+      [confirmed, confirmedColours, changesShown] = [sceneWords, sceneColours, until];
       return describe();
     }
     sending = true;
@@ -200,7 +201,7 @@ export function fabricview(host, studio, view) {
       if (problem) status.replaceChildren();
       problem = false;
       source = answer.source;
-      [confirmed, changesShown] = [sceneWords, until];
+      [confirmed, confirmedColours, changesShown] = [sceneWords, sceneColours, until];
       describe();
       studio.online.value = true;
       pass = answer.url.slice(answer.url.indexOf("#") + 1);
@@ -263,6 +264,7 @@ export function fabricview(host, studio, view) {
 
   /** What the cloth on show is: it keeps that until another one is there. */
   let confirmed = "";
+  let confirmedColours = coloursOf(studio);
   const words = () => {
     const strain = studio.seeing.pose.value !== "flat" ? 0 : studio.currentStrain();
     return strain && !studio.seeing.posed.value
@@ -276,7 +278,10 @@ export function fabricview(host, studio, view) {
     host.toggleAttribute("data-left", left);
     const { pressure } = (!stale && studio.seeing.posed.value) || {};
     caption.replaceChildren(
-      pressure ? pressureBar(pressure) : "",
+      pressure?.warning ? h("strong", { class: "problem-text", role: "alert" }, pressure.warning) : "",
+      confirmedColours
+        ? h("div", { class: "fabric-legend line small", id: "fabric-legend" }, ...legendOf(confirmedColours))
+        : "",
       stale ? `${confirmed}${left ? ", before the change" : ""}` : words(),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
@@ -318,27 +323,30 @@ export function fabricview(host, studio, view) {
   };
 }
 
-/**
- * The colours of pressure with a line at the limit, and a warning where it is too much.
- *
- * @param {{most: number, limit: number, warning: string}} pressure
- */
-function pressureBar({ most, limit, warning }) {
-  const bar = h("span", { class: "gradient" });
-  const end = `${figure(most, 2)} mmHg at most`;
-  if (limit < most) {
-    const line = h("span", { class: "pressure-limit" });
-    line.style.left = percent(limit / most).replace(" ", "");
-    bar.append(line);
+/** What the colours of the cloth mean; null for those of its yarn. @param {Studio} studio */
+function coloursOf(studio) {
+  const { posed } = studio.seeing;
+  const colour = posed.value?.piece ? "yarn" : colourOf(studio);
+  const palette = readPalette();
+  if (colour === "pressure") {
+    const { most = 0, limit } = posed.value?.pressure ?? {};
+    return most ? { ...scale(batlow, [0, most], "mmHg at most", "Pressure"), limit } : null;
   }
-  bar.style.backgroundImage = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => batlow.css(i / 16))})`;
-  return h(
-    "div",
-    { class: "fabric-pressure stack gap-2", id: "fabric-pressure" },
-    warning && h("strong", { class: "problem-text", role: "alert" }, warning),
-    most > 0 &&
-      h("span", { class: "line gap-6 figures" }, "0", bar, limit < most ? `${end}; limit ${figure(limit, 2)}` : end),
-  );
+  if (colour === "fabric" || colour === "phase") return fabricKey(palette);
+  if (colour === "region") {
+    const shown = studio.document.regions.filter(({ hidden, count }) => !hidden && count);
+    return swatches(...shown.map(({ name, colour }) => /** @type {[string, string]} */ ([name, colour])));
+  }
+  return colour === "yarn" ? null : (OVERLAYS.find(({ view }) => view === colour)?.legend(studio, palette) ?? null);
+}
+
+/** What colours the stitches of the view. @param {Studio} studio */
+function colourOf(studio) {
+  const { yarnColours, posed } = studio.seeing;
+  if (yarnColours.value !== "chart") return yarnColours.value;
+  if (posed.value?.pose === "worn") return "pressure";
+  const overlay = shownOverlay(studio);
+  return (!posed.value && pulled(studio) ? overlay : atRest(overlay)).view;
 }
 
 /** What the view is to show. @param {Studio} studio @param {ChartView} view @returns {ViewRequest} */
@@ -346,9 +354,7 @@ export function viewRequest(studio, view) {
   const { document: chart, seeing } = studio;
   const posed = seeing.posed.value;
   const stretch = posed ? null : pulled(studio);
-  const overlay = stretch ? shownOverlay(studio) : atRest(shownOverlay(studio));
-  const ofChart = posed?.pose === "worn" ? "pressure" : overlay.view;
-  const colour = seeing.yarnColours.value === "chart" ? ofChart : seeing.yarnColours.value;
+  const colour = colourOf(studio);
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
   const { rows, columns } = chart.grid;
   const { written: palette } = readPalette();

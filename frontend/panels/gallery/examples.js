@@ -1,5 +1,5 @@
 /**
- * What the gallery offers. Charts are made here, from the repeat of a pattern; garments come from the
+ * What the gallery offers; a test compares what it says of their stretch with our numbers. Charts are made here, from the repeat of a pattern; garments come from the
  * service, which fits them to measurements.
  *
  * @import {GarmentRequest} from "../../types.js"
@@ -28,20 +28,20 @@ const DIAMONDS = "KKKKPKKK/KKKPKPKK/KKPKKKPK/KPKKKKKP/PKKKKKKK/KPKKKKKP/KKPKKKPK
 
 /** @type {Example[]} */
 export const EXAMPLES = /** @type {[string, string, string, () => string][]} */ ([
-  ["stockinette", "Stockinette", "All even segments: the stiffest of the four.", tiled("K", 24, 30)],
-  ["garter", "Garter", "Odd segments along the columns: stretches lengthwise.", tiled("P/K", 24, 30)],
-  ["rib", "1×1 rib", "Odd segments along the rows: stretches across.", tiled("KP", 24, 30)],
-  ["seed", "Seed", "Odd segments both ways: soft both ways.", tiled("KP/PK", 24, 30)],
-  ["rib-2-2", "2×2 rib", "Pulls in more, and stretches more, than 1×1.", tiled("KKPP", 24, 32)],
+  ["stockinette", "Stockinette", "Of these four, gives least lengthwise.", tiled("K", 24, 30)],
+  ["garter", "Garter", "Gives more than twice as far lengthwise as stockinette.", tiled("P/K", 24, 30)],
+  ["rib", "1×1 rib", "Of these four, gives most across.", tiled("KP", 24, 30)],
+  ["seed", "Seed", "Like garter, gives more than twice as far lengthwise as stockinette.", tiled("KP/PK", 24, 30)],
+  ["rib-2-2", "2×2 rib", "Two knit and two purl columns in turn.", tiled("KKPP", 24, 32)],
   [
     "basket",
     "Basket",
-    "Blocks that lean against each other.",
+    "Squares of knits and purls in turn.",
     tiled("PPPPKKKK/PPPPKKKK/PPPPKKKK/PPPPKKKK/KKKKPPPP/KKKKPPPP/KKKKPPPP/KKKKPPPP", 24, 32),
   ],
   ["moss", "Moss", "Seed, with each row knitted twice.", tiled("PK/PK/KP/KP", 24, 30)],
-  ["diamonds", "Diamonds", "Soft lines across a stiff ground.", tiled(DIAMONDS, 24, 32)],
-  ["sampler", "Cuff with a panel", "All four fabrics in one swatch: where will it give?", () => exampleGrid().text],
+  ["diamonds", "Diamonds", "Lines of purls on stockinette.", tiled(DIAMONDS, 24, 32)],
+  ["sampler", "Cuff with a panel", "All four fabrics in one swatch: pull it and see.", () => exampleGrid().text],
 ]).map(([id, name, note, chart]) => ({ id, name, note, chart }));
 
 /** @type {GarmentExample[]} */
@@ -49,7 +49,7 @@ export const GARMENTS = [
   {
     id: "wrist-brace",
     name: "Wrist brace",
-    note: "Stiff support between soft edges, knitted sideways.",
+    note: "Supports the wrist; knitted sideways.",
     material: "glove-wool",
     garment: { template: "wrist-brace", wrist_mm: 170, length_mm: 80 },
   },

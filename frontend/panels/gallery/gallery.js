@@ -24,7 +24,7 @@ export function create(studio, { keeper, open }) {
   const element = dialog(
     "gallery-dialog",
     "New design",
-    remark("Begin with one of these and change it. The design on show is kept: it stays among your designs."),
+    remark("Begin with one of these and change it. Your present design is saved."),
     status,
     h("h3", {}, "Charts"),
     examples,
@@ -84,8 +84,7 @@ export function create(studio, { keeper, open }) {
       const { garment, material, name } = example;
       const plan = await attempt(status, () => api.run("garment", { garment, material }));
       if (!plan) continue;
-      const note = [...plan.notes, ...plan.warnings].join("\n");
-      fitted.set(example.id, { ...plan.design, name, material, note });
+      fitted.set(example.id, { ...plan.design, name, material });
     }
     garments.replaceChildren(
       ...GARMENTS.flatMap((example) => {

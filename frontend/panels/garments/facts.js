@@ -31,8 +31,10 @@ export function facts(garment, unit) {
     h(
       "ul",
       { class: "planner-notes plain-list stack gap-5 small" },
-      ...garment.warnings.map((words) => h("li", { class: "warned" }, icon("warning"), words)),
-      ...garment.notes.filter((words) => !isWarning(words)).map((words) => h("li", {}, icon("info"), words)),
+      ...garment.warnings
+        .filter((words) => !isWarning(words))
+        .map((words) => h("li", { class: "warned" }, icon("warning"), words)),
+      ...garment.notes.map((words) => h("li", {}, icon("info"), words)),
       h("li", {}, icon("info"), `To close: ${garment.closing}.`),
     ),
   ];
@@ -92,12 +94,12 @@ function regions({ regions: all }, unit) {
 }
 
 /** @param {GarmentResult} garment @param {string} unit @returns {Node[]} */
-function pressure({ worn, notes }, unit) {
+function pressure({ worn, warnings }, unit) {
   if (!worn.length) return [];
   const pressed = worn.filter(({ ease }) => ease < 0);
-  const warned = [...new Set(pressed.flatMap(({ warnings }) => warnings))].filter((words) => !isWarning(words));
+  const warned = [...new Set(pressed.flatMap((place) => place.warnings))].filter((words) => !isWarning(words));
   return [
-    ...notes.filter(isWarning).map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
+    ...warnings.filter(isWarning).map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
     table(
       { class: "planner-table figures full-width small", id: "planner-pressure" },
       ["Where it is worn", "Garment", "Limb", "Ease", "Pressure"],

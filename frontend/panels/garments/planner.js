@@ -212,7 +212,7 @@ export function create(studio, { keeper }) {
         gradedRow,
         fabrics,
         h("h3", {}, "Yarn and gauge"),
-        labelled("Material", yarn),
+        labelled("Yarn", yarn),
         labelled("Yarn, tex (g/km)", tex, "for its mass"),
         h("label", { class: "planner-check line gap-8" }, own, "My own gauge"),
         gaugeRow,

@@ -77,7 +77,7 @@ const TESTS = [
       const borders = await Promise.all(BORDERS.map((border) => api.run("border", { ...request, border }, signal)));
       const words = borders.map(({ sides, ends }, i) => {
         const [wide, high] = [sides, ends].map(({ width_mm: mm }) => figure(mm / 10, 2));
-        const lies = sides.holds && ends.holds ? "" : ", and wider would roll up, too";
+        const lies = sides.holds && ends.holds ? "" : "; a border cannot hold it flat";
         return `A ${BORDERS[i]} border by its weight alone: ${wide} cm at the sides, ${high} cm at the ends${lies}.`;
       });
       return { words, notes: borders[0].notes };

@@ -65,7 +65,7 @@ export function inspector(host, studio) {
   const details = h(
     "details",
     { class: "inspector-details small", id: "inspector-details", open: detailed.value },
-    h("summary", {}, "Modulus, Poisson's ratio, segments"),
+    h("summary", {}, "Stiffness, Poisson's ratio, segments"),
     table,
     segments,
   );
@@ -351,7 +351,7 @@ function fill(table, value) {
       "tbody",
       {},
       row(
-        "Modulus",
+        "Stiffness",
         "N/mm",
         "Young's modulus at the beginning of a pull: force per width over stretch",
         number("modulus-course", value?.modulus_course_n_per_mm, value?.modulus_course_interval_n_per_mm),

@@ -123,7 +123,7 @@ export function limb(host, studio) {
     const stretched = new Set([percent(Math.min(...stretch)), percent(Math.max(...stretch))]);
     const words = [
       `Stretched around the limb by ${[...stretched].join(" to ")}.`,
-      `Nearest to its lock-up ${tightest_mm.toFixed(0)} mm along (${percent(Math.max(...places.map((p) => p.lock_up_share)))}).`,
+      `Nearest to running out of stretch ${tightest_mm.toFixed(0)} mm along (${percent(Math.max(...places.map((p) => p.lock_up_share)))}).`,
       loose_mm > 0 ? `Loose over ${loose_mm.toFixed(0)} mm.` : "",
       length_mm && relaxed_length_mm
         ? `${length_mm.toFixed(0)} mm long on the limb if free to shorten, ${relaxed_length_mm.toFixed(0)} mm unworn.`

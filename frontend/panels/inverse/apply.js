@@ -7,6 +7,7 @@
  * @typedef {{cells: number[], name: string}} Place
  */
 
+import { UNDO } from "../../core/pointing.js";
 import { motifGrid } from "../../grid/grid.js";
 import { selectedCells, selects } from "../../design/selection.js";
 import { byId, h } from "../../elements/dom.js";
@@ -84,7 +85,7 @@ export function fillWith(studio, key, place, material) {
   );
   const other = material && material !== studio.materialId.value;
   if (other) studio.materialId.value = material;
-  studio.tell(`${nameOf(key)} fills ${place.name}${other ? ", and the yarn is changed" : ""}. Undo with Ctrl+Z.`);
+  studio.tell(`${nameOf(key)} fills ${place.name}${other ? ", and the yarn is changed" : ""}. ${UNDO}`);
 }
 
 /**

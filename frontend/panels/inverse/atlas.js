@@ -81,8 +81,8 @@ export function atlasTab(studio, context) {
           "p",
           { class: "inverse-legend flex wrap small" },
           h("span", {}, h("i", { class: "mark pure" }), "four fabrics"),
-          table?.provenance.includes("swept") && h("span", {}, h("i", { class: "mark square" }), "swept"),
-          h("span", {}, h("i", { class: "mark" }), "learned"),
+          table?.provenance.includes("swept") && h("span", {}, h("i", { class: "mark square" }), "simulated"),
+          h("span", {}, h("i", { class: "mark" }), "estimated"),
         ),
       );
       return;
@@ -147,10 +147,7 @@ export function atlasTab(studio, context) {
       ]),
       numbers([
         ["Poisson ratios", `${figure(table.poisson_yx[k], 2)} and ${figure(table.poisson_xy[k], 2)}`],
-        [
-          "Stitch at rest",
-          size === null ? "not certified" : `${figure(size)} × ${figure(table.relaxed_wale_mm[k])} mm`,
-        ],
+        ["Stitch at rest", size === null ? "unknown" : `${figure(size)} × ${figure(table.relaxed_wale_mm[k])} mm`],
         [
           "To knit, a stitch",
           `${knittingInWords(table.transfers_per_stitch[k], table.crossings_per_stitch[k])}; ${curlInWords(table.curl[k])}`,

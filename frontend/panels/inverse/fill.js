@@ -10,8 +10,10 @@
  * `wish` is what was asked for in words, until the numbers that it goes by have come
  */
 
+import { UNDO } from "../../core/pointing.js";
 import { ApiError, api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
+import { shortName } from "../../core/names.js";
 import { Belonging } from "../../services/belonging.js";
 import { Grid } from "../../grid/grid.js";
 import { largestRectangle } from "../../grid/inscribed.js";
@@ -19,6 +21,7 @@ import { FABRICS } from "../../grid/segments.js";
 import { selectedCells } from "../../design/selection.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
+import { nameField } from "../../widgets/fields.js";
 import { nameOf, repeatPicture } from "./apply.js";
 import { field, fillButton, form, verdict } from "./form.js";
 import { Run } from "../../widgets/jobrun.js";
@@ -169,14 +172,12 @@ export function fromStiffness(studio) {
       h(
         "div",
         { class: "target-line line wrap gap-6" },
-        h("input", {
-          type: "text",
+        nameField({
           class: "text part-title full-width",
           value: part.name,
-          maxLength: 80,
           "aria-label": "Name",
           onchange: (/** @type {Event} */ { target }) =>
-            (part.name = /** @type {HTMLInputElement} */ (target).value.trim() || part.name),
+            (part.name = shortName(/** @type {HTMLInputElement} */ (target).value) || part.name),
         }),
         h("span", { class: "muted figures part-count small nowrap" }, `${part.cells.length} sts`),
         iconButton("close", `Remove ${part.name}`, () => {
@@ -201,7 +202,7 @@ export function fromStiffness(studio) {
   const show = () => {
     list.replaceChildren(
       ...(parts.length
-        ? [h("li", { class: "muted inverse-hint" }, "Modulus in N/mm, now → target"), ...parts.map(item)]
+        ? [h("li", { class: "muted inverse-hint" }, "Stiffness in N/mm, now → target"), ...parts.map(item)]
         : [
             h(
               "li",
@@ -290,7 +291,7 @@ export function fromStiffness(studio) {
       answer.replaceChildren();
       studio.tell(words);
     };
-    const keep = textButton("check", "Keep it", () => done("The chart is filled. Undo with Ctrl+Z."), {
+    const keep = textButton("check", "Use it", () => done(`The chart is filled. ${UNDO}`), {
       class: "button primary",
       id: "fill-keep",
     });

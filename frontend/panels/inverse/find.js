@@ -35,13 +35,13 @@ import { sameWords, selectField } from "../../widgets/fields.js";
 const quantity = (id, label, short, unit, start, more = {}) => ({ id, label, short, unit, start, ...more });
 
 const QUANTITIES = [
-  quantity("modulus_course_n_per_mm", "Modulus, rows", "rows", "N/mm", 0.1),
-  quantity("modulus_wale_n_per_mm", "Modulus, columns", "columns", "N/mm", 0.1),
+  quantity("modulus_course_n_per_mm", "Stiffness, rows", "rows", "N/mm", 0.1),
+  quantity("modulus_wale_n_per_mm", "Stiffness, columns", "columns", "N/mm", 0.1),
   quantity("stretch_course", "Stretch, rows", "stretch, rows", "%", 60, { percent: true, needs: "load" }),
   quantity("stretch_wale", "Stretch, columns", "stretch, columns", "%", 40, { percent: true, needs: "load" }),
   quantity("pressure_course_mmhg", "Pressure, rows around a limb", "pressure", "mmHg", 20, { needs: "limb" }),
   quantity("pressure_wale_mmhg", "Pressure, columns around a limb", "pressure", "mmHg", 20, { needs: "limb" }),
-  quantity("anisotropy", "Ratio of the moduli (rows over columns)", "ratio", "", 1),
+  quantity("anisotropy", "Ratio of the stiffnesses (rows over columns)", "ratio", "", 1),
   quantity("poisson_yx", "Poisson ratio, pulled along rows", "Poisson, rows", "", 0.2, { difference: true }),
   quantity("poisson_xy", "Poisson ratio, pulled along columns", "Poisson, columns", "", 0.4, { difference: true }),
   quantity("extensibility_course_mm_per_n", "Extensibility, rows", "ext., rows", "mm/N", 10),
@@ -317,7 +317,7 @@ function valueOf(candidate, label) {
   const value = candidate.values[label];
   const off = candidate.deviations[label];
   const scale = q.percent ? 100 : 1;
-  if (value === null || off === null) return h("span", {}, `${q.short}: beyond the lock-up`);
+  if (value === null || off === null) return h("span", {}, `${q.short}: runs out of stretch first`);
   const [low, high] = candidate.intervals[label].map((end) => (end === null ? "…" : figure(scale * end, 2)));
   const away = q.difference
     ? `${off < 0 ? "−" : "+"}${figure(Math.abs(off), 2)}`

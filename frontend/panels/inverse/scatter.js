@@ -76,7 +76,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
       stroke(context, scales.x.at(tick), PAD.top, scales.x.at(tick), height - PAD.bottom);
       context.fillText(String(tick), scales.x.at(tick), height - PAD.bottom + 16);
     }
-    context.fillText("Modulus along rows, N/mm", (PAD.left + width) / 2, height - 6);
+    context.fillText("Stiffness along rows, N/mm", (PAD.left + width) / 2, height - 6);
     context.textAlign = "right";
     for (const tick of scales.y.ticks) {
       stroke(context, PAD.left, scales.y.at(tick), width - PAD.right, scales.y.at(tick));

@@ -7,6 +7,7 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
+import { besides } from "../../core/pointing.js";
 import { nameOf } from "../inverse/apply.js";
 import { action } from "../../actions/registry.js";
 import { hasRoom } from "../../actions/selection.js";
@@ -126,7 +127,10 @@ export function create(studio, context) {
               "pencil",
               painting ? "Painting it" : "Paint it",
               () => (painting ? (ink.value = KNIT) : studio.paintWith(regionInk(region))),
-              { "aria-pressed": String(painting), title: "With any tool; the right button takes stitches out" },
+              {
+                "aria-pressed": String(painting),
+                title: besides("With any tool", "the right button takes stitches out"),
+              },
             ),
             wide("select", "select", "Select it", () => (selection.value = selectionOf(region.cells, chart.grid)), {
               disabled: !count,

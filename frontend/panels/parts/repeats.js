@@ -8,6 +8,7 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
+import { withKey } from "../../core/pointing.js";
 import { action } from "../../actions/registry.js";
 import { boxOf, filledBox } from "../../chart/placing.js";
 import { MAX_ITEMS } from "../../design/design.js";
@@ -105,7 +106,7 @@ export function create(studio, context) {
             textButton("repeat", "Place", begin, {
               id: `${id}-place`,
               "aria-pressed": String(studio.tool.value === placeRepeat),
-              title: "Then drag in the chart (P)",
+              title: withKey("Then drag in the chart", "P"),
             }),
             textButton("fill", selection.value ? "Repeat over the selection" : "Repeat over the chart", fill, {
               id: `${id}-fill`,

@@ -31,6 +31,6 @@ test("shares in percent add up, and what is there is never nothing", () => {
 
 test("an interval that is too wide is said in words", () => {
   assert.deepEqual(spread([100, 300]), { text: "100 – 300", wide: false });
-  assert.deepEqual(spread([24, 1656]), { text: "8× less or more", wide: true });
+  assert.deepEqual(spread([24, 1656]), { text: "up to 8 times less or more", wide: true });
   assert.deepEqual(spread([0, 2]), { text: "0 – 2.0", wide: false });
 });

@@ -17,7 +17,7 @@ const TEST = {
 test("one sentence says where the first stitch runs out of stretch, and how well the force is known", () => {
   assert.equal(
     lockUpInWords(TEST),
-    "The tightest stitches run out of stretch at 111 % (148 N, very uncertain: 8× less or more).",
+    "The tightest stitches run out of stretch at 111 % (148 N, which may be up to 8 times less or more).",
   );
   const taut = { strain: 0.4, force_n: 8 };
   assert.equal(

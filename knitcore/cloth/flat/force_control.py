@@ -70,8 +70,8 @@ def strain_at_force(
             most = float(np.floor(100 * reached_n) / 100)
             raise InputError(
                 "force_n",
-                f"{force_n:.3g} N {direction}-wise is too much: this swatch can be pulled to a "
-                f"strain of {limit:.3f}, near its lock-up, with {reached_n:.3g} N.",
+                f"{force_n:.3g} N {direction}-wise is too much: this swatch runs out of "
+                f"stretch at {100 * limit:.1f} %, with {reached_n:.3g} N.",
                 f"Use at most {most:.2f}.",
                 most=most,
             )

@@ -317,7 +317,7 @@ def check_lock_up(sheet: Sheet, direction: Direction, strain: float) -> None:
     limit = min(LOCK_UP_SHARE * lock_up_strain(sheet, direction), MAX_STRAIN)
     if strain > limit:
         why = (
-            "this swatch locks up before that"
+            "this swatch runs out of stretch before that"
             if limit < MAX_STRAIN
             else "no fabric stretches that far"
         )

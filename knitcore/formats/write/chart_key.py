@@ -132,6 +132,11 @@ def multiple_words(repeat: StitchChart, edge_columns: int, edge_rows: int) -> st
     return f"{stitches} sts, {rows} rows"
 
 
+def shortened(name: str, most: int = 26) -> str:
+    """A name as long as its place on paper; an ellipsis says that it goes on."""
+    return name if len(name) <= most else f"{name[: most - 1]}…"
+
+
 def tinted(colour: str) -> str:
     """A yarn's colour as its stitches are printed."""
     channels = (int(colour[i : i + 2], 16) for i in (1, 3, 5))

@@ -129,7 +129,7 @@ def field_shapes(
         yield _rectangle(middle, sides, "#ffffff", 1.4)
         yield _rectangle(middle, sides, _INK, 0.7)
     share = f"one stitch in {step} × {step}" if step > 1 else "stitches"
-    note = f"large rectangles: regions; small ones: {share} of flat cloth"
+    note = f"large rectangles: regions; small ones: {share} of flat cloth, on a scale of their own"
     yield Label(left, top + high * chart.rows + 4.0, note, 2.8)
 
 

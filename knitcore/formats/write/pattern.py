@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 from PIL import Image, ImageChops
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.row_sides import Construction
@@ -28,6 +28,7 @@ from knitcore.formats.write.chart_key import (
     ChartStyle,
     RegionMark,
     is_coloured,
+    shortened,
     tinted,
 )
 from knitcore.formats.write.drawn_page import Label, Page, Photo, Rectangle, Shape
@@ -128,12 +129,13 @@ def pattern_pages(
     if photo is not None:
         flow.photo(photo, "The cloth as it was computed, not a photograph.")
     _materials(flow, piece, material, yarn_facts)
-    _gauge(flow, facts)
+    parts = _known_parts(facts, style.regions)
+    _gauge(flow, facts, parts=bool(parts))
     if style.note:
         flow.heading("Notes")
         for paragraph in style.note.splitlines():
             flow.text(paragraph, bullet=True)
-    _parts(flow, facts, style.regions)
+    _parts(flow, facts, parts)
     opening, sections = written_sections(
         piece, style.construction, first_side=style.first_side, breaks=_breaks(piece, style.regions)
     )
@@ -316,16 +318,17 @@ def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequen
         name = f"{yarn_name(index)}: {own.name}" if is_coloured(piece) else own.name
         flow.text(": ".join(filter(None, (name.capitalize(), facts))), colour=tinted(own.colour))
     flow.text("Lengths are for the stitches alone: add tails, cast-on and a swatch.")
-    flow.text("Needles of the size that gives the gauge below.")
+    flow.text("Needles of the size with which your swatch has the gauge below.")
 
 
-def _gauge(flow: _Flow, facts: _Facts) -> None:
+def _gauge(flow: _Flow, facts: _Facts, *, parts: bool) -> None:
     flow.heading("Gauge and size")
-    width, height = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
-    of = "of the whole cloth at rest."
-    if facts.prediction is None:
-        of = "at rest, the mean of all parts; each has its own below."
-    flow.text(f"{100 / width:.0f} stitches and {100 / height:.0f} rows to 10 cm {of}")
+    if facts.prediction is None and parts:
+        flow.text("Each part has a gauge of its own: see Parts.")
+    else:
+        width, height = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
+        counts = f"{100 / width:.0f} stitches and {100 / height:.0f} rows"
+        flow.text(f"{counts} to 10 cm of the whole cloth at rest.")
     places = (0.0, 62.0, 124.0)
     flow.row(("", "along the rows", "along the columns"), places, bold=True)
     size = facts.size
@@ -349,11 +352,15 @@ def _interval(value: float, ends: Interval, scale: float, unit: str, digits: int
     return f"{middle} {unit} ({low} to {high})"
 
 
-def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
-    """Each region: where it lies, its gauge, and its size at its widest row and highest column."""
+def _known_parts(facts: _Facts, regions: Sequence[RegionMark]) -> list[tuple[RegionMark, Mask]]:
+    """Regions with stitches inside the outline, and those stitches."""
     inside = facts.piece.shaped.stitch
     known = [(region, region.cells & inside) for region in regions]
-    shown = [(region, cells) for region, cells in known if cells.any()]
+    return [(region, cells) for region, cells in known if cells.any()]
+
+
+def _parts(flow: _Flow, facts: _Facts, shown: Sequence[tuple[RegionMark, Mask]]) -> None:
+    """Each region: where it lies, its gauge, and its size at its widest row and highest column."""
     if not shown:
         return
     flow.heading("Parts")
@@ -367,16 +374,12 @@ def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
         across = width * cells.sum(axis=1).max() / 10
         up = height * cells.sum(axis=0).max() / 10
         gauge = f"{100 / width:.0f} sts, {100 / height:.0f} rows"
-        texts = (_short(region.name), where, gauge, f"{across:.1f} × {up:.1f} cm")
+        texts = (shortened(region.name), where, gauge, f"{across:.1f} × {up:.1f} cm")
         flow.row(texts, places, colour=region.colour)
     flow.text(
         "Stitches are counted from the right edge; sizes are of each part's widest row and "
         "highest column, beside its neighbours. By itself, its fabric has another gauge."
     )
-
-
-def _short(name: str, most: int = 26) -> str:
-    return name if len(name) <= most else f"{name[: most - 1]}…"
 
 
 def _breaks(piece: Piece, regions: Sequence[RegionMark]) -> list[int]:
@@ -418,7 +421,7 @@ def _instructions(
         if len(sections) > 1:
             here = [r.name for r in style.regions if r.cells[start:stop].any()]
             span = f"{row} {start + 1}" if stop == start + 1 else f"{row}s {start + 1}–{stop}"
-            flow.subheading(f"{span}: {', '.join(map(_short, here)) or 'between the parts'}")
+            flow.subheading(f"{span}: {', '.join(map(shortened, here)) or 'between the parts'}")
         for line in lines:
             flow.text(re.sub(r"(?<=\d)-(?=\d)", "–", line))
 

@@ -13,7 +13,7 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.draw.laid_out import SizeAtRest, size_at_rest
 from knitcore.formats.designs.layout import DesignRegion
 from knitcore.formats.write.chart_drawing import A4_MM, chart_pages
-from knitcore.formats.write.chart_key import MARGIN_MM, ChartStyle, tinted
+from knitcore.formats.write.chart_key import MARGIN_MM, ChartStyle, shortened, tinted
 from knitcore.formats.write.drawn_page import Label, Lines, Page, Rectangle, Shape, to_pdf
 from knitcore.formats.write.extensibility_drawing import field_shapes, region_fields
 from knitcore.garment.piece import Piece
@@ -21,10 +21,19 @@ from knitcore.materials import Interval, Material
 from knitcore.mechanics.local_moduli import local_moduli
 from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM
 from knitcore.prediction.predict import predict
-from knitcore.prediction.prediction import Along, Prediction
+from knitcore.prediction.prediction import Along, Prediction, Source
 
 # Cividis at five points: perceptually uniform, and the same for colour-blind readers.
 _CIVIDIS = np.array([[0, 32, 76], [65, 77, 107], [124, 123, 120], [187, 173, 108], [255, 234, 70]])
+LINES = {Direction.COURSE: "rows", Direction.WALE: "columns"}
+SOURCES = {
+    Source.MEASURED: "measured",
+    Source.ESTIMATED: "estimated from tests of the yarn and of others",
+    Source.SWEPT: "simulated",
+    Source.LEARNED: "estimated from simulations",
+    Source.LEARNED_OF_SIZE: "estimated from simulations and a known size",
+}
+"""Bases of predictions in words, as on the page."""
 _DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
 _LEVELS, _NO_STITCH = 32, -1
 MAX_REGIONS = 12
@@ -37,6 +46,7 @@ LOCAL_ASSUMPTIONS = (
     "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
 )
 """Assumptions behind the numbers of a piece with an outline."""
+ASSUMPTIONS = "Method and assumptions"
 _LINE_CHARACTERS = 112
 _MAP_MM = (84.0, 62.0)
 
@@ -66,12 +76,11 @@ def design_report(
             *_numbers(piece.chart, material, name, prediction, size),
             *_maps(piece, material, style.aspect, 73.0),
         ]
-        shapes += [*_plot(prediction), *_assumptions(assumptions(prediction), 228.0)]
-        pages.append(Page(*A4_MM, tuple(shapes)))
+        shapes += _plot(prediction)
+        pages += _with_assumptions(shapes, assumptions(prediction), 228.0)
     if regions or not piece.is_rectangle:
-        pages.append(
-            Page(*A4_MM, tuple(_regions(piece, material, name, style.aspect, regions, size)))
-        )
+        shapes = [*_regions(piece, material, name, style.aspect, regions, size)]
+        pages += _with_assumptions(shapes, LOCAL_ASSUMPTIONS, A4_MM[1] - 30.0)
     return to_pdf([*pages, *chart_pages(piece, style, first=len(pages) + 1)], name)
 
 
@@ -116,7 +125,7 @@ def _regions(
         yield Rectangle(MARGIN_MM, y - 2.6, 3.0, 3.0, fill=tinted(part.colour))
         both = [part.prediction.along(direction) for direction in Direction]
         cells = (
-            f"    {part.name[:28]}",
+            f"    {shortened(part.name)}",
             str(part.stitches),
             *(_value(along.modulus_n_per_mm, along.modulus_interval_n_per_mm) for along in both),
             " × ".join(f"{1 / along.modulus_n_per_mm:.2f}" for along in both),
@@ -144,7 +153,6 @@ def _regions(
         width=A4_MM[0] - 2 * MARGIN_MM,
         height=A4_MM[1] - top - 44.0,
     )
-    yield from _assumptions(LOCAL_ASSUMPTIONS, A4_MM[1] - 30.0)
 
 
 def _row(
@@ -180,13 +188,18 @@ def _numbers(
     for index, cells in enumerate(rows):
         yield from _row((MARGIN_MM, 62.0, 128.0), cells, 36.0 + 5.2 * index, 3.2)
     yield Lines(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
-    yield Label(MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {prediction.provenance}.", 3.0)
+    yield Label(
+        MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {SOURCES[prediction.provenance]}.", 3.0
+    )
 
 
 _NUMBERS: tuple[tuple[str, Callable[[Along], tuple[float, Interval]]], ...] = (
-    ("Young's modulus, N/mm", lambda a: (a.modulus_n_per_mm, a.modulus_interval_n_per_mm)),
+    (
+        "stiffness (Young's modulus), N/mm",
+        lambda a: (a.modulus_n_per_mm, a.modulus_interval_n_per_mm),
+    ),
     ("extensibility, mm/N", lambda a: (1 / a.modulus_n_per_mm, a.extensibility_interval_mm_per_n)),
-    ("contraction when pulled this way", lambda a: (a.poisson, a.poisson_interval)),
+    ("narrowing when pulled", lambda a: (a.poisson, a.poisson_interval)),
     ("stitch at rest, mm", lambda a: (a.relaxed_mm, a.relaxed_interval_mm)),
 )
 
@@ -205,7 +218,7 @@ def _maps(piece: Piece, material: Material, aspect: float, top: float) -> Iterat
     cell = min(_MAP_MM[0] / chart.columns, _MAP_MM[1] / (chart.rows * aspect))
     high_mm = cell * aspect
     for direction, left in zip(Direction, (MARGIN_MM, 108.0), strict=True):
-        yield Label(left, top, f"local modulus along the {direction}, N/mm", 3.0)
+        yield Label(left, top, f"stiffness of each stitch along the {LINES[direction]}, N/mm", 3.0)
         level = ((logs[direction] - low) / (high - low) * (_LEVELS - 1)).round().astype(int)
         level[~stitch] = _NO_STITCH
         for row in range(chart.rows):
@@ -246,14 +259,23 @@ def _plot(prediction: Prediction) -> Iterator[Shape]:
         yield Lines(tuple((*a, *b) for a, b in pairwise(points)), ink, 0.5)
         line = top + 5.0 + 5.0 * index
         yield Lines(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
-        yield Label(left + 13.0, line, f"{direction} ({prediction.provenance})", 2.8)
+        yield Label(
+            left + 13.0,
+            line,
+            f"pulled along the {LINES[direction]}, {SOURCES[prediction.provenance]}",
+            2.8,
+        )
 
 
-def _assumptions(said: Sequence[str], top: float) -> Iterator[Shape]:
-    yield Label(MARGIN_MM, top, "Method and assumptions", 3.4)
-    y = top + 6.0
-    for note in said:
-        for line in textwrap.wrap(note, _LINE_CHARACTERS):
-            if y < A4_MM[1] - 8.0:
-                yield Label(MARGIN_MM, y, line, 2.8)
-            y += 4.2
+def _with_assumptions(shapes: Sequence[Shape], said: Sequence[str], top: float) -> list[Page]:
+    """A page with assumptions below its shapes; what does not fit goes on a page of its own."""
+    lines = [line for note in said for line in textwrap.wrap(note, _LINE_CHARACTERS)]
+    pages, y = [], top + 6.0
+    drawn = [*shapes, Label(MARGIN_MM, top, ASSUMPTIONS, 3.4)]
+    for line in lines:
+        if y > A4_MM[1] - 8.0:
+            pages.append(Page(*A4_MM, tuple(drawn)))
+            drawn, y = [Label(MARGIN_MM, 16.0, f"{ASSUMPTIONS}, continued", 3.4)], 22.0
+        drawn.append(Label(MARGIN_MM, y, line, 2.8))
+        y += 4.2
+    return [*pages, Page(*A4_MM, tuple(drawn))]

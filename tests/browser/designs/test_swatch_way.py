@@ -84,7 +84,7 @@ def test_one_tested_fabric_makes_a_yarn_for_any_chart_that_says_what_it_lacks(
     page.get_by_label("Change Tested twice").click()
     page.click("#yarn-make")
     uses = page.locator("#yarn-maker .yarn-use")
-    expect(uses.last).to_contain_text("the bending modulus")
+    expect(uses.last).to_contain_text("the bending stiffness")
     expect(uses.first).not_to_contain_text("No")
     page.click("#yarn-make")
     expect(page.locator("#material-button")).to_contain_text("Tested twice")

@@ -125,7 +125,7 @@ def test_the_study_glove_is_tighter_at_the_wrist() -> None:
         first_place(study, "wrist support").rest_mm < first_place(PLANS[0], "wrist support").rest_mm
     )
     assert "2.0 mm needles" in study.notes[0]
-    assert "for 25 mmhg the wrist support takes" in study.notes[-1].lower()
+    assert "for 25 mmhg the wrist support takes" in study.cautions[-1].lower()
 
 
 @pytest.mark.parametrize("mmhg", [8.0, 15.0, 25.0])
@@ -197,7 +197,7 @@ def test_tubes_follow_the_limb() -> None:
 def test_a_limb_that_widens_too_fast_is_reported() -> None:
     plan = limb_tube("cone", [Girth(0, 100), Girth(40, 500)], WOOL, hem_mm=0)
     assert set(np.diff([stop - start for start, stop in plan.shaped.spans])) <= {0, 2}
-    assert any("widens faster" in note for note in plan.notes)
+    assert any("widens faster" in caution for caution in plan.cautions)
 
 
 def test_different_gauges_are_reported_where_they_meet() -> None:
@@ -294,13 +294,13 @@ def test_pressure_is_graded_along_a_sleeve() -> None:
 
 def test_a_ribbing_that_misses_the_pressure_says_so() -> None:
     limb = [Girth(0, 200), Girth(200, 210)]
-    notes = limb_tube("s", limb, WOOL, fit=Fit(mmhg=15)).notes
-    missed = [note for note in notes if "does not keep to the 15 mmHg" in note]
+    cautions = limb_tube("s", limb, WOOL, fit=Fit(mmhg=15)).cautions
+    missed = [note for note in cautions if "does not keep to the 15 mmHg" in note]
     assert len(missed) == 2
     assert all("ribbing" in note for note in missed)
     like_body = limb_tube("s", limb, WOOL, fit=Fit(mmhg=15), hem=Fabric.STOCKINETTE)
-    assert not any("does not keep" in note for note in like_body.notes)
-    assert not any("does not keep" in note for note in limb_tube("s", limb, WOOL).notes)
+    assert not any("does not keep" in note for note in like_body.cautions)
+    assert not any("does not keep" in note for note in limb_tube("s", limb, WOOL).cautions)
 
 
 def test_an_edge_of_a_brace_that_misses_the_pressure_says_so() -> None:
@@ -311,12 +311,12 @@ def test_an_edge_of_a_brace_that_misses_the_pressure_says_so() -> None:
         "support",
         "edge at the hand",
     ]
-    assert [note.split(":")[0] for note in brace.notes] == [
+    assert [note.split(":")[0] for note in brace.cautions] == [
         f"The {edge} does not keep to the 20 mmHg of the support"
         for edge in ("edge at the forearm", "edge at the hand")
     ]
-    assert not wrist_brace(170, 90, acrylic, fit=Fit(mmhg=20), edge=Fabric.STOCKINETTE).notes
-    assert not any("does not keep" in note for note in wrist_brace(170, 90, acrylic).notes)
+    assert not wrist_brace(170, 90, acrylic, fit=Fit(mmhg=20), edge=Fabric.STOCKINETTE).cautions
+    assert not any("does not keep" in note for note in wrist_brace(170, 90, acrylic).cautions)
 
 
 COMPLETE = [summary for summary in load_library() if len(material(summary).fabrics) == len(Fabric)]
@@ -324,9 +324,9 @@ COMPLETE = [summary for summary in load_library() if len(material(summary).fabri
 
 @pytest.mark.parametrize("yarn", COMPLETE)
 def test_a_glove_warns_of_nothing_until_it_is_made_tight(yarn: str) -> None:
-    assert not [note for note in glove(Hand(), material(yarn)).notes if "stop the blood" in note]
+    assert not [note for note in glove(Hand(), material(yarn)).cautions if "stop the blood" in note]
     tight = glove(Hand(), material(yarn), ease=-0.3)
-    (warning,) = [note for note in tight.notes if "stop the blood" in note]
+    (warning,) = [note for note in tight.cautions if "stop the blood" in note]
     named = warning.removeprefix("Too tight: ").split(". ")[0].split(", ")
     assert "index finger" in named
     assert named == [place.part for place in tight.worn if place.highest_mmhg > CAPILLARY_MMHG]
@@ -334,7 +334,7 @@ def test_a_glove_warns_of_nothing_until_it_is_made_tight(yarn: str) -> None:
 
 def test_where_a_fabric_can_stretch_no_further_the_warning_says_so() -> None:
     fingers = (*Hand().fingers[:3], Finger(57.0, 120.0))
-    assert "little finger" in glove(Hand(fingers=fingers), WOOL, ease=-0.4).notes[0]
+    assert "little finger" in glove(Hand(fingers=fingers), WOOL, ease=-0.4).cautions[0]
     locked = worn(WOOL, Fabric.RIB, Direction.WALE, 30, 120)
     assert (locked.pressure, locked.highest_mmhg) == (None, float("inf"))
     assert "can stretch no further" in too_tight(locked.highest_mmhg)[0]

@@ -21,7 +21,7 @@ def test_two_tests_alone_do_not_serve_for_charts() -> None:
     assert charts.serves is amount.serves is level.serves is Serves.NO
     assert "garter, rib, seed" in charts.missing
     assert "unravel ten" in amount.missing
-    assert "bending modulus" in level.missing
+    assert "bending stiffness" in level.missing
     assert sizes.serves is Serves.YES
 
 

@@ -1,7 +1,11 @@
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from knitcore import Fabric, StitchChart, material, predict
+from knitcore.materials import load_library
 from knitcore.prediction.hand import PULLS_N_PER_MM, HandPull, hand_pulls
 from knitcore.prediction.size import RelaxedSize
 
@@ -57,3 +61,36 @@ def test_a_counted_gauge_narrows_a_mixed_chart() -> None:
     assert known.strain_with_gauge is None
     patches = StitchChart(np.arange(20 * 20).reshape(20, 20) % 7 == 0)
     assert pulls_of(patches)[1].course.strain_with_gauge is None
+
+
+GALLERY = Path(__file__).parents[3] / "frontend" / "panels" / "gallery" / "examples.js"
+
+
+def test_the_gallery_of_the_page_says_what_the_numbers_say() -> None:
+    """Notes that compare fabrics hold for every yarn of the library at a hand's pull."""
+    notes = re.findall(
+        r'(?i)"([^"]*\b(?:gives?|stretch\w*|stiff\w*|soft\w*|firm\w*)\b[^"]*)"', GALLERY.read_text()
+    )
+    for yarn in load_library().values():
+        pulls = {
+            fabric: hand_pulls(chart, yarn, predict(chart, yarn))[1]
+            for fabric in Fabric
+            for chart in [StitchChart.of_fabric(fabric)]
+        }
+        across = {fabric: pull.course.strain for fabric, pull in pulls.items()}
+        lengthwise = {fabric: pull.wale.strain for fabric, pull in pulls.items()}
+        twice = 2 * lengthwise[Fabric.STOCKINETTE]
+        known = {
+            "Of these four, gives least lengthwise.": (
+                min(lengthwise, key=lengthwise.__getitem__) is Fabric.STOCKINETTE
+            ),
+            "Gives more than twice as far lengthwise as stockinette.": (
+                lengthwise[Fabric.GARTER] > twice
+            ),
+            "Of these four, gives most across.": max(across, key=across.__getitem__) is Fabric.RIB,
+            "Like garter, gives more than twice as far lengthwise as stockinette.": (
+                lengthwise[Fabric.SEED] > twice
+            ),
+        }
+        assert set(known) == set(notes)
+        assert all(known.values()), (yarn.identifier, known)

@@ -115,7 +115,7 @@ def test_it_makes_the_stretch_of_a_simulated_material_more_certain() -> None:
     known = predict(chart, of, RelaxedSize(*size, sd, KnownBy.RELAXATION))
     assert (known.provenance, known.relaxed_source) == ("learned with known size", "relaxation")
     assert known.size_is_known
-    assert "relaxation" in " ".join(known.notes)
+    assert "simulation of the yarn" in " ".join(known.notes)
     for direction in Direction:
         (low, high), (least, most) = (
             each.along(direction).strain_interval(0.05) for each in (known, learned)

@@ -315,6 +315,34 @@ def test_a_report_gives_its_numbers_with_their_source(drawn: list[Page]) -> None
     assert all(0 <= b.x <= 210 and b.y + b.height <= 297 for b in inside)
 
 
+def test_a_report_prints_every_assumption_in_a_knitters_words(
+    drawn: list[Page], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chart = StitchChart(np.arange(600).reshape(20, 30) % 7 < 3)
+    region_name = "the left half, with a name that has no end"
+    named = region("left", [(0, 0, 9)]).model_copy(update={"name": region_name})
+    report.design_report(chart, ACRYLIC, "Cuff", ChartStyle(), [named])
+    labels = [shape for page in drawn for shape in page.shapes if isinstance(shape, Label)]
+    words = " ".join(label.text for label in labels)
+    assert not re.findall(r"\b(?:course|wale|learned)\b", words)
+    assert f"{region_name[:25]}…" in words
+    monkeypatch.setattr(report, "assumptions", lambda _: [f"Assumption {k}." for k in range(99)])
+    drawn.clear()
+    report.design_report(chart, ACRYLIC, "Cuff", ChartStyle())
+    labels = [shape for page in drawn for shape in page.shapes if isinstance(shape, Label)]
+    assert {f"Assumption {k}." for k in range(99)} <= {label.text for label in labels}
+    assert all(label.y < page.height for page in drawn for label in labels)
+
+
+def test_a_designs_note_is_for_the_knitter_alone() -> None:
+    """Changes for the designer stand beside the plan, not in the pattern."""
+    plan = glove(Hand(), material("glove-wool"), mmhg=25)
+    note = design_of_plan(plan, "glove-wool").note
+    assert plan.cautions
+    assert not [caution for caution in plan.cautions if caution in note]
+    assert all(line in note for line in plan.notes)
+
+
 def test_a_drawing_is_xml_whatever_it_is_called() -> None:
     page = Page(10.0, 10.0, (Label(1.0, 1.0, "a\ufffe\x0b\ud800🧶", 3.0),))
     drawn = ET.fromstring(to_svg(page, "\x00")).find("{*}text")  # noqa: S314 - our own
