@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 from collections.abc import AsyncGenerator, Iterator
+from itertools import chain
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Request, Response
@@ -144,9 +145,7 @@ async def _result(
         )
     result = await asyncio.to_thread(runner.store.result, owner, job)
     if result is None:
-        raise NotFoundError(
-            "The result is no longer stored.", field="job", remedy="Run the job again."
-        )
+        raise _gone()
     headers = {"ETag": f'W/"{result.key[:32]}"', "Vary": "Accept-Encoding"}
     if is_known(headers["ETag"], request.headers):
         return Response(status_code=304, headers=headers)
@@ -156,7 +155,17 @@ async def _result(
     else:
         parts, size = result.unpacked(), await asyncio.to_thread(lambda: result.unpacked_bytes)
     headers["Content-Length"] = str(size)
-    return _HeldResponse(held.pop_all(), parts, media_type="application/json", headers=headers)
+    first = await asyncio.to_thread(next, parts, b"")  # what fails here can still be answered
+    if not first:
+        raise _gone()
+    whole = chain([first], parts)
+    return _HeldResponse(held.pop_all(), whole, media_type="application/json", headers=headers)
+
+
+def _gone() -> NotFoundError:
+    return NotFoundError(
+        "The result is no longer stored.", field="job", remedy="Run the job again."
+    )
 
 
 @router.delete("/jobs/{job}", summary="Cancel a job")
