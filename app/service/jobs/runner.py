@@ -75,9 +75,9 @@ class JobRunner:
             If too many jobs of this owner wait.
         """
         key = await self._key_of(kind, request)
-        known = await asyncio.to_thread(self.store.knows, key) and await asyncio.to_thread(
-            self._answers.can_be_viewed, KINDS[kind], request
-        )
+        known = await asyncio.to_thread(
+            self.store.knows, key
+        ) and await self._answers.can_be_viewed(KINDS[kind], request)
         state = JobState.DONE if known else JobState.WAITING
         if not known:
             self._compute.queue.check_room(owner, background=True)
