@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import os
+import shutil
 import signal
 import tempfile
 import threading
@@ -17,7 +18,7 @@ import pytest
 
 from app.service.compute import compute as compute_module
 from app.service.compute.compute import Compute
-from app.service.compute.processes import NICENESS, SCRATCH, processes
+from app.service.compute.processes import NICENESS, SCRATCH, ProcessWorker, processes
 from app.service.compute.workers import MemoryLimitError, NotBegunError, WorkerDiedError
 from app.service.problems import UnavailableError
 from tests.app import jobs
@@ -58,9 +59,19 @@ def test_uploads_of_a_lost_worker_are_removed(
     upload.mkdir()
     (upload / "secret.csv").touch()
     worker.replace()
-    assert list(scratch.iterdir()) == []
+    assert not upload.exists()
     worker.close()
     assert list(tmp_path.iterdir()) == []
+
+
+async def test_a_worker_outlasts_a_cleaner_of_its_folder(compute: Compute) -> None:
+    (worker,) = compute.workers
+    assert isinstance(worker, ProcessWorker)
+    for is_replaced in (False, True):
+        shutil.rmtree(worker._scratch)
+        if is_replaced:
+            worker.replace()
+        assert await compute.run(never, jobs.temporary_folder) == str(worker._scratch)
 
 
 async def test_a_closed_worker_leaves_no_thread_that_clears_up() -> None:
