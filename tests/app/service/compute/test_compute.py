@@ -145,6 +145,38 @@ class _Nobody:
     replace = cancel
 
 
+class _Slow:
+    """A place that takes jobs slowly."""
+
+    share = cpu_s = None
+
+    def __init__(self) -> None:
+        self.asked, self.go_on = asyncio.Event(), asyncio.Event()
+        self.replaced = 0
+
+    async def submit(self, job: object) -> asyncio.Future[int]:
+        self.asked.set()
+        await self.go_on.wait()
+        return asyncio.get_running_loop().create_future()
+
+    def replace(self) -> None:
+        self.replaced += 1
+
+
+async def test_a_place_is_free_once_it_has_dropped_a_job_cancelled_at_its_beginning() -> None:
+    place = _Slow()
+    compute = Compute([place], timeout_s=PATIENCE_S)  # type: ignore[list-item]
+    running = asyncio.create_task(compute.run(never, print))
+    await place.asked.wait()
+    running.cancel()
+    await asyncio.sleep(0)
+    assert (compute.queue.taken, place.replaced) == (1, 0)
+    place.go_on.set()
+    with pytest.raises(asyncio.CancelledError):
+        await running
+    assert (compute.queue.taken, place.replaced) == (0, 1)
+
+
 async def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """For a worker that never begins, and for a place that is never free."""
     monkeypatch.setattr(compute_module, "START_S", 0.1)
