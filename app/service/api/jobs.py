@@ -19,7 +19,7 @@ from ..jobs.kinds import JobRequest, JobResult, accepted, read_job
 from ..jobs.runner import JobRunner
 from ..limits.fair_queue import FairLock
 from ..limits.user_limits import ConcurrencyLimit
-from ..problems import NotFoundError, Problem
+from ..problems import NotFoundError, Problem, StoreError
 from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
 from ..web.events import event_stream, stream_of
 from ..web.packed import ASKED_WITH_TAG, TAGGED, is_known, takes_gzip
@@ -101,7 +101,8 @@ async def _states(
             if status.state.is_final:
                 return
             await asyncio.sleep(EVENT_PERIOD_S)
-            status = await runner.status(owner, job)
+            with contextlib.suppress(StoreError):  # the stream outlasts a lost database
+                status = await runner.status(owner, job)
 
 
 class _HeldResponse(StreamingResponse):

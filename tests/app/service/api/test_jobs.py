@@ -3,19 +3,20 @@
 import json
 import re
 from typing import Any
-from unittest.mock import Mock
+from unittest.mock import AsyncMock, Mock
 
 import pytest
 from fastapi.testclient import TestClient
 
 from app.context import Context
 from app.operations.registry import operations
+from app.service.jobs.document import JobStatus
 from app.service.jobs.kinds import KINDS, JobOf, accepted
 from app.service.jobs.store import StoredResult
 from app.service.limits.user_limits import USER_LIMITS
 from app.service.problems import StoreError
 from app.service.web.bodies import SMALL_BYTES
-from tests.app.clients import state_of
+from tests.app.clients import LONG, state_of
 from tests.app.running import wait_until
 
 CHART = {"chart": "KP/PK", "material": "acrylic"}
@@ -106,6 +107,21 @@ def test_a_result_that_is_lost_before_its_first_part_is_a_problem(
     assert answer.headers["content-type"] == "application/problem+json"
     assert ("Retry-After" in answer.headers) is (status == 503)
     assert state_of(client).concurrency.held("results", "local") == 0
+
+
+def test_the_events_of_a_job_outlast_a_lost_database(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = client.post("/api/v1/jobs", json={"kind": "stretch", "request": LONG}).json()
+    runner = state_of(client).jobs
+    done = JobStatus.model_validate(job | {"state": "done"})
+    states = [JobStatus.model_validate(job), StoreError("away"), done]
+    monkeypatch.setattr(type(runner), "status", AsyncMock(side_effect=states))
+    events = client.get(f"/api/v1/jobs/{job['id']}/events").text
+    monkeypatch.undo()
+    assert client.delete(f"/api/v1/jobs/{job['id']}").status_code == 200
+    assert events.count("event: status") == 2
+    assert '"state":"done"' in events
 
 
 def test_a_user_reads_few_results_at_once(client: TestClient, result: str) -> None:
