@@ -171,11 +171,11 @@ class Crowd:
 
 def _family(pid: int) -> Iterator[int]:
     """Yield the processes that a process has started, and those they have."""
-    with contextlib.suppress(OSError):  # it has ended
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii")
-        for child in map(int, children.split()):
-            yield child
-            yield from _family(child)
+    for thread in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):  # it has ended
+            for child in map(int, thread.read_text(encoding="ascii").split()):
+                yield child
+                yield from _family(child)
 
 
 def _workers_mb(pid: int) -> float:
