@@ -1,4 +1,4 @@
-"""What the service does again and again beside its requests."""
+"""Chores of the service, done again and again beside its requests."""
 
 import asyncio
 import logging
