@@ -26,7 +26,7 @@ FLOORS = (
 
 APP_FLOORS = (
     {"cli.options", "identity", "listeners", "memory", "problems"},
-    {"limits", "settings"},
+    {"limits", "periodic", "settings"},
     {"results"},
     {"context"},
     {"requests"},

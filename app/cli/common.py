@@ -36,14 +36,16 @@ def user_settings() -> Settings:
     """
     from pydantic_settings import SettingsError
 
-    from ..service.settings import Settings
+    from ..service.settings import Settings, check_names
 
+    check_names(os.environ)
     try:
         return Settings()
     except SettingsError as error:
-        raise InputError(
-            "settings", f"{error}.", 'Write a list as JSON, such as ["knit.example"].'
-        ) from error
+        remedy = 'Write a list as JSON, such as ["knit.example"].'
+        if isinstance(error.__cause__, UnicodeDecodeError):
+            remedy = "Write its file as text in UTF-8."
+        raise InputError("settings", f"{error}.", remedy) from error
 
 
 @contextlib.contextmanager

@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import logging
 import os
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
@@ -33,7 +33,8 @@ from .jobs.runner import JobRunner
 from .jobs.store import JobStore
 from .limits.fair_queue import FairLock
 from .limits.user_limits import USER_LIMITS, ConcurrencyLimit, RateLimit
-from .problems import PROBLEM_RESPONSES, StoreError
+from .periodic import repeated
+from .problems import PROBLEM_RESPONSES
 from .settings import Settings
 from .store.database import Database
 from .store.material_store import MaterialStore
@@ -90,13 +91,9 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
     await app.state.jobs.resume()
     janitors = [
-        asyncio.create_task(_close_idle_views(app.state.views, chosen.viewer_idle_s)),
-        asyncio.create_task(_tidy_store(app.state.database, job_store, chosen.results_max_bytes)),
-        asyncio.create_task(asyncio.to_thread(_warm_up)),
+        asyncio.create_task(repeated(*chore)) for chore in _chores(app, chosen, tokens, job_store)
     ]
-    if chosen.require_login:
-        ending = _end_jobs_of_the_revoked(tokens, app.state.jobs)
-        janitors.append(asyncio.create_task(ending))
+    janitors.append(asyncio.create_task(asyncio.to_thread(_warm_up)))
     yield
     for task in (*janitors, *app.state.backs):
         task.cancel()
@@ -180,13 +177,24 @@ def _warm_up() -> None:
     predict(mixed, Context(Path()))
 
 
-async def _close_idle_views(views: Views, idle_s: float) -> None:
-    while True:
-        await asyncio.sleep(min(JANITOR_PERIOD_S, idle_s))
-        closed = await asyncio.to_thread(views.close_idle)
-        if closed:
-            await asyncio.to_thread(memory.give_back)
-            log.info("closed %d idle 3D views, %d left", closed, len(views))
+def _chores(
+    app: FastAPI, chosen: Settings, tokens: Tokens, jobs: JobStore
+) -> Iterator[tuple[str, Callable[[], Awaitable[None]], float]]:
+    """Yield what is done beside requests: in words, the function, and its period in s."""
+    close = partial(_close_idle_views, app.state.views)
+    yield "closing idle views", close, min(JANITOR_PERIOD_S, chosen.viewer_idle_s)
+    tidy = partial(_tidy_store, app.state.database, jobs, chosen.results_max_bytes)
+    yield "tidying the store", tidy, TIDY_PERIOD_S
+    if chosen.require_login:
+        end = partial(_end_jobs_of_the_revoked, tokens, app.state.jobs)
+        yield "ending jobs of users without a token", end, REMEMBERED_S
+
+
+async def _close_idle_views(views: Views) -> None:
+    closed = await asyncio.to_thread(views.close_idle)
+    if closed:
+        await asyncio.to_thread(memory.give_back)
+        log.info("closed %d idle 3D views, %d left", closed, len(views))
 
 
 def _cluster(settings: Settings) -> Cluster | None:
@@ -229,22 +237,14 @@ def _open_database(settings: Settings) -> Database:
 
 async def _end_jobs_of_the_revoked(tokens: Tokens, jobs: JobRunner) -> None:
     """End the jobs of users who no longer have an open token."""
-    while True:
-        await asyncio.sleep(REMEMBERED_S)
-        with contextlib.suppress(StoreError):
-            for user in await asyncio.to_thread(tokens.without_any, jobs.owners()):
-                log.info("the jobs of %s are ended: no token is open any more", user)
-                await jobs.cancel_all(user)
+    for user in await asyncio.to_thread(tokens.without_any, jobs.owners()):
+        log.info("the jobs of %s are ended: no token is open any more", user)
+        await jobs.cancel_all(user)
 
 
 async def _tidy_store(database: Database, jobs: JobStore, results_max_bytes: int) -> None:
     """Delete what can no longer be requested."""
-    while True:
-        try:
-            await asyncio.to_thread(DesignStore(database).forget_deleted)
-            await asyncio.to_thread(forget_old_keys, database)
-            await asyncio.to_thread(Sessions(database).tidy)
-            await asyncio.to_thread(jobs.tidy, results_max_bytes)
-        except StoreError as error:
-            log.warning("could not tidy the store: %s", error)
-        await asyncio.sleep(TIDY_PERIOD_S)
+    await asyncio.to_thread(DesignStore(database).forget_deleted)
+    await asyncio.to_thread(forget_old_keys, database)
+    await asyncio.to_thread(Sessions(database).tidy)
+    await asyncio.to_thread(jobs.tidy, results_max_bytes)

@@ -108,6 +108,13 @@ class Settings(BaseSettings):
         300.0, gt=0, description="Seconds after which an unwatched view closes."
     )
 
+    @field_validator("data_dir", mode="before")
+    @classmethod
+    def _is_given(cls, folder: object) -> object:
+        if folder == "":  # it would be the present folder
+            raise ValueError("is empty; name a folder, or leave it out")
+        return folder
+
     @field_validator("data_dir")
     @classmethod
     def _has_home(cls, folder: Path) -> Path:
@@ -145,8 +152,8 @@ class Settings(BaseSettings):
         Raises
         ------
         InputError
-            If the file that KNITCORE_CONFIG names does not exist, or is not TOML; or there is no
-            folder that KNITCORE_SECRETS_DIR names.
+            If the file that KNITCORE_CONFIG names does not exist, cannot be read or is not TOML; or
+            there is no folder that KNITCORE_SECRETS_DIR names.
         """
         first = init_settings, env_settings, *_secrets(settings_cls)
         named = os.environ.get("KNITCORE_CONFIG")
@@ -154,17 +161,14 @@ class Settings(BaseSettings):
             return first
         file = Path(named)
         try:
-            source = TomlConfigSettingsSource(settings_cls, file)
-            readable = file.is_file()
-        except (OSError, ValueError):
-            readable = False
-        if not readable:
-            raise InputError(
-                "KNITCORE_CONFIG",
-                f"{file} is not a TOML file.",
-                "Name a file with lines: port = 8737",
-            )
-        return *first, source
+            if file.is_file():
+                return *first, TomlConfigSettingsSource(settings_cls, file)
+            problem = f"there is no file {file}."
+        except OSError as error:
+            problem = f"{file} cannot be read ({error.strerror})."
+        except ValueError:
+            problem = f"{file} is not a TOML file."
+        raise InputError("KNITCORE_CONFIG", problem, "Name a file with lines: port = 8737")
 
     @cached_property
     def is_loopback(self) -> bool:
@@ -239,7 +243,7 @@ class Settings(BaseSettings):
             If a variable of the environment is not a setting, or the service would listen beyond
             loopback without a token.
         """
-        _check_names(os.environ)
+        check_names(os.environ)
         if not self.is_loopback and not self.asks_for_login:
             raise InputError(
                 "token",
@@ -263,7 +267,7 @@ def _secrets(settings: type[BaseSettings]) -> tuple[SecretsSettingsSource, ...]:
     return ()
 
 
-def _check_names(environment: Mapping[str, str]) -> None:
+def check_names(environment: Mapping[str, str]) -> None:
     """Refuse a misspelt variable: without its login, a service would be open. Refuse an empty one:
     an empty folder would be the present one."""
     names = (*Settings.model_fields, *OTHERS, *OF_TESTS)

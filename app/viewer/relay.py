@@ -102,7 +102,7 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
     name = private_name(design)
     view = await _opened(views, name)
     if view is None:
-        await socket.close(code=1013, reason="This view is not open yet.")
+        await _refuse(socket)
         return
     uses: ConcurrencyLimit = socket.app.state.concurrency
     try:
@@ -118,17 +118,26 @@ async def _watched(socket: WebSocket, name: str, view: View, views: Views) -> No
     try:
         if coarse:
             await asyncio.to_thread(view.writer.redraw)  # nothing finer is sent
-        async with websockets.connect(
-            f"ws://127.0.0.1:{view.port}",
-            subprotocols=list(socket.scope["subprotocols"]) or None,
-            additional_headers=RELAY_HEADERS,
-            max_size=None,
-            compression=None,
-        ) as inner:
+        try:
+            inner = await websockets.connect(
+                f"ws://127.0.0.1:{view.port}",
+                subprotocols=list(socket.scope["subprotocols"]) or None,
+                additional_headers=RELAY_HEADERS,
+                max_size=None,
+                compression=None,
+            )
+        except (OSError, websockets.InvalidHandshake):  # the view was closed just now
+            await _refuse(socket)
+            return
+        async with inner:
             await socket.accept(subprotocol=inner.subprotocol)
             await _carry(socket, inner, view)
     finally:
         views.watch(name, -1, coarse=coarse)
+
+
+async def _refuse(socket: WebSocket) -> None:
+    await socket.close(code=1013, reason="This view is not open yet.")
 
 
 async def _opened(views: Views, name: str) -> View | None:

@@ -20,6 +20,8 @@ MAX_CELLS = 400_000
 """Cells of all sheets; reading so many takes some 10 s."""
 MAX_TAGS = 4 * MAX_CELLS
 """Tags in the parts of a workbook: four for each cell. They are counted before any part is read."""
+MAX_XLS_BYTES = 20 * 2**20
+"""Bytes of an XLS, which has no tags: reading so many takes some 5 s."""
 MAX_EMPTY_ROWS = 1000
 """Longest gap of empty rows inside a sheet; a stray cell far below is ignored."""
 _XLS = bytes.fromhex("d0cf11e0a1b11ae1")
@@ -77,9 +79,18 @@ def read_workbook(path: Path) -> dict[str, Worksheet]:
 def _xls_sheets(path: Path) -> Iterator[tuple[str, Iterable[Sequence[Any]]]]:
     import xlrd
 
-    book = xlrd.open_workbook(str(path), logfile=io.StringIO())
-    for sheet in book.sheets()[:MAX_SHEETS]:
+    if path.stat().st_size > MAX_XLS_BYTES:
+        raise _too_large(path, MAX_XLS_BYTES)
+    # one cell far out would otherwise fill its sheet, and all sheets would be read before any
+    book = xlrd.open_workbook(str(path), logfile=io.StringIO(), on_demand=True, ragged_rows=True)
+    rows = 0
+    for number in range(min(book.nsheets, MAX_SHEETS)):
+        sheet = book.sheet_by_index(number)
+        rows += sheet.nrows
+        if rows > MAX_ROWS:
+            raise _too_large(path)
         yield sheet.name, map(sheet.row_values, range(sheet.nrows))
+        book.unload_sheet(number)
 
 
 def _xlsx_sheets(path: Path) -> Iterator[tuple[str, Iterable[Sequence[Any]]]]:
@@ -117,6 +128,6 @@ def _cells(row: Sequence[Any]) -> list[Cell]:
     return cells
 
 
-def _too_large(path: Path) -> InputError:
-    remedy = f"Give the tests only: at most {MAX_BYTES // 2**20} MB and {MAX_CELLS:,} cells."
+def _too_large(path: Path, most_bytes: int = MAX_BYTES) -> InputError:
+    remedy = f"Give the tests only: at most {most_bytes // 2**20} MB and {MAX_CELLS:,} cells."
     return InputError(path.name, "is larger than what is read of a workbook.", remedy)

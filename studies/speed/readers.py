@@ -10,23 +10,28 @@ import argparse
 import contextlib
 import io
 import json
+import struct
 import tempfile
 import time
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
 from knitcore.base.errors import InputError
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.fit.measured_field import load_field
 from knitcore.formats.read.chart_files import read_noted_chart
 from knitcore.formats.read.law_files import load_law
 from knitcore.formats.read.stitch_maps import read_target_moduli
 from knitcore.materials import load_material_file
+from knitcore.measure.centreline import load_grey
 from knitcore.measure.compression_files import read_compression
+from knitcore.measure.photos.hanging_swatch import Swatch, SwatchPhoto, read_photo
 from knitcore.measure.uniaxial_files import read_stretch_test
 
 ENOUGH_S = 0.1
@@ -97,6 +102,70 @@ def workbook(rows: int, row: str, strings: str = "") -> bytes:
         for name, text in parts.items():
             packed.writestr(name, text)
     return stream.getvalue()
+
+
+def _record(kind: int, content: bytes) -> bytes:
+    return struct.pack("<HH", kind, len(content)) + content
+
+
+def number(row: int, column: int = 0) -> bytes:
+    """A cell of an old workbook."""
+    return _record(0x203, struct.pack("<HHHd", row % 65536, column, 0, 0.1))
+
+
+def _packed_numbers(row: int) -> bytes:
+    """A row of 200 cells in the fewest bytes."""
+    cells = struct.pack("<Hi", 0, 6) * 200
+    return _record(0xBD, struct.pack("<HH", row % 65536, 0) + cells + struct.pack("<H", 199))
+
+
+def old_workbook(cells: bytes, sheets: int = 1) -> bytes:
+    """An XLS of some sheets with the same records of cells: BIFF8 in a compound file."""
+
+    def begin(what: int) -> bytes:
+        return _record(0x809, struct.pack("<HHIII", 0x600, what, 0, 0, 0))
+
+    end = _record(0x0A, b"")
+    sheet = begin(0x10) + cells + end
+
+    def head(length: int) -> bytes:
+        places = (struct.pack("<IH", length + n * len(sheet), 0) for n in range(sheets))
+        names = (_record(0x85, p + b"\5\0" + f"{n:05}".encode()) for n, p in enumerate(places))
+        return begin(5) + _record(0xE0, bytes(20)) + b"".join(names) + end
+
+    stream = (head(len(head(0))) + sheet * sheets).ljust(4096, b"\0")
+    sectors = -(-len(stream) // 512)
+    tables = next(n for n in range(1, sectors + 2) if 128 * n > n + sectors)
+    last, free, table = -2, -1, -3
+    chain = [table] * tables + [last, *range(tables + 2, tables + 1 + sectors), last]
+    chain += [free] * (128 * tables - len(chain))
+
+    def entry(name: str, kind: int, child: int, start: int, size: int) -> bytes:
+        text = name.encode("utf-16le")
+        links = struct.pack("<HBBiii", len(text) + 2, kind, 1, free, free, child)
+        return text.ljust(64, b"\0") + links + bytes(36) + struct.pack("<iQ", start, size)
+
+    places = [*range(tables), *[free] * (109 - tables)]
+    sizes = struct.pack("<HHHHH10x", 0x3E, 3, 0xFFFE, 9, 6)
+    starts = struct.pack("<iiIIiiii", tables, tables, 0, 4096, last, 0, last, 0)
+    folder = entry("Root Entry", 5, 1, last, 0) + entry(
+        "Workbook", 2, free, tables + 1, len(stream)
+    )
+    return (
+        bytes.fromhex("d0cf11e0a1b11ae1")
+        + bytes(16)
+        + sizes
+        + starts
+        + struct.pack("<109i", *places)
+        + struct.pack(f"<{len(chain)}i", *chain)
+        + folder.ljust(512, b"\0")
+        + stream.ljust(512 * sectors, b"\0")
+    )
+
+
+def _read_photo(file: Path, coin_mm: float | None = None) -> object:
+    swatch = Swatch(Fabric.STOCKINETTE, Direction.WALE, 20, 28, 100)
+    return read_photo(SwatchPhoto(file.name, load_grey(file), 100.0), swatch, coin_mm=coin_mm)
 
 
 def _picture(pixels: int) -> bytes:
@@ -187,6 +256,20 @@ CASES = {
     "workbook, strings": Case(
         read_stretch_test, ".xlsx", lambda n: workbook(1, NUMBERS, "<si><t>a</t></si>" * n), 4_000
     ),
+    "XLS, rows of numbers": Case(
+        read_stretch_test, ".xls", lambda n: old_workbook(b"".join(map(number, range(n)))), 5_000
+    ),
+    "XLS, packed numbers": Case(
+        read_stretch_test,
+        ".xls",
+        lambda n: old_workbook(b"".join(map(_packed_numbers, range(n)))),
+        50,
+    ),
+    "XLS, sheets of a far cell": Case(
+        read_stretch_test, ".xls", lambda n: old_workbook(number(65_535, 255), n), 2
+    ),
+    "photo, marks": Case(_read_photo, ".png", _picture, 80_000),
+    "photo, a coin": Case(partial(_read_photo, coin_mm=20.0), ".png", _picture, 80_000),
     "compression, CSV": Case(
         read_compression,
         ".csv",

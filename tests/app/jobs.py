@@ -2,6 +2,7 @@
 
 import os
 import signal
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -71,6 +72,11 @@ def eat(size: int, *, cancelled: Callable[[], bool]) -> int:
 
 def process_id(*, cancelled: Callable[[], bool]) -> int:
     return os.getpid()
+
+
+def temporary_folder(*, cancelled: Callable[[], bool]) -> str:
+    with tempfile.TemporaryFile():
+        return tempfile.gettempdir()
 
 
 class Task(BaseModel):

@@ -63,7 +63,7 @@ class Painter:
 
     def check_over_http(self, client: httpx.Client, unanswered: int = 1) -> None:
         """Everything that was acknowledged is served."""
-        stored = client.get(f"/api/v1/designs/{self.design}").json()
+        stored = client.get(f"/api/v1/designs/{self.design}").raise_for_status().json()
         self.check(stored["revision"], stored["document"]["chart"], unanswered)
 
     def check(self, revision: int, chart: str, unanswered: int = 1) -> None:

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -34,10 +35,10 @@ class Service(serving.Service):
         super().__init__(folder, **{"workers": "1"} | settings)
 
     def unexpected(self) -> str:
-        """What its log says from its first unexpected error on, in part."""
+        """What its log says of unexpected errors, of each its first and last lines."""
         log = self.log.read_text(encoding="utf-8")
-        start = log.find("unexpected error")
-        return "" if start < 0 else log[start : start + 10_000]
+        errors = re.findall(r"^.*unexpected error.*(?:\n(?!\d{4}-|\{).*)*", log, re.MULTILINE)
+        return "\n\n".join(f"{error[:500]}\n…\n{error[-2_000:]}" for error in errors)
 
 
 def python(

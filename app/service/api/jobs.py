@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 from collections.abc import AsyncGenerator, Iterator
+from itertools import chain
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Request, Response
@@ -18,7 +19,7 @@ from ..jobs.kinds import JobRequest, JobResult, accepted, read_job
 from ..jobs.runner import JobRunner
 from ..limits.fair_queue import FairLock
 from ..limits.user_limits import ConcurrencyLimit
-from ..problems import NotFoundError, Problem
+from ..problems import NotFoundError, Problem, StoreError
 from ..web.bodies import OrUndecoded, Undecoded, WorkerRoute
 from ..web.events import event_stream, stream_of
 from ..web.packed import ASKED_WITH_TAG, TAGGED, is_known, takes_gzip
@@ -100,7 +101,8 @@ async def _states(
             if status.state.is_final:
                 return
             await asyncio.sleep(EVENT_PERIOD_S)
-            status = await runner.status(owner, job)
+            with contextlib.suppress(StoreError):  # the stream outlasts a lost database
+                status = await runner.status(owner, job)
 
 
 class _HeldResponse(StreamingResponse):
@@ -144,9 +146,7 @@ async def _result(
         )
     result = await asyncio.to_thread(runner.store.result, owner, job)
     if result is None:
-        raise NotFoundError(
-            "The result is no longer stored.", field="job", remedy="Run the job again."
-        )
+        raise _gone()
     headers = {"ETag": f'W/"{result.key[:32]}"', "Vary": "Accept-Encoding"}
     if is_known(headers["ETag"], request.headers):
         return Response(status_code=304, headers=headers)
@@ -156,7 +156,17 @@ async def _result(
     else:
         parts, size = result.unpacked(), await asyncio.to_thread(lambda: result.unpacked_bytes)
     headers["Content-Length"] = str(size)
-    return _HeldResponse(held.pop_all(), parts, media_type="application/json", headers=headers)
+    first = await asyncio.to_thread(next, parts, b"")  # what fails here can still be answered
+    if not first:
+        raise _gone()
+    whole = chain([first], parts)
+    return _HeldResponse(held.pop_all(), whole, media_type="application/json", headers=headers)
+
+
+def _gone() -> NotFoundError:
+    return NotFoundError(
+        "The result is no longer stored.", field="job", remedy="Run the job again."
+    )
 
 
 @router.delete("/jobs/{job}", summary="Cancel a job")

@@ -22,7 +22,8 @@ MAX_RECENT_BYTES = 32_000_000
 class RecentResults:
     """The latest results, which the page may ask for again, by the content of their requests.
 
-    They have a size together; the least recently used are dropped first.
+    They have a size together; the least recently used are dropped first. Only the event loop uses
+    them: a thread would meet its changes halfway.
     """
 
     def __init__(self, most_bytes: int = MAX_RECENT_BYTES) -> None:
@@ -82,7 +83,7 @@ class Answers:
         documents = await asyncio.to_thread(self._materials.documents, names) if names else {}
         return Supplies(self._data_dir, documents)
 
-    def can_be_viewed(self, operation: Operation[Any, Any], request: str) -> bool:
+    async def can_be_viewed(self, operation: Operation[Any, Any], request: str) -> bool:
         """Return whether the result's data for the 3D view are in memory; True if it has none.
 
         Parameters
@@ -91,7 +92,9 @@ class Answers:
         """
         if not operation.is_viewed:
             return True
-        key = operation.key(operation.request.model_validate_json(request))
+        key = await asyncio.to_thread(
+            lambda: operation.key(operation.request.model_validate_json(request))
+        )
         return self._recent.get(key) is not None
 
     async def answer(

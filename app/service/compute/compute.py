@@ -94,7 +94,7 @@ class Compute:
             worker = queued.place.result()
             self.cpu_time.check(owner)  # jobs of the same user may have run meanwhile
             begun = asyncio.get_running_loop().time()
-            future = await worker.submit(partial(job, *args))
+            future = await _begun(worker, partial(job, *args))
             try:
                 return await self._watch(worker, future, abandoned, limit, on_share)
             finally:
@@ -154,6 +154,19 @@ def _forget(future: asyncio.Future[Any]) -> None:
     """Retrieve the outcome of a job that was stopped on purpose."""
     if not future.cancelled():
         future.exception()
+
+
+async def _begun(worker: Worker, job: Callable[..., T]) -> asyncio.Future[T]:
+    """Begin a job; if this is cancelled meanwhile, the worker is rid of it before it is free."""
+    beginning = asyncio.ensure_future(worker.submit(job))
+    try:
+        return await asyncio.shield(beginning)
+    except asyncio.CancelledError:
+        await asyncio.wait([beginning])
+        if beginning.exception() is None:
+            beginning.result().add_done_callback(_forget)
+            worker.replace()
+        raise
 
 
 async def _stop(worker: Worker, future: asyncio.Future[Any]) -> None:

@@ -108,9 +108,8 @@ class ProcessWorker:
     def replace(self) -> None:
         """Kill the process; the next job gets a new one."""
         self._kill()
-        for left in self._scratch.iterdir():  # uploads that it was reading
-            shutil.rmtree(left, ignore_errors=True)
         self._executor = self._new()
+        shutil.rmtree(self._scratch, ignore_errors=True)  # uploads that it was reading
 
     def close(self) -> None:
         """End the process, and wait for the threads that clear up after it and those before it.
@@ -215,6 +214,8 @@ def be_nice() -> None:
 
 
 def _run(job: Callable[..., T]) -> T:
+    # a cleaner of the machine may remove it, too
+    Path(tempfile.gettempdir()).mkdir(mode=0o700, exist_ok=True)
     slots = _slots
     slots[Slot.STARTED] = 1.0
 

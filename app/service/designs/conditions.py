@@ -14,7 +14,7 @@ from sqlalchemy.exc import IntegrityError
 
 from ..problems import ServiceError
 from ..store.database import Database
-from ..store.tables import idempotency_keys, now
+from ..store.tables import idempotency_keys
 
 Reply = TypeVar("Reply", bound=BaseModel)
 KEPT_S = 86_400.0
@@ -136,7 +136,7 @@ def once(
                 )
             return kind.model_validate_json(known.answer)
         answer = action(connection)
-        values = {"answer": answer.model_dump_json(), "created_at": now()}
+        values = {"answer": answer.model_dump_json(), "created_at": database.clock}
         connection.execute(insert(idempotency_keys).values(asdict(retry) | values))
         return answer
 

@@ -1,6 +1,7 @@
 """Running jobs: one task each, which waits for its turn, computes, and stores the outcome."""
 
 import asyncio
+import contextlib
 import logging
 import secrets
 from collections.abc import Callable
@@ -11,7 +12,8 @@ from ..compute.answers import Answers
 from ..compute.workers import AbandonedError, NotBegunError
 from ..designs.conditions import Retry
 from ..limits.user_limits import CpuTimeSpentError
-from ..problems import DispossessedError, Problem, ServiceError, StoreError
+from ..periodic import repeated
+from ..problems import DispossessedError, NotFoundError, Problem, ServiceError, StoreError
 from ..web.bodies import SMALL_BYTES
 from ..web.errors import problem_of
 from .document import JobState, JobStatus
@@ -58,11 +60,13 @@ class JobRunner:
         self._stopping = False
         self._reading = asyncio.Lock()
         self._heart: asyncio.Task[None] | None = None
+        self._beats = 0
 
     async def resume(self) -> None:
         """Resume waiting jobs after a start, and mark running ones as interrupted."""
         await self._go_on(await asyncio.to_thread(self.store.adopt))
-        self._heart = asyncio.create_task(self._beat(), name="jobs of all processes")
+        heart = repeated("sharing the state of jobs", self._beat, BEAT_S)
+        self._heart = asyncio.create_task(heart, name="jobs of all processes")
 
     async def submit(
         self, owner: str, kind: str, request: str, retry: Retry | None = None
@@ -75,9 +79,9 @@ class JobRunner:
             If too many jobs of this owner wait.
         """
         key = await self._key_of(kind, request)
-        known = await asyncio.to_thread(self.store.knows, key) and await asyncio.to_thread(
-            self._answers.can_be_viewed, KINDS[kind], request
-        )
+        known = await asyncio.to_thread(
+            self.store.knows, key
+        ) and await self._answers.can_be_viewed(KINDS[kind], request)
         state = JobState.DONE if known else JobState.WAITING
         if not known:
             self._compute.queue.check_room(owner, background=True)
@@ -127,7 +131,8 @@ class JobRunner:
     async def cancel_all(self, owner: str) -> None:
         """Stop all jobs of an owner."""
         for job in [job for job, run in self._runs.items() if run.owner == owner]:
-            await self.cancel(owner, job)
+            with contextlib.suppress(NotFoundError):  # it is gone from the store
+                await self.cancel(owner, job)
 
     def counts(self) -> dict[str, int]:
         """Numbers of waiting and running jobs of this process."""
@@ -150,25 +155,22 @@ class JobRunner:
             self._start(job, owner, kind, request)
 
     async def _beat(self) -> None:
-        """Exchange states with the other processes of this service, until it stops."""
-        beats = 0
-        while True:
-            await asyncio.sleep(BEAT_S)
-            try:
-                shares = {job: run.progress for job, run in self._runs.items()}
-                for job in await asyncio.to_thread(self.store.beat, shares):
-                    if job in self._runs:
-                        self._runs[job].cancelled = True
-                beats += 1
-                if beats == BEATS_TO_LOOK_ROUND:
-                    beats = 0
-                    await self._go_on(await asyncio.to_thread(self.store.adopt_orphans))
-            except ServiceError as error:
-                log.warning("cannot share the state of the jobs of this process: %s", error)
-                beats = 0  # after an outage, let the other processes report first
-                if isinstance(error, DispossessedError):  # the jobs are another's now
-                    for run in self._runs.values():
-                        run.cancelled = True
+        """Exchange states with the other processes of this service."""
+        try:
+            shares = {job: run.progress for job, run in self._runs.items()}
+            for job in await asyncio.to_thread(self.store.beat, shares):
+                if job in self._runs:
+                    self._runs[job].cancelled = True
+            self._beats += 1
+            if self._beats == BEATS_TO_LOOK_ROUND:
+                self._beats = 0
+                await self._go_on(await asyncio.to_thread(self.store.adopt_orphans))
+        except ServiceError as error:
+            log.warning("cannot share the state of the jobs of this process: %s", error)
+            self._beats = 0  # after an outage, let the other processes report first
+            if isinstance(error, DispossessedError):  # the jobs are another's now
+                for run in self._runs.values():
+                    run.cancelled = True
 
     def _start(self, job: str, owner: str, kind: str, request: str) -> None:
         task = asyncio.create_task(self._work(job, owner, kind, request), name=f"job {job}")

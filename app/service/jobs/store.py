@@ -23,7 +23,7 @@ from ..designs.conditions import Retry, once
 from ..limits.user_limits import USER_LIMITS, OverLimitError
 from ..problems import NotFoundError, Problem, StoreError
 from ..store.database import Database
-from ..store.tables import job_requests, jobs, now, results
+from ..store.tables import job_requests, jobs, results
 from .document import JobPage, JobState, JobStatus
 
 WAITING, RUNNING = OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
@@ -87,12 +87,6 @@ class StoredResult:
             return self.database.backend.part_of(connection, results.c.body, row, start, size)
 
 
-def _stored(key: str) -> Select[tuple[int, bool]]:
-    """A result's size, and whether its last use was noted long ago."""
-    is_stale = results.c.used_at < now() - NOTED_EACH_S
-    return select(results.c.size_bytes, is_stale.label("is_stale")).where(results.c.key == key)
-
-
 class JobStore:
     """Jobs of all owners, and the results by content.
 
@@ -126,7 +120,7 @@ class JobStore:
         OverLimitError
             If the requests of this owner's open jobs leave no room for it.
         """
-        at = now()
+        at = self._database.clock
         values = {
             "id": job or secrets.token_urlsafe(16),
             "owner": owner,
@@ -136,7 +130,7 @@ class JobStore:
             "key": key,
             "state": state.value,
             "created_at": at,
-            "seen_at": self._database.clock,
+            "seen_at": at,
             "finished_at": at if state.is_final else None,
         }
 
@@ -175,7 +169,7 @@ class JobStore:
 
     def begin(self, job: str) -> bool:
         """Mark a waiting job as running; False if it no longer waits."""
-        return self._move(job, (WAITING,), RUNNING, started_at=now())
+        return self._move(job, (WAITING,), RUNNING, started_at=self._database.clock)
 
     def wait_again(self, job: str) -> bool:
         """Put a running job back in the queue."""
@@ -192,7 +186,9 @@ class JobStore:
         """Close an open job, with the progress it made; False if it was closed before."""
         packed = None if problem is None else problem.model_dump_json()
         reached = {} if progress is None else {"progress": progress}
-        return self._move(job, OPEN, state.value, problem=packed, finished_at=now(), **reached)
+        return self._move(
+            job, OPEN, state.value, problem=packed, finished_at=self._database.clock, **reached
+        )
 
     def _move(self, job: str, before: tuple[str, ...], after: str, **values: Any) -> bool:
         change = (
@@ -218,7 +214,7 @@ class JobStore:
                 .values(
                     state=JobState.INTERRUPTED.value,
                     problem=INTERRUPTED.model_dump_json(),
-                    finished_at=now(),
+                    finished_at=self._database.clock,
                 )
             )
             waiting = connection.execute(
@@ -262,7 +258,7 @@ class JobStore:
         """The result of a job, or None if it is not stored."""
         with self._database.read() as connection:
             key = _job(connection, owner, job).key
-            stored = connection.execute(_stored(key)).one_or_none()
+            stored = connection.execute(self._stored(key)).one_or_none()
         if stored is None:
             return None
         self._used(key, stored.is_stale)
@@ -271,16 +267,21 @@ class JobStore:
     def knows(self, key: str) -> bool:
         """Return whether the result of this content is stored; if so, renew its time of use."""
         with self._database.read() as connection:
-            stored = connection.execute(_stored(key)).one_or_none()
+            stored = connection.execute(self._stored(key)).one_or_none()
         if stored is not None:
             self._used(key, stored.is_stale)
         return stored is not None
+
+    def _stored(self, key: str) -> Select[tuple[int, bool]]:
+        """A result's size, and whether its last use was noted long ago."""
+        is_stale = results.c.used_at < self._database.clock - NOTED_EACH_S
+        return select(results.c.size_bytes, is_stale.label("is_stale")).where(results.c.key == key)
 
     def _used(self, key: str, is_stale: bool) -> None:
         """Note that a result is used; every time would be a change of the database each."""
         if not is_stale:
             return
-        used = update(results).where(results.c.key == key).values(used_at=now())
+        used = update(results).where(results.c.key == key).values(used_at=self._database.clock)
         with contextlib.suppress(StoreError):  # with a full disk it can still be read
             self._database.write(lambda connection: connection.execute(used))
 
@@ -291,12 +292,16 @@ class JobStore:
             done = connection.execute(
                 update(jobs)
                 .where(jobs.c.id == job, jobs.c.state.in_(OPEN))
-                .values(state=JobState.DONE.value, finished_at=now())
+                .values(state=JobState.DONE.value, finished_at=self._database.clock)
             )
             # equal jobs of two processes end at once: either result is the right one
             connection.execute(
                 self._database.backend.insert_new(results).values(
-                    key=key, kind=kind, body=body, size_bytes=len(body), used_at=now()
+                    key=key,
+                    kind=kind,
+                    body=body,
+                    size_bytes=len(body),
+                    used_at=self._database.clock,
                 )
             )
             return done.rowcount == 1

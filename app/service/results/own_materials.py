@@ -100,8 +100,17 @@ def is_identifier(text: str) -> bool:
 
 
 def named_in(content: bytes) -> list[str]:
-    """Identifiers of users' materials in a JSON request, each once."""
+    """Identifiers of users' materials in a JSON request, each once.
+
+    Raises
+    ------
+    InputError
+        If there are more than a worker is sent.
+    """
     if PREFIX.encode() not in content:
         return []
-    names = dict.fromkeys(name.decode() for name in _NAMED.findall(content))
-    return list(names)[:MAX_NAMED]
+    names = list(dict.fromkeys(name.decode() for name in _NAMED.findall(content)))
+    if len(names) > MAX_NAMED:
+        problem = f"the request names {len(names)} materials of users."
+        raise InputError("material", problem, f"Name at most {MAX_NAMED} in one request.")
+    return names

@@ -42,7 +42,9 @@ FAILURES = (OperationalError, InterfaceError, PoolTimeoutError)
 FULL = ("disk is full", "No space left on device")
 DAMAGED = ("malformed", "file is not a database")
 MAX_BATCH = 64
-UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing was changed."
+UNREACHABLE = "The designs cannot be reached or written now ({reason}); {outcome}."
+UNCHANGED = "nothing was changed"
+UNKNOWN = "the change may not have been made"
 
 
 class Database:
@@ -198,12 +200,16 @@ class Database:
         Raises
         ------
         StoreError
-            If it could not be made durable; then nothing of it is kept.
+            If it could not be made durable. Then nothing of it is kept, unless the connection to
+            a server was lost during the commit.
         """
         if self._writer is None:
             self.backend.check_writable()
-            with self.failures(), self.engine.begin() as connection:
-                return action(connection)
+            with self.failures(), self.engine.connect() as connection:
+                result = action(connection)
+                with _failures(UNKNOWN):  # the server may have committed before it was lost
+                    connection.commit()
+                return result
         with self.failures():
             return self._hand_in(action).result()
 
@@ -305,7 +311,8 @@ def holder(url: str, process: str) -> str | None:
 
 
 @contextlib.contextmanager
-def _failures() -> Iterator[None]:
+def _failures(outcome: str = UNCHANGED) -> Iterator[None]:
+    """Turn errors of the database itself into a StoreError that says what came of a change."""
     try:
         yield
     except (DBAPIError, PoolTimeoutError) as error:
@@ -317,7 +324,7 @@ def _failures() -> Iterator[None]:
         is_lost = isinstance(error, DBAPIError) and error.connection_invalidated
         if not (is_lost or isinstance(error, FAILURES)):
             raise
-        raise _failed(reason) from error
+        raise _failed(reason, outcome) from error
 
 
 def _do(connection: Connection, action: Action) -> tuple[Any, Exception | None]:
@@ -339,10 +346,10 @@ def _attempt(connection: Connection, action: Action) -> tuple[Any, Exception | N
     return result, None
 
 
-def _failed(reason: str) -> StoreError:
+def _failed(reason: str, outcome: str) -> StoreError:
     log.error("the database failed: %s", reason)
     kind = StoreFullError if any(words in reason for words in FULL) else StoreError
-    return kind(UNREACHABLE.format(reason=_public(reason)))
+    return kind(UNREACHABLE.format(reason=_public(reason), outcome=outcome))
 
 
 def _damaged() -> DamagedError:

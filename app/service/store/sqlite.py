@@ -13,6 +13,7 @@ import fcntl
 import os
 import sqlite3
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -81,7 +82,7 @@ class SqliteFile(Backend):
 
     one_writer = True
     insert = staticmethod(insert)
-    clock = "(julianday('now') - 2440587.5) * 86400.0"
+    clock = "knitcore_clock()"  # SQLite's own knows no more than milliseconds
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -102,6 +103,7 @@ class SqliteFile(Backend):
         @event.listens_for(self.engine, "connect")
         def _(connection: Any, _record: Any) -> None:
             connection.isolation_level = None  # BEGIN is ours, below
+            connection.create_function(self.clock.removesuffix("()"), 0, time.time)
             for pragma in (
                 "journal_mode=WAL",
                 "synchronous=FULL",  # a commit is on disk, not only in the system's memory

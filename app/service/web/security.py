@@ -124,6 +124,10 @@ class AccessControl:
             answer = await self._admitted(scope, receive)
         except ServiceError as error:
             answer = answer_to(error)
+        except asyncio.CancelledError:  # the service stops, and does not wait any longer
+            if not scope["app"].state.stopping:
+                raise
+            answer = answer_to(_stopping())
         if scope["type"] == "websocket":
             await self._pass_socket(answer, scope, receive, send)
         else:
@@ -198,11 +202,10 @@ class AccessControl:
                 await answered.end(answer_to(_signed_out()), scope, receive)
             elif answered.refusal is not None:
                 await answered.end(answer_to(answered.refusal), scope, receive)
-        except asyncio.CancelledError:  # the service stops, and does not wait any longer
+        except asyncio.CancelledError:
             if answered.started or not scope["app"].state.stopping:
                 raise
-            stopped = answer_to(StoppingError("The service is stopping."))
-            await stopped(scope, receive, send)
+            await answer_to(_stopping())(scope, receive, send)
         except ClientDisconnect:  # before its request was complete; only the log says so
             if not answered.started:
                 await Response(status_code=GONE)(scope, receive, send)
@@ -380,6 +383,10 @@ async def _stop(working: asyncio.Future[None]) -> None:
     (outcome,) = await asyncio.gather(working, return_exceptions=True)
     if isinstance(outcome, Exception):
         log.warning("a request failed while it was stopped", exc_info=outcome)
+
+
+def _stopping() -> StoppingError:
+    return StoppingError("The service is stopping.")
 
 
 def _signed_out() -> UnknownUserError:

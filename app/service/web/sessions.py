@@ -71,7 +71,7 @@ class Tokens:
                 f"{user!r} cannot be a user's name.",
                 "Use letters, digits, and . _ @ - inside; not “local”.",
             )
-        token, at = secrets.token_urlsafe(32), now()
+        token, at = secrets.token_urlsafe(32), self._database.clock
         values = {
             "id": secrets.token_hex(4),
             "user": user,
@@ -80,8 +80,9 @@ class Tokens:
             "created_at": at,
             "expires_at": None if days is None else at + 86_400 * days,
         }
-        self._database.write(lambda c: c.execute(insert(access_tokens).values(values)))
-        return NewToken.model_validate(values | {"revoked_at": None, "token": token})
+        new = insert(access_tokens).values(values).returning(access_tokens)
+        row = self._database.write(lambda c: c.execute(new).one())
+        return NewToken.model_validate({**row._mapping, "token": token})
 
     def all(self) -> TokenList:
         """Every token, including those that no longer work."""
@@ -178,7 +179,8 @@ class Sessions:
         The oldest ones beyond :data:`MAX_SESSIONS` end.
         """
         session = secrets.token_urlsafe(18)
-        values = {"id": session, "token": token, "user": user, "created_at": now()}
+        at = self._database.clock
+        values = {"id": session, "token": token, "user": user, "created_at": at}
         latest = (
             select(sessions.c.id)
             .where(sessions.c.user == user)
@@ -259,7 +261,7 @@ class Login:
     def by_session(self, cookie: str) -> tuple[str, str]:
         """(session, user) of a cookie; empty strings if this service did not sign it."""
         try:
-            session = str(self._signer.loads(cookie, max_age=SESSION_S))
+            session = str(self._signer.loads(cookie))  # how old it is, the database knows
         except (BadSignature, ValueError, TypeError):
             return "", ""
         user = self._ask("session", session)[1]

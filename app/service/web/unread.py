@@ -12,7 +12,9 @@ from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 log = logging.getLogger("knitcore.app")
 
 STALLED_S = 30.0
-"""An answer of which the client has taken nothing for this long is given up, as by the proxy."""
+"""Time in which a client must take a part of an answer, or the rest of it."""
+LEAST_BYTES = 65_536
+"""Size of that part: with less, one byte now and then would keep a large answer for ever."""
 
 
 class WatchedProtocol(HttpToolsProtocol):
@@ -50,10 +52,12 @@ class WatchedProtocol(HttpToolsProtocol):
 
     def _look(self, before: int) -> None:
         unread = self._unread_bytes()
-        if unread < before:
+        if before - unread >= LEAST_BYTES:
             self._look_after(unread)
             return
-        log.info("closed a connection whose client had read nothing for %g s", STALLED_S)
+        log.info(
+            "closed a connection whose client had read %d bytes in %g s", before - unread, STALLED_S
+        )
         self.transport.abort()  # to close it would wait for the client
 
     def _stop_looking(self) -> None:

@@ -3,19 +3,30 @@
 import json
 import logging
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 
 import httpx2 as httpx
 import pytest
 from fastapi.testclient import TestClient
+from itsdangerous import timed
 from prometheus_client.parser import text_string_to_metric_families
+from sqlalchemy import select
 
 from app.service import VERSION, doctor, health
+from app.service.designs.conditions import Retry, forget_old_keys
+from app.service.jobs.document import JobState
+from app.service.jobs.store import JobStore
 from app.service.main import THREADS
 from app.service.settings import Settings
+from app.service.store import tables
+from app.service.store.database import Database
+from app.service.store.tables import results
 from app.service.web.observing import JsonLines, TextLines, configure_logging
+from app.service.web.sessions import Login, Sessions, Tokens
 from tests.app.clients import LONG, bearing, closed_with, login, served, state_of
 from tests.app.databases import sqlite
 from tests.app.running import Service, wait_until
@@ -145,6 +156,32 @@ def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
         away.rename(file)
         assert client.get("/readyz").status_code == 200
         assert client.post("/api/v1/designs", json=design).status_code == 201
+
+
+def test_the_clock_of_a_host_ends_nothing_early(
+    database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is compared with the database's clock was written by it."""
+    store, tokens, sessions = JobStore(database, "main"), Tokens(database), Sessions(database)
+    retry = Retry.of("ada", "a key", "a request")
+    monkeypatch.setattr(tables, "time", SimpleNamespace(time=lambda: 0.0))
+    with monkeypatch.context() as ahead:
+        ahead.setattr(timed, "time", SimpleNamespace(time=lambda: 9e9))
+        token = tokens.create("ada", days=1)
+        cookie = Login(tokens, sessions, None).begin(token.id, "ada")
+    job = store.add("ada", "work", "{}", "k", JobState.WAITING, retry=retry)
+    assert JobStore(database, "another").adopt_orphans() == []
+    assert store.finish(job.id, "work", "k", b"body")
+    store.tidy(100)
+    forget_old_keys(database)
+    sessions.tidy()
+    assert Login(tokens, sessions, None).by_session(cookie)[1] == "ada"
+    assert tokens.find(identifier=token.id) == (token.id, "ada")
+    assert store.get("ada", job.id).state is JobState.DONE
+    again = store.add("ada", "work", "{}", "k", JobState.WAITING, retry=retry)
+    assert again.id == job.id
+    with database.read() as connection:
+        assert abs(connection.execute(select(results.c.used_at)).scalar_one() - time.time()) < 3600
 
 
 @pytest.mark.parametrize("busy", ["threads of requests", "the writer", "a login"])

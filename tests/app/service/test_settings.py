@@ -24,7 +24,7 @@ def test_settings_come_from_a_file_and_the_environment(
 ) -> None:
     file = tmp_path / "knitcore.toml"
     monkeypatch.setenv("KNITCORE_CONFIG", str(file))
-    with pytest.raises(InputError, match="not a TOML"):
+    with pytest.raises(InputError, match="there is no file"):
         Settings()
     file.write_text('port = 9001\nworkers = 3\nlog_format = "json"\n')
     monkeypatch.setenv("KNITCORE_WORKERS", "1")
@@ -70,12 +70,43 @@ def test_a_folder_that_cannot_be_made_is_reported(monkeypatch: pytest.MonkeyPatc
     assert "cannot be created" in refused("serve", "--port", "0")
 
 
-@pytest.mark.parametrize("name", ["KNITCORE_DATA_DIR", "KNITCORE_TOKEN", "KNITCORE_PORT"])
-def test_an_empty_variable_is_refused(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(name, "")
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("KNITCORE_DATA_DIR", ""), ("KNITCORE_TOKEN", ""), ("KNITCORE_PORT", ""),
+     ("KNITCORE_DATABSE_URL", "postgresql+psycopg://here/name")],
+)  # fmt: skip
+def test_an_empty_or_misspelt_variable_is_refused_by_every_command(
+    name: str, value: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """It would make a database in the present folder, or in another one than is meant."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(name, value)
+    (tmp_path / "file").touch()
     result = CliRunner().invoke(main, ["doctor"])
     assert result.exit_code == 1
     assert "FAIL  settings" in result.output
+    for command in (["token", "list"], ["backup", "new"], ["restore", "file"], ["serve"]):
+        assert name in refused(*command)
+    assert [file.name for file in tmp_path.iterdir()] == ["file"]
+
+
+def test_an_empty_data_folder_in_the_file_is_refused(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    file = tmp_path / "knitcore.toml"
+    file.write_text('data_dir = ""\n')
+    monkeypatch.delenv("KNITCORE_DATA_DIR")  # of the tests, which comes first
+    monkeypatch.setenv("KNITCORE_CONFIG", str(file))
+    with pytest.raises(ValidationError, match="is empty"):
+        Settings()
+
+
+def test_a_secret_that_is_no_text_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "knitcore_token").write_bytes(b"\xff\xfe" * 10)
+    monkeypatch.setenv("KNITCORE_SECRETS_DIR", str(tmp_path))
+    words = refused("token", "list")
+    assert "UTF-8" in words
+    assert "JSON" not in words
 
 
 def test_secrets_come_from_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

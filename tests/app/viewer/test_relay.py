@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from starlette.websockets import WebSocket
 
-from app.viewer.relay import _carry
+from app.viewer.relay import _carry, _watched
 
 
 class _Inner:
@@ -60,6 +62,18 @@ async def test_a_cancelled_connection_leaves_no_sender() -> None:
         await carrying
     assert asyncio.all_tasks() == before
     assert browser.heard == ["websocket.accept", "websocket.send"]
+
+
+async def test_a_view_that_closed_meanwhile_is_refused() -> None:
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        closed: Any = SimpleNamespace(port=unused.getsockname()[1])
+        views: Any = Mock()
+        browser = _Browser()
+        browser.socket.scope.update({"subprotocols": [], "query_string": b"", "headers": []})
+        await _watched(browser.socket, "a-view", closed, views)
+    assert browser.heard == ["websocket.close"]
+    assert [call.args for call in views.watch.call_args_list] == [("a-view", 1), ("a-view", -1)]
 
 
 async def test_a_connection_that_the_browser_closed_is_not_closed_again() -> None:

@@ -9,6 +9,7 @@ import pytest
 from knitcore import InputError
 from knitcore.measure import workbooks
 from knitcore.measure.workbooks import is_workbook, read_workbook
+from studies.speed.readers import number, old_workbook
 from tests.knitcore.measure.synthetic import save_workbook
 
 
@@ -25,6 +26,21 @@ def test_a_cell_in_the_farthest_corner_costs_nothing(tmp_path: Path) -> None:
     sheet["A1"], sheet["XFD1048576"] = 1, 2
     book.save(tmp_path / "far.xlsx")
     assert read_workbook(tmp_path / "far.xlsx") == {"Sheet": [[1]]}
+
+
+def test_an_old_workbook_is_read_sheet_by_sheet_and_bounded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "old.xls"
+    path.write_bytes(old_workbook(number(0) + number(1, 2), 2))
+    sheet: list[list[str | float]] = [[0.1], ["", "", 0.1]]
+    assert read_workbook(path) == {"00000": sheet, "00001": sheet}
+    path.write_bytes(old_workbook(number(65_535, 255), 100))  # padded, 100 MB in memory each
+    with pytest.raises(InputError, match="is larger than what is read"):
+        read_workbook(path)
+    monkeypatch.setattr(workbooks, "MAX_XLS_BYTES", path.stat().st_size - 1)
+    with pytest.raises(InputError, match="is larger than what is read"):
+        read_workbook(path)
 
 
 def test_a_workbook_with_more_cells_than_are_read_is_refused(

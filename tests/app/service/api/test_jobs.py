@@ -3,16 +3,20 @@
 import json
 import re
 from typing import Any
+from unittest.mock import AsyncMock, Mock
 
 import pytest
 from fastapi.testclient import TestClient
 
 from app.context import Context
 from app.operations.registry import operations
+from app.service.jobs.document import JobStatus
 from app.service.jobs.kinds import KINDS, JobOf, accepted
+from app.service.jobs.store import StoredResult
 from app.service.limits.user_limits import USER_LIMITS
+from app.service.problems import StoreError
 from app.service.web.bodies import SMALL_BYTES
-from tests.app.clients import state_of
+from tests.app.clients import LONG, state_of
 from tests.app.running import wait_until
 
 CHART = {"chart": "KP/PK", "material": "acrylic"}
@@ -76,11 +80,51 @@ def test_every_example_is_accepted(context: Context) -> None:
             assert accepted(job, context)[0] == kind
 
 
-def test_a_user_reads_few_results_at_once(client: TestClient) -> None:
+@pytest.fixture
+def result(client: TestClient) -> str:
+    """The address of a job's result."""
     job = {"kind": "stretch", "request": PULL | {"strain": 0.1}}
     address = client.post("/api/v1/jobs", json=job).json()["id"]
     result = f"/api/v1/jobs/{address}/result"
     wait_until(lambda: client.get(result).status_code == 200)
+    return result
+
+
+@pytest.mark.parametrize("coding", ["gzip", "identity"])
+@pytest.mark.parametrize(("part", "status"), [(StoreError("away"), 503), (None, 404)])
+def test_a_result_that_is_lost_before_its_first_part_is_a_problem(
+    client: TestClient,
+    result: str,
+    monkeypatch: pytest.MonkeyPatch,
+    coding: str,
+    part: StoreError | None,
+    status: int,
+) -> None:
+    monkeypatch.setattr(StoredResult, "unpacked_bytes", 100)
+    monkeypatch.setattr(StoredResult, "_part", Mock(side_effect=part, return_value=None))
+    answer = client.get(result, headers={"Accept-Encoding": coding})
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert ("Retry-After" in answer.headers) is (status == 503)
+    assert state_of(client).concurrency.held("results", "local") == 0
+
+
+def test_the_events_of_a_job_outlast_a_lost_database(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = client.post("/api/v1/jobs", json={"kind": "stretch", "request": LONG}).json()
+    runner = state_of(client).jobs
+    done = JobStatus.model_validate(job | {"state": "done"})
+    states = [JobStatus.model_validate(job), StoreError("away"), done]
+    monkeypatch.setattr(type(runner), "status", AsyncMock(side_effect=states))
+    events = client.get(f"/api/v1/jobs/{job['id']}/events").text
+    monkeypatch.undo()
+    assert client.delete(f"/api/v1/jobs/{job['id']}").status_code == 200
+    assert events.count("event: status") == 2
+    assert '"state":"done"' in events
+
+
+def test_a_user_reads_few_results_at_once(client: TestClient, result: str) -> None:
     uses = state_of(client).concurrency
     with uses.growing("results", "local") as count:
         count(USER_LIMITS.results)

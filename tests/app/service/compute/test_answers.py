@@ -1,4 +1,26 @@
-from app.service.compute.answers import RecentResults
+import threading
+from pathlib import Path
+from typing import Any
+from unittest.mock import Mock
+
+from app.service.compute.answers import Answers, RecentResults
+from app.service.jobs.kinds import KINDS
+
+
+async def test_only_the_event_loop_uses_recent_results() -> None:
+    """A thread between looking and noting the use would meet a result that is dropped."""
+    threads = list[threading.Thread]()
+
+    class Watched(RecentResults):
+        def get(self, key: str) -> Any:
+            threads.append(threading.current_thread())
+            return super().get(key)
+
+    answers = Answers(Mock(), Watched(), Path(), Mock())
+    stretch = KINDS["stretch"]
+    request = stretch.request.model_validate(stretch.example).model_dump_json()
+    assert not await answers.can_be_viewed(stretch, request)
+    assert threads == [threading.current_thread()]
 
 
 def test_the_longest_unused_results_make_room() -> None:

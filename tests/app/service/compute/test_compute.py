@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import os
+import shutil
 import signal
 import tempfile
 import threading
@@ -17,7 +18,7 @@ import pytest
 
 from app.service.compute import compute as compute_module
 from app.service.compute.compute import Compute
-from app.service.compute.processes import NICENESS, SCRATCH, processes
+from app.service.compute.processes import NICENESS, SCRATCH, ProcessWorker, processes
 from app.service.compute.workers import MemoryLimitError, NotBegunError, WorkerDiedError
 from app.service.problems import UnavailableError
 from tests.app import jobs
@@ -58,9 +59,19 @@ def test_uploads_of_a_lost_worker_are_removed(
     upload.mkdir()
     (upload / "secret.csv").touch()
     worker.replace()
-    assert list(scratch.iterdir()) == []
+    assert not upload.exists()
     worker.close()
     assert list(tmp_path.iterdir()) == []
+
+
+async def test_a_worker_outlasts_a_cleaner_of_its_folder(compute: Compute) -> None:
+    (worker,) = compute.workers
+    assert isinstance(worker, ProcessWorker)
+    for is_replaced in (False, True):
+        shutil.rmtree(worker._scratch)
+        if is_replaced:
+            worker.replace()
+        assert await compute.run(never, jobs.temporary_folder) == str(worker._scratch)
 
 
 async def test_a_closed_worker_leaves_no_thread_that_clears_up() -> None:
@@ -132,6 +143,38 @@ class _Nobody:
         self.future.cancel()
 
     replace = cancel
+
+
+class _Slow:
+    """A place that takes jobs slowly."""
+
+    share = cpu_s = None
+
+    def __init__(self) -> None:
+        self.asked, self.go_on = asyncio.Event(), asyncio.Event()
+        self.replaced = 0
+
+    async def submit(self, job: object) -> asyncio.Future[int]:
+        self.asked.set()
+        await self.go_on.wait()
+        return asyncio.get_running_loop().create_future()
+
+    def replace(self) -> None:
+        self.replaced += 1
+
+
+async def test_a_place_is_free_once_it_has_dropped_a_job_cancelled_at_its_beginning() -> None:
+    place = _Slow()
+    compute = Compute([place], timeout_s=PATIENCE_S)  # type: ignore[list-item]
+    running = asyncio.create_task(compute.run(never, print))
+    await place.asked.wait()
+    running.cancel()
+    await asyncio.sleep(0)
+    assert (compute.queue.taken, place.replaced) == (1, 0)
+    place.go_on.set()
+    with pytest.raises(asyncio.CancelledError):
+        await running
+    assert (compute.queue.taken, place.replaced) == (0, 1)
 
 
 async def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -61,23 +61,6 @@ async def test_jobs_of_a_process_that_is_gone_are_taken_over(
     await runner.close()
 
 
-@pytest.mark.parametrize("ahead_s", [-120.0, 120.0])
-def test_clocks_of_processes_may_differ(
-    database: Database, monkeypatch: pytest.MonkeyPatch, ahead_s: float
-) -> None:
-    here, there = JobStore(database, "here"), JobStore(database, "there")
-    waits, runs = (
-        here.add("ada", "work", task("wait"), key, JobState.WAITING).id for key in ("k1", "k2")
-    )
-    assert here.begin(runs)
-    with monkeypatch.context() as wrong:
-        wrong.setattr(store_module, "now", lambda: time.time() + ahead_s)
-        assert there.adopt_orphans() == []
-        assert there.add("ada", "work", task("wait"), "k3", JobState.WAITING)
-    assert here.adopt_orphans() == []
-    assert here.beat({waits: 0.0, runs: 0.5}) == set()
-
-
 async def test_a_process_is_not_declared_dead_right_after_an_outage(
     database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
 ) -> None:

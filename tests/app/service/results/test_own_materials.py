@@ -22,7 +22,9 @@ def test_a_request_carries_the_materials_that_it_names() -> None:
     request = f'{{"material": "{names[0]}", "materials": ["{names[1]}", "acrylic", "{names[0]}"]}}'
     assert named_in(request.encode()) == names[:2]
     assert named_in(b'{"material": "acrylic", "note": "my own: none"}') == []
-    assert named_in(",".join(names).encode()) == names[:-1]
+    assert named_in(",".join(names[1:]).encode()) == names[1:]
+    with pytest.raises(InputError, match=f"names {MAX_NAMED + 1} .* at most {MAX_NAMED}"):
+        named_in(",".join(names).encode())
 
 
 def test_what_came_with_a_request_is_found() -> None:

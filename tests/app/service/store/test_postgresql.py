@@ -6,7 +6,7 @@ from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 
 import pytest
-from sqlalchemy import text
+from sqlalchemy import Connection, event, text
 from sqlalchemy.exc import DBAPIError
 
 from app.service.compute.compute import Compute
@@ -53,6 +53,19 @@ def _end_lock_of(database: Database) -> None:
     )
     with database.read() as connection:
         assert connection.execute(held_by).scalar() is True
+
+
+@pytest.mark.parametrize(
+    ("moment", "words"), [("begin", "nothing was changed"), ("commit", "may not have been made")]
+)
+def test_a_loss_says_what_came_of_the_change(database: Database, moment: str, words: str) -> None:
+    def lose(connection: Connection) -> None:
+        connection.exec_driver_sql("SELECT pg_terminate_backend(pg_backend_pid())")
+
+    event.listen(database.engine, moment, lose)
+    with pytest.raises(StoreError, match=words):
+        database.write(lambda connection: connection.execute(text("SELECT 1")))
+    event.remove(database.engine, moment, lose)
 
 
 def test_a_restart_of_the_database_frees_no_name(

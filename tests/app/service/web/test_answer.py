@@ -46,6 +46,9 @@ def _part(content: bytes, more: bool = True) -> Message:
 class Login:
     """A login that a test ends, and that is noticed to be looked at."""
 
+    is_stopping = False
+    stop: Callable[[], object]
+
     def __init__(self) -> None:
         self.has_ended = False
         self.looked = threading.Event()
@@ -87,13 +90,14 @@ def _sent(
     kind: str = "http",
     heard: tuple[Message, ...] = (),
     slowly: Callable[[Login, Message], Awaitable[None]] | None = None,
+    login: Login | None = None,
 ) -> list[Message]:
     """Messages of a guarded application to a bare server, which may take one slowly."""
-    login, taken = Login(), list[Message]()
+    login, taken = login or Login(), list[Message]()
     waiting = list(heard)
     passes = SimpleNamespace(holder=lambda _: None)
     state = SimpleNamespace(
-        passes=passes, login=login, concurrency=ConcurrencyLimit(), stopping=False
+        passes=passes, login=login, concurrency=ConcurrencyLimit(), stopping=login.is_stopping
     )
     scope: Scope = {
         "type": kind,
@@ -116,8 +120,12 @@ def _sent(
         await script(login, send, receive)
 
     async def scenario() -> None:
+        guard = AccessControl(application, Settings(require_login=True))
+        request = asyncio.ensure_future(guard(scope, receive, send))
+        loop = asyncio.get_running_loop()
+        login.stop = lambda: loop.call_soon_threadsafe(request.cancel)
         async with asyncio.timeout(60):
-            await AccessControl(application, Settings(require_login=True))(scope, receive, send)
+            await request
 
     asyncio.run(scenario())
     return taken
@@ -161,6 +169,22 @@ def test_before_its_start_the_answer_is_a_problem_and_what_fails_then_is_logged(
     head, body = _sent(script)
     assert (head["status"], b"/problems/sign-in" in body["body"]) == (401, True)
     assert "ZeroDivisionError" in caplog.text
+
+
+def test_a_stop_during_the_login_is_answered_with_a_problem() -> None:
+    class Stopping(Login):
+        is_stopping = True
+
+        def by_token(self, token: str) -> tuple[str, str]:
+            self.stop()
+            return super().by_token(token)
+
+    async def script(_login: Login, send: Send, _receive: Receive) -> None:
+        await send(_head())
+
+    head, body = _sent(script, login=Stopping())
+    assert (head["status"], json.loads(body["body"])["type"]) == (503, "/problems/busy")
+    assert _sent(script, "websocket", login=Stopping()) == [CLOSE | {"reason": "refused"}]
 
 
 def test_what_is_complete_is_neither_cancelled_nor_added_to() -> None:

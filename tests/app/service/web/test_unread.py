@@ -6,12 +6,13 @@ import socket
 import time
 from collections.abc import Iterator
 from threading import Event
+from unittest.mock import Mock
 
 import pytest
 from starlette.types import Receive, Scope, Send
 
 from app.service.web import unread
-from app.service.web.unread import WatchedProtocol
+from app.service.web.unread import LEAST_BYTES, WatchedProtocol
 from tests.app.running import on_a_server
 
 CONTENT = os.urandom(20_000_000)  # more than the buffers of a system hold
@@ -52,6 +53,18 @@ def test_an_unread_answer_ends(client: tuple[socket.socket, Event]) -> None:
         while part := connection.recv(PART):
             received += len(part)
     assert received < len(CONTENT)
+
+
+@pytest.mark.parametrize(("taken", "is_closed"), [(LEAST_BYTES, False), (1, True)])
+def test_a_byte_now_and_then_keeps_no_connection(
+    monkeypatch: pytest.MonkeyPatch, taken: int, is_closed: bool
+) -> None:
+    protocol = object.__new__(WatchedProtocol)
+    protocol.loop, protocol.transport = Mock(), Mock()
+    monkeypatch.setattr(protocol, "_unread_bytes", lambda: 1_000_000)
+    protocol._look(1_000_000 + taken)
+    assert protocol.transport.abort.called is is_closed
+    assert protocol.loop.call_later.called is not is_closed
 
 
 def test_a_slow_reader_gets_everything(client: tuple[socket.socket, Event]) -> None:
