@@ -7,6 +7,7 @@
 
 import { figure } from "../core/format.js";
 import { paced } from "../core/paced.js";
+import { predictionOf } from "../services/belonging.js";
 import { logAxis } from "./axis.js";
 import { drawing, svg } from "../elements/dom.js";
 import { FABRICS } from "../grid/segments.js";
@@ -110,8 +111,13 @@ export function rigidityPlot(host, studio) {
     );
   };
   const soon = paced(draw, 0); // once for all that changes together
-  studio.prediction.listen(({ busy }) => {
-    if (!busy) soon();
+  const belonging = predictionOf(studio);
+  belonging.marks(host, "rigidity");
+  studio.prediction.listen(({ busy, value, basis }) => {
+    if (busy) return;
+    if (value) belonging.show(basis);
+    else belonging.clear();
+    soon();
   });
   studio.materials.listen(soon);
   studio.material.listen(soon);
