@@ -34,6 +34,7 @@ export function rigidityPlot(host, studio) {
     );
     const { value, scope } = studio.prediction.value;
     const own = value && { x: value.modulus_course_n_per_mm, y: value.modulus_wale_n_per_mm };
+    if (!own) belonging.clear(); // only here: while it is hidden, the old dot stays
     const all = own ? [...points, own] : points;
     if (!all.length) return;
     const x = logAxis(
@@ -116,7 +117,6 @@ export function rigidityPlot(host, studio) {
   studio.prediction.listen(({ busy, value, basis }) => {
     if (busy) return;
     if (value) belonging.show(basis);
-    else belonging.clear();
     soon();
   });
   studio.materials.listen(soon);
