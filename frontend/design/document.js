@@ -73,6 +73,11 @@ export class ChartDocument extends ChartState {
     return this.#stroke !== null;
   }
 
+  /** Resolves between strokes: what comes from elsewhere breaks none off. */
+  async rested() {
+    while (this.#stroke) await new Promise((done) => setTimeout(done, 50));
+  }
+
   /** @param {Target} [target] */
   begin(target = "stitches") {
     this.cancel();

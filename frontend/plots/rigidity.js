@@ -7,6 +7,7 @@
 
 import { figure } from "../core/format.js";
 import { paced } from "../core/paced.js";
+import { predictionOf } from "../services/belonging.js";
 import { logAxis } from "./axis.js";
 import { drawing, svg } from "../elements/dom.js";
 import { FABRICS } from "../grid/segments.js";
@@ -33,6 +34,7 @@ export function rigidityPlot(host, studio) {
     );
     const { value, scope } = studio.prediction.value;
     const own = value && { x: value.modulus_course_n_per_mm, y: value.modulus_wale_n_per_mm };
+    if (!own) belonging.clear(); // only here: while it is hidden, the old dot stays
     const all = own ? [...points, own] : points;
     if (!all.length) return;
     const x = logAxis(
@@ -110,8 +112,12 @@ export function rigidityPlot(host, studio) {
     );
   };
   const soon = paced(draw, 0); // once for all that changes together
-  studio.prediction.listen(({ busy }) => {
-    if (!busy) soon();
+  const belonging = predictionOf(studio);
+  belonging.marks(host, "rigidity");
+  studio.prediction.listen(({ busy, value, basis }) => {
+    if (busy) return;
+    if (value) belonging.show(basis);
+    soon();
   });
   studio.materials.listen(soon);
   studio.material.listen(soon);

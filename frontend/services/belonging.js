@@ -15,6 +15,7 @@ import { scopeOf } from "./scope.js";
 
 /** What to say of a result once its basis is another. @type {Record<string, string>} */
 const CHANGED = {
+  design: "Of another design",
   part: "Of another part of the chart",
   chart: "Of the chart before it was changed",
   yarn: "With another yarn",
@@ -82,10 +83,30 @@ export class Belonging {
       else delete element.dataset.stale;
     });
   }
+
+  /** Let nothing be done with a result while it does not count. @param {HTMLElement} element */
+  bars(element) {
+    this.stale.watch((words) => (element.inert = words !== ""));
+  }
 }
 
 /** What the numbers of a part of the chart depend on. @param {Studio} studio */
 export function clothOf(studio) {
   const { kind, title, grid } = scopeOf(studio);
-  return { part: [kind, title], chart: grid.text, yarn: studio.materialId.value };
+  return { part: [kind, title, placeOf(studio)], chart: grid.text, yarn: studio.materialId.value };
 }
+
+/** Where the part of the chart is that numbers are asked of. @param {Studio} studio */
+export function placeOf({ selection, seeing }) {
+  const { row0, column0, row1, column1 } = selection.value ?? {};
+  return [row0, column0, row1, column1, seeing.region.value].join();
+}
+
+/** Whether the predicted numbers are of what is on the page now. @param {Studio} studio */
+export const predictionOf = (studio) =>
+  new Belonging(studio, () => {
+    const cloth = clothOf(studio);
+    const { shaped } = scopeOf(studio);
+    const gauge = studio.gauges.of({ chart: cloth.chart, material: cloth.yarn });
+    return { ...cloth, chart: [cloth.chart, shaped], gauge };
+  });

@@ -5,6 +5,7 @@
  */
 
 import { api } from "../api.js";
+import { predictionOf } from "./belonging.js";
 import { Latest } from "./latest.js";
 import { scopeOf } from "./scope.js";
 
@@ -13,12 +14,14 @@ const DELAY_MS = 80;
 /** @param {Studio} studio @returns {() => void} asks anew */
 export function startPredictor(studio) {
   const latest = new Latest(DELAY_MS);
+  const belonging = predictionOf(studio);
   const ask = () => {
     const { prediction } = studio;
     if (!prediction.value.busy) prediction.value = { ...prediction.value, busy: true };
     latest.run(
       async (signal) => {
         const { kind: scope, grid, shaped } = scopeOf(studio);
+        const { basis } = belonging;
         const cloth = { chart: grid.text, material: studio.materialId.value };
         const value = await api.run(
           "predict",
@@ -26,11 +29,11 @@ export function startPredictor(studio) {
           signal,
         );
         if (signal.aborted) return;
-        prediction.value = { value, busy: false, problem: null, scope };
+        prediction.value = { value, busy: false, problem: null, basis, scope };
         studio.online.value = true;
       },
       ({ offline, problem }) => {
-        prediction.value = { value: null, busy: false, problem, scope: scopeOf(studio).kind };
+        prediction.value = { value: null, busy: false, problem, basis: {}, scope: scopeOf(studio).kind };
         if (offline) studio.online.value = false;
       },
     );

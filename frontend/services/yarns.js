@@ -45,13 +45,15 @@ export const yarns = {
  * @param {MaterialDocument} document
  */
 export async function adopt(studio, document) {
+  const { designId } = studio;
   const added = await yarns.add(document);
   await refresh(studio);
   const complete = isComplete(added);
-  if (complete) studio.materialId.value = added.id;
+  const same = designId === studio.designId;
+  if (complete && same) studio.materialId.value = added.id;
   studio.tell(
     complete
-      ? `${added.name} is added, and chosen.`
+      ? `${added.name} is added${same ? ", and chosen" : ""}.`
       : `${added.name} is added, but not chosen: it lacks some of the four fabrics. Change it under Own yarns, and keep it: they are estimated.`,
   );
   return added;

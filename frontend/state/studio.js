@@ -12,7 +12,8 @@
  * @import {DesignDocument, Direction, MaterialDetail, MaterialSummary, PredictResult, Problem, StitchKind,
  *   StretchResult} from "../types.js"
  *
- * @typedef {{value: PredictResult | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
+ * @typedef {{value: PredictResult | null, busy: boolean, problem: Problem | null, basis: Record<string, string>,
+ *   scope: string}} PredictionState `basis` is what the value was predicted for, and `scope` its kind
  * @typedef {{value: StretchResult | null, direction: Direction, busy: boolean, stale: string,
  *   problem: Problem | null}} StretchState `stale` says why the test does not count any more; "" if it does
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
@@ -77,7 +78,7 @@ export class Studio {
     /** Whether the repeat on show is being relaxed at the yarn level. */
     this.relaxing = new Signal(false);
     this.prediction = new Signal(
-      /** @type {PredictionState} */ ({ value: null, busy: false, problem: null, scope: "chart" }),
+      /** @type {PredictionState} */ ({ value: null, busy: false, problem: null, basis: {}, scope: "chart" }),
     );
     this.stretch = new Signal(
       /** @type {StretchState} */ ({

@@ -140,6 +140,7 @@ export class Keeper {
 
   /** The service has changed the design on show at our request, as by restoring a version. @param {Kept} kept */
   takeOver(kept) {
+    if (kept.id !== this.remoteId) return; // another design was opened meanwhile
     this.#follow(() => this.studio.follow(kept.document));
     this.#parcel = { ...this.#parcel, remote: { id: kept.id, revision: kept.revision }, base: kept.document };
     this.#acknowledged(kept.document);
@@ -254,7 +255,7 @@ export class Keeper {
     try {
       const outcome = await deliver(parcel, designs);
       // Changes of others are applied between strokes, never within one.
-      while (this.studio.document.painting) await new Promise((done) => setTimeout(done, 50));
+      await this.studio.document.rested();
       if (this.#parcel.id !== parcel.id) return; // another design was opened meanwhile
       if (outcome.kind === "conflict") this.#clash(outcome);
       else this.#delivered(outcome, change, sent);

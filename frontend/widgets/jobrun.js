@@ -1,6 +1,7 @@
 /**
  * A long computation of the panel: progress, cancel, and problems in words.
  *
+ * @import {Studio} from "../state/studio.js"
  * @import {Problem} from "../types.js"
  */
 
@@ -25,8 +26,14 @@ export class Run {
   #problem = h("div", { class: "problem", role: "alert", hidden: true });
   element = h("div", { class: "inverse-status", "aria-live": "polite" }, this.#busy, this.#problem);
 
-  get busy() {
-    return this.#running !== null;
+  /** @param {Studio} [studio] if the computation is of its design: it is given up when another one is opened */
+  constructor(studio) {
+    if (!studio) return;
+    let design = studio.designId;
+    studio.document.onSettle(() => {
+      if (design !== studio.designId) this.cancel();
+      design = studio.designId;
+    });
   }
 
   /**
@@ -40,7 +47,6 @@ export class Run {
     this.cancel();
     const controller = new AbortController();
     this.#running = controller;
-    this.#problem.hidden = true;
     this.#busy.hidden = false;
     this.#bar.removeAttribute("value");
     this.#text.textContent = doing;
@@ -81,6 +87,6 @@ export class Run {
   cancel() {
     this.#running?.abort();
     this.#running = null;
-    this.#busy.hidden = true;
+    this.#busy.hidden = this.#problem.hidden = true;
   }
 }

@@ -91,14 +91,41 @@ def unreached(regions: Sequence[Patch], targets: Array, off: Array, have: Array)
     return said
 
 
-def left_alone(name: str, target: Array, now: Array, atlas: Atlas) -> str:
+@dataclass(frozen=True)
+class Nearest:
+    """The repeat of an atlas that is nearest to a target, whatever it was before.
+
+    Attributes
+    ----------
+    repeat : its key.
+    course_n_per_mm, wale_n_per_mm : moduli of a large cloth of it.
+    """
+
+    repeat: str
+    course_n_per_mm: float
+    wale_n_per_mm: float
+
+
+def nearest_repeat(target: Array, atlas: Atlas) -> Nearest:
+    """Choose the repeat nearest to a target.
+
+    Parameters
+    ----------
+    target : (2,) logarithms of moduli; NaN where any value will do.
+    atlas : repeats to choose from.
+    """
+    entry = int(np.nansum((atlas.log_moduli - target) ** 2, axis=1).argmin())
+    return Nearest(atlas.keys[entry], *np.exp(atlas.log_moduli[entry]).tolist())
+
+
+def left_alone(name: str, target: Array, now: Array, nearest: Nearest) -> str:
     """Say why a part stays as it is, and what comes nearest.
 
     Parameters
     ----------
     name : of the part.
     target, now : (2,) logarithms of its moduli; a target is NaN where any value will do.
-    atlas : the repeats that were tried.
+    nearest : to the target.
     """
     off = np.nan_to_num(np.expm1(now - target))
     if (np.abs(off) <= OFF).all():
@@ -108,12 +135,11 @@ def left_alone(name: str, target: Array, now: Array, atlas: Atlas) -> str:
         for away, direction in zip(off, Direction, strict=True)
         if abs(away) > OFF
     )
-    nearest = int(np.nansum((atlas.log_moduli - target) ** 2, axis=1).argmin())
-    course, wale = np.exp(atlas.log_moduli[nearest])
+    no_farther = "" if np.isnan(target).any() else " without going away in the other direction"
     return (
-        f"“{name}” stays as it is, {differs} than wanted: no repeat comes nearer in one direction "
-        f"without going away in the other. The nearest, {atlas.keys[nearest]}, has {course:.3g} "
-        f"N/mm course-wise and {wale:.3g} N/mm wale-wise."
+        f"“{name}” stays as it is, {differs} than wanted: no repeat that was tried comes 10 % "
+        f"nearer{no_farther}. The nearest, {nearest.repeat}, has {nearest.course_n_per_mm:.3g} "
+        f"N/mm course-wise and {nearest.wale_n_per_mm:.3g} N/mm wale-wise in a large cloth."
     )
 
 

@@ -473,9 +473,11 @@ class _Fill:
         messages = unreached(regions, targets, np.expm1(judged - targets), have)
         now = _spread(judged, patches)
         repainted = np.array([(c & ~self._fixed).any() for c in self._parts.cells], dtype=bool)
+        parts = self._parts.filled(predicted, repainted, self._atlas)
         for part in np.flatnonzero(~repainted).tolist():
             name, target = self._parts.targets[part].name, self._parts.log_target[part]
-            messages.append(left_alone(name, target, self._parts.log_now[part], self._atlas))
+            log_now, nearest = self._parts.log_now[part], parts[part].nearest
+            messages.append(left_alone(name, target, log_now, nearest))
             left = self._parts.cells[part] & self._fixed
             now[:, left] = self._parts.log_now[part][:, None]
         self._progress.look(1.0)
@@ -485,7 +487,7 @@ class _Fill:
             tuple(regions),
             local_moduli(trial.chart, self._material),
             self._off_share(now - self._target_map),
-            self._parts.filled(predicted, repainted),
+            parts,
             tuple(messages),
         )
 

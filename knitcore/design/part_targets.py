@@ -13,7 +13,8 @@ from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
-from knitcore.design.explain import OFF
+from knitcore.design.atlas import Atlas
+from knitcore.design.explain import OFF, Nearest, nearest_repeat
 from knitcore.garment.shaped import largest_rectangle
 from knitcore.materials import Material
 from knitcore.prediction.predict import predict
@@ -87,7 +88,8 @@ class FilledPart:
     ----------
     name : of the target.
     stitches : number of its stitches.
-    repainted : False for a part that stays as it was, because no repeat came nearer.
+    repainted : False for a part that stays as it was: no repeat that was tried came nearer.
+    nearest : to the target, of all repeats; tried are only those that may suit the part.
     course_before_n_per_mm, wale_before_n_per_mm : moduli of the part in the chart as it was,
         predicted for the largest rectangle inside; NaN without such a chart.
     course_n_per_mm, wale_n_per_mm : the same in the filled chart.
@@ -96,6 +98,7 @@ class FilledPart:
     name: str
     stitches: int
     repainted: bool
+    nearest: Nearest
     course_before_n_per_mm: float
     wale_before_n_per_mm: float
     course_n_per_mm: float
@@ -186,19 +189,21 @@ class PartsNow:
         )
         return nearer
 
-    def filled(self, log_moduli: Array, repainted: Mask) -> tuple[FilledPart, ...]:
+    def filled(self, log_moduli: Array, repainted: Mask, atlas: Atlas) -> tuple[FilledPart, ...]:
         """Compare each part of a filled chart with what it was.
 
         Parameters
         ----------
         log_moduli : (parts, 2) logarithms of its moduli (:meth:`log_moduli`).
         repainted : (parts,) which of them are filled.
+        atlas : repeats to fill them with.
         """
         before, after = np.exp(self.log_now).tolist(), np.exp(log_moduli).tolist()
+        nearest = [nearest_repeat(target, atlas) for target in self.log_target]
         return tuple(
-            FilledPart(target.name, int(cells.sum()), bool(is_new), *then, *now)
-            for target, cells, is_new, then, now in zip(
-                self.targets, self.cells, repainted, before, after, strict=True
+            FilledPart(target.name, int(cells.sum()), bool(is_new), near, *then, *now)
+            for target, cells, is_new, then, now, near in zip(
+                self.targets, self.cells, repainted, before, after, nearest, strict=True
             )
         )
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from PIL import Image
-from playwright.sync_api import Download, Locator, Page, expect
+from playwright.sync_api import Download, Locator, Page, Route, expect
 
 
 def kept_chart(page: Page) -> str:
@@ -152,6 +152,33 @@ def complaints(page: Page) -> list[str]:
     page.on("pageerror", lambda error: heard.append(error.message))
     page.on("response", lambda r: heard.append(f"{r.status} {r.url}") if r.status >= 400 else None)
     return heard
+
+
+def held(page: Page, path: str) -> list[Route]:
+    """Requests that wait from now on, until they are continued."""
+    waiting: list[Route] = []
+
+    def hold(route: Route) -> None:
+        waiting.append(route)
+
+    page.route(path, hold)
+    return waiting
+
+
+def when_held(page: Page, waiting: list[Route]) -> Route:
+    """The first request that waits, as soon as there is one."""
+    while not waiting:
+        page.wait_for_timeout(20)
+    return waiting[0]
+
+
+def open_another(page: Page, service: str, chart: str) -> None:
+    """Show another design of the service, as the back button does: also from a dialog."""
+    document = {"format": "knitcore-design", "version": 2, "name": "Another", "chart": chart}
+    address = f"{service}api/v1/designs"
+    kept = page.request.post(address, data=document | {"material": "acrylic"}).json()
+    page.evaluate("(id) => (location.hash = `#design/${id}`)", kept["id"])
+    expect(page.locator(".design-name")).to_have_value("Another")
 
 
 def cut_off(page: Page) -> None:

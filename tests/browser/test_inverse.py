@@ -1,12 +1,19 @@
 """From a target to a fabric, in the page."""
 
+import re
+
 import pytest
 from playwright.sync_api import Page, Route, expect
 
 from knitcore import Fabric, material
 from tests.browser.axe import violations
-from tests.browser.conftest import CHART
-from tests.browser.page import kept_chart, middle
+from tests.browser.conftest import CHART, COLUMNS, ROWS, flat, open_small_chart
+from tests.browser.page import Chart, held, kept_chart, middle, open_another, purls, when_held
+
+HALVES = {
+    name: [[row, first, COLUMNS // 2] for row in range(ROWS)]
+    for name, first in (("soft", 0), ("stiff", COLUMNS // 2))
+}
 
 
 def open_atlas(page: Page) -> None:
@@ -75,7 +82,8 @@ def test_a_part_is_made_softer_tried_on_the_chart_and_taken_back(flat_studio: Pa
     flat_studio.fill("#part-0-course", f"{rib.modulus_course:.4f}")
     flat_studio.fill("#part-0-wale", f"{rib.modulus_wale:.4f}")
     flat_studio.click("#fill-run")
-    expect(flat_studio.locator("#fill-answer")).to_contain_text("as wanted: 100 % of it")
+    expect(flat_studio.locator("#fill-parts")).to_contain_text("Whole chart: as wanted.")
+    expect(flat_studio.locator("#fill-answer .good")).to_have_text("On the chart now.")
     expect(flat_studio.locator("#fill-parts")).to_contain_text(f"rows {modulus:.3f} →")
     assert {line[:2] for line in kept_chart(flat_studio).split("\n")} <= {"KP", "PK"}
     expect(flat_studio.locator("#parts")).to_contain_text("as wanted")
@@ -88,22 +96,85 @@ def test_a_part_is_made_softer_tried_on_the_chart_and_taken_back(flat_studio: Pa
 
 
 def test_a_wish_waits_for_the_numbers_it_goes_by(flat_studio: Page) -> None:
-    held: list[Route] = []
-
-    def hold(route: Route) -> None:
-        held.append(route)
-
-    flat_studio.route("**/api/v1/predict", hold)
+    waiting = held(flat_studio, "**/api/v1/predict")
     flat_studio.keyboard.press("Shift+W")
     flat_studio.click("#part-add")
     flat_studio.select_option("#part-0-like", "much softer")
     expect(flat_studio.locator("#part-0-course-now")).to_have_text("–")
     expect(flat_studio.locator("#part-0-like")).to_have_value("much softer")
-    for route in held:
+    for route in waiting:
         route.continue_()
     modulus = material("acrylic").law(Fabric.STOCKINETTE).modulus_course
     expect(flat_studio.locator("#part-0-course")).to_have_value(f"{0.4 * modulus:.3g}")
     expect(flat_studio.locator("#part-0-like")).to_have_value("")
+
+
+def fill_softer(page: Page, service: str) -> Route:
+    """Begin to fill two halves; only the left one can come nearer. Its end is held back."""
+    halves = [
+        {"id": f"region-{k}", "name": name, "colour": "#cc4433", "runs": runs}
+        for k, (name, runs) in enumerate(HALVES.items())
+    ]
+    open_small_chart(page, service, regions=halves)
+    page.keyboard.press("Shift+W")
+    page.click("#part-regions")
+    expect(page.locator("#part-1-course-now")).to_have_text(re.compile(r"\d"))
+    for at, like in enumerate(("much softer", "much stiffer")):
+        page.select_option(f"#part-{at}-like", like)
+    waiting = held(page, "**/api/v1/jobs/*/events")
+    page.click("#fill-run")
+    return when_held(page, waiting)
+
+
+def test_each_part_is_judged_in_a_sentence(visitor: Page, service: str) -> None:
+    page = flat(visitor)
+    fill_softer(page, service).continue_()
+    expect(page.locator("#fill-parts li")).to_have_count(2)
+    soft, stiff = page.locator("#fill-parts li").all()
+    expect(soft).to_contain_text("soft: as wanted.")
+    expect(stiff).to_contain_text("stiff: left as it was, 2.5 times too soft along rows and 2.5")
+    expect(stiff).to_contain_text(
+        "Nothing tried comes 10 % nearer without going away in the other direction. "
+        "Nearest in a large cloth: "
+    )
+    expect(page.locator("#fill-answer .good")).to_have_count(0)
+    expect(page.locator("#fill-answer")).to_contain_text("not all parts were changed")
+
+
+def test_a_fill_ends_with_its_design(visitor: Page, service: str) -> None:
+    page = flat(visitor)
+    fill_softer(page, service)
+    with page.expect_request(lambda sent: sent.method == "DELETE" and "/jobs/" in sent.url):
+        open_another(page, service, CHART)
+    expect(page.locator("#panel-fill progress").first).to_be_hidden()
+    expect(page.locator("#parts")).to_contain_text("Select stitches in the chart")
+    assert kept_chart(page) == CHART
+
+
+def test_a_fill_leaves_what_is_painted_meanwhile(visitor: Page, service: str) -> None:
+    """Also an unfinished stroke; its numbers are then of another chart."""
+    page = flat(visitor)
+    end = fill_softer(page, service)
+    chart = Chart(page)
+    chart.click(5, 2)  # in the part that is left as it was
+    page.fill("#part-1-wale", "0.3")
+    page.mouse.move(*chart.at(9, 1))
+    page.mouse.down()
+    end.continue_()
+    expect(page.locator("#panel-fill progress").first).to_be_hidden()
+    expect(page.locator("#fill-answer")).to_be_empty()
+    page.mouse.up()
+    answer = page.locator("#fill-answer")
+    expect(answer).to_contain_text("On the chart now")
+    expect(answer).to_have_attribute("data-stale", "Of the chart before it was changed")
+    expect(answer).to_have_js_property("inert", True)
+    right = {(row, stitch) for row, stitch in purls(kept_chart(page)) if stitch <= 6}
+    assert right == {(5, 2), (9, 1)}
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+z")
+    assert purls(kept_chart(page)) == {(5, 2)}
+    page.keyboard.press("Control+z")
+    assert kept_chart(page) == CHART
 
 
 def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:

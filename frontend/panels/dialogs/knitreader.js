@@ -33,9 +33,14 @@ const isKnitting = (name, text) => /\.(k|ks|knitout)$/i.test(name) || isKnitout(
 export async function importRead({ studio, keeper }, name, content) {
   const text = typeof content === "string" ? content : null;
   const bytes = typeof content === "string" ? new TextEncoder().encode(content) : content;
+  const { designId } = studio;
   const suffixed = text && isKnitout(text) && !/\.(k|knitout)$/i.test(name) ? `${name}.k` : name;
   try {
     const imported = await api.run("import", { file: { name: suffixed, content: base64(bytes) } });
+    await studio.document.rested();
+    if (designId !== studio.designId) {
+      return refusal("Another design was opened before the chart was read.", "Import it again where it belongs.");
+    }
     const { rows, columns, chart, outline, regions, notes } = imported;
     const size = `${columns} stitches × ${rows} rows`;
     if (!isChartText(chart)) {

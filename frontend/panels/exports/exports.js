@@ -144,6 +144,7 @@ export function create(studio, { view }) {
   }
 
   async function run() {
+    const format = kind;
     make.disabled = true;
     outcome.replaceChildren(
       h("p", { class: "muted" }, kind.to === "knitout" ? "Checking it on a simulated machine …" : "One moment …"),
@@ -163,7 +164,8 @@ export function create(studio, { view }) {
     const file = await attempt(status, () => api.run("export", /** @type {ExportRequest} */ (body)));
     make.disabled = false;
     outcome.replaceChildren();
-    if (file) show(bare ? { ...file, notes: [...file.notes, "without a picture: none could be made"] } : file);
+    const notes = bare ? ["without a picture: none could be made"] : [];
+    if (file) show({ ...file, notes: [...file.notes, ...notes] }, format);
   }
 
   /** What the 3D view shows, or else what the service draws of it, base64; null where neither can be had. */
@@ -186,11 +188,11 @@ export function create(studio, { view }) {
     return null;
   }
 
-  /** @param {ExportResult} file */
-  function show(file) {
+  /** @param {ExportResult} file @param {ExportKind} format of which it is: another may be chosen by now */
+  function show(file, { to, text: isText }) {
     const bytes = Uint8Array.from(atob(file.content), (c) => c.charCodeAt(0));
     // Report, pattern and chart of one design have the same ending.
-    const sort = kind.to === "report" ? " report" : isPattern(kind.to) ? " pattern" : "";
+    const sort = to === "report" ? " report" : isPattern(to) ? " pattern" : "";
     const name = file.name.replace(/(\.\w+)$/, `${sort}$1`);
     const save = () => download(name, new Blob([bytes], { type: file.media_type }));
     const facts = [
@@ -203,14 +205,14 @@ export function create(studio, { view }) {
       ...file.notes,
     ];
     const text =
-      kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MAX_SHOWN)) : "";
+      isText || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MAX_SHOWN)) : "";
     outcome.replaceChildren(
       h(
         "ul",
         { class: "planner-notes plain-list stack gap-5 small" },
         ...facts.map((words) => h("li", {}, icon("check"), words)),
       ),
-      text && !kind.to.endsWith("svg")
+      text && !to.endsWith("svg")
         ? h("pre", { class: "exports-text rounded sunken", tabIndex: 0, "aria-label": "The file" }, text)
         : "",
       h("div", { class: "dialog-buttons" }, h("button", { class: "button", onclick: save }, "Save it again")),

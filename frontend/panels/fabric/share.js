@@ -17,11 +17,22 @@ const ENDINGS = { page: "html", recording: "viser", solid: "glb" };
 
 /** @param {Studio} studio @param {number} width of the picture in pixels; its proportions are the view's */
 export async function savePicture(studio, width) {
+  if (isOutdated()) {
+    return studio.tellProblem({
+      type: "view",
+      status: 0,
+      title: "The cloth is being made anew",
+      detail: "The view still shows it as it was before the change.",
+      remedy: "Save the picture when the new cloth is there.",
+    });
+  }
   await save(studio, "png", () => viewPicture(studio, width));
 }
 
-/** Whether the view shows a cloth, of which a picture can be made. */
-export const isKnitted = () => document.querySelector(".fabric[data-live]") !== null;
+const isOutdated = () => document.querySelector(".fabric-caption[data-stale]") !== null;
+
+/** Whether the view shows the cloth as it is now, of which a picture can be made. */
+export const isKnitted = () => document.querySelector(".fabric[data-live]") !== null && !isOutdated();
 
 /** A picture (PNG) as this browser sees the fabric. @param {Studio} studio @param {number} width */
 export async function viewPicture(studio, width) {
@@ -44,10 +55,11 @@ export async function saveFile(studio, request, kind, animated) {
 
 /** @param {Studio} studio @param {string} ending @param {() => Promise<Blob>} made */
 async function save(studio, ending, made) {
+  const name = `${fileName(studio)}.${ending}`;
   studio.tell("The file is being made …");
   try {
-    download(`${fileName(studio)}.${ending}`, await made());
-    studio.tell(`${fileName(studio)}.${ending} is saved.`);
+    download(name, await made());
+    studio.tell(`${name} is saved.`);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     if (error.offline) studio.online.value = false;

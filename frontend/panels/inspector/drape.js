@@ -124,12 +124,12 @@ export function drape(host, studio) {
     latest.run(
       async (signal) => {
         const { words, notes, converged = false, piece } = await compute(request, signal);
-        if (piece) show(label, piece, converged, notes[0]);
         answer.replaceChildren(
           ...words.map((text) => h("p", { class: "figures" }, text)),
           ...notes.map((text) => h("p", { class: "muted" }, text)),
         );
         belonging.show(basis);
+        if (piece && !belonging.stale.value) show(label, piece, converged, notes[0]);
       },
       ({ problem }) => answer.replaceChildren(problemText(problem)),
     );

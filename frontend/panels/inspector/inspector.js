@@ -12,6 +12,7 @@ import { paced } from "../../core/paced.js";
 import { sourceInWords } from "../../core/plainly.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
 import { scopeOf, sizeAtRest } from "../../services/scope.js";
+import { placeOf, predictionOf } from "../../services/belonging.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { curvePlot } from "../../plots/curve.js";
@@ -131,7 +132,7 @@ export function inspector(host, studio) {
 
   const numbers = h(
     "div",
-    { class: "inspector-numbers", "data-result": "numbers" },
+    { class: "inspector-numbers" },
     h(
       "div",
       { class: "inspector-head stack" },
@@ -159,24 +160,26 @@ export function inspector(host, studio) {
   );
   choose("rigidity");
 
-  /** @type {PredictResult | null | undefined} */
-  let shown;
+  const belonging = predictionOf(studio);
+  belonging.marks(numbers, "numbers");
+  /** The part of the chart that the title names: all that stands below it is of the same part. @type {string | null} */
+  let titled = null;
   const show = () => {
-    const { value, busy, problem: wrong, scope } = studio.prediction.value;
+    const { value, busy, problem: wrong, basis } = studio.prediction.value;
     host.classList.toggle("busy", busy);
-    numbers.toggleAttribute("data-stale", busy && value !== null);
-    if (busy && shown === value) return; // asked again: the old numbers stay, greyed, until the answer comes
-    shown = value;
+    if (busy && titled !== null) return; // the old numbers stay, with their title, until the answer comes
+    if (value) belonging.show(basis);
+    else belonging.clear();
+    titled = placeOf(studio);
+    countSoon();
     const part = scopeOf(studio);
     title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, part.size));
     title.title = part.note || (part.shaped && value ? value.notes[0] : "");
     // While the service is unreachable the banner says so.
     problem.hidden = !wrong || wrong.type === "offline";
     if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
-    // Numbers of another scope would be mistaken for this one's.
-    const ofScope = scope === part.kind ? value : null;
-    fill(table, ofScope);
-    feel(ofScope, part);
+    fill(table, value);
+    feel(value, part);
     source.hidden = !value;
     gauge.show(value);
     if (value) {
@@ -225,15 +228,15 @@ export function inspector(host, studio) {
         : "";
   };
   handPull.listen(() => {
-    const { value, scope } = studio.prediction.value;
-    const part = scopeOf(studio);
-    feel(scope === part.kind ? value : null, part);
+    const { value, busy } = studio.prediction.value;
+    if (!busy) feel(value, scopeOf(studio));
   });
   const name = () => {
     const { value } = studio.prediction.value;
     provenance.textContent = `How sure? ${sourceInWords(value?.provenance ?? "")}${studio.relaxing.value ? ", relaxing …" : ""}`;
   };
   const count = () => {
+    if (titled !== placeOf(studio)) return; // the numbers of that part come with its title
     const { document: chart } = studio;
     const { grid, mask } = scopeOf(studio).counted;
     const counted = countSegments(grid, mask);
@@ -263,11 +266,6 @@ export function inspector(host, studio) {
   const countSoon = paced(count, COUNT_MS);
   studio.prediction.watch(show);
   studio.relaxing.listen(name);
-  studio.selection.listen(() => {
-    shown = undefined;
-    show();
-    countSoon();
-  });
   const offer = () => {
     const { regions } = studio.document;
     const { region } = studio.seeing;
@@ -280,12 +278,7 @@ export function inspector(host, studio) {
     scopes.value = region.value ?? "";
   };
   studio.document.onSettle(offer);
-  studio.seeing.region.listen(() => {
-    shown = undefined;
-    offer();
-    show();
-    countSoon();
-  });
+  studio.seeing.region.listen(offer);
   offer();
   studio.document.onChange(countSoon);
   count();

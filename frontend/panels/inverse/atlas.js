@@ -9,6 +9,7 @@
 
 import { sourceInWords } from "../../core/plainly.js";
 import { figure, percent, range } from "../../core/format.js";
+import { Belonging } from "../../services/belonging.js";
 import { Ink } from "../../design/ink.js";
 import { motifGrid } from "../../grid/grid.js";
 import { h, remark } from "../../elements/dom.js";
@@ -48,6 +49,10 @@ export function atlasTab(studio, context) {
       void load();
     },
   );
+  const repeats = h("div", { class: "column shrinks-y grows gap-8" }, frame, detail);
+  const belonging = new Belonging(studio, () => ({ yarn: studio.materialId.value, wish: extent }));
+  belonging.marks(repeats, "atlas");
+  belonging.bars(repeats);
   /** @type {Point | null} */ let chosen = null;
 
   /** @param {Point | null} point */
@@ -157,6 +162,8 @@ export function atlasTab(studio, context) {
   };
 
   const load = async () => {
+    const { basis } = belonging;
+    belonging.check();
     const material = studio.materialId.value;
     const id = `${material} ${extent}`;
     if (!loaded.has(id)) {
@@ -171,6 +178,8 @@ export function atlasTab(studio, context) {
     frame.dataset.count = String(table?.repeats.length ?? 0);
     plot.show(table);
     describe();
+    if (table) belonging.show(basis);
+    else belonging.clear();
   };
   const own = () => {
     const { value } = studio.prediction.value;
@@ -185,8 +194,7 @@ export function atlasTab(studio, context) {
     { class: "inverse-tab column shrinks-y gap-8" },
     h("div", { class: "inverse-bar" }, extents.element, count, h("span", { class: "spacer" })),
     run.element,
-    frame,
-    detail,
+    repeats,
   );
   return {
     element,

@@ -40,15 +40,17 @@ const NEAR = 0.1;
 /** @param {Studio} studio */
 export function fromStiffness(studio) {
   const { document: chart, selection } = studio;
-  const run = new Run();
+  const run = new Run(studio);
   const list = h("ol", { class: "plain-list stack gap-6", id: "parts" });
   const answer = h("div", { class: "inverse-answer", id: "fill-answer" });
   const belonging = new Belonging(studio, () => ({
+    design: studio.designId,
     chart: [chart.grid.text, chart.outlineText],
     yarn: studio.materialId.value,
-    wish: parts.map(({ name, course, wale }) => [name, course, wale]),
+    wish: parts.map(({ name, cells, course, wale }) => [name, cells, course, wale]),
   }));
   belonging.marks(answer, "fill");
+  belonging.bars(answer);
   /** @type {Part[]} */
   let parts = [];
   /** Size of the chart that the parts were drawn on. */
@@ -66,6 +68,10 @@ export function fromStiffness(studio) {
     size = sizeNow();
     parts.push({ name, cells, course: null, wale: null, now: null, wish: null });
     show();
+  };
+  const clear = () => {
+    answer.replaceChildren();
+    belonging.clear();
   };
   const addSelection = () => {
     const { grid } = chart;
@@ -97,6 +103,7 @@ export function fromStiffness(studio) {
     if (designId !== studio.designId) {
       designId = studio.designId;
       parts = [];
+      clear();
       show();
     }
     if (parts.length && element.checkVisibility()) await Promise.all(parts.map(measure));
@@ -200,6 +207,7 @@ export function fromStiffness(studio) {
     );
   };
   const show = () => {
+    belonging.check();
     list.replaceChildren(
       ...(parts.length
         ? [h("li", { class: "muted inverse-hint" }, "Stiffness in N/mm, now → target"), ...parts.map(item)]
@@ -219,8 +227,14 @@ export function fromStiffness(studio) {
   const large = h("input", { type: "checkbox" });
   const scattered = h("input", { type: "checkbox" });
 
+  const sayResized = () =>
+    run.say({
+      title: "The chart has another size now",
+      detail: "The parts were drawn on the chart as it was.",
+      remedy: "Add the parts again.",
+    });
+
   const fill = async () => {
-    const { rows, columns } = chart.grid;
     if (parts.some(({ wish }) => wish)) await measureAll();
     const waiting = parts.find(({ wish }) => wish);
     if (waiting) {
@@ -231,19 +245,20 @@ export function fromStiffness(studio) {
       });
       return;
     }
-    const targeted = parts.filter(({ course, wale }) => course !== null || wale !== null);
-    if (!targeted.length || size !== sizeNow()) {
+    // As they are now: the fields may be changed before the result is there.
+    const targeted = parts.filter(({ course, wale }) => course !== null || wale !== null).map((part) => ({ ...part }));
+    if (!targeted.length) {
       run.say({
-        title: targeted.length ? "The chart has another size now" : "There is no target",
-        detail: targeted.length
-          ? "The parts were drawn on the chart as it was."
-          : "A part needs a modulus along rows or columns.",
-        remedy: targeted.length ? "Add the parts again." : "Add a part, and give it a number.",
+        title: "There is no target",
+        detail: "A part needs a modulus along rows or columns.",
+        remedy: "Add a part, and give it a number.",
       });
       return;
     }
-    answer.replaceChildren();
-    belonging.clear();
+    if (size !== sizeNow()) return sayResized();
+    clear();
+    const { rows, columns, purl } = chart.grid;
+    const start = { purl: purl.slice(), outline: chart.outlineText, basis: belonging.basis };
     /** @type {FillResult | null} */
     const fillResult = await run.run(
       "fill",
@@ -252,7 +267,7 @@ export function fromStiffness(studio) {
         rows,
         columns,
         chart: chart.grid.text,
-        outline: chart.outlineText,
+        outline: start.outline,
         targets: targeted.map(({ name, cells, course, wale }) => ({
           name,
           runs: runsOf(cells, columns),
@@ -266,29 +281,39 @@ export function fromStiffness(studio) {
       },
       "Filling",
     );
-    if (fillResult) preview(fillResult, targeted);
+    if (!fillResult) return;
+    await chart.rested();
+    if (start.basis.design !== belonging.basis.design) return;
+    if (size === sizeNow()) preview(fillResult, targeted, start);
+    else sayResized();
   };
 
   /**
-   * The result goes onto the chart at once, so that chart, 3D and numbers show it.
+   * The result goes onto the chart at once, so that chart, 3D and numbers show it. Stitches that were painted
+   * during the run stay; the result then counts as one of another chart.
    *
    * @param {FillResult} fillResult
    * @param {Part[]} targeted
+   * @param {{purl: Uint8Array, outline: string | null, basis: Record<string, string>}} start the chart that was
+   *   filled, and what the result belongs to
    */
-  const preview = (fillResult, targeted) => {
-    if (size !== sizeNow()) return;
+  const preview = (fillResult, targeted, { purl: before, outline, basis }) => {
+    const { rows, columns } = chart.grid;
     const filled = Grid.fromText(fillResult.chart);
-    const cells = [...new Set(targeted.flatMap((part) => part.cells))];
-    const before = cells.map((i) => chart.grid.purl[i]);
-    /** @param {(at: number, i: number) => number} label @param {string} words */
-    const put = (label, words) =>
+    const differing = [...new Set(targeted.flatMap((part) => part.cells))].filter((i) => filled.purl[i] !== before[i]);
+    const cells = differing.filter((i) => chart.grid.purl[i] === before[i]);
+    const painted = differing.length - cells.length;
+    const whole = new Grid(rows, columns, before.slice());
+    for (const i of differing) whole.purl[i] = filled.purl[i];
+    /** @param {Uint8Array} purl @param {string} words */
+    const put = (purl, words) =>
       chart.set(
-        cells.map((i, at) => [i, label(at, i)]),
+        cells.map((i) => [i, purl[i]]),
         words,
       );
-    put((_, i) => filled.purl[i], "Fill from a target");
+    put(filled.purl, "Fill from a target");
     const done = (/** @type {string} */ words) => {
-      answer.replaceChildren();
+      clear();
       studio.tell(words);
     };
     const keep = textButton("check", "Use it", () => done(`The chart is filled. ${UNDO}`), {
@@ -299,19 +324,23 @@ export function fromStiffness(studio) {
       "undo",
       "Take it back",
       () => {
-        if (size === sizeNow()) put((at) => before[at], "Take the fill back");
+        put(before, "Take the fill back");
         done("The chart is as it was.");
       },
       { id: "fill-back" },
     );
     const other = textButton("wand", "Another try", () => {
       seed += 1;
-      if (size === sizeNow()) put((at) => before[at], "Take the fill back");
+      put(before, "Take the fill back");
       void fill();
     });
     const changed = fillResult.parts.some(({ repainted }) => repainted);
     answer.replaceChildren(
-      verdict(fillResult.off_share <= 0.05, inWords(fillResult, targeted)),
+      verdict(
+        fillResult.parts.every((part, i) => !missed(part, targeted[i]).length),
+        inWords(fillResult),
+      ),
+      painted ? h("p", {}, `Painted meanwhile, and left so: ${painted} sts.`) : "",
       partList(fillResult, targeted),
       h("div", { class: "inverse-buttons" }, changed && keep, changed && back, other),
       h(
@@ -319,10 +348,10 @@ export function fromStiffness(studio) {
         {},
         h("summary", {}, "Which patterns, and how near they come"),
         fillResult.patches.length > 0 && patchList(fillResult, targeted),
-        ...fillResult.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
+        ...fillResult.messages.map((message) => h("p", { class: "muted" }, inKnitting(message))),
       ),
     );
-    belonging.show(belonging.basis);
+    belonging.show({ ...basis, chart: JSON.stringify([whole.text, outline]) });
     (changed ? keep : other).focus();
   };
 
@@ -356,26 +385,35 @@ export function fromStiffness(studio) {
   return { element, opened: measureAll };
 }
 
-/** Each part by its name. @param {FillResult} fillResult @param {Part[]} targeted */
-function inWords({ off_share: off, parts }, targeted) {
-  if (off <= 0.05) return `On the chart now, as wanted: ${percent(1 - off)} of it is within 10 %.`;
-  if (parts.every(({ repainted }) => !repainted))
-    return "The chart stays as it is: no pattern in this yarn comes nearer to what you asked for.";
-  return `On the chart now, as near as this yarn comes. ${parts.map((part, i) => partInWords(part, targeted[i])).join(" ")}`;
+/** What became of the chart. @param {FillResult} fillResult */
+function inWords({ parts }) {
+  const left = parts.filter(({ repainted }) => !repainted).length;
+  if (left === parts.length) return "The chart stays as it is.";
+  return left ? "On the chart now; not all parts were changed." : "On the chart now.";
 }
 
-/** @param {FillResult["parts"][number]} part @param {Part} wish */
-function partInWords(part, wish) {
-  const off = AXES.flatMap(({ axis, label }) => {
+/** How a part misses its target. @param {FillResult["parts"][number]} part @param {Part} wish @returns {string[]} */
+const missed = (part, wish) =>
+  AXES.flatMap(({ axis, label }) => {
     const [now, target] = [part[`${axis}_n_per_mm`], wish[axis]];
     if (now === null || target === null) return [];
     const words = against(now, target);
     return words === "as wanted" ? [] : [`${words} along ${label}`];
   });
-  const how = off.length ? off.join(", ") : "as wanted";
-  return part.repainted
-    ? `${part.name}: ${how}.`
-    : `${part.name}: nothing comes nearer, so it was left as it was (${how}).`;
+
+/** @param {FillResult["parts"][number]} part @param {Part} wish */
+function partInWords(part, wish) {
+  const off = missed(part, wish).join(" and ");
+  if (part.repainted) return off ? `nearer, but ${off}.` : "as wanted.";
+  if (!off) return "left as it was, which is as wanted.";
+  const wished = AXES.filter(({ axis }) => wish[axis] !== null);
+  const { nearest } = part;
+  const moduli = wished.map(({ axis, label }) => `${figure(nearest[`${axis}_n_per_mm`])} N/mm along ${label}`);
+  return [
+    `left as it was, ${off}.`,
+    `Nothing tried comes 10 % nearer${wished.length > 1 ? " without going away in the other direction" : ""}.`,
+    `Nearest in a large cloth: ${nameOf(nearest.repeat)}, ${moduli.join(" and ")}.`,
+  ].join(" ");
 }
 
 /** What each part has now, beside what it had and what was wanted. @param {FillResult} fillResult @param {Part[]} targeted */
@@ -388,16 +426,12 @@ function partList({ parts }, targeted) {
         "li",
         {},
         h("strong", {}, part.name),
-        !part.repainted && h("span", { class: "muted" }, " left as it was"),
+        `: ${partInWords(part, targeted[i])}`,
         ...AXES.map(({ axis, label }) => {
           const [before, now, target] = [part[`${axis}_before_n_per_mm`], part[`${axis}_n_per_mm`], targeted[i][axis]];
           const change = part.repainted ? `${figure(before)} → ${figure(now)}` : figure(now);
-          return h(
-            "div",
-            { class: "figures" },
-            `${label} ${change} `,
-            target !== null && now !== null && h("span", { class: "muted" }, against(now, target)),
-          );
+          const wished = target === null ? "" : h("span", { class: "muted" }, `, target ${figure(target)}`);
+          return h("div", { class: "figures" }, `${label} ${change}`, wished);
         }),
       ),
     ),

@@ -163,6 +163,7 @@ export function findTab(studio, context) {
     return { yarn: across.checked || materials, wish };
   });
   belonging.marks(answer, "find");
+  belonging.bars(answer);
 
   const search = async () => {
     const wish = request();

@@ -27,16 +27,18 @@ const PLACES = [0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9];
 
 /** @param {Studio} studio */
 export function fromOutline(studio) {
-  const run = new Run();
+  const run = new Run(studio);
   const answer = h("div", { class: "inverse-answer", id: "outline-answer" });
   /** @type {Direction} */ let direction = "wale";
   const widths = [0.98, 0.95, 0.92, 0.91, 0.92, 0.95, 0.98];
   const belonging = new Belonging(studio, () => ({
+    design: studio.designId,
     chart: [studio.document.grid.rows, studio.document.grid.columns], // its stitches are replaced
     yarn: studio.materialId.value,
     wish: [direction, widths, strain.value, band.value],
   }));
   belonging.marks(answer, "outline");
+  belonging.bars(answer);
   /** @type {number[] | null} */ let reached = null;
   const strain = field("Stretch in percent", 30, { min: "1", max: "200", step: "any", id: "outline-strain" });
   const band = field("Narrowest band, lines", 4, { min: "1", max: "100", step: "1" });
