@@ -35,7 +35,7 @@ class Service(serving.Service):
         super().__init__(folder, **{"workers": "1"} | settings)
 
     def unexpected(self) -> str:
-        """What its log says of unexpected errors, of each its first and last lines."""
+        """The first and last lines of each unexpected error in its log."""
         log = self.log.read_text(encoding="utf-8")
         errors = re.findall(r"^.*unexpected error.*(?:\n(?!\d{4}-|\{).*)*", log, re.MULTILINE)
         return "\n\n".join(f"{error[:500]}\n…\n{error[-2_000:]}" for error in errors)

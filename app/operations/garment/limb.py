@@ -205,11 +205,12 @@ def _of_tube(
 ) -> LimbResult:
     repeat = shaped.continued().repeat_cut()
     patched = max(repeat.rows, repeat.columns) > SIDE
-    evenly = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round()
-    listed = np.union1d(evenly.astype(int), np.argmax([p.highest_mmhg for p in tube.places]))
+    last = len(tube.places) - 1
+    evenly = {round(k * last / (PLACES - 1)) for k in range(PLACES)}
+    tightest = max(range(len(tube.places)), key=lambda k: tube.places[k].highest_mmhg)
     return LimbResult.of(
         tube,
-        **_fit([tube.places[k] for k in listed], tube.places, tube.length_mm),
+        **_fit([tube.places[k] for k in sorted(evenly | {tightest})], tube.places, tube.length_mm),
         interval_source=source,
         id=OPERATION.key(request),
         notes=[

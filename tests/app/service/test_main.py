@@ -161,7 +161,7 @@ def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
 def test_the_clock_of_a_host_ends_nothing_early(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What is compared with the database's clock was written by it."""
+    """The database's clock writes every time that is compared with it."""
     store, tokens, sessions = JobStore(database, "main"), Tokens(database), Sessions(database)
     retry = Retry.of("ada", "a key", "a request")
     monkeypatch.setattr(tables, "time", SimpleNamespace(time=lambda: 0.0))

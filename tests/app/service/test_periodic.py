@@ -1,4 +1,4 @@
-"""What failed is done again in its turn, whatever the failure was."""
+"""A chore that failed is done again in its turn, whatever the failure was."""
 
 import asyncio
 import logging

@@ -150,7 +150,7 @@ def _agrees_with_atlas(atlas: Atlas, chart: StitchChart, answer: Prediction) -> 
 
 def _agrees_with_report(labels: set[str], answer: Prediction) -> None:
     """Figures are printed with three digits."""
-    assert any(answer.provenance in label for label in labels)
+    assert any(report.SOURCES[answer.provenance] in label for label in labels)
     for direction in Direction:
         along = answer.along(direction)
         for value, interval in (

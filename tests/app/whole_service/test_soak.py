@@ -36,7 +36,7 @@ MORE = 1.02
 """Memory at the end over that before, for it to be flat."""
 CHART = {"fabric": "garter", "columns": 20, "rows": 20}
 MORE_OF_WORKERS = 1.25
-"""The same of workers, whose memory comes and goes with their jobs."""
+"""Memory of workers at the end over that before; it comes and goes with their jobs."""
 Work = Callable[[httpx.Client], object]
 
 

@@ -47,7 +47,7 @@ def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
     flat_studio.fill("#stretch-amount", "390")
     flat_studio.click("#stretch-run")
     note = flat_studio.locator("#stretch-note")
-    expect(note).to_contain_text("stitches lock before that")
+    expect(note).to_contain_text("stitches run out of stretch before that")
     flat_studio.click("#stretch-most")
     expect(flat_studio.locator("#stretch-amount")).not_to_have_value("390")
     assert kept_chart(flat_studio) == CHART

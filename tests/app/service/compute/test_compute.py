@@ -151,11 +151,11 @@ class _Slow:
     share = cpu_s = None
 
     def __init__(self) -> None:
-        self.asked, self.go_on = asyncio.Event(), asyncio.Event()
+        self.submitted, self.go_on = asyncio.Event(), asyncio.Event()
         self.replaced = 0
 
     async def submit(self, job: object) -> asyncio.Future[int]:
-        self.asked.set()
+        self.submitted.set()
         await self.go_on.wait()
         return asyncio.get_running_loop().create_future()
 
@@ -167,7 +167,7 @@ async def test_a_place_is_free_once_it_has_dropped_a_job_cancelled_at_its_beginn
     place = _Slow()
     compute = Compute([place], timeout_s=PATIENCE_S)  # type: ignore[list-item]
     running = asyncio.create_task(compute.run(never, print))
-    await place.asked.wait()
+    await place.submitted.wait()
     running.cancel()
     await asyncio.sleep(0)
     assert (compute.queue.taken, place.replaced) == (1, 0)
