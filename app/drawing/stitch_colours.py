@@ -110,7 +110,7 @@ def stitch_colours(
     if colour is Colour.PRESSURE:
         if mmhg is None:
             raise InputError("colour", "needs a tube on a limb.", "Compute one and name its id.")
-        most = float(mmhg[np.isfinite(mmhg)].max(initial=1.0))
+        most = float(mmhg[np.isfinite(mmhg)].max(initial=0.0)) or 1.0
         return sequential(np.nan_to_num(mmhg, posinf=most), 0.0, most)
     return _kinds(colour, stitch_table(material), palette)[surroundings(chart)]
 
