@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
+import re
 import secrets
 import shutil
 import signal
@@ -21,7 +22,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +39,7 @@ DATABASE = "knitcore"
 
 def missing() -> list[str]:
     """Packages of Debian that the composition needs and this machine lacks."""
-    needed = {"nginx-light": _nginx(), "postgresql": _postgres_programs()}
+    needed = {"nginx-light": nginx(), "postgresql": postgres_programs()}
     return [package for package, program in needed.items() if program is None]
 
 
@@ -70,7 +71,7 @@ class Composition:
     def sql(self, statement: str, database: str = DATABASE) -> None:
         """Run a statement as whoever runs the database."""
         as_owner = ["-h", str(self.folder / "socket"), "-p", self._port, "-U", "knitcore"]
-        _postgres("psql", "-q", "-v", "ON_ERROR_STOP=1", *as_owner, "-d", database, "-c", statement)
+        postgres("psql", "-q", "-v", "ON_ERROR_STOP=1", *as_owner, "-d", database, "-c", statement)
 
     def database_url(self, database: str) -> str:
         """The URL of another database on the same server, without its password."""
@@ -99,10 +100,10 @@ def composition(folder: Path, port: int = 0) -> Iterator[Composition]:
         words = {"8786": scheduler.rpartition(":")[2], "tcp://scheduler:8786": f"tcp://{scheduler}"}
         data = folder / "data"
         data.mkdir(exist_ok=True, mode=0o700)
-        stack.enter_context(_dask("scheduler", folder, words, ["--host", "127.0.0.1"]))
+        stack.enter_context(dask("scheduler", folder, words, "--host=127.0.0.1"))
         _wait(lambda: listens(int(words["8786"])))
         worker = words | {"/tmp": str(folder)}
-        stack.enter_context(_dask("worker", folder, worker, [], KNITCORE_DATA_DIR=str(data)))
+        stack.enter_context(dask("worker", folder, worker, KNITCORE_DATA_DIR=str(data)))
         settings = {
             name.removeprefix("KNITCORE_").lower(): value
             for name, value in COMPOSE["services"]["app"]["environment"].items()
@@ -119,25 +120,39 @@ def composition(folder: Path, port: int = 0) -> Iterator[Composition]:
         }
         del settings["port"]
         service = stack.enter_context(Service(folder, **settings))
-        stack.enter_context(_proxy(folder, service, port))
+        stack.enter_context(proxied(folder, service, port))
         yield Composition(folder, f"http://127.0.0.1:{port}", service)
 
 
 @contextlib.contextmanager
-def _proxy(folder: Path, service: Service, port: int) -> Iterator[None]:
-    """Run nginx in front of a service."""
+def proxied(
+    folder: Path, service: Service, port: int, changes: Mapping[str, str] | None = None
+) -> Iterator[None]:
+    """Run nginx in front of a service.
+
+    Parameters
+    ----------
+    folder : of its configuration and its log.
+    changes : of the shipped configuration, patterns and what replaces them.
+
+    Raises
+    ------
+    RuntimeError
+        If the configuration has nothing like one of them.
+    """
     text = (ROOT / "deploy" / "nginx.conf").read_text(encoding="utf-8")
-    for shipped, here in {
+    here = {
         "server app:8737;": f"server {service.url.removeprefix('http://')};",
         "listen 8737;": f"listen 127.0.0.1:{port};",
         "/tmp/nginx": f"{folder}/nginx",
-    }.items():
-        if shipped not in text:
+    }
+    for shipped, changed in (here | dict(changes or {})).items():
+        text, count = re.subn(shipped, changed, text)
+        if not count:
             raise RuntimeError(f"deploy/nginx.conf has no {shipped!r}")
-        text = text.replace(shipped, here)
     file = folder / "nginx.conf"
     file.write_text(text, encoding="utf-8")
-    command = [str(_nginx()), "-p", str(folder), "-e", "stderr", "-c", str(file)]
+    command = [str(nginx()), "-p", str(folder), "-e", "stderr", "-c", str(file)]
     if os.geteuid() == 0:  # its workers could not write into a folder of root
         command += ["-g", "user root;"]
     with _running(command, folder / "proxy.log"):
@@ -169,25 +184,28 @@ def _database(folder: Path, password: Path) -> Iterator[str]:
         given.write_text(password.read_text(encoding="utf-8"), encoding="utf-8")
         given.chmod(0o644)
         access = "--auth-local=trust", "--auth-host=scram-sha-256", f"--pwfile={given}"
-        _postgres("initdb", "-D", str(place), "-U", "knitcore", *access)
+        postgres("initdb", "-D", str(place), "-U", "knitcore", *access)
         given.unlink()
     where = f"-p {port} -c listen_addresses=127.0.0.1 -c unix_socket_directories={sockets}"
     log = str(place / "log")
-    _postgres("pg_ctl", "-w", "-D", str(place), "-o", where, "-l", log, "start")
+    postgres("pg_ctl", "-w", "-D", str(place), "-o", where, "-l", log, "start")
     try:
         to = "-h", str(sockets), "-p", port, "-U", "knitcore"
         with contextlib.suppress(subprocess.CalledProcessError):  # it is there already
-            _postgres("createdb", *to, DATABASE)
+            postgres("createdb", *to, DATABASE)
         yield port
     finally:
-        _postgres("pg_ctl", "-w", "-D", str(place), "-m", "fast", "stop")
+        postgres("pg_ctl", "-w", "-D", str(place), "-m", "fast", "stop")
 
 
 @contextlib.contextmanager
-def _dask(
-    name: str, folder: Path, changed: dict[str, str], options: list[str], **more: str
+def dask(
+    name: str, folder: Path, changed: dict[str, str], *options: str, **more: str
 ) -> Iterator[None]:
-    """Run a Dask program of the compose file, with some of its words changed."""
+    """Run a Dask program of the compose file, with some of its words changed and options added.
+
+    Its environment has ``more``, its log is in the folder.
+    """
     described = COMPOSE["services"][name]
     program, *words = (changed.get(word, word) for word in described["command"])
     environment = os.environ | described["environment"] | {"PYTHONPATH": str(ROOT)} | more
@@ -219,22 +237,23 @@ def _secrets(folder: Path) -> Path:
     return folder
 
 
-def _postgres(program: str, *arguments: str) -> None:
+def postgres(program: str, *arguments: str) -> None:
     """Run a program of PostgreSQL, which refuses to run as root."""
     as_user = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
-    command = [*as_user, str((_postgres_programs() or Path()) / program), *arguments]
+    command = [*as_user, str((postgres_programs() or Path()) / program), *arguments]
     quiet = subprocess.DEVNULL
     subprocess.run(command, check=True, stdout=quiet, stderr=quiet, cwd="/")
 
 
-def _postgres_programs() -> Path | None:
-    """Folder with the programs of PostgreSQL."""
+def postgres_programs() -> Path | None:
+    """Folder with the programs of PostgreSQL, or None."""
     packaged = sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)
     program = shutil.which("pg_ctl", path=PATHS)
     return packaged[0] if packaged else Path(program).parent if program else None
 
 
-def _nginx() -> str | None:
+def nginx() -> str | None:
+    """The program, or None."""
     return shutil.which("nginx", path=PATHS)
 
 

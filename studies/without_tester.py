@@ -11,8 +11,7 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Fabric
-from knitcore.materials.estimate.joint_model import JointModel, LogStrain
-from knitcore.materials.estimate.mixed_model import covering
+from knitcore.materials.estimate.mixed_model import LogStrain, MixedModel, covering
 from knitcore.materials.estimate.without_tester import HANGING_SCATTER, library_values
 from knitcore.materials.estimate.yarn_statistics import FABRICS, LOAD_N_PER_MM
 from knitcore.materials.law_uncertainty import COVERAGE
@@ -75,8 +74,8 @@ class _Draws:
 def _measured(known: Array, truth: Array, seed: int) -> _Draws:
     """A yarn that is hung, seen with what is known of others."""
     random = np.random.default_rng(seed)
-    model = JointModel.fit(known)
-    true = JointModel(truth, np.zeros((truth.size, truth.size)))
+    model = MixedModel.fit(known)
+    true = MixedModel(truth, np.zeros((truth.size, truth.size)))
     before = _extensions(model)[0]
     shifts, means, deviations = [], [], []
     for _ in range(DRAWS):
@@ -99,7 +98,7 @@ def _measured(known: Array, truth: Array, seed: int) -> _Draws:
     )
 
 
-def _extensions(model: JointModel) -> tuple[Array, Array]:
+def _extensions(model: MixedModel) -> tuple[Array, Array]:
     """Logarithms of the extensions at 0.1 N/mm, and their deviations, (4, 2)."""
     pairs = [[model.log_strain(f, d, LOAD_N_PER_MM) for d in range(2)] for f in range(4)]
     return np.moveaxis(np.array(pairs), -1, 0)[0], np.moveaxis(np.array(pairs), -1, 0)[1]

@@ -68,9 +68,7 @@ def _painted(client: httpx.Client, design: dict[str, Any]) -> str:
     return str(client.get(f"/api/v1/designs/{design['id']}").json()["document"]["chart"])
 
 
-def test_sign_in_paint_stretch_back_up_restore_upgrade(
-    running: Composition, tmp_path: Path
-) -> None:
+def test_sign_in_paint_stretch_back_up_restore(running: Composition, tmp_path: Path) -> None:
     assert httpx.get(f"{running.url}/readyz", timeout=PATIENCE_S).status_code == 200
     assert (
         httpx.post(f"{running.url}/api/v1/predict", json=PULL, timeout=PATIENCE_S).status_code
@@ -95,14 +93,6 @@ def test_sign_in_paint_stretch_back_up_restore_upgrade(
     running.sql("CREATE DATABASE again")
     again = {"database_url": running.database_url("again")}
     running.knitcore("restore", backup, **again)
-    for statement in (
-        "DROP TABLE own_materials",  # the database as the program before this one left it
-        "UPDATE alembic_version SET version_num = '0008'",
-    ):
-        running.sql(statement, "again")
-    folder = running.folder / "data" / "materials"
-    folder.mkdir()
-    (folder / "kept.json").write_text(json.dumps(yarn | {"identifier": "older"}))
 
     assert running.service.stop() == 0
     running.service.environment["KNITCORE_DATABASE_URL"] = again["database_url"]
@@ -112,10 +102,7 @@ def test_sign_in_paint_stretch_back_up_restore_upgrade(
     with _signed_in(running, token) as ada:
         kept = ada.get(f"/api/v1/designs/{design['id']}").json()
         assert kept["document"]["chart"] == chart
-        names = [each["id"] for each in ada.get("/api/v1/materials").json()["materials"]]
-        (older,) = [name for name in names if name.startswith("own:")]
-        assert older.startswith("own:older.")
-        assert _stretched(ada, older)["converged"]
+        assert _stretched(ada, own)["converged"]
     log = running.service.log.read_text()
     assert "Traceback" not in log
     assert token not in log

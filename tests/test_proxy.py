@@ -2,15 +2,10 @@
 
 import asyncio
 import contextlib
-import os
-import re
-import shutil
 import socket
-import subprocess
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import httpx2 as httpx
 import pytest
@@ -18,54 +13,30 @@ import viser
 import websockets
 
 from app.service.settings import Settings
-from tests.app.running import Service, wait_until
+from scripts.composition import free_port, nginx, proxied
+from tests.app.running import Service
 
-NGINX = shutil.which("nginx", path="/usr/sbin:/usr/bin:/usr/local/sbin:/usr/local/bin")
-SHIPPED = Path(__file__).resolve().parent.parent / "deploy" / "nginx.conf"
 PATIENCE_S = 60.0
 MOST_BYTES: int = Settings.model_fields["max_body_bytes"].default
 CHART = {"chart": "KP/PK", "material": "acrylic"}
 
-pytestmark = pytest.mark.skipif(NGINX is None, reason="Debian's nginx-light is not installed")
+pytestmark = pytest.mark.skipif(nginx() is None, reason="Debian's nginx-light is not installed")
 
 
 @pytest.fixture(scope="module")
 def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of nginx in front of a service."""
     folder = tmp_path_factory.mktemp("proxy")
-    service = Service(folder, trusted_proxies='["127.0.0.1"]')
-    service.start().close()
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
-    upstream = service.url.removeprefix("http://")
-    text = SHIPPED.read_text()
-    for shipped, here in {
-        r"server app:8737;": f"server {upstream};",
-        r"listen 8737;": f"listen 127.0.0.1:{port} sndbuf=16k;",
+    port = free_port()
+    changes = {
+        r"(listen 127\S+);": r"\1 sndbuf=16k;",
         r"(client_\w+_timeout|send_timeout) \d+s;": r"\1 2s;",
-        r"/tmp/nginx": f"{folder}/nginx",  # noqa: S108 - what is replaced
-    }.items():
-        text, count = re.subn(shipped, here, text)
-        assert count, shipped
-    file = folder / "nginx.conf"
-    file.write_text(text)
-    assert NGINX is not None
-    command = [NGINX, "-p", str(folder), "-e", "stderr", "-c", str(file)]
-    if os.geteuid() == 0:  # its workers could not write into a folder of root
-        command += ["-g", "user root;"]
-    process = subprocess.Popen(command)
-    try:
-        wait_until(lambda: _listens(port))
+    }
+    with (
+        Service(folder, trusted_proxies='["127.0.0.1"]') as service,
+        proxied(folder, service, port, changes),
+    ):
         yield f"http://127.0.0.1:{port}"
-    finally:
-        process.terminate()
-        process.wait(PATIENCE_S)
-        service.stop()
-
-
-def _listens(port: int) -> bool:
-    with socket.socket() as client:
-        return client.connect_ex(("127.0.0.1", port)) == 0
 
 
 @pytest.fixture

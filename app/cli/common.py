@@ -52,12 +52,12 @@ def user_settings() -> Settings:
 def open_database(settings: Settings, *, migrated: bool = True) -> Iterator[Database]:
     """The database of the settings, brought up to date."""
     from ..service.store.database import Database
-    from ..service.store.schema import prepare
+    from ..service.store.schema import migrate
 
     settings.make_folder()
     with contextlib.closing(Database(settings.store_url)) as database:
         if migrated:
-            prepare(database, settings.folder)
+            migrate(database)
         yield database
 
 
@@ -78,11 +78,10 @@ class UserMaterials:
     def _opened(self) -> Iterator[OwnMaterials]:
         from ..service.results.own_materials import GivenMaterials
         from ..service.store.database import backend_of
-        from ..service.store.material_store import FOLDER, MaterialStore
+        from ..service.store.material_store import MaterialStore
 
         settings = user_settings()
-        has_files = (settings.folder / FOLDER).is_dir()
-        if has_files or backend_of(settings.store_url).check_unopened():
+        if backend_of(settings.store_url).check_unopened():
             with open_database(settings) as database:
                 yield MaterialStore(database)
         else:  # no service has run here yet

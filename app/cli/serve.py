@@ -67,7 +67,7 @@ def _prepared(settings: Settings, address: str) -> Iterator[Database]:
     """Lock and migrate the data, and report failed checks; yields the database to serve."""
     from ..service.doctor import check_folder, examine
     from ..service.store.database import Database
-    from ..service.store.schema import prepare
+    from ..service.store.schema import migrate
 
     check_folder(settings.folder)
     settings.make_folder()
@@ -76,7 +76,7 @@ def _prepared(settings: Settings, address: str) -> Iterator[Database]:
         database.reserved(settings.process_name, address),
     ):
         database.check_pages()
-        prepare(database, settings.folder)
+        migrate(database)
         for check in examine(settings, database).failed:
             log.warning("%s: %s %s", check.name, check.problem, check.remedy)
         yield database

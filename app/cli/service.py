@@ -153,5 +153,5 @@ def restore(file: Path, as_json: bool) -> None:
 
     settings = user_settings()
     with open_database(settings, migrated=False) as database:
-        report = store.restore(database, file, settings.folder)
+        report = store.restore(database, file)
     emit(report, report.text, as_json=as_json)

@@ -38,7 +38,7 @@ from .problems import PROBLEM_RESPONSES
 from .settings import Settings
 from .store.database import Database
 from .store.material_store import MaterialStore
-from .store.schema import prepare
+from .store.schema import migrate
 from .web.errors import install_problem_handlers
 from .web.observing import Metrics, Observer, configure_logging
 from .web.page import serve_page
@@ -231,7 +231,7 @@ def _most_each(settings: Settings) -> int | None:
 def _open_database(settings: Settings) -> Database:
     settings.make_folder()
     database = Database(settings.store_url)
-    prepare(database, settings.folder)
+    migrate(database)
     return database
 
 

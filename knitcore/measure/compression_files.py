@@ -10,15 +10,15 @@ CSV: a header line with ``depth_mm, force_n`` and, where there are several tests
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.measure.table_reading import TableReading
 from knitcore.measure.tables import numbers, read_table, rows_by_label
-from knitcore.measure.tester_tables import read_specimens, table_heads
-from knitcore.measure.workbooks import MAX_BYTES, Cell, Worksheet, is_workbook, read_workbook
+from knitcore.measure.tester_tables import read_specimens
+from knitcore.measure.workbooks import MAX_BYTES, Worksheet, is_workbook, read_workbook
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ def read_compression(path: Path) -> list[CompressionTest]:
     if path.stat().st_size > MAX_BYTES:
         raise InputError(path.name, "is larger than 50 MB.", "Give the tests only.")
     if is_workbook(path):
-        return _of_workbook(path.name, read_workbook(path))
+        return _of_workbook(path)
     if path.suffix.lower() in (".xls", ".xlsx"):
         raise InputError(path.name, "is not a workbook.", "Give an XLS, XLSX or CSV file.")
     return _read_csv(path)
@@ -67,68 +67,10 @@ def _yarn(name: str) -> str:
 # -- workbooks -----------------------------------------------------------------------------------
 
 
-def _of_workbook(file_name: str, sheets: dict[str, Worksheet]) -> list[CompressionTest]:
-    diameters = _diameters(sheets)
-    tests = [
-        _of_sheet(file_name, name, sheet, diameters)
-        for name, sheet in sheets.items()
-        if "diameter" not in name.lower()
-    ]
-    if not tests:
-        raise InputError(file_name, "has no sheet with a test.", "Give one sheet per test.")
-    return tests
-
-
-def _of_sheet(
-    file_name: str, name: str, sheet: Worksheet, diameters: dict[tuple[str, int], float]
-) -> CompressionTest:
-    where = f"{file_name}, sheet {name!r}"
-    header = next(
-        (
-            row
-            for row, cells in enumerate(sheet[:10])
-            if any("force" in str(v).lower() for v in cells)
-        ),
-        None,
-    )
-    if header is None or header + 2 >= len(sheet):
-        problem = "has no column whose name contains 'force', or no readings below it."
-        remedy = "Give a row of names (force, strain), a row of units, then the readings."
-        raise InputError(where, problem, remedy)
-    names = [str(v).strip().lower() for v in sheet[header]]
-    units = [str(v).strip().lower() for v in sheet[header + 1]] + [""] * len(names)
-    force = next(i for i, name in enumerate(names) if "force" in name)
-    depth = next((i for i, n in enumerate(names) if "strain" in n or "depth" in n), None)
-    if depth is None:
-        raise InputError(where, "has no column for the depth.", "Name it 'Strain' or 'Depth'.")
-    if units[force] not in ("n", "mn"):
-        raise InputError(where, f"the force is in {units[force]!r}.", "Give it in mN or N.")
-    if units[depth] != "mm":
-        raise InputError(
-            where, f"the probe's depth is in {units[depth]!r}.", "Give it in mm, not in percent."
-        )
-    first = header + 2
-    forces, depths = (
-        numbers(f"{where}, column {names[column]!r}", cells, first + 1)
-        for column, cells in _readings(sheet[first:], force, depth).items()
-    )
-    number = re.search(r"(\d+)\s*$", name)
-    yarn = _yarn(name)
-    return CompressionTest(
-        name=name,
-        yarn=yarn,
-        depth_mm=depths,
-        force_n=forces * (1e-3 if units[force] == "mn" else 1.0),
-        diameter_mm=_diameter_of(diameters, yarn, int(number.group(1)) if number else 1),
-    )
-
-
-def _readings(rows: Worksheet, *columns: int) -> dict[int, list[Cell]]:
-    """The columns, without the rows at the end in which all of them are empty."""
-    readings = [[row[c] if c < len(row) else "" for c in columns] for row in rows]
-    while readings and not any(map(str, readings[-1])):
-        readings.pop()
-    return {c: [row[i] for row in readings] for i, c in enumerate(columns)}
+def _of_workbook(path: Path) -> list[CompressionTest]:
+    diameters = _diameters(read_workbook(path))
+    tests = _of_tester(path, TableReading(columns={"extension_mm": "Strain"}))
+    return [replace(test, diameter_mm=_diameter_of(diameters, test)) for test in tests]
 
 
 def _diameters(sheets: dict[str, Worksheet]) -> dict[tuple[str, int], float]:
@@ -148,8 +90,10 @@ def _diameters(sheets: dict[str, Worksheet]) -> dict[tuple[str, int], float]:
     return diameters
 
 
-def _diameter_of(diameters: dict[tuple[str, int], float], yarn: str, number: int) -> float | None:
-    matching = [v for (column, n), v in diameters.items() if yarn in column and n == number]
+def _diameter_of(diameters: dict[tuple[str, int], float], test: CompressionTest) -> float | None:
+    at_end = re.search(r"(\d+)\s*$", test.name)
+    number = int(at_end.group(1)) if at_end else 1
+    matching = [v for (column, n), v in diameters.items() if test.yarn in column and n == number]
     return matching[0] if len(matching) == 1 else None
 
 
@@ -160,7 +104,7 @@ def _read_csv(path: Path) -> list[CompressionTest]:
     with path.open("rb") as file:
         head = file.readline(10_000).decode("utf-8-sig", "replace").lower()
     if not {"depth_mm", "force_n"} <= {name.strip() for name in head.split(",")}:
-        return _of_tester(path)
+        return _of_tester(path, TableReading())
     table = read_table(path, "depth_mm, force_n")
     table.columns = [str(c).strip().lower() for c in table.columns]
     if table.empty:
@@ -186,18 +130,16 @@ def _read_csv(path: Path) -> list[CompressionTest]:
     return tests
 
 
-def _of_tester(path: Path) -> list[CompressionTest]:
+def _of_tester(path: Path, reading: TableReading) -> list[CompressionTest]:
     """Tests of a tester's table: its path is the depth."""
-    heads = table_heads(path, TableReading())
-    if heads is None or not {"extension_mm", "force_n"} <= {*heads.quantities}:
-        has = f" (it has {', '.join(filter(None, heads.titles[:8]))})" if heads else ""
-        problem = f"has no column of a depth beside one of a force{has}."
-        remedy = "Give a header line depth_mm,force_n and one row per reading."
-        raise InputError(path.name, problem, remedy)
-    specimens, _ = read_specimens(path, TableReading())
+    specimens, _ = read_specimens(path, reading)
+    is_alone = len(specimens) == 1 and not is_workbook(path)
     tests = []
     for specimen in specimens:
-        name = specimen.name.removeprefix(f"{path.name}, ") if len(specimens) > 1 else path.stem
-        depth, force = specimen.columns["extension_mm"], specimen.columns["force_n"]
+        name = path.stem if is_alone else specimen.name.removeprefix(f"{path.name}, ")
+        depth, force = specimen.columns.get("extension_mm"), specimen.columns["force_n"]
+        if depth is None:
+            remedy = "Give it in mm, not in percent."
+            raise InputError(specimen.name, "has no column of the probe's depth.", remedy)
         tests.append(CompressionTest(name, _yarn(name), depth, force, None))
     return tests

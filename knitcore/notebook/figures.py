@@ -8,7 +8,7 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.showing import INKS
 from knitcore.chart.fabric import Direction
-from knitcore.cloth.flat.strip_figures import plotly_objects, stress_strain_figure
+from knitcore.cloth.flat.strip_figures import plotly_objects
 from knitcore.cloth.flat.strip_results import StripTest
 from knitcore.cloth.space.curl import CurledPiece
 from knitcore.draw.tubes import tube_mesh
@@ -69,7 +69,11 @@ def _(of: Sweep) -> Any:
 
 @figure.register
 def _(of: StripTest) -> Any:
-    return stress_strain_figure(of)
+    drawn = _empty("Simulated strip test (geometry after ISO 20932-1), not a certified test")
+    name, start = f"simulated, {of.sheet.model.energy}", np.zeros(1)
+    strain, stress = (np.append(start, v) for v in (of.strain, of.stress_n_per_mm))
+    _add(drawn, name, strain, stress, INKS[0])
+    return drawn
 
 
 def _empty(title: str) -> Any:

@@ -74,17 +74,34 @@ def _zip_bomb() -> bytes:
     return stream.getvalue()
 
 
+def _connected(client: httpx.Client, head: str) -> socket.socket:
+    """A connection of its own that has sent the head of a request."""
+    connection = socket.create_connection((client.base_url.host, client.base_url.port or 80), 5)
+    login = f"Host: 127.0.0.1\r\nAuthorization: {client.headers['Authorization']}\r\n\r\n"
+    connection.sendall(f"{head}\r\n{login}".encode())
+    return connection
+
+
 def _slow_body(client: httpx.Client, turn: int) -> None:
-    """A body of a byte a second, on a connection of its own."""
+    """A body of a byte a second."""
     del turn
-    address = client.base_url.host, client.base_url.port or 80
-    head = "POST /api/v1/predict HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 1000\r\n"
-    head += f"Authorization: {client.headers['Authorization']}\r\n\r\n"
-    with contextlib.suppress(OSError), socket.create_connection(address, 5) as connection:
-        connection.sendall(head.encode())
+    head = "POST /api/v1/predict HTTP/1.1\r\nContent-Length: 1000"
+    with contextlib.suppress(OSError), _connected(client, head) as connection:
         for _ in range(3):
             connection.sendall(b"{")
             time.sleep(1)
+
+
+def _unread(client: httpx.Client, turn: int) -> None:
+    """Connections that ask for a design of 2 MB and read nothing of it."""
+    del turn
+    body = {"name": "x", "material": "acrylic", "chart": BIG_CHART}
+    design = client.post("/api/v1/designs", json=body).json().get("id")
+    with contextlib.suppress(OSError), contextlib.ExitStack() as open_ones:
+        for _ in range(20):
+            head = f"GET /api/v1/designs/{design} HTTP/1.1"
+            open_ones.enter_context(_connected(client, head))
+        time.sleep(3)
 
 
 def _wrong_token(client: httpx.Client, turn: int) -> httpx.Response:
@@ -156,6 +173,7 @@ ATTACKS: dict[str, Attack] = {
         "/api/v1/measure/tables", {"file": _uploaded("a.csv", b"," * 200_000)}
     ),
     "slow bodies": _slow_body,
+    "unread answers": _unread,
     "wrong tokens": _wrong_token,
     "own yarns": _kept_yarn,
     "views of large charts": _viewed,

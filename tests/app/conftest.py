@@ -9,8 +9,9 @@ from fastapi.testclient import TestClient
 from app.context import Context
 from app.service.store.database import Database
 from app.service.store.tables import metadata
+from scripts.composition import postgres_programs
 from tests.app.clients import served
-from tests.app.databases import empty, opened, postgres, postgres_programs
+from tests.app.databases import empty, opened, postgres
 
 
 @pytest.fixture(scope="session")

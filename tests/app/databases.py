@@ -5,7 +5,6 @@ import os
 import secrets
 import shutil
 import sqlite3
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from sqlalchemy import NullPool, create_engine, text
 
 from app.service.store.database import Database
 from app.service.store.schema import migrate
+from scripts.composition import postgres as run_program
 
 
 @contextlib.contextmanager
@@ -56,33 +56,13 @@ def is_whole(file: Path) -> bool:
         return connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
 
 
-PROGRAMS = sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)
-
-
-def postgres_programs() -> Path | None:
-    """Folder with initdb and pg_ctl, or None."""
-    if PROGRAMS:
-        return PROGRAMS[0]
-    program = shutil.which("pg_ctl")
-    return Path(program).parent if program else None
-
-
-def _run(*command: str) -> None:
-    # PostgreSQL refuses to run as root
-    as_user = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
-    quiet = subprocess.DEVNULL
-    subprocess.run([*as_user, *command], check=True, stdout=quiet, stderr=quiet, cwd="/")
-
-
 def control(url: str, *arguments: str) -> None:
     """``pg_ctl`` for the server at a URL of :func:`postgres`."""
-    programs = postgres_programs()
-    assert programs is not None
     folder = Path(url.partition("host=")[2])
     options = f"-c listen_addresses='' -c unix_socket_directories={folder} -c fsync=off"
     if "start" in arguments:
         arguments = ("-o", options, "-l", str(folder / "log"), *arguments)
-    _run(str(programs / "pg_ctl"), "-w", "-D", str(folder / "data"), *arguments)
+    run_program("pg_ctl", "-w", "-D", str(folder / "data"), *arguments)
 
 
 @contextlib.contextmanager
@@ -98,12 +78,9 @@ def away(url: str) -> Iterator[None]:
 @contextlib.contextmanager
 def postgres(folder: Path) -> Iterator[str]:
     """A PostgreSQL of our own that listens on a socket in ``folder``; yields its URL."""
-    programs = postgres_programs()
-    assert programs is not None
     if os.geteuid() == 0:
         shutil.chown(folder, "postgres")
-    data = str(folder / "data")
-    _run(str(programs / "initdb"), "-D", data, "-A", "trust", "-U", "knit", "-N")
+    run_program("initdb", "-D", str(folder / "data"), "-A", "trust", "-U", "knit", "-N")
     url = f"postgresql+psycopg://knit@/postgres?host={folder}"
     control(url, "start")
     try:

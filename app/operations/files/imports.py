@@ -10,7 +10,7 @@ from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
-from knitcore.formats.read.chart_files import Aspect, PictureReading, read_chart, read_noted_piece
+from knitcore.formats.read.chart_files import Aspect, PictureReading, read_noted_piece
 
 from ...context import Context
 from ...requests.base import NoRequest, RequestModel, ResultModel
@@ -120,7 +120,8 @@ def design_in(
         If it holds no chart.
     """
     if path.suffix.lower() == ".json":
-        return ImportedDesign.of(read_design(path), chart=read_chart(path).text), ()
+        design = read_design(path)
+        return ImportedDesign.of(design, chart=design.to_chart().text), ()
     content = read_noted_piece(path, reading)
     piece, notes = content.piece, content.notes
     if not piece.is_plain:

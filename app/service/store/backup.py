@@ -19,8 +19,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from knitcore.base.errors import InputError
 
 from .database import Database
-from .material_store import FOLDER
-from .schema import migrate, prepare, revision
+from .schema import migrate, revision
 from .tables import metadata
 
 FORMAT = "knitcore-backup"
@@ -28,7 +27,6 @@ VERSION = 1
 LEFT_OUT = frozenset({"results", "idempotency_keys", "service_keys", "sessions"})
 """Left out: can be computed again, expires within a day, or would let a thief sign sessions."""
 CHUNK = 200
-OWN = "own materials"
 LEVEL = 6
 """gzip's default, 9, takes thirty times as long on charts and saves 5 %."""
 
@@ -92,13 +90,8 @@ def back_up(database: Database, file: Path) -> BackupReport:
     return BackupReport(file=str(file), tables=counts)
 
 
-def restore(database: Database, file: Path, data_dir: Path) -> BackupReport:
+def restore(database: Database, file: Path) -> BackupReport:
     """Read a backup into an empty database; all of it or nothing.
-
-    Parameters
-    ----------
-    data_dir : where backups of earlier programs put files of users' materials, which are taken
-        over from there; existing ones are kept.
 
     Raises
     ------
@@ -116,8 +109,6 @@ def restore(database: Database, file: Path, data_dir: Path) -> BackupReport:
     with database.read() as connection:
         reflected.reflect(connection)
 
-    own: dict[str, str] = {}
-
     def action(connection: Connection) -> dict[str, int]:
         for table in reflected.sorted_tables:
             if table.name != "alembic_version":
@@ -128,37 +119,23 @@ def restore(database: Database, file: Path, data_dir: Path) -> BackupReport:
                         f"the database holds {held} rows in {table.name} already.",
                         "Restore into a new data folder or an empty database.",
                     )
-        return _fill(connection, reflected, lines, file, own)
+        return _fill(connection, reflected, lines, file)
 
     try:
         counts = database.write(action)
     except (LookupError, TypeError, AttributeError, SQLAlchemyError) as error:
         raise InputError("file", f"{file} is damaged.", "Use another backup.") from error
-    for name, content in own.items():
-        place = data_dir / FOLDER / Path(name).name  # which cannot lead out of the folder
-        place.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-        if not place.exists():
-            place.write_text(content, encoding="utf-8")
-    prepare(database, data_dir)
+    migrate(database)
     return BackupReport(file=str(file), tables=counts)
 
 
 def _fill(
-    connection: Connection,
-    tables: MetaData,
-    lines: Iterator[dict[str, Any]],
-    file: Path,
-    own: dict[str, str],
+    connection: Connection, tables: MetaData, lines: Iterator[dict[str, Any]], file: Path
 ) -> dict[str, int]:
-    """Rows into tables, and the files of materials, of an earlier program, into ``own``."""
     counts: dict[str, int] = {}
     waiting: list[dict[str, Any]] = []
     current = ""
     for line in lines:
-        if "material" in line:
-            own[str(line["material"])] = str(line["content"])
-            counts[OWN] = counts.get(OWN, 0) + 1
-            continue
         if "end" in line or line["table"] != current or len(waiting) == CHUNK:
             if waiting:
                 connection.execute(insert(tables.tables[current]), waiting)

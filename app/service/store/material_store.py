@@ -3,31 +3,18 @@
 The state that a user replaced last is kept, because a computation may be using it.
 """
 
-import contextlib
-import hashlib
-import logging
 from collections.abc import Iterable
-from pathlib import Path
 
-from sqlalchemy import Connection, delete, select, union, update
+from sqlalchemy import Connection, delete, select, update
 
-from knitcore.base.errors import InputError
-from knitcore.materials import Material, load_material_file
+from knitcore.materials import Material
 from knitcore.materials.material_document import MaterialDocument
 
-from ..identity import LOCAL_USER
 from ..limits.user_limits import USER_LIMITS, OverLimitError
-from ..results.own_materials import KINDS, GivenMaterials, is_identifier, marked, own_material
+from ..results.own_materials import GivenMaterials, is_identifier, marked, own_material
 from .database import Database
-from .tables import access_tokens, designs, jobs, now, own_materials
+from .tables import now, own_materials
 
-FOLDER = "materials"
-"""Folder of the data folder whose files the database takes over, for everybody."""
-TAKEN = "taken over"
-REPLACED = "replaced"
-"""Folders within it: of files that were taken over, and of what users had replaced last."""
-
-log = logging.getLogger("knitcore.materials")
 _MINE = own_materials.c
 _PRESENT = _MINE.replaced_at.is_(None)
 
@@ -125,50 +112,6 @@ class MaterialStore:
 
         return self._database.write(action)
 
-    def take_over(self, folder: Path) -> None:
-        """Take the files of a folder into the database, and put them aside.
-
-        Programs kept users' materials there, in files that are named after a digest of the user.
-        Those of nobody who is known here, such as files of whoever runs the service, become the
-        local user's. A file that holds no material is logged and stays.
-        """
-        if not folder.is_dir():
-            return
-        taken = [file for part in (folder, folder / REPLACED) for file in self._take_all(part)]
-        for file in taken:
-            aside = folder / TAKEN / file.relative_to(folder)
-            aside.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-            with contextlib.suppress(FileNotFoundError):  # another process was faster
-                file.rename(aside)
-        if taken:
-            place = folder / TAKEN
-            log.info("took %d yarns into the database; their files are in %s", len(taken), place)
-
-    def _take_all(self, folder: Path) -> list[Path]:
-        """Take over what a folder holds; returns its files that are in the database now."""
-        read: dict[Path, tuple[MaterialDocument, str]] = {}
-        for file in sorted(folder.iterdir()) if folder.is_dir() else ():
-            if file.suffix.lower() in KINDS and file.is_file():
-                try:
-                    document = MaterialDocument.from_material(load_material_file(file))
-                    read[file] = document, marked(document.identifier, file.read_bytes())
-                except (InputError, OSError) as error:
-                    log.warning("%s is not a material: %s", file, error)
-        replaced = folder.name == REPLACED
-
-        def action(connection: Connection) -> None:
-            owners, fresh = _owners(connection), set[tuple[str, str]]()
-            for file, (document, identifier) in read.items():
-                owner = owners.get(_tag_of(file), LOCAL_USER)
-                if not replaced and (owner, document.identifier) not in fresh:
-                    self._replace(connection, owner, document.identifier)
-                fresh.add((owner, document.identifier))
-                self._add(connection, owner, identifier, document, replaced=replaced)
-
-        if read:
-            self._database.write(action)
-        return list(read)
-
     def _replace(self, connection: Connection, owner: str, identifier: str) -> None:
         """Mark the present state as replaced, and forget what it had replaced itself."""
         those = _MINE.owner == owner, _MINE.identifier == identifier
@@ -176,22 +119,14 @@ class MaterialStore:
         connection.execute(update(own_materials).where(*those).values(replaced_at=now()))
 
     def _add(
-        self,
-        connection: Connection,
-        owner: str,
-        identifier: str,
-        document: MaterialDocument,
-        *,
-        replaced: bool = False,
+        self, connection: Connection, owner: str, identifier: str, document: MaterialDocument
     ) -> None:
-        at = now()
         values = {
             "owner": owner,
             "id": identifier,
             "identifier": document.identifier,
             "document": _content(document),
-            "added_at": at,
-            "replaced_at": at if replaced else None,
+            "added_at": now(),
         }
         connection.execute(self._database.backend.insert_new(own_materials).values(values))
 
@@ -206,16 +141,3 @@ def _present(connection: Connection, owner: str) -> dict[str, str]:
         select(_MINE.id, _MINE.identifier).where(_MINE.owner == owner, _PRESENT)
     )
     return {row.id: row.identifier for row in rows}
-
-
-def _owners(connection: Connection) -> dict[str, str]:
-    """Users who are known here, by the digests with which names of files began."""
-    users = union(select(access_tokens.c.user), select(designs.c.owner), select(jobs.c.owner))
-    names = {LOCAL_USER, *connection.execute(users).scalars()}
-    return {hashlib.sha256(name.encode()).hexdigest()[:12]: name for name in names}
-
-
-def _tag_of(file: Path) -> str:
-    """Digest of a user in the name of a file, ``kept-DIGEST-IDENTIFIER.json``."""
-    kept, _, rest = file.name.partition("-")
-    return rest.partition("-")[0] if kept == "kept" else ""

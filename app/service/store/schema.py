@@ -12,14 +12,9 @@ from knitcore.base.errors import InputError
 
 from ..problems import DamagedError
 from .database import Database
-from .material_store import FOLDER, MaterialStore
 from .tables import metadata
 
 MIGRATIONS = Path(__file__).with_name("migrations")
-EARLIER = frozenset(f"{number:04}" for number in range(1, 8))
-"""Schemas from before the first release, which this program cannot bring up to date."""
-LAST_WITH_EARLIER = "5a988aec"
-"""The last commit of this program that can."""
 
 
 def migrate(database: Database, target: str = "head") -> None:
@@ -30,8 +25,8 @@ def migrate(database: Database, target: str = "head") -> None:
     Raises
     ------
     InputError
-        If the database (or the backup that asks for ``target``) was written by a newer program,
-        or by one from before the first release.
+        If the database (or the backup that asks for ``target``) was written by another
+        version of this program.
     StoreError
         If the database cannot be reached.
     """
@@ -49,18 +44,6 @@ def migrate(database: Database, target: str = "head") -> None:
     database.write(upgrade)
 
 
-def prepare(database: Database, data_dir: Path) -> None:
-    """Bring the schema up to date, and take over files of users' materials.
-
-    Raises
-    ------
-    InputError, StoreError
-        As :func:`migrate`.
-    """
-    migrate(database)
-    MaterialStore(database).take_over(data_dir / FOLDER)
-
-
 def check_schema(database: Database, target: str = "head") -> str | None:
     """The schema's version, or None for an empty database.
 
@@ -75,19 +58,12 @@ def check_schema(database: Database, target: str = "head") -> str | None:
     """
     version = revision(database)
     scripts = ScriptDirectory.from_config(_config())
-    if too_old := {version, target} & EARLIER:
-        raise InputError(
-            "database_url",
-            f"the designs have schema {too_old.pop()}, from before the first release.",
-            f"Start Knitcore at commit {LAST_WITH_EARLIER} on them once, which brings them up to "
-            "date.",
-        )
     strange = {version, target} - {s.revision for s in scripts.walk_revisions()} - {None, "head"}
     if strange:
         raise InputError(
             "database_url",
             f"the designs have schema {strange.pop()}, which this program does not know.",
-            "Use the newer program that wrote it, or restore a backup.",
+            "Use the program that wrote it, or restore a backup.",
         )
     if version == scripts.get_current_head():
         with database.read() as connection:

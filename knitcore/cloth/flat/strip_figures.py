@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.cloth.flat.fields import Fields
-from knitcore.cloth.flat.strip_results import StripTest, SwatchTest
+from knitcore.cloth.flat.strip_results import SwatchTest
 
 MAX_PATCHES = 20_000
 EXTENSION_COLOUR, CONTRACTION_COLOUR = "#b2182b", "#2166ac"
@@ -96,24 +96,6 @@ def strain_crosses_figure(test: SwatchTest, step: int = -1, crosses: int = 400) 
         )
     )
     return _laid_out(figure, "Principal strains")
-
-
-def stress_strain_figure(test: StripTest) -> Any:
-    """The curve of a strip test."""
-    go = plotly_objects()
-    figure = go.Figure(
-        go.Scatter(
-            x=np.concatenate([[0.0], test.strain]),
-            y=np.concatenate([[0.0], test.stress_n_per_mm]),
-            name=f"simulated, {test.sheet.model.energy}",
-        )
-    )
-    figure.update_layout(
-        title="Simulated strip test (geometry after ISO 20932-1), not a certified test",
-        xaxis_title=f"strain {test.direction}-wise",
-        yaxis_title="stress (N/mm)",
-    )
-    return figure
 
 
 def _arms(fields: Fields, crosses: int, sign: int) -> tuple[Array, Array]:

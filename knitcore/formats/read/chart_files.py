@@ -70,8 +70,9 @@ class PictureReading:
     light_is_purl: bool = False
 
 
-def read_chart(path: str | Path) -> StitchChart:
-    """The chart in a file; cells outside its outline, if it has one, have no meaning.
+def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
+    """The chart in a file, and the notes of the reader; cells outside its outline, if it has one,
+    have no meaning.
 
     Parameters
     ----------
@@ -82,11 +83,6 @@ def read_chart(path: str | Path) -> StitchChart:
     InputError
         As :func:`read_noted_piece`, but for an outline in several parts.
     """
-    return read_noted_chart(path)[0]
-
-
-def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
-    """Read a file as :func:`read_chart` does, with the notes of the reader."""
     file = Path(path)
     if file.suffix.lower() == ".json":
         return read_design(_checked(file)).to_chart(), ()

@@ -8,7 +8,7 @@ says what each of them brought:
 - the gauge gives the yarn in a stitch in the library's proportions, gauge, weight and tex give it
   by weighing, and ten unravelled stitches give it best;
 - points of the stretch curve give modulus, alpha and beta of all fabrics, by
-  :mod:`knitcore.materials.estimate.joint_model`. Bending modulus and yarn in a stitch do not enter
+  :mod:`knitcore.materials.estimate.mixed_model`. Bending modulus and yarn in a stitch do not enter
   there: of yarns left out they better the moduli from a factor of 2.21 to 2.14 only.
 
 Intervals of the law are as wide as yarns of the library need that are left out one at a time and
@@ -29,8 +29,7 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress, uniaxial_response
 from knitcore.materials.estimate.estimate import Estimate, FabricEstimate
-from knitcore.materials.estimate.joint_model import JointModel, LogStrain
-from knitcore.materials.estimate.mixed_model import covering
+from knitcore.materials.estimate.mixed_model import LogStrain, MixedModel, covering
 from knitcore.materials.estimate.yarn_statistics import (
     DIRECTIONS,
     FABRICS,
@@ -421,8 +420,8 @@ def library_values() -> Array:
 
 
 @cache
-def _law_model(without: tuple[int, ...]) -> JointModel:
-    return JointModel.fit(np.delete(library_values(), without, axis=0))
+def _law_model(without: tuple[int, ...]) -> MixedModel:
+    return MixedModel.fit(np.delete(library_values(), without, axis=0))
 
 
 @cache
@@ -432,7 +431,7 @@ def _factors(points: tuple[LogStrain, ...]) -> dict[str, float]:
     errors: dict[str, list[Array]] = {"modulus": [], "alpha": [], "beta": [], "strain": []}
     for index, truth in enumerate(library_values()):
         others = _law_model((index,))
-        true = JointModel(truth, np.zeros((24, 24)))
+        true = MixedModel(truth, np.zeros((24, 24)))
         for _ in range(_REPEATS if points else 1):
             measured = [
                 replace(
@@ -451,7 +450,7 @@ def _factors(points: tuple[LogStrain, ...]) -> dict[str, float]:
     return {name: covering(np.array(values), COVERAGE) for name, values in errors.items()}
 
 
-def _strains(model: JointModel) -> tuple[Array, Array]:
+def _strains(model: MixedModel) -> tuple[Array, Array]:
     """Logarithms of the extension at 0.1 N/mm, (4, 2), and their standard deviations."""
     pairs = [[model.log_strain(f, d, LOAD_N_PER_MM) for d in range(2)] for f in range(4)]
     values = np.array(pairs)
@@ -459,7 +458,7 @@ def _strains(model: JointModel) -> tuple[Array, Array]:
 
 
 def _estimates(
-    model: JointModel, points: tuple[LogStrain, ...]
+    model: MixedModel, points: tuple[LogStrain, ...]
 ) -> dict[str, list[dict[Direction, Estimate]]]:
     """Estimates by quantity, fabric and direction."""
     factors = _factors(points)
@@ -483,7 +482,7 @@ def _estimates(
 def _step(
     name: str,
     known: tuple[Estimate, Estimate],
-    model: JointModel,
+    model: MixedModel,
     points: tuple[LogStrain, ...],
     own: int,
 ) -> Step:
@@ -506,7 +505,7 @@ def _step(
 def _fabrics(
     swatch: KnownSwatch,
     points: Sequence[StretchPoint],
-    model: JointModel,
+    model: MixedModel,
     used: tuple[LogStrain, ...],
     loop_mm: float,
 ) -> tuple[dict[Fabric, FabricEstimate], dict[Fabric, LawUncertainty]]:

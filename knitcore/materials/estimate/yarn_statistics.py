@@ -191,8 +191,10 @@ def predict_cells(
     values: dict[str, Array] = {}
     deviation: dict[str, Array] = {}
     for name in QUANTITIES:
-        model = MixedModel.fit(getattr(table, name))
-        values[name], deviation[name] = model.predict(own[name], measured)
+        model = MixedModel.fit(getattr(table, name)[:, None]).knowing_cells(
+            own[name][None], measured
+        )
+        values[name], deviation[name] = model.mean[0], model.deviation[0]
     poisson = table.poisson.mean(axis=0)
     modulus, alpha, beta = (
         np.exp(values["modulus"] + scale),

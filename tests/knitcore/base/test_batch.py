@@ -8,12 +8,16 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from knitcore import CancelledError, InputError
 from knitcore.base.batch import BatchProgress, run_batch
 from tests.knitcore.refusals import refuses
+
+if TYPE_CHECKING:
+    from distributed import LocalCluster
 
 TASKS = {f"number-{n}": n for n in range(6)}
 
@@ -106,34 +110,15 @@ def test_impossible_batches_are_refused_before_any_work(
         run_batch(square, **arguments)  # type: ignore[arg-type]
 
 
-def dask(name: str, *arguments: str) -> "subprocess.Popen[str]":
-    return subprocess.Popen(
-        [sys.executable, "-m", f"distributed.cli.dask_{name}", *arguments],
-        stderr=subprocess.PIPE,
-        text=True,
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])},
-    )
-
-
 @pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[tuple[str, list["subprocess.Popen[str]"]]]:
-    """A scheduler and two workers, each a process of its own, on the loopback address."""
-    file = tmp_path / "scheduler.json"
-    here = ("--no-dashboard", "--host", "127.0.0.1")
-    processes = [dask("scheduler", *here, "--port", "0", "--scheduler-file", str(file))]
-    try:
-        deadline = time.monotonic() + 60
-        while not (file.exists() and file.read_text().endswith("}")):
-            assert time.monotonic() < deadline
-            time.sleep(0.05)
-        address = json.loads(file.read_text())["address"]
-        worker = ("worker", address, *here, "--no-nanny", "--nthreads", "1")
-        processes += [dask(*worker, "--local-directory", str(tmp_path)) for _ in range(2)]
-        yield address, processes[1:]
-    finally:
-        for process in processes:
-            process.kill()
-            process.communicate()
+def cluster(tmp_path: Path) -> Iterator["LocalCluster"]:
+    """Two workers, each a process of its own."""
+    from distributed import LocalCluster  # takes a second
+
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path)
+    ) as cluster:
+        yield cluster
 
 
 def slow_square(number: int) -> dict[str, int]:
@@ -142,19 +127,12 @@ def slow_square(number: int) -> dict[str, int]:
 
 
 @pytest.mark.slow
-def test_a_cluster_gives_the_same_though_a_worker_is_killed(
-    cluster: tuple[str, list["subprocess.Popen[str]"]],
-) -> None:
-    from distributed import Client  # takes a second
-
-    address, workers = cluster
-    with Client(address, timeout=60, set_as_default=False) as client:
-        client.wait_for_workers(len(workers), timeout=60)
-
+def test_a_cluster_gives_the_same_though_a_worker_is_killed(cluster: "LocalCluster") -> None:
     def kill_one(progress: BatchProgress) -> None:
         if progress.done == 1:
-            workers[0].kill()
+            os.kill(cluster.workers[0].pid, signal.SIGKILL)
 
+    address = cluster.scheduler_address
     batch = run_batch(slow_square, TASKS, scheduler=address, progress=kill_one)
     assert [document["square"] for document in batch.results.values()] == [0, 1, 4, 9, 16, 25]
     assert not batch.failures

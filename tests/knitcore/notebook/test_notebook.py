@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore import StitchChart, curve, material, predict
+from knitcore import StitchChart, curve, material, predict, strip_test
 from knitcore.notebook import figure, view
 from tests.knitcore.results import curled, relaxed_cell, sweep
 
@@ -24,6 +24,9 @@ def test_an_answer_has_both_directions_and_a_sweep_its_points() -> None:
     assert names == ["course", "wale"]
     (line,) = figure(sweep()).data
     assert np.allclose(line.x, [0.0, 0.1, 0.2])
+    test = strip_test(RIB, ACRYLIC, "wale", 0.1, steps=1)
+    (line,) = figure(test).data
+    assert np.array_equal(line.y, [0.0, *test.stress_n_per_mm])
 
 
 def test_yarn_in_space_has_a_tube_for_every_course() -> None:

@@ -3,9 +3,8 @@
 import csv
 import json
 import signal
-import subprocess
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from pydantic import ValidationError
@@ -16,6 +15,9 @@ from knitcore.base.errors import CancelledError
 from tests.app.command_line import printed, run
 from tests.app.running import python
 from tests.knitcore.base.test_batch import cluster  # noqa: F401 - a fixture
+
+if TYPE_CHECKING:
+    from distributed import LocalCluster
 
 YARN = [
     "--yarn", "mine", "--bending-modulus-n-mm2", "0.07", "--contact-stiffness-n-per-mm3", "0.0115",
@@ -91,10 +93,10 @@ def test_a_killed_batch_resumes(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_cluster_of_two_processes_gives_the_same(
-    cluster: tuple[str, list[subprocess.Popen[str]]],  # noqa: F811 - a fixture
+    cluster: "LocalCluster",  # noqa: F811 - a fixture
     tmp_path: Path,
 ) -> None:
-    address, _ = cluster
+    address = cluster.scheduler_address
     words = ("cotton", "--fabrics", "stockinette", "--tensions", "1,1.05")
     there = characterised(*words, "--scheduler", address, "--out", str(tmp_path / "there"))
     here = characterised(*words, "--workers", "1", "--out", str(tmp_path / "here"))

@@ -16,8 +16,9 @@ from app.service.compute.workers import WorkerDiedError
 from app.service.jobs.document import JobState
 from app.service.store.database import Database
 from knitcore.chart.fabric import Direction
+from scripts.composition import COMPOSE, dask
 from tests.app import jobs
-from tests.app.clusters import SERVICES, dask, scheduler
+from tests.app.clusters import scheduler
 from tests.app.jobs import never
 from tests.app.service.compute.contract import WorkerContract
 from tests.app.service.jobs.helpers import ended, runner_of
@@ -28,10 +29,10 @@ pytestmark = pytest.mark.slow  # a cluster takes seconds to start
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     folder = tmp_path_factory.mktemp("dask")
-    (scratch,) = SERVICES["worker"]["tmpfs"]
+    (scratch,) = COMPOSE["services"]["worker"]["tmpfs"]
     with scheduler(folder) as address:
         changed = {"tcp://scheduler:8786": address, scratch: str(folder)}
-        with dask("worker", folder, **changed):
+        with dask("worker", folder, changed):
             yield address
 
 

@@ -12,9 +12,9 @@ from app.service.designs.sharing import Sharing
 from app.service.designs.store import DesignStore
 from app.service.jobs.document import JobState
 from app.service.jobs.store import JobStore
-from app.service.store.backup import FORMAT, back_up, restore
+from app.service.store.backup import back_up, restore
 from app.service.store.database import Database
-from app.service.store.material_store import FOLDER, MaterialStore
+from app.service.store.material_store import MaterialStore
 from app.service.store.schema import migrate
 from knitcore.base.errors import InputError
 from knitcore.materials import material
@@ -59,7 +59,7 @@ def test_a_restore_brings_everything_back(filled: Database, other: Database, fil
     report = back_up(filled, file)
     assert report.tables["designs"] == 4
     assert file.stat().st_mode & 0o077 == 0
-    assert restore(other, file, file.parent).tables == report.tables
+    assert restore(other, file).tables == report.tables
     for owner in ("ada", "bob"):
         assert designs_of(other, owner) == designs_of(filled, owner)
     assert DesignStore(other).get("bob", bob.id).document == RIB
@@ -73,7 +73,7 @@ def test_a_backup_never_overwrites_a_file(filled: Database, tmp_path: Path, file
     with pytest.raises(InputError, match="exists"):
         back_up(filled, file)
     with pytest.raises(InputError, match="holds 4 rows in designs"):
-        restore(filled, file, file.parent)
+        restore(filled, file)
     with pytest.raises(InputError, match="cannot be written"):
         back_up(filled, tmp_path / "no" / "folder.gz")
 
@@ -114,7 +114,7 @@ def test_a_damaged_backup_changes_nothing(
     back_up(filled, file)
     file.write_bytes(DAMAGES[damage](file.read_bytes()))
     with pytest.raises(InputError):
-        restore(other, file, file.parent)
+        restore(other, file)
     migrate(other)
     assert designs_of(other, "ada") == []
 
@@ -147,7 +147,7 @@ def test_a_crafted_backup_is_refused_with_a_message(
     crafted = [f"{json.dumps(row)}\n".encode() for row in (line, {"end": {"designs": 1}})]
     file.write_bytes(_of_lines(lambda lines: [lines[0], *crafted])(file.read_bytes()))
     with pytest.raises(InputError, match=r"damaged|not whole"):
-        restore(other, file, file.parent)
+        restore(other, file)
     assert designs_of(other, "ada") == []
 
 
@@ -160,27 +160,7 @@ def test_own_materials_are_backed_up_and_restored(
         for name in ("First", "Second")
     ]
     assert back_up(filled, file).tables["own_materials"] == 2
-    restore(other, file, file.parent)
+    restore(other, file)
     store = MaterialStore(other)
     assert [store.find(name).name for name in names] == ["First", "Second"]
     assert [own.name for own, mine in store.listed("ada") if mine] == ["Second"]
-
-
-def test_a_backup_of_an_earlier_program_has_files_of_materials(
-    other: Database, tmp_path: Path, file: Path
-) -> None:
-    """They are taken over, and cannot lead out of their folder."""
-    text = MaterialDocument.from_material(material("acrylic")).model_dump_json()
-    lines = [
-        {"format": FORMAT, "version": 1, "schema": "0008", "written_at": 0.0},
-        {"material": "../../wool.json", "content": text},
-        {"material": "broken.yaml", "content": "name: ä"},
-        {"end": {"own materials": 2}},
-    ]
-    file.write_bytes(gzip.compress("".join(f"{json.dumps(line)}\n" for line in lines).encode()))
-    there = tmp_path / "there"
-    restore(other, file, there)
-    assert MaterialStore(other).count("local") == 1
-    assert (there / FOLDER / "taken over" / "wool.json").read_text() == text
-    assert (there / FOLDER / "broken.yaml").read_text() == "name: ä"
-    assert not list(tmp_path.glob("wool*"))

@@ -1,8 +1,5 @@
-"""Materials of users in the database: whose they are, what replaces them, and how files of earlier
-programs come in."""
+"""Materials of users in the database: whose they are, and what replaces them."""
 
-import hashlib
-import logging
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -12,18 +9,15 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
-from app.service.designs.document import DesignDocument
-from app.service.designs.store import DesignStore
 from app.service.limits.user_limits import USER_LIMITS, OverLimitError
 from app.service.store import material_store
 from app.service.store.database import Database
-from app.service.store.material_store import FOLDER, MaterialStore
-from app.service.store.schema import migrate, prepare, revision
+from app.service.store.material_store import MaterialStore
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
-from knitcore.materials import MeasuredCurve, material, save_material_file
+from knitcore.materials import MeasuredCurve, material
 from knitcore.materials.material_document import MaterialDocument
-from tests.app.clients import served
+from tests.app.clients import served, state_of
 from tests.app.command_line import printed, run
 from tests.app.databases import opened
 from tests.app.rest import post, refusal
@@ -37,40 +31,21 @@ def named(identifier: str, name: str = "Yarn") -> MaterialDocument:
     return ACRYLIC.model_copy(update={"identifier": identifier, "name": name})
 
 
-def save_mine(folder: Path, file: str = "mine.yaml", *, stiffer: float = 1.0) -> Path:
-    """A material file: acrylic's, with a measured curve, under another name."""
-    acrylic = material("acrylic")
-    garter = acrylic.record(Fabric.GARTER)
-    law = replace(garter.law, beta_yy=garter.law.beta_yy * stiffer)
-    fabrics = {**acrylic.fabrics}
-    fabrics[Fabric.GARTER] = replace(garter, law=law, measured={Direction.WALE: CURVE})
-    folder.mkdir(exist_ok=True, parents=True)
-    path = folder / file
-    save_material_file(replace(acrylic, identifier="mine", name="Mine", fabrics=fabrics), path)
-    return path
-
-
-def kept_file(folder: Path, owner: str, document: MaterialDocument) -> tuple[Path, str]:
-    """A file of a program that had no table, and the identifier of its material."""
-    folder.mkdir(exist_ok=True, parents=True)
-    digest = hashlib.sha256(owner.encode()).hexdigest()[:12]
-    path = folder / f"kept-{digest}-{document.identifier}.json"
-    path.write_text(document.model_dump_json(indent=1, exclude_defaults=True))
-    mark = hashlib.sha256(path.read_bytes()).hexdigest()[:6]
-    return path, f"own:{document.identifier}.{mark}"
+def mine() -> MaterialDocument:
+    """Acrylic with a measured curve, under another name."""
+    yarn = material("acrylic")
+    garter = replace(yarn.record(Fabric.GARTER), measured={Direction.WALE: CURVE})
+    fabrics = {**yarn.fabrics, Fabric.GARTER: garter}
+    return MaterialDocument.from_material(
+        replace(yarn, identifier="mine", name="Mine", fabrics=fabrics)
+    )
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
-    return tmp_path / FOLDER
-
-
-@pytest.fixture
-def own(folder: Path) -> Iterator[TestClient]:
-    """A service that took over a material of its own; its workers have no folder of them."""
-    save_mine(folder)
+def own() -> Iterator[TestClient]:
+    """A service with a material of its user's."""
     with served() as client:
+        MaterialStore(state_of(client).database).keep(mine(), "local")
         yield client
 
 
@@ -80,9 +55,7 @@ def identifier(client: TestClient) -> str:
     return str(first["id"])
 
 
-def test_a_file_that_was_taken_over_is_listed_first_with_its_measured_curve(
-    folder: Path, own: TestClient
-) -> None:
+def test_a_material_is_listed_first_with_its_measured_curve(own: TestClient) -> None:
     mine = identifier(own)
     assert mine.startswith("own:mine.")
     assert own.get(f"/api/v1/materials/{mine}").json()["measured"] == {
@@ -90,7 +63,6 @@ def test_a_file_that_was_taken_over_is_listed_first_with_its_measured_curve(
             "wale": {"strain": [0.0, 0.2, 0.4], "stress_n_per_mm": [0.0, 0.01, 0.03], "pulls": 4}
         }
     }
-    assert [file.name for file in folder.iterdir()] == ["taken over"]
 
 
 def test_charts_are_predicted_stretched_and_kept_with_it(own: TestClient) -> None:
@@ -195,65 +167,14 @@ def test_fifty_users_see_all_their_materials(database: Database) -> None:
     store.keep(named("user-7-0", "Changed"), "user-7")  # what is there may change
 
 
-def test_files_of_earlier_programs_are_taken_over_once(
-    database: Database, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    """Each goes to its user, under the identifier that designs have."""
-    folder, store = tmp_path / FOLDER, MaterialStore(database)
-    DesignStore(database).create("ann", DesignDocument(name="x", material="acrylic", chart="KP"))
-    anns, first = kept_file(folder, "ann", named("mine", "Ann's"))
-    _, before = kept_file(folder / "replaced", "ann", named("mine", "Ann's earlier"))
-    _, strangers = kept_file(folder, "unknown", named("wool", "A stranger's"))
-    save_mine(folder, "operator.yml")
-    save_mine(folder, "another.json", stiffer=2.0)  # of the same name
-    (folder / "broken.json").write_text("{")
-    (folder / "notes.txt").write_text("not looked at")
-    with caplog.at_level(logging.INFO, "knitcore.materials"):
-        prepare(database, tmp_path)
-    assert "took 5 yarns" in caplog.text
-    assert "broken.json" in caplog.text
-    assert "notes.txt" not in caplog.text
-    assert sorted(f.name for f in folder.iterdir() if f.is_file()) == ["broken.json", "notes.txt"]
-    assert (folder / "taken over" / anns.name).is_file()
-    assert [store.find(name).name for name in (first, before, strangers)] == [
-        "Ann's", "Ann's earlier", "A stranger's",
-    ]  # fmt: skip
-    assert [own.identifier for own, mine in store.listed("ann") if mine] == [first]
-    names = sorted(own.name for own, mine in store.listed("local") if mine)
-    assert names == ["A stranger's", "Mine", "Mine"]
-    store.remove(first, "ann")
-    caplog.clear()
-    prepare(database, tmp_path)
-    assert "took" not in caplog.text
-    assert store.count("ann") == 0
-
-
-def test_a_file_that_is_put_there_again_replaces_the_former(
-    database: Database, tmp_path: Path
-) -> None:
-    store = MaterialStore(database)
-    for stiffer in (1.0, 2.0):
-        save_mine(tmp_path / FOLDER, stiffer=stiffer)
-        prepare(database, tmp_path)
-    assert store.count("local") == 1
-
-
-def test_the_command_line_has_them(folder: Path, tmp_path: Path) -> None:
+def test_the_command_line_has_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
     assert "own:" not in printed("materials").output
     assert not list(tmp_path.iterdir())
-    save_mine(folder)
+    with opened(tmp_path) as database:
+        MaterialStore(database).keep(mine(), "local")
     listed = printed("materials").output
     assert listed.startswith("own:mine.")
     name = listed.split()[0]
     assert printed("materials", name).output.startswith("Mine")
     assert run("predict", "KP", "--material", name)["modulus_course_n_per_mm"] > 0
-
-
-def test_a_migration_from_the_first_schema_makes_the_table(tmp_path: Path) -> None:
-    with opened(tmp_path, migrated=False) as old:
-        migrate(old, "0008")
-        assert revision(old) == "0008"
-        _, name = kept_file(tmp_path / FOLDER, "local", named("mine"))
-        prepare(old, tmp_path)
-        assert MaterialStore(old).find(name).name == "Yarn"
-    assert (tmp_path / "knitcore.sqlite3.before-0009").is_file()

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from knitcore import InputError, StitchChart
-from knitcore.formats.read.chart_files import read_chart
+from knitcore.formats.read.chart_files import read_noted_chart
 
 CHART = StitchChart.parse("KKP\nPPK")
 
@@ -21,25 +21,25 @@ def png(mode: str, side: int) -> bytes:
 def test_png_has_dark_purls_and_the_top_row_first(tmp_path: Path) -> None:
     file = tmp_path / "chart.png"
     Image.fromarray(np.where(CHART.purl[::-1], 20, 240).astype(np.uint8)).save(file)
-    assert read_chart(file) == CHART
+    assert read_noted_chart(file)[0] == CHART
 
 
 def test_transparent_pixels_are_knits(tmp_path: Path) -> None:
     file = tmp_path / "chart.png"
     Image.new("RGBA", (3, 2), (0, 0, 0, 0)).save(file)
-    assert not read_chart(file).purl.any()
+    assert not read_noted_chart(file)[0].purl.any()
 
 
 def test_a_program_under_another_name(tmp_path: Path) -> None:
     file = tmp_path / "chart.txt"
     file.write_text("; by hand\nin 1\ntuck - f2 1\ntuck - f1 1\nknit + f1 1\nknit + f2 1\n")
-    assert read_chart(file).text == "KK"
+    assert read_noted_chart(file)[0].text == "KK"
 
 
 def test_design_file(tmp_path: Path) -> None:
     file = tmp_path / "chart.json"
     file.write_text(json.dumps({"format": "knitcore-design", "version": 2, "chart": CHART.text}))
-    assert read_chart(file) == CHART
+    assert read_noted_chart(file)[0] == CHART
 
 
 @pytest.mark.parametrize(
@@ -62,9 +62,9 @@ def test_files_that_are_not_what_they_claim(
     file = tmp_path / name
     file.write_bytes(content)
     with pytest.raises(InputError, match=says):
-        read_chart(file)
+        read_noted_chart(file)
 
 
 def test_a_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="does not exist"):
-        read_chart(tmp_path / "none.txt")
+        read_noted_chart(tmp_path / "none.txt")

@@ -23,7 +23,7 @@ from knitcore.formats.designs.layout import (
     Placement,
     layout_of,
 )
-from knitcore.formats.read.chart_files import read_chart, read_noted_piece
+from knitcore.formats.read.chart_files import read_noted_chart, read_noted_piece
 from knitcore.formats.write import report
 from knitcore.formats.write.chart_drawing import chart_pages, chart_pdf, chart_svg
 from knitcore.formats.write.chart_key import HEAVY, INK, ChartStyle, RegionMark, Symbols, tinted
@@ -55,7 +55,7 @@ def region(name: str, runs: list[tuple[int, int, int]]) -> DesignRegion:
 def round_trip(chart: StitchChart, kind: ExportKind, folder: Path) -> StitchChart:
     file = folder / f"chart{FORMATS[kind].suffix}"
     file.write_bytes(exported(chart, kind))
-    return read_chart(file)
+    return read_noted_chart(file)[0]
 
 
 @pytest.mark.parametrize("kind", CHEAP)

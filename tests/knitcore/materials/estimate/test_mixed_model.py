@@ -1,12 +1,21 @@
-"""The mixed model against its definition and against made yarns."""
+"""The mixed model against its definition, made yarns, and the law."""
 
+import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from knitcore import InputError
-from knitcore.materials.estimate.mixed_model import MixedModel, interval_factor, leave_one_out
+from knitcore.chart.fabric import Direction, Fabric
+from knitcore.law.uniaxial import free_strains_at_stress
+from knitcore.materials import material
+from knitcore.materials.estimate.mixed_model import (
+    LogStrain,
+    MixedModel,
+    interval_factor,
+    leave_one_out,
+)
 
 NOTHING = np.zeros((4, 2), dtype=bool)
 
@@ -29,37 +38,37 @@ def made(yarns: int, *, general: float, contrast: float, rest: float) -> np.ndar
     )
 
 
+SIGNS = np.tile([1.0, -1.0], 4)
+TOTAL = 0.3 + 0.1 * np.outer(SIGNS, SIGNS) + 0.12 * np.eye(8)
+MODEL = MixedModel(np.zeros((1, 4, 2)), TOTAL)
+
+
 def test_variances_are_recovered_from_many_yarns() -> None:
-    model = MixedModel.fit(made(4000, general=0.6, contrast=0.3, rest=0.4))
-    assert model.general == pytest.approx(0.36, rel=0.1)
-    assert model.contrast == pytest.approx(0.09, rel=0.1)
-    assert model.rest == pytest.approx(0.16, rel=0.1)
+    model = MixedModel.fit(made(4000, general=0.6, contrast=0.3, rest=0.4)[:, None])
+    total = 0.36 + 0.09 * np.outer(SIGNS, SIGNS) + 0.16 * np.eye(8)
+    assert model.covariance == pytest.approx(total, rel=0.1)
 
 
 def test_without_a_swatch_the_prediction_is_the_mean() -> None:
-    values = made(8, general=0.6, contrast=0.3, rest=0.4)
+    values = made(8, general=0.6, contrast=0.3, rest=0.4)[:, None]
     model = MixedModel.fit(values)
-    prediction, deviation = model.predict(values[0], NOTHING)
-    assert prediction == pytest.approx(values.mean(axis=0))
-    total = (model.general + model.contrast + model.rest) * (1 + 1 / 8)
-    assert deviation == pytest.approx(np.sqrt(total))
+    known = model.knowing_cells(values[0], NOTHING)
+    assert known.mean == pytest.approx(values.mean(axis=0))
+    assert known.covariance == pytest.approx(model.covariance)
 
 
 def test_weights_are_those_of_best_linear_prediction() -> None:
     """Its errors are uncorrelated with what was measured."""
-    model = MixedModel(np.zeros((4, 2)), general=0.3, contrast=0.1, rest=0.12, yarns=8)
     measured = swatch(0, 2)
-    weights, _ = model.weights(measured)
-    sign = np.tile([1.0, -1.0], 4)
-    shared = 0.3 + 0.1 * np.outer(sign, sign)
-    total = shared + 0.12 * np.eye(8)
     m = measured.ravel()
-    assert shared[:, m] - weights @ total[np.ix_(m, m)] == pytest.approx(np.zeros((8, 4)))
+    units = [MODEL.knowing_cells(unit.reshape(1, 4, 2), measured) for unit in np.eye(8)[m]]
+    weights = np.array([known.mean.ravel() for known in units]).T
+    assert TOTAL[:, m] - weights @ TOTAL[np.ix_(m, m)] == pytest.approx(np.zeros((8, 4)))
 
 
 def test_more_swatches_never_widen_the_interval() -> None:
-    model = MixedModel(np.zeros((4, 2)), general=0.3, contrast=0.1, rest=0.12, yarns=8)
-    spreads = [model.weights(m)[1] for m in (NOTHING, swatch(0), swatch(0, 2), swatch(0, 1, 2))]
+    masks = (NOTHING, swatch(0), swatch(0, 2), swatch(0, 1, 2))
+    spreads = [np.diag(MODEL.knowing_cells(MODEL.mean, m).covariance) for m in masks]
     for wider, narrower in pairwise(spreads):
         assert np.all(narrower <= wider + 1e-12)
 
@@ -80,4 +89,51 @@ def test_the_interval_factor_covers_what_it_was_asked_to() -> None:
 
 def test_two_yarns_are_too_few() -> None:
     with pytest.raises(InputError, match="too few"):
-        MixedModel.fit(np.zeros((2, 4, 2)))
+        MixedModel.fit(np.zeros((2, 1, 4, 2)))
+
+
+LAW = material("acrylic:published").law(Fabric.STOCKINETTE)
+"""Its stiffening has no coupling, as that of the model."""
+
+
+def laws(yarns: int = 8) -> np.ndarray:
+    random = np.random.default_rng(1)
+    law = np.log(
+        [
+            [LAW.modulus(d) for d in Direction],
+            [LAW.alpha(d) for d in Direction],
+            [LAW.beta(d) for d in Direction],
+        ]
+    )
+    general, rest = random.normal(size=(yarns, 3, 1, 1)), random.normal(size=(yarns, 3, 4, 2))
+    return law[:, None, :] + 0.4 * general + 0.2 * rest
+
+
+def test_strains_are_those_of_the_law_and_their_slopes_are_right() -> None:
+    for direction in Direction:
+        cell = (0, direction.axis)
+        own = np.log([LAW.modulus(direction), LAW.alpha(direction), LAW.beta(direction)])
+        mean = laws()[0]
+        mean[:, cell[0], cell[1]] = own
+        strain, deviation = MixedModel(mean, np.eye(24)).log_strain(*cell, 0.1)
+        assert strain == pytest.approx(
+            math.log(free_strains_at_stress(LAW, direction, 0.1)), rel=1e-6
+        )
+        slopes = []
+        for i in range(3):
+            step = np.zeros((3, 4, 2))
+            step[i, cell[0], cell[1]] = 1e-5
+            high = MixedModel(mean + step, np.eye(24)).log_strain(*cell, 0.1)[0]
+            slopes.append((high - strain) / 1e-5)
+        assert deviation == pytest.approx(float(np.linalg.norm(slopes)), rel=1e-3)
+
+
+def test_a_precise_point_is_met_and_narrows_the_rest() -> None:
+    model = MixedModel.fit(laws())
+    before = model.log_strain(0, 0, 0.1)
+    point = LogStrain(0, 0, 0.1, before[0] + 0.3, 1e-3)
+    after = model.knowing([point])
+    assert after.log_strain(0, 0, 0.1)[0] == pytest.approx(point.value, abs=1e-4)
+    assert (after.deviation <= model.deviation + 1e-12).all()
+    softer = after.log_strain(2, 0, 0.1)[0] - model.log_strain(2, 0, 0.1)[0]
+    assert 0 < softer < 0.3  # a soft swatch means softer other fabrics, by less

@@ -1,4 +1,4 @@
-"""Materials of users, which were files of the data folder."""
+"""Materials of users."""
 
 from alembic import context, op
 
@@ -7,5 +7,5 @@ down_revision = "0008"
 
 
 def upgrade() -> None:
-    """Make the table; files are taken over afterwards, by whoever knows their folder."""
+    """Make the table."""
     context.config.attributes["metadata"].tables["own_materials"].create(op.get_bind())
