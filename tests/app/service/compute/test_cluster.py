@@ -38,8 +38,12 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def compute(address: str) -> Iterator[Compute]:
+    """A service's view of the cluster that waits for a worker, however busy the machine is."""
     cluster = Cluster(address)
-    yield Compute([ClusterWorker(cluster), ClusterWorker(cluster)], timeout_s=60.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cluster_module, "CONNECT_S", 600.0)
+        patch.setattr(cluster_module, "WORKERS_S", 600.0)
+        yield Compute([ClusterWorker(cluster), ClusterWorker(cluster)], timeout_s=600.0)
     cluster.close()
 
 
