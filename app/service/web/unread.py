@@ -11,6 +11,12 @@ from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 log = logging.getLogger("knitcore.app")
 
+TESTED_UVICORN = "0.54"
+"""The minor version that this module and :mod:`app.viewer.sockets` were tested with.
+
+``pyproject.toml`` allows no other, since both change protocols that uvicorn does not document.
+"""
+
 STALLED_S = 30.0
 """Time in which a client must take a part of an answer, or the rest of it."""
 LEAST_BYTES = 65_536
