@@ -1,7 +1,16 @@
-"""What people meet who import the library: its names, and refusals of wrong arguments."""
+"""What people meet who import the library: names, refusals of wrong arguments, results."""
 
+import ast
+import importlib
 import inspect
+import itertools
 import math
+import pkgutil
+import re
+import typing
+from collections.abc import Iterable, Iterator
+from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +18,15 @@ import pytest
 
 import knitcore
 from knitcore import CancelledError, InputError
+from knitcore.chart.in_space import ClothInSpace
+from knitcore.chart.result import Result
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.read.chart_files import PieceInFile
+from knitcore.formats.write.knitout import KnitoutProgram
+from knitcore.materials import Interval
 from knitcore.yarn.study.relax import RelaxOptions
+
+ROOT = Path(__file__).resolve().parent.parent
 
 LIBRARY: Any = knitcore
 ALL_STITCHES = np.ones((2, 2), dtype=bool)
@@ -79,6 +96,59 @@ def test_a_wrong_argument_is_refused_with_what_to_give(name: str, parameter: str
             continue
         except InputError as error:
             assert error.remedy.endswith("."), error  # noqa: PT017
+
+
+NO_RESULTS = {StitchChart, Interval, KnitoutProgram, PieceInFile}
+"""What functions return that is itself an input, a pair of numbers, or the content of a file."""
+
+
+def test_results_of_functions_become_plain_values() -> None:
+    """Those of the public functions, of what the documentation shows in Python, and, where they
+    hold arrays, of what operations call."""
+    shown = {*_imported(_documentation()), *(_public(name) for name in LIBRARY.__all__)}
+    called = _imported(file.read_text("utf-8") for file in (ROOT / "app/operations").rglob("*.py"))
+    results = _results(shown) | {kind for kind in _results(called) if _has_arrays(kind)}
+    assert len(results) > 40
+    for kind in results - NO_RESULTS:
+        assert hasattr(kind, "to_dict"), kind
+
+
+def test_results_with_arrays_have_short_texts_and_cloth_is_written_for_other_programs() -> None:
+    modules = pkgutil.walk_packages(LIBRARY.__path__, "knitcore.")
+    members = (vars(importlib.import_module(module.name)).values() for module in modules)
+    for kind in set(filter(inspect.isclass, itertools.chain.from_iterable(members))):
+        if issubclass(kind, Result) and is_dataclass(kind):
+            text_is_made_by_dataclass = hasattr(kind.__repr__, "__wrapped__")
+            assert not (text_is_made_by_dataclass and _has_arrays(kind)), kind
+            has_corners = "corners_mm" in {field.name for field in fields(kind)}
+            assert issubclass(kind, ClothInSpace) or not has_corners, kind
+
+
+def _documentation() -> Iterator[str]:
+    for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
+        yield from re.findall(r"(?ms)^```python\n(.*?)^```", page.read_text("utf-8"))
+
+
+def _imported(programs: Iterable[str]) -> set[Any]:
+    """What programs import from the library."""
+    nodes = itertools.chain.from_iterable(ast.walk(ast.parse(program)) for program in programs)
+    return {
+        getattr(importlib.import_module(node.module), name.name)
+        for node in nodes
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("knitcore")
+        for name in node.names
+        if node.module
+    }
+
+
+def _results(functions: Iterable[Any]) -> set[Any]:
+    hints = [typing.get_type_hints(f).get("return") for f in functions if inspect.isfunction(f)]
+    kinds = itertools.chain.from_iterable((hint, *typing.get_args(hint)) for hint in hints)
+    return {kind for kind in kinds if inspect.isclass(kind) and is_dataclass(kind)}
+
+
+def _has_arrays(kind: Any) -> bool:
+    return any("ndarray" in str(hint) for hint in typing.get_type_hints(kind).values())
 
 
 def _public(name: str) -> Any:

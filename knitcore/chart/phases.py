@@ -14,7 +14,7 @@ from knitcore.base.errors import InputError
 from knitcore.base.kinds import as_mask
 from knitcore.chart.fabric import PHASES, Fabric
 from knitcore.chart.segments import segment_map
-from knitcore.chart.stitch_chart import StitchChart, as_chart, size_in_words
+from knitcore.chart.stitch_chart import StitchChart, as_chart
 
 LEFT, RIGHT, BELOW, ABOVE = 1, 2, 4, 8
 """Bits of a surroundings code: that segment of the stitch is odd."""
@@ -88,8 +88,9 @@ def as_stitches(stitch: ArrayLike, chart: StitchChart) -> Mask:
     remedy = "Give True or False for every stitch of the chart, row 0 at the bottom."
     mask = as_mask("stitch", stitch, remedy)
     if mask.shape != chart.purl.shape:
-        problem = f"has {size_in_words(*mask.shape[::-1])}, the chart "
-        raise InputError("stitch", problem + f"{size_in_words(chart.columns, chart.rows)}.", remedy)
+        rows, columns = mask.shape
+        problem = f"has {columns}x{rows} cells, the chart {chart.columns}x{chart.rows}."
+        raise InputError("stitch", problem, remedy)
     return mask
 
 

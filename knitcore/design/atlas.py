@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
 from knitcore.materials import Material
@@ -79,8 +80,8 @@ class Entry:
     provenance: str
 
 
-@dataclass(frozen=True, eq=False)
-class Atlas:
+@dataclass(frozen=True, eq=False, repr=False)
+class Atlas(Result):
     """Predictions of many repeats of one material.
 
     Attributes

@@ -19,6 +19,7 @@ from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, InputError, SearchProgress
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat.grid import check_cloth
 from knitcore.design.atlas import Atlas
@@ -55,8 +56,8 @@ cannot fit a rough map by chance, but by no more than the map varies inside the 
 is even it asks for one stiffness, not for a rough chart."""
 
 
-@dataclass(frozen=True, eq=False)
-class FilledField:
+@dataclass(frozen=True, eq=False, repr=False)
+class FilledField(Result):
     """A chart for a map.
 
     Attributes

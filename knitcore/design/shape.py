@@ -20,6 +20,7 @@ from knitcore.base.arrays import Array, Indices
 from knitcore.base.bounds import check_positive, check_range
 from knitcore.base.errors import Cancelled, InputError, SearchProgress
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat import strip_test
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
@@ -54,8 +55,8 @@ class Band:
     lines: int
 
 
-@dataclass(frozen=True, eq=False)
-class ShapedSwatch:
+@dataclass(frozen=True, eq=False, repr=False)
+class ShapedSwatch(Result):
     """A chart and the outline that it takes.
 
     Attributes

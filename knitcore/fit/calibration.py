@@ -20,6 +20,7 @@ from scipy.optimize import least_squares
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, InputError, check_cancelled
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.cloth.flat.sheet_models import SheetModel
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE, pull
 from knitcore.cloth.flat.strip_uncertainty import LOG_SHEAR_PRIOR
@@ -79,8 +80,8 @@ class ForceCurve:
         return cls(mean.strain_along, mean.stress, width, width * length_over_width)
 
 
-@dataclass(frozen=True, eq=False)
-class Calibration:
+@dataclass(frozen=True, eq=False, repr=False)
+class Calibration(Result):
     """A calibrated law.
 
     Attributes

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 
 PITCH_PX = 8.0
 STILL_PX = 0.5
@@ -46,8 +47,8 @@ class Frame:
     top: Array
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredField:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredField(Result):
     """A measured strip test.
 
     Attributes

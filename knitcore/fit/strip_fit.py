@@ -24,6 +24,7 @@ from scipy.optimize import OptimizeResult, least_squares
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE
 from knitcore.fit.measured_strip import CELLS, LEVELS, WAIST_NOISE, MeasuredStrip, force_noise
 from knitcore.fit.pull_fit import LawFit, Reduction, Residuals, fit_law, rms
@@ -71,8 +72,8 @@ _PRIORS = np.array([COUPLING_PRIOR, KAPPA_PRIOR, KAPPA_PRIOR, LOG_SHEAR_PRIOR]).
 _SCALE = np.array([0.2, 0.2, 0.2, 0.1, 0.1, 0.3, 0.3, 0.1, 0.1, 0.5])
 
 
-@dataclass(frozen=True, eq=False)
-class StripFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class StripFit(Result):
     """A law fitted to simulated tests.
 
     Attributes

@@ -9,6 +9,7 @@ import numpy as np
 
 from knitcore.base.arrays import Indices, Mask, runs
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.shaped import ShapedChart
 from knitcore.prediction.size import RelaxedSize
@@ -35,8 +36,8 @@ class YarnRun:
     yarn: int
 
 
-@dataclass(frozen=True, eq=False)
-class Piece:
+@dataclass(frozen=True, eq=False, repr=False)
+class Piece(Result):
     """A piece to be knitted.
 
     Parameters

@@ -177,6 +177,10 @@ class YarnUse:
     length_m: float
     mass_g: float | None
 
+    def __str__(self) -> str:
+        mass = "" if self.mass_g is None else f", {self.mass_g:.3g} g"
+        return f"{self.length_m:.3g} m of yarn{mass}"
+
     @property
     def length_interval_m(self) -> Interval:
         """90 % interval: loops vary in length."""

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.stiffening import StiffeningForm, stiffening
 
@@ -17,8 +18,8 @@ _HALVINGS = 52
 _NEWTON_STEPS = 200
 
 
-@dataclass(frozen=True, eq=False)
-class UniaxialCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class UniaxialCurve(Result):
     """Response of a sheet pulled in one direction; arrays of one length.
 
     Attributes

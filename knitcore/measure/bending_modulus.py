@@ -16,6 +16,7 @@ from scipy.optimize import minimize_scalar
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_linear_density, check_positive, check_range
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 from knitcore.measure.centreline import Centreline, load_grey, trace_centreline
 from knitcore.measure.heavy_elastica import heavy_elastica
 
@@ -55,8 +56,8 @@ class BendingPhoto:
     fitted_mm: Array
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredBending:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredBending(Result):
     """Mean over photos.
 
     Attributes

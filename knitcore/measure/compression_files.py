@@ -15,14 +15,15 @@ from pathlib import Path
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 from knitcore.measure.table_reading import TableReading
 from knitcore.measure.tables import numbers, read_table, rows_by_label
 from knitcore.measure.tester_tables import read_specimens, table_heads
 from knitcore.measure.workbooks import MAX_BYTES, Cell, Worksheet, is_workbook, read_workbook
 
 
-@dataclass(frozen=True, eq=False)
-class CompressionTest:
+@dataclass(frozen=True, eq=False, repr=False)
+class CompressionTest(Result):
     """One squeeze of one yarn.
 
     Attributes

@@ -34,6 +34,7 @@ from numpy.typing import ArrayLike
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.materials import paper_figures
 from knitcore.mechanics.elastica import Parity
 
@@ -169,7 +170,7 @@ class SegmentResult:
 
 
 @dataclass(frozen=True)
-class RSFabric:
+class RSFabric(Result):
     """A pure fabric in the RS model."""
 
     fabric: Fabric

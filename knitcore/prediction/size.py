@@ -8,6 +8,7 @@ from knitcore.base.bounds import check_positive, check_range
 from knitcore.base.choice import Choice
 from knitcore.base.kinds import check_kind
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 
 
 class KnownBy(Choice):
@@ -29,7 +30,7 @@ _ERRORS = {
 
 
 @dataclass(frozen=True)
-class RelaxedSize:
+class RelaxedSize(Result):
     """Relaxed size of one mean stitch of a chart.
 
     Attributes

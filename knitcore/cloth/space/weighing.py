@@ -26,6 +26,8 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, InputError
+from knitcore.chart.in_space import ClothInSpace
+from knitcore.chart.result import Result
 from knitcore.cloth.space.even_cloth import EvenCloth
 from knitcore.cloth.space.sheet_shape import Shape, settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import StitchSheet
@@ -59,8 +61,8 @@ MAX_WIDTH_MM = 500.0
 _RECTANGLE_MM = 2.5
 
 
-@dataclass(frozen=True, eq=False)
-class Overhang:
+@dataclass(frozen=True, eq=False, repr=False)
+class Overhang(ClothInSpace):
     """A strip at rest; x along it from the edge of the table, z up.
 
     Parameters
@@ -143,8 +145,8 @@ def overhang(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Drape:
+@dataclass(frozen=True, eq=False, repr=False)
+class Drape(ClothInSpace):
     """A draped piece: the state of least energy of those found; z up.
 
     Parameters
@@ -272,8 +274,8 @@ def _folds(sheet: StitchSheet, shape: Shape, ring_mm: float) -> int:
     return int(np.count_nonzero((crests >= 144) & (crests < 288)))
 
 
-@dataclass(frozen=True, eq=False)
-class BorderAdvice:
+@dataclass(frozen=True, eq=False, repr=False)
+class BorderAdvice(Result):
     """A border along one pair of edges.
 
     Parameters

@@ -117,7 +117,7 @@ def relax(
     if grid is not None:
         check_kind("grid", grid, SplineGrid, "Give a SplineGrid, such as SplineGrid(16, 5).")
     if starts is not None:
-        for start in starts if isinstance(starts, Sequence) and starts else (starts,):
+        for start in starts if isinstance(starts, Sequence) else (starts,):
             check_kind("starts", start, Start, "Give a list of Start, such as [Start('usual')].")
     set_by_caller = (cell_course_mm, cell_wale_mm, grid, starts)
     prescribed = flat or any(option is not None for option in set_by_caller)

@@ -161,7 +161,7 @@ class WholeShape:
         return max(abs(self.energy_change), self.size_change / _SIZES)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class RelaxedChart(RelaxedRepeat):
     """A chart relaxed as a whole.
 
