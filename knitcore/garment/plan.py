@@ -76,7 +76,7 @@ class GarmentPlan(Result):
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class OutlinePart:
     """A named part of an outline in one pure fabric, before it is filled."""
 
     name: str
@@ -87,7 +87,7 @@ class Part:
 def make_plan(
     name: str,
     stitch: Mask,
-    parts: tuple[Part, ...],
+    parts: tuple[OutlinePart, ...],
     material: Material,
     gauges: GaugeSet,
     *,

@@ -168,7 +168,7 @@ def left_out(measured: tuple[Fabric, ...] = ()) -> LeftOut:
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class PredictedCells:
     """Logarithms (4, 2) by quantity, their standard deviations, and the laws they make."""
 
     values: dict[str, Array]
@@ -178,7 +178,7 @@ class Prediction:
 
 def predict_cells(
     table: LibraryTable, own: Mapping[str, Array], measured: Mask, scale: Array
-) -> Prediction:
+) -> PredictedCells:
     """All cells of a yarn from a table of others and its own measured cells.
 
     Parameters
@@ -213,7 +213,7 @@ def predict_cells(
     values["strain"] = np.log(
         [[free_strains_at_stress(law, d, LOAD_N_PER_MM) for d in DIRECTIONS] for law in laws]
     )
-    return Prediction(values, deviation, laws)
+    return PredictedCells(values, deviation, laws)
 
 
 @cache
