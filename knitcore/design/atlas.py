@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 FORMAT = 5
 MAX_BYTES = 50_000_000
+_BUILD = "Build an atlas of this material with `knitcore atlas`."
 
 STRESS_N_PER_MM: Array = np.array(
     [
@@ -127,7 +128,7 @@ class Atlas(Result):
         """
         if self.material != material.identifier:
             problem = f"it was built for {self.material}, not for {material.identifier}."
-            raise InputError("atlas", problem, "Build an atlas of this material.")
+            raise InputError("atlas", problem, _BUILD)
 
     def column(self, name: str) -> Array:
         """One of :data:`VALUES` for all repeats."""
@@ -259,9 +260,9 @@ def load_atlas(file: Path) -> Atlas:
         If the file is missing or holds none.
     """
     if not file.is_file():
-        raise InputError("atlas", f"there is no file {file}.", "Build it with `knitcore atlas`.")
+        raise InputError("atlas", f"there is no file {file}.", _BUILD)
     if file.stat().st_size > MAX_BYTES:
-        raise InputError("atlas", f"{file.name} is too large.", "Build it again.")
+        raise InputError("atlas", f"{file.name} is too large.", _BUILD)
     version = FORMAT
     try:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as data:
@@ -276,15 +277,13 @@ def load_atlas(file: Path) -> Atlas:
             )
     except Exception:  # a damaged archive fails in many ways: zlib, zipfile, numpy's own header
         if version != FORMAT:
-            raise InputError(
-                "atlas", f"{file.name} is of another version.", "Build it again."
-            ) from None
-        raise InputError("atlas", f"{file.name} is not an atlas.", "Build it again.") from None
+            raise InputError("atlas", f"{file.name} is of another version.", _BUILD) from None
+        raise InputError("atlas", f"{file.name} is not an atlas.", _BUILD) from None
     rows = len(atlas.keys)
     if (
         atlas.values.shape != (rows, len(VALUES))
         or atlas.curves.shape != (rows, *CURVES)
         or len(atlas.provenance) != rows
     ):
-        raise InputError("atlas", f"{file.name} is damaged.", "Build it again.")
+        raise InputError("atlas", f"{file.name} is damaged.", _BUILD)
     return atlas

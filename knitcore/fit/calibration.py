@@ -75,7 +75,8 @@ class ForceCurve:
         top = min(float(run.strain_along.max()) for run in test.runs)
         mean = test.pooled().averaged(CURVE_BINS, top)
         if mean.length < CURVE_BINS / 2:
-            raise InputError("tests", f"{test.source} has too few points.", "Give a denser test.")
+            remedy = f"Give a test with readings at {CURVE_BINS} evenly spread strains or more."
+            raise InputError("tests", f"{test.source} has too few points.", remedy)
         width = float(np.mean(test.width_mm))
         return cls(mean.strain_along, mean.stress, width, width * length_over_width)
 

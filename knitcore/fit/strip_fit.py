@@ -82,7 +82,7 @@ class StripFit(Result):
     uncertainty : of moduli and curves.
     errors : standard errors by the law's field names, ratios and moduli.
     stress, waist : simulated, per test, at the tests' strains.
-    flattening : per test, what its waist reads more than the simulated one throughout.
+    flattening : per test, how much its waist strain exceeds the simulated one at all levels.
     evaluations : simulated pairs of tests.
     """
 
@@ -289,7 +289,7 @@ class _Problem:
 
 
 def flattening(simulated: Array, measured: Array) -> float:
-    """The most likely constant that a measured waist reads more than a simulated one."""
+    """The most likely constant difference of the measured waist strain from the simulated one."""
     apart = (measured - simulated)[np.isfinite(simulated) & np.isfinite(measured)]
     return float(apart.sum() / (len(apart) + (WAIST_NOISE / FLATTENING) ** 2))
 

@@ -60,7 +60,9 @@ class Piece(Result):
 
     def __post_init__(self) -> None:
         if self.yarn_of.shape != self.shaped.stitch.shape:
-            raise InputError("yarns", "their size is not that of the chart.", "Give all cells.")
+            raise InputError(
+                "yarns", "their size is not that of the chart.", "Give a yarn for every cell."
+            )
         used = np.unique(self.yarn_of[self.shaped.stitch]).tolist()
         renumbered = np.zeros(len(self.yarns), dtype=np.intp)
         renumbered[used] = np.arange(len(used))

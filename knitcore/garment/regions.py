@@ -86,7 +86,7 @@ def fill_regions(stitch: Mask, regions: Sequence[Region]) -> ShapedChart:
             raise InputError(
                 "regions",
                 f"the size of {region.name} is not that of the chart.",
-                "Mark every cell.",
+                "Give True or False for every cell of the chart.",
             )
         times += region.cells
         purl[region.cells] = region.fill.resized(*stitch.shape).purl[region.cells]

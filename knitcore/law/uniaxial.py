@@ -100,7 +100,9 @@ def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
 def _checked(stress: ArrayLike) -> Array:
     stresses = np.asarray(stress, dtype=float)
     if not np.all(np.isfinite(stresses)) or np.any(stresses < 0):
-        raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
+        raise InputError(
+            "stress", "has values that are negative or no numbers.", "Give 0 N/mm or more."
+        )
     return stresses
 
 

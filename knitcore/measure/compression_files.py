@@ -53,7 +53,9 @@ def read_compression(path: Path) -> list[CompressionTest]:
     if not path.is_file():
         raise InputError(str(path), "is not a file.", "Give the path of an XLS, XLSX or CSV file.")
     if path.stat().st_size > MAX_BYTES:
-        raise InputError(path.name, "is larger than 50 MB.", "Give the tests only.")
+        raise InputError(
+            path.name, "is larger than 50 MB.", "Keep only the sheets with tests in it."
+        )
     if is_workbook(path):
         return _of_workbook(path.name, read_workbook(path))
     if path.suffix.lower() in (".xls", ".xlsx"):

@@ -75,12 +75,16 @@ class SegmentGeometry:
         for name in ("separation_mm", "length_mm"):
             check_positive(name, getattr(self, name), "mm", "a length")
         if not math.isfinite(self.slope) or (self.parity is Parity.EVEN and self.slope == 0):
-            raise InputError("slope", f"{self.slope} leaves it rigid.", "Give v above 0.")
+            raise InputError(
+                "slope", f"{self.slope} leaves it rigid.", "Give a slope other than 0."
+            )
         if self.parity is Parity.ODD and not (
             self.angle_rad is not None and 0 < self.angle_rad <= math.pi / 2
         ):
             raise InputError(
-                "angle_rad", f"{self.angle_rad} cannot be used.", "Give 0 < phi <= pi / 2."
+                "angle_rad",
+                f"{self.angle_rad} cannot be used.",
+                "Give an angle above 0, up to pi / 2.",
             )
 
     @classmethod
@@ -211,7 +215,7 @@ def rs_fabric(
             raise InputError(
                 name,
                 f"is {segment.parity}, but {fabric} has {expected} segments.",
-                "Exchange them.",
+                "Exchange the segments along the course and along the wale.",
             )
     return RSFabric(
         fabric,

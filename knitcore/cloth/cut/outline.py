@@ -144,5 +144,7 @@ class CutPiece:
         """
         if edge not in self.edges:
             known = ", ".join(self.edges) or "none"
-            raise InputError("edge", f"there is no edge {edge!r}.", f"Name it; there are {known}.")
+            raise InputError(
+                "edge", f"there is no edge {edge!r}.", f"Use one of these edges: {known}."
+            )
         return [side - 1 for side in self.edges[edge]]

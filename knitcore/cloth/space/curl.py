@@ -154,10 +154,12 @@ def curl(
     chart, material = as_chart(chart), as_material(material)
     check_piece(chart, stitches)
     if pull is not None and min(chart.rows, chart.columns) < _BETWEEN:
-        raise InputError("chart", "is too small for clamps.", f"Give {_BETWEEN} rows and columns.")
+        remedy = f"Give at least {_BETWEEN} rows and {_BETWEEN} columns."
+        raise InputError("chart", "is too small for clamps.", remedy)
     shape = (chart.rows + 1, chart.columns + 1, 3)
     if begin is not None and begin.shape != shape:
-        raise InputError("begin", "has another size.", "Give the corners of as many stitches.")
+        remedy = f"Give the corners of a piece of {chart.columns} x {chart.rows} stitches."
+        raise InputError("begin", "has another size than the chart.", remedy)
     if stitches is not None:
         chart = continued(chart, stitches)
     sheet = sheet_of(chart, material, stitches)
@@ -234,9 +236,8 @@ def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -
     if stitches is None:
         return
     if stitches.shape != chart.purl.shape or not stitches.any():
-        raise InputError(
-            "outline", "does not fit the chart.", "Give as many cells, one stitch at least."
-        )
+        remedy = "Give True or False for every stitch of the chart, True for at least one."
+        raise InputError("outline", "does not fit the chart.", remedy)
     parts, count = label(stitches, structure=np.ones((3, 3)))
     if count > 1:
         sizes = np.bincount(parts.ravel())[1:]

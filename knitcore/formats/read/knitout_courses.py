@@ -311,7 +311,7 @@ def _without_unfinished_start(
 
 
 def _is_inside(names: Mapping[str, int], seen: set[str], beside: Mapping[str, int]) -> bool:
-    """Say whether many needles within a course are none of those seen."""
+    """Say whether a course has many new needles between its outermost ones."""
     low, high = min(beside.values()), max(beside.values())
     new = [name for name, place in names.items() if name not in seen and low < place < high]
     places = set(beside.values())
@@ -320,7 +320,7 @@ def _is_inside(names: Mapping[str, int], seen: set[str], beside: Mapping[str, in
 
 
 def _empty_needles(used: Sequence[int], wale: _Wales) -> Iterator[str]:
-    """Tell of needles that stay empty; half gauge, where every second one does, is told so."""
+    """Yield notes on needles that stay empty within the piece, such as every second one."""
     steps = {b - a for a, b in pairwise(used)}
     if wale.both is not None:
         yield "Both beds knit at every number, racked between each other: each needle is a wale."

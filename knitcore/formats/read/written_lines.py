@@ -269,7 +269,9 @@ class _Reader:
                 self._line(Line(number, part))
         self._close()
         if self._depth:
-            raise InputError("rows", "a bracket is not closed.", "Close it.")
+            raise InputError(
+                "rows", "a bracket is not closed.", "Close every bracket that is opened."
+            )
         return self._pattern
 
     def _without_remarks(self, words: str) -> str:

@@ -102,7 +102,7 @@ def table_of(materials: Sequence[Material]) -> LibraryTable:
             record = material.record(fabric)
             if bending is None or record.loop_length_mm is None:
                 problem = f"has no bending modulus or no loop length of its {fabric}."
-                raise InputError(material.identifier, problem, "Give both.")
+                raise InputError(material.identifier, problem, "Add both to the material.")
             for direction in DIRECTIONS:
                 scale = math.log(bending / record.loop_length_mm**3)
                 modulus = math.log(record.law.modulus(direction))
