@@ -1,4 +1,4 @@
-"""What people meet who import the library: names, refusals of wrong arguments, results."""
+"""The face of the library to those who import it: names, refusals of wrong arguments, results."""
 
 import ast
 import importlib
@@ -99,12 +99,12 @@ def test_a_wrong_argument_is_refused_with_what_to_give(name: str, parameter: str
 
 
 NO_RESULTS = {StitchChart, Interval, KnitoutProgram, PieceInFile}
-"""What functions return that is itself an input, a pair of numbers, or the content of a file."""
+"""Kinds that functions return, but that are inputs, a pair of numbers, or the content of a file."""
 
 
 def test_results_of_functions_become_plain_values() -> None:
-    """Those of the public functions, of what the documentation shows in Python, and, where they
-    hold arrays, of what operations call."""
+    """Functions are the public ones, those that the documentation shows in Python and, where they
+    return arrays, those that operations call."""
     shown = {*_imported(_documentation()), *(_public(name) for name in LIBRARY.__all__)}
     called = _imported(file.read_text("utf-8") for file in (ROOT / "app/operations").rglob("*.py"))
     results = _results(shown) | {kind for kind in _results(called) if _has_arrays(kind)}
@@ -130,7 +130,7 @@ def _documentation() -> Iterator[str]:
 
 
 def _imported(programs: Iterable[str]) -> set[Any]:
-    """What programs import from the library."""
+    """Names that programs import from the library, as objects."""
     nodes = itertools.chain.from_iterable(ast.walk(ast.parse(program)) for program in programs)
     return {
         getattr(importlib.import_module(node.module), name.name)

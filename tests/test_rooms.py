@@ -98,7 +98,7 @@ def test_no_two_modules_of_the_library_have_one_name() -> None:
 
 
 def test_a_name_of_a_class_means_one_thing() -> None:
-    """Those for use within a module only begin with an underscore."""
+    """Names for use within a module begin with an underscore, and do not count."""
     trees = [
         ast.parse(file.read_text(encoding="utf-8"))
         for top in ("knitcore", "app")

@@ -18,6 +18,7 @@ import numpy as np
 from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, InputError, SearchProgress
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
@@ -552,9 +553,10 @@ def _extent(cells: Mask) -> tuple[int, int]:
 
 
 def _checked(course: Array, wale: Array, smallest_patch: int) -> Array:
-    maps = [np.asarray(course, dtype=float), np.asarray(wale, dtype=float)]
+    remedy = "Give rows x columns of N/mm for both."
+    maps = [as_numbers("target", values, remedy) for values in (course, wale)]
     if maps[0].ndim != 2 or maps[0].shape != maps[1].shape:
-        raise InputError("target", "the two maps differ in size.", "Give rows x columns for both.")
+        raise InputError("target", "the two maps differ in size.", remedy)
     check_chart_size(*maps[0].shape)
     both = np.stack(maps)
     if np.isnan(both).all():

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
@@ -49,7 +50,7 @@ def uniaxial_response(
     InputError
         If a strain reaches the lock-up of the full law, or leaves no free transverse equilibrium.
     """
-    axial = np.atleast_1d(np.asarray(strain, dtype=float))
+    axial = np.atleast_1d(as_numbers("strain", strain, "Give finite strains."))
     if not np.all(np.isfinite(axial)):
         raise InputError("strain", "has values that are not numbers.", "Give finite strains.")
     check_below_lock_up(law, direction, float(axial.max(initial=0.0)), form)
@@ -98,11 +99,10 @@ def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
 
 
 def _checked(stress: ArrayLike) -> Array:
-    stresses = np.asarray(stress, dtype=float)
+    remedy = "Give 0 N/mm or more."
+    stresses = as_numbers("stress", stress, remedy)
     if not np.all(np.isfinite(stresses)) or np.any(stresses < 0):
-        raise InputError(
-            "stress", "has values that are negative or no numbers.", "Give 0 N/mm or more."
-        )
+        raise InputError("stress", "has values that are negative or no numbers.", remedy)
     return stresses
 
 

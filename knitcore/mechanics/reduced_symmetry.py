@@ -33,6 +33,7 @@ from numpy.typing import ArrayLike
 
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.result import Result
 from knitcore.materials import paper_figures
@@ -102,13 +103,10 @@ class SegmentGeometry:
         InputError
             If there are fewer than 5 points or they do not describe a segment.
         """
-        curve = np.asarray(curve_mm, dtype=float)
+        remedy = f"Give at least {_MIN_POINTS} points of 2 or 3 coordinates."
+        curve = as_numbers("curve_mm", curve_mm, remedy)
         if curve.ndim != 2 or curve.shape[1] not in (2, 3) or len(curve) < _MIN_POINTS:
-            raise InputError(
-                "curve_mm",
-                f"has the shape {curve.shape}.",
-                f"Give at least {_MIN_POINTS} points of 2 or 3 coordinates.",
-            )
+            raise InputError("curve_mm", f"has the shape {curve.shape}.", remedy)
         length = float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum())
         points = curve[:, :2]
         chord = points[-1] - points[0]
