@@ -5,6 +5,7 @@ import re
 import shutil
 import socket
 import subprocess
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ import pytest
 import yaml
 
 from app.service.settings import Settings
+from app.service.web.unread import TESTED_UVICORN
+from app.viewer.private_port import TESTED_VISER
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCKERFILE = (ROOT / "Dockerfile").read_text()
@@ -43,6 +46,16 @@ def test_the_environment_of_the_service_is_valid(
     assert settings.token is not None
     assert settings.require_login
     assert not settings.is_loopback
+
+
+@pytest.mark.parametrize(
+    ("package", "tested"), [("uvicorn", TESTED_UVICORN), ("viser", TESTED_VISER)]
+)
+def test_packages_that_are_changed_here_have_the_version_tested(package: str, tested: str) -> None:
+    assert version(package).startswith(f"{tested}.")
+    major, minor = map(int, tested.split("."))
+    allowed = f'"{package}>={tested},<{major}.{minor + 1}"'
+    assert allowed in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
 
 
 def test_secrets_are_files_that_are_not_committed() -> None:

@@ -3,6 +3,7 @@
 import ast
 import importlib.util
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -94,6 +95,18 @@ def test_a_folder_is_surveyed_at_a_glance() -> None:
 def test_no_two_modules_of_the_library_have_one_name() -> None:
     names = [file.stem for file in (ROOT / "knitcore").rglob("*.py") if file.stem != "__init__"]
     assert len(names) == len(set(names))
+
+
+def test_a_name_of_a_class_means_one_thing() -> None:
+    """Names for use within a module begin with an underscore, and do not count."""
+    trees = [
+        ast.parse(file.read_text(encoding="utf-8"))
+        for top in ("knitcore", "app")
+        for file in (ROOT / top).rglob("*.py")
+    ]
+    names = [node.name for tree in trees for node in tree.body if isinstance(node, ast.ClassDef)]
+    public = Counter(name for name in names if not name.startswith("_"))
+    assert [name for name, count in public.items() if count > 1] == []
 
 
 def test_the_library_does_not_import_the_service() -> None:

@@ -115,7 +115,7 @@ class _Compiling(logging.Handler):
 
 @contextlib.contextmanager
 def telling_what_is_compiled() -> Iterator[None]:
-    """Say so if kernels are compiled, since a silent command seems to hang, and do it faster."""
+    """Report on stderr that kernels are compiled, and compile some of them in a second process."""
     log, handler = logging.getLogger("knitcore.base.compiled"), _Compiling()
     log.setLevel(logging.DEBUG)
     log.addHandler(handler)

@@ -28,10 +28,10 @@ log = logging.getLogger("knitcore.app")
 
 MAX_HANDLES = 65_536
 SWITCH_S = 0.0005
-"""How long threads keep the interpreter from the event loop, which asks for it several times in
-each request; Python's own 5 ms would add up."""
+"""Longest time that a thread keeps Python's interpreter while the event loop waits for it. The loop
+waits several times in each request, so that Python's default of 5 ms would add up."""
 SPARE_HANDLES = 400
-"""For databases, workers, views and files."""
+"""File handles that are kept for databases, workers, views and files."""
 
 
 @click.command("serve")

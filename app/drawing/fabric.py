@@ -189,7 +189,7 @@ class FabricScene:
 
     @property
     def _box_mm(self) -> Array | None:
-        """See :class:`Ground`."""
+        """Lowest and highest place of stitches and body from the front: ``Ground.box_mm``."""
         places = self.placement
         if places.frames is None or places.heights_mm is None:
             return None

@@ -28,7 +28,7 @@ Colours = NDArray[np.uint8]
 TAUT_SCALE = 0.7
 """Share of the colour map up to which a stitch that has stretch left is coloured: to orange."""
 TAUT_COLOUR = (214, 30, 36)
-"""A warning; the page has the same."""
+"""Colour of stitches without stretch left, a warning; the page uses the same."""
 
 
 class Colour(StrEnum):

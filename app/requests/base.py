@@ -64,14 +64,13 @@ def read(model: Any, content: bytes | str) -> Any:
 
 
 def decoded(content: bytes | str) -> Any:
-    """The values of JSON that somebody sent.
-
-    Names differ within an object: which of two values was meant, nobody can say. Texts have whole
-    characters and no NUL, which PostgreSQL does not take.
+    """Decode JSON that somebody sent.
 
     Raises
     ------
     json.JSONDecodeError
+        Also if an object has one name twice, or a text half a character or a NUL, which PostgreSQL
+        does not take.
     """
     if isinstance(content, bytes):
         content = content.decode(json.detect_encoding(content), "surrogatepass")

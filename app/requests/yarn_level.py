@@ -200,7 +200,7 @@ class RubbedRequest(YarnLevelRequest):
         """True if an option that needs friction is given."""
 
     def check_parts(self, context: Context) -> None:
-        """Refuse what cannot be had with friction, too."""
+        """Refuse, besides, options that do not go together with friction."""
         super().check_parts(context)
         self.with_friction(context)
 
@@ -210,7 +210,7 @@ class RubbedRequest(YarnLevelRequest):
         Raises
         ------
         InputError
-            With all that cannot be had with friction.
+            Naming every option that does not go together with friction.
         """
         if not self.has_friction:
             return self
@@ -229,7 +229,7 @@ class RubbedRequest(YarnLevelRequest):
         return f"Coefficient of friction {self.friction:g}: {source}."
 
     def _against_friction(self) -> Iterator[InputError]:
-        """Yield an error for each option that cannot be had with friction."""
+        """Yield an error for each option that does not go together with friction."""
         if self.branch is Branch.PUBLISHED:
             yield InputError(
                 "branch", "the published branch has no friction.", "Use mirrored or free."

@@ -263,7 +263,9 @@ def _secrets(settings: type[BaseSettings]) -> tuple[SecretsSettingsSource, ...]:
     if folder.is_dir():
         return (SecretsSettingsSource(settings, secrets_dir=folder),)
     if named:
-        raise InputError("KNITCORE_SECRETS_DIR", f"{folder} is not a folder.", "Name one.")
+        raise InputError(
+            "KNITCORE_SECRETS_DIR", f"{folder} is not a folder.", "Name a folder that exists."
+        )
     return ()
 
 

@@ -22,7 +22,7 @@ RESIZE = np.array([0.06, 0.06, 0.06, 0.02])
 FINEST = 256
 """Steps to a millimetre in which places and sizes are sent, as in frontend/viser/yarn.js."""
 BRIGHTEST = 63 / 64
-"""Full light is no whole step."""
+"""Full light as it is sent: less than a step, since the fraction of a step holds the light."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -63,7 +63,7 @@ def _refuse_strangers(connection: Any, request: Any) -> Any:
 
 
 def _serve(*args: Any, process_request: Any = None, **options: Any) -> Any:
-    """``websockets``' own, for which strangers are refused before anything else is looked at."""
+    """Start a websocket server as ``websockets`` does, but refuse strangers before all else."""
     global _guarded_calls  # noqa: PLW0603 - counts for private_server
     _guarded_calls += 1
 

@@ -63,7 +63,7 @@ class ViewerPage:
 
 
 def viewer_page() -> ViewerPage:
-    """Put it together."""
+    """Make the page of a view from viser's client and our scripts."""
     page = with_scripts(CLIENT_PAGE.read_text(encoding="utf-8"), VIEW_STYLE).encode()
     return ViewerPage(page, f'"{hashlib.sha256(page).hexdigest()[:16]}"')
 

@@ -25,7 +25,7 @@ REFRAMED = 0.05
 MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
-"""Seen on light and on dark."""
+"""Colour of the scale, which shows on light and on dark ground."""
 SCALE_BELOW = (1.8, 0.045)
 """The scale lies this many stitches below the fabric, and this share of its height at least."""
 WORDS_BELOW = 1.3

@@ -32,7 +32,7 @@ PAGE_POLICY = (
     "img-src data: blob:; font-src data:; connect-src data: blob:; worker-src data: blob:; "
     """base-uri 'none'; form-action 'none'">"""
 )
-"""A page that was given away reaches no network."""
+"""Content policy of a page that is given away: it may not use the network."""
 
 
 class NoPictureError(ServiceError):

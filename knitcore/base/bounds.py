@@ -1,9 +1,10 @@
 """Ranges of numbers that callers give; NaN lies in none."""
 
 from math import inf
-from numbers import Integral
+from numbers import Integral, Real
 
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import check_kind
 
 
 def check_range(
@@ -21,8 +22,9 @@ def check_range(
     Traceback (most recent call last):
     knitcore.base.errors.InputError: ease: 2 is not an ease. Give -0.6 to 1.
     """
+    remedy = f"Give {low:g} to {high:g} {unit}".rstrip() + "."
+    check_kind(field, value, Real, remedy)
     if not low <= value <= high:
-        remedy = f"Give {low:g} to {high:g} {unit}".rstrip() + "."
         raise InputError(field, _problem(value, unit, what), remedy)
 
 
@@ -41,10 +43,11 @@ def check_positive(
     Traceback (most recent call last):
     knitcore.base.errors.InputError: width_mm: 0 mm is not a width. Give a number above 0 mm.
     """
+    remedy = "Give a number above 0" if most == inf else f"Give above 0 to {most:g}"
+    remedy = f"{remedy} {unit}".rstrip() + "."
+    check_kind(field, value, Real, remedy)
     if not 0 < value < inf or value > most:
-        end = "" if most == inf else f"{most:g}"
-        remedy = f"Give above 0 to {end} {unit}" if end else f"Give a number above 0 {unit}"
-        raise InputError(field, _problem(value, unit, what), remedy.rstrip() + ".")
+        raise InputError(field, _problem(value, unit, what), remedy)
 
 
 def check_count(field: str, value: int, low: int, high: int) -> None:
@@ -60,6 +63,7 @@ def check_count(field: str, value: int, low: int, high: int) -> None:
     Traceback (most recent call last):
     knitcore.base.errors.InputError: rounds: 2.5 is not a whole number. Give 2 to 200.
     """
+    check_kind(field, value, Real, f"Give a whole number from {low} to {high}.")
     if not isinstance(value, Integral):
         raise InputError(field, _problem(value, "", "a whole number"), f"Give {low} to {high}.")
     check_range(field, value, low, high)

@@ -1,5 +1,6 @@
 """Choices by name."""
 
+import re
 from enum import StrEnum
 from typing import Self
 
@@ -7,7 +8,7 @@ from knitcore.base.errors import InputError
 
 
 class Choice(StrEnum):
-    """A closed set of names; errors name an input of this kind by the class, in small letters."""
+    """A closed set of names; errors name an input of this kind by the class: HungBy, hung_by."""
 
     @classmethod
     def parse(cls, name: str) -> Self:
@@ -21,5 +22,6 @@ class Choice(StrEnum):
         try:
             return cls(name)
         except ValueError:
-            field, known = cls.__name__.lower(), ", ".join(cls)
-            raise InputError(field, f"{name!r} is not known.", f"Use {known}.") from None
+            field = re.sub(r"\B(?=[A-Z])", "_", cls.__name__).lower()
+            known = ", ".join(cls)
+            raise InputError(field, f"{name!r:.40} is not known.", f"Use {known}.") from None

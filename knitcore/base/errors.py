@@ -80,13 +80,13 @@ class SearchProgress:
     done: float = 0.0
 
     def look(self, done: float) -> None:
-        """Report progress, and stop if asked to."""
+        """Report progress; raise :class:`CancelledError` if the caller wants to stop."""
         self.stop_if_asked()
         self.done = max(self.done, min(done, 1.0))
         if self.progress is not None:
             self.progress(self.done)
 
     def stop_if_asked(self) -> None:
-        """Stop if asked to."""
+        """Raise :class:`CancelledError` if the caller wants to stop."""
         if self.cancelled is not None and self.cancelled():
             raise CancelledError(f"stopped after {self.done:.0%}")

@@ -72,7 +72,7 @@ class Fabric(Choice):
         InputError
             If no pure fabric has this name.
         """
-        return super().parse(name.strip().lower())
+        return super().parse(name.strip().lower() if isinstance(name, str) else name)
 
 
 PHASES = (Fabric.STOCKINETTE, Fabric.GARTER, Fabric.RIB, Fabric.SEED)

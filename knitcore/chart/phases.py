@@ -7,8 +7,11 @@ surroundings code, determine its part of the composite: there are only 16 kinds 
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Codes, Mask
+from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_mask
 from knitcore.chart.fabric import PHASES, Fabric
 from knitcore.chart.segments import segment_map
 from knitcore.chart.stitch_chart import StitchChart, as_chart
@@ -67,9 +70,28 @@ def quarter_phases(
            [0, 0, 0, 2, 2, 2]], dtype=uint8)
     """
     chart = as_chart(chart)
+    if stitch is not None:
+        stitch = as_stitches(stitch, chart)
     codes = surroundings(chart, periodic=periodic, stitch=stitch)
     phases = QUARTERS_OF_CODE[codes]  # (rows, columns, 2, 2)
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
+
+
+def as_stitches(stitch: ArrayLike, chart: StitchChart) -> Mask:
+    """Take a table that says where a shaped piece has stitches, as an array.
+
+    Raises
+    ------
+    InputError
+        If it is no table of True and False for every stitch of the chart.
+    """
+    remedy = "Give True or False for every stitch of the chart, row 0 at the bottom."
+    mask = as_mask("stitch", stitch, remedy)
+    if mask.shape != chart.purl.shape:
+        rows, columns = mask.shape
+        problem = f"has {columns}x{rows} cells, the chart {chart.columns}x{chart.rows}."
+        raise InputError("stitch", problem, remedy)
+    return mask
 
 
 def continued(chart: StitchChart, stitch: Mask) -> StitchChart:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from enum import Enum
 from typing import Any, ClassVar
 
@@ -20,8 +20,9 @@ _NOT_PLAIN = object()
 class Result:
     """A dataclass of numbers and arrays, made with ``repr=False``.
 
-    Its text gives the shape of an array instead of its numbers. :meth:`to_dict` has everything that
-    JSON can hold, under names that carry the units.
+    Its text gives the shape of an array instead of its numbers, and other objects in the words of
+    their ``str``. :meth:`to_dict` has everything that JSON can hold, under names that carry the
+    units.
     """
 
     also_listed: ClassVar[tuple[str, ...]] = ()
@@ -33,7 +34,8 @@ class Result:
         """Collect the result as numbers, texts, lists and dictionaries.
 
         Intervals are lists of their two ends, charts their text, and NaN and infinity None. Fields
-        that hold neither, such as functions and meshes, are left out.
+        that hold neither, such as functions and meshes, are left out, and so are objects with such
+        fields.
         """
         names = [name for name in _names(self) if name not in self.not_listed]
         values = {name: _plain(getattr(self, name)) for name in (*names, *self.also_listed)}
@@ -44,8 +46,8 @@ class Result:
         return f"{type(self).__name__}({shown})"
 
 
-def _names(result: Result) -> list[str]:
-    return [field.name for field in fields(result)]  # type: ignore[arg-type]
+def _names(of: object) -> list[str]:
+    return [field.name for field in fields(of)]  # type: ignore[arg-type]
 
 
 def _plain(value: object) -> Any:  # noqa: PLR0911
@@ -67,10 +69,12 @@ def _plain(value: object) -> Any:  # noqa: PLR0911
             return value.to_dict()
         case Mapping():
             pairs = {str(key): _plain(item) for key, item in value.items()}
-            return _NOT_PLAIN if _NOT_PLAIN in pairs.values() else pairs
+            return _NOT_PLAIN if any(item is _NOT_PLAIN for item in pairs.values()) else pairs
         case _ if hasattr(value, "__iter__"):
             items = [_plain(item) for item in value]
             return _NOT_PLAIN if any(item is _NOT_PLAIN for item in items) else items
+        case _ if is_dataclass(value):
+            return _plain({name: getattr(value, name) for name in _names(value)})
     return _NOT_PLAIN
 
 
@@ -92,4 +96,5 @@ def _short(value: object) -> str:  # noqa: PLR0911
             return repr(value if len(value) <= _LONG else f"{value[:_LONG]}…")
         case bool() | int() | None:
             return repr(value)
-    return f"<{type(value).__name__}>"
+    has_words = type(value).__str__ is not object.__str__
+    return f"<{value if has_words else type(value).__name__}>"

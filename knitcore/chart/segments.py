@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from knitcore.base.arrays import Mask
+from knitcore.base.kinds import check_flags
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart
@@ -59,6 +60,7 @@ def segment_map(chart: StitchChart | str, *, periodic: bool = False) -> SegmentM
     >>> segment_map(rib).counts(Direction.COURSE), segment_map(rib).counts(Direction.WALE)
     (SegmentCounts(even=0, odd=9), SegmentCounts(even=8, odd=0))
     """
+    check_flags(periodic=periodic)
     purl = as_chart(chart).purl
     course_odd, wale_odd = (purl ^ np.roll(purl, -1, axis=axis) for axis in (1, 0))
     if not periodic:

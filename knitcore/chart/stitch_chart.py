@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 
 from knitcore.base import showing
 from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_mask, check_kind
 from knitcore.chart.fabric import Fabric
 
 MAX_STITCHES_PER_SIDE = 1000
@@ -59,8 +61,8 @@ class StitchChart:
     purl: Mask
 
     def __post_init__(self) -> None:
-        grid = np.array(self.purl, dtype=bool)
-        if grid.ndim != 2 or 0 in grid.shape:
+        grid = as_mask("chart", self.purl, "Give rows of True (purl) and False (knit).")
+        if 0 in grid.shape:
             raise InputError("chart", "the chart has no stitches.", "Give at least one row of K/P.")
         check_chart_size(*grid.shape)
         grid.setflags(write=False)
@@ -81,6 +83,7 @@ class StitchChart:
             Unknown symbols, ragged rows, and blanks that may be knits are named with their line
             and column.
         """
+        check_kind("chart", text, str, "Give rows of K and P such as 'KP/PK'.")
         rows: list[str] = []
         drawn: list[tuple[int, str]] = []
         first_line = 0
@@ -121,7 +124,7 @@ class StitchChart:
 
         Rows 1, 3, 5 … and columns 1, 3, 5 … begin with a knit at the bottom left.
         """
-        kind = Fabric(fabric) if isinstance(fabric, Fabric) else Fabric.parse(fabric)
+        kind = Fabric.parse(fabric)
         check_chart_size(rows, columns)
         row = np.arange(rows)[:, None] * kind.wale_odd
         column = np.arange(columns)[None, :] * kind.course_odd
@@ -319,6 +322,8 @@ def check_chart_size(rows: int, columns: int) -> None:
     InputError
         Naming the size that would be accepted.
     """
+    for lines in (rows, columns):
+        check_kind("chart", lines, Integral, "Give whole numbers of rows and columns.")
     if rows < 1 or columns < 1:
         raise InputError(
             "chart", f"{columns}x{rows} has no stitches.", "Give at least 1 column and 1 row."
@@ -356,11 +361,7 @@ def as_chart(chart: StitchChart | str) -> StitchChart:
     """
     if isinstance(chart, StitchChart):
         return chart
-    if not isinstance(chart, str):
-        raise InputError(
-            "chart",
-            f"is of type {type(chart).__name__}.",
-            "Give a StitchChart, rows of K and P such as 'KP/PK', or a fabric such as 'garter'.",
-        )
+    remedy = "Give a StitchChart, rows of K and P such as 'KP/PK', or a fabric such as 'garter'."
+    check_kind("chart", chart, str, remedy)
     name = chart.strip().lower()
     return StitchChart.of_fabric(name) if name in tuple(Fabric) else StitchChart.parse(chart)

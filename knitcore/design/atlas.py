@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
 from knitcore.materials import Material
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 FORMAT = 5
 MAX_BYTES = 50_000_000
+_BUILD = "Build an atlas of this material with `knitcore atlas`."
 
 STRESS_N_PER_MM: Array = np.array(
     [
@@ -79,8 +81,8 @@ class Entry:
     provenance: str
 
 
-@dataclass(frozen=True, eq=False)
-class Atlas:
+@dataclass(frozen=True, eq=False, repr=False)
+class Atlas(Result):
     """Predictions of many repeats of one material.
 
     Attributes
@@ -126,7 +128,7 @@ class Atlas:
         """
         if self.material != material.identifier:
             problem = f"it was built for {self.material}, not for {material.identifier}."
-            raise InputError("atlas", problem, "Build an atlas of this material.")
+            raise InputError("atlas", problem, _BUILD)
 
     def column(self, name: str) -> Array:
         """One of :data:`VALUES` for all repeats."""
@@ -258,9 +260,9 @@ def load_atlas(file: Path) -> Atlas:
         If the file is missing or holds none.
     """
     if not file.is_file():
-        raise InputError("atlas", f"there is no file {file}.", "Build it with `knitcore atlas`.")
+        raise InputError("atlas", f"there is no file {file}.", _BUILD)
     if file.stat().st_size > MAX_BYTES:
-        raise InputError("atlas", f"{file.name} is too large.", "Build it again.")
+        raise InputError("atlas", f"{file.name} is too large.", _BUILD)
     version = FORMAT
     try:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as data:
@@ -275,15 +277,13 @@ def load_atlas(file: Path) -> Atlas:
             )
     except Exception:  # a damaged archive fails in many ways: zlib, zipfile, numpy's own header
         if version != FORMAT:
-            raise InputError(
-                "atlas", f"{file.name} is of another version.", "Build it again."
-            ) from None
-        raise InputError("atlas", f"{file.name} is not an atlas.", "Build it again.") from None
+            raise InputError("atlas", f"{file.name} is of another version.", _BUILD) from None
+        raise InputError("atlas", f"{file.name} is not an atlas.", _BUILD) from None
     rows = len(atlas.keys)
     if (
         atlas.values.shape != (rows, len(VALUES))
         or atlas.curves.shape != (rows, *CURVES)
         or len(atlas.provenance) != rows
     ):
-        raise InputError("atlas", f"{file.name} is damaged.", "Build it again.")
+        raise InputError("atlas", f"{file.name} is damaged.", _BUILD)
     return atlas

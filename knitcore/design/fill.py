@@ -18,7 +18,9 @@ import numpy as np
 from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, InputError, SearchProgress
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat.grid import check_cloth
 from knitcore.design.atlas import Atlas
@@ -55,8 +57,8 @@ cannot fit a rough map by chance, but by no more than the map varies inside the 
 is even it asks for one stiffness, not for a rough chart."""
 
 
-@dataclass(frozen=True, eq=False)
-class FilledField:
+@dataclass(frozen=True, eq=False, repr=False)
+class FilledField(Result):
     """A chart for a map.
 
     Attributes
@@ -551,9 +553,10 @@ def _extent(cells: Mask) -> tuple[int, int]:
 
 
 def _checked(course: Array, wale: Array, smallest_patch: int) -> Array:
-    maps = [np.asarray(course, dtype=float), np.asarray(wale, dtype=float)]
+    remedy = "Give rows x columns of N/mm for both."
+    maps = [as_numbers("target", values, remedy) for values in (course, wale)]
     if maps[0].ndim != 2 or maps[0].shape != maps[1].shape:
-        raise InputError("target", "the two maps differ in size.", "Give rows x columns for both.")
+        raise InputError("target", "the two maps differ in size.", remedy)
     check_chart_size(*maps[0].shape)
     both = np.stack(maps)
     if np.isnan(both).all():

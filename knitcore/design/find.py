@@ -100,7 +100,11 @@ def find_fabric(
     atlases = [atlases] if isinstance(atlases, Atlas) else atlases
     targets = [targets] if isinstance(targets, Target) else targets
     if not atlases or not any(len(atlas) for atlas in atlases):
-        raise InputError("atlas", "there is no repeat to choose from.", "Build an atlas first.")
+        raise InputError(
+            "atlas",
+            "there is no repeat to choose from.",
+            "Build an atlas with `knitcore atlas`, and give it.",
+        )
     labels = [target.label for target in targets]
     if not targets or len(set(labels)) < len(labels):
         raise InputError(

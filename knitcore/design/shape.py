@@ -19,7 +19,9 @@ from scipy.optimize import brentq
 from knitcore.base.arrays import Array, Indices
 from knitcore.base.bounds import check_positive, check_range
 from knitcore.base.errors import Cancelled, InputError, SearchProgress
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
 from knitcore.cloth.flat import strip_test
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
@@ -54,8 +56,8 @@ class Band:
     lines: int
 
 
-@dataclass(frozen=True, eq=False)
-class ShapedSwatch:
+@dataclass(frozen=True, eq=False, repr=False)
+class ShapedSwatch(Result):
     """A chart and the outline that it takes.
 
     Attributes
@@ -350,9 +352,10 @@ def _checked(
     smallest_band: int,
     direction: Direction,
 ) -> Array:
-    target = np.asarray(width, dtype=float)
+    remedy = "Give the width of at least three lines."
+    target = as_numbers("width", width, remedy)
     if target.ndim != 1 or len(target) < 3 or np.isnan(target).all():
-        raise InputError("width", "is not a profile.", "Give the width of at least three lines.")
+        raise InputError("width", "is not a profile.", remedy)
     given = target[~np.isnan(target)]
     if not (np.isfinite(given).all() and (given > 0.05).all() and (given < 3).all()):
         problem = "is outside 0.05 to 3 times the width at rest."

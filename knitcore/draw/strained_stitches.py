@@ -7,11 +7,12 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from knitcore.base.arrays import Array, Mask
+from knitcore.chart.result import Result
 from knitcore.cloth.flat.strip_results import LockUp, StripTest
 
 
-@dataclass(frozen=True, eq=False)
-class StitchStates:
+@dataclass(frozen=True, eq=False, repr=False)
+class StitchStates(Result):
     """The state of every stitch at every step of a test; row 0 is the bottom row.
 
     Attributes

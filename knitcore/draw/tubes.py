@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +32,10 @@ def tube_mesh(centre_line: Array, radius_mm: float, sides: int = 8) -> TriangleM
     InputError
         If there are too few points or sides, or the radius is not positive.
     """
-    line = np.asarray(centre_line, dtype=float)
+    remedy = "Give at least two points of three coordinates, in mm."
+    line = as_numbers("centre_line", centre_line, remedy)
     if line.ndim != 2 or line.shape[0] < 2 or line.shape[1] != 3:
-        raise InputError(
-            "centre_line", "is not a line in space.", "Give an array (points >= 2, 3)."
-        )
+        raise InputError("centre_line", "is not a line in space.", remedy)
     return TriangleMesh(
         tube_vertices(line[None], radius_mm, sides)[0], tube_faces(len(line), sides)
     )

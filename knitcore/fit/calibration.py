@@ -20,6 +20,7 @@ from scipy.optimize import least_squares
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, InputError, check_cancelled
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.cloth.flat.sheet_models import SheetModel
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE, pull
 from knitcore.cloth.flat.strip_uncertainty import LOG_SHEAR_PRIOR
@@ -74,13 +75,14 @@ class ForceCurve:
         top = min(float(run.strain_along.max()) for run in test.runs)
         mean = test.pooled().averaged(CURVE_BINS, top)
         if mean.length < CURVE_BINS / 2:
-            raise InputError("tests", f"{test.source} has too few points.", "Give a denser test.")
+            remedy = f"Give a test with readings at {CURVE_BINS} evenly spread strains or more."
+            raise InputError("tests", f"{test.source} has too few points.", remedy)
         width = float(np.mean(test.width_mm))
         return cls(mean.strain_along, mean.stress, width, width * length_over_width)
 
 
-@dataclass(frozen=True, eq=False)
-class Calibration:
+@dataclass(frozen=True, eq=False, repr=False)
+class Calibration(Result):
     """A calibrated law.
 
     Attributes

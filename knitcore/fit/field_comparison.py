@@ -8,6 +8,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.cloth.flat.equilibrium_path import Path, run_path
 from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet
@@ -43,8 +44,8 @@ class FrameError:
     uy_max_percent_width: float
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Result):
     """Differences of all frames that could be computed, and the reason if some could not."""
 
     frames: tuple[FrameError, ...]

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 
 PITCH_PX = 8.0
 STILL_PX = 0.5
@@ -46,8 +47,8 @@ class Frame:
     top: Array
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredField:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredField(Result):
     """A measured strip test.
 
     Attributes
@@ -184,7 +185,8 @@ def _rest_region(
     if len(least.now) < 100:
         moved = [s for s in samples if len(s.now) >= 100]
         if not moved:
-            raise InputError("field", "has too few points.", "Give a denser field.")
+            remedy = "Give a picture with at least 100 points inside the fabric."
+            raise InputError("field", "has too few points.", remedy)
         least = moved[0]
     rest = least.rest
     low, high = rest.min(axis=0), rest.max(axis=0)
@@ -230,6 +232,7 @@ def _edge(points: Array, moved: Array, line: NDArray[np.int64], y: float) -> Arr
         values = np.column_stack([points[nearest, 0], moved[nearest]])
         crossings.append(np.polyfit(heights, values, 1)[1])
     if len(crossings) < 4:
-        raise InputError("field", "an edge cannot be found.", "Give a denser field.")
+        remedy = "Sample the picture more densely, as far as both clamped edges."
+        raise InputError("field", "an edge cannot be found.", remedy)
     edge = np.array(crossings)
     return np.asarray(edge[np.argsort(edge[:, 0])])

@@ -31,6 +31,7 @@ import numpy as np
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.least_squares import (
     ALPHA_SHARE_LIMIT,
@@ -95,8 +96,8 @@ class Residuals:
         return cls(along, across, points.stress, law(along, across))
 
 
-@dataclass(frozen=True, eq=False)
-class LawFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class LawFit(Result):
     """A law with its uncertainty.
 
     Attributes

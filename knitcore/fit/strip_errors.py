@@ -54,7 +54,7 @@ class LinearFit:
     unknowns : (n,).
     residuals : of force and waist of each test in turn, then of the priors.
     jacobian : (residuals, n).
-    flattening : per test, what its waist reads more than the simulated one throughout.
+    flattening : per test, how much its waist strain exceeds the simulated one at all levels.
     law_of : the law of unknowns.
     log_lock_up, log_shear : places of ln alpha (course, wale) and ln C_xyxy / sqrt(Y_x Y_y) among
         the unknowns.
@@ -159,7 +159,7 @@ class LinearFit:
         return errors[:, :LEVELS], errors[:, LEVELS:]
 
     def _without_pulls(self, test: int) -> Iterator[tuple[int, Array]]:
-        """Each pull's number, and the step of the unknowns when it is left out."""
+        """Yield each pull's number, and how much the unknowns change if it is left out."""
         strip = self.strips[test]
         stress, waist = strip.means
         for index in range(strip.pulls if strip.pulls > 1 else 0):

@@ -24,6 +24,7 @@ from scipy.optimize import OptimizeResult, least_squares
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE
 from knitcore.fit.measured_strip import CELLS, LEVELS, WAIST_NOISE, MeasuredStrip, force_noise
 from knitcore.fit.pull_fit import LawFit, Reduction, Residuals, fit_law, rms
@@ -71,8 +72,8 @@ _PRIORS = np.array([COUPLING_PRIOR, KAPPA_PRIOR, KAPPA_PRIOR, LOG_SHEAR_PRIOR]).
 _SCALE = np.array([0.2, 0.2, 0.2, 0.1, 0.1, 0.3, 0.3, 0.1, 0.1, 0.5])
 
 
-@dataclass(frozen=True, eq=False)
-class StripFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class StripFit(Result):
     """A law fitted to simulated tests.
 
     Attributes
@@ -81,7 +82,7 @@ class StripFit:
     uncertainty : of moduli and curves.
     errors : standard errors by the law's field names, ratios and moduli.
     stress, waist : simulated, per test, at the tests' strains.
-    flattening : per test, what its waist reads more than the simulated one throughout.
+    flattening : per test, how much its waist strain exceeds the simulated one at all levels.
     evaluations : simulated pairs of tests.
     """
 
@@ -288,7 +289,7 @@ class _Problem:
 
 
 def flattening(simulated: Array, measured: Array) -> float:
-    """The most likely constant that a measured waist reads more than a simulated one."""
+    """The most likely constant difference of the measured waist strain from the simulated one."""
     apart = (measured - simulated)[np.isfinite(simulated) & np.isfinite(measured)]
     return float(apart.sum() / (len(apart) + (WAIST_NOISE / FLATTENING) ** 2))
 

@@ -70,7 +70,11 @@ class Gauge:
     def of_count(cls, stitches: float, rows: float, per: GaugeLength = GaugeLength.TEN_CM) -> Gauge:
         """The gauge as a ball band prints it."""
         if not (stitches > 0 and rows > 0):
-            raise InputError("gauge", "the counts must be positive.", "Give stitches and rows.")
+            raise InputError(
+                "gauge",
+                "the counts must be positive.",
+                "Give numbers of stitches and rows above 0.",
+            )
         return cls(per.value / stitches, per.value / rows, "counted")
 
     @classmethod
@@ -167,7 +171,11 @@ class GaugeSet:
 
 def _rounded(count: float, multiple: int, extra: int) -> int:
     if not (math.isfinite(count) and count > 0):
-        raise InputError("size", "a length must be positive.", "Give it in mm.")
+        raise InputError("size", "a length must be positive.", "Give a length above 0 mm.")
     if multiple < 1 or extra < 0:
-        raise InputError("multiple", "no repeat has this many stitches.", "Give 1 or more.")
+        raise InputError(
+            "multiple",
+            "no repeat has this many stitches.",
+            "Give multiple of at least 1, and extra of at least 0.",
+        )
     return max(round((count - extra) / multiple), 1) * multiple + extra

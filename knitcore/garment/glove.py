@@ -23,7 +23,7 @@ from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.garment.gauge import Gauge, GaugeSet
-from knitcore.garment.plan import GarmentPlan, Part, make_plan
+from knitcore.garment.plan import GarmentPlan, OutlinePart, make_plan
 from knitcore.garment.worn_piece import Fit, Worn, worn
 from knitcore.materials import Material
 
@@ -327,12 +327,12 @@ def glove(
     is_thumb = beyond & (kinds == "thumb")
     is_finger = (column >= crotch) & (kinds == "finger")
     parts = (
-        Part("cuff", column < cuff, fabrics.hand),
-        Part(SUPPORT, (column >= cuff) & ~beyond, fabrics.support),
-        Part("hand", beyond & ~is_thumb & ~is_gusset & ~is_finger, fabrics.hand),
-        Part("thumb", is_thumb, fabrics.thumb),
-        Part("thumb gusset", is_gusset, fabrics.thumb),
-        Part("fingers", is_finger, fabrics.fingers),
+        OutlinePart("cuff", column < cuff, fabrics.hand),
+        OutlinePart(SUPPORT, (column >= cuff) & ~beyond, fabrics.support),
+        OutlinePart("hand", beyond & ~is_thumb & ~is_gusset & ~is_finger, fabrics.hand),
+        OutlinePart("thumb", is_thumb, fabrics.thumb),
+        OutlinePart("thumb gusset", is_gusset, fabrics.thumb),
+        OutlinePart("fingers", is_finger, fabrics.fingers),
     )
     around = wrist_rows.stop - wrist_rows.start
     stitch = (column >= start) & (column < tips[:, None])
@@ -358,7 +358,7 @@ def _worn(
     hand: Hand,
     layout: GloveLayout,
     stitch: Mask,
-    parts: tuple[Part, ...],
+    parts: tuple[OutlinePart, ...],
     material: Material,
     gauges: GaugeSet,
 ) -> dict[str, Worn]:

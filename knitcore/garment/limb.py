@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 from knitcore.law.response import MAX_STRESS_N_PER_MM
 from knitcore.materials.law_uncertainty import Interval
 from knitcore.mechanics.pressure import MAX_CIRCUMFERENCE_MM, MIN_LENGTH, MMHG_PER_KPA, worn_strain
@@ -28,7 +29,7 @@ LEAST_GIRTH_MM = 10.0
 
 
 @dataclass(frozen=True)
-class TubePressure:
+class TubePressure(Result):
     """Mean pressure of a tube on a limb; intervals go from axially free to fixed, or back.
 
     Attributes
@@ -165,7 +166,7 @@ class MeasuredLimb:
 
 
 @dataclass(frozen=True)
-class LimbPlace:
+class LimbPlace(Result):
     """One place along the limb.
 
     Attributes

@@ -9,6 +9,7 @@ import numpy as np
 
 from knitcore.base.arrays import Indices, Mask, runs
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.shaped import ShapedChart
 from knitcore.prediction.size import RelaxedSize
@@ -35,8 +36,8 @@ class YarnRun:
     yarn: int
 
 
-@dataclass(frozen=True, eq=False)
-class Piece:
+@dataclass(frozen=True, eq=False, repr=False)
+class Piece(Result):
     """A piece to be knitted.
 
     Parameters
@@ -59,7 +60,9 @@ class Piece:
 
     def __post_init__(self) -> None:
         if self.yarn_of.shape != self.shaped.stitch.shape:
-            raise InputError("yarns", "their size is not that of the chart.", "Give all cells.")
+            raise InputError(
+                "yarns", "their size is not that of the chart.", "Give a yarn for every cell."
+            )
         used = np.unique(self.yarn_of[self.shaped.stitch]).tolist()
         renumbered = np.zeros(len(self.yarns), dtype=np.intp)
         renumbered[used] = np.arange(len(used))

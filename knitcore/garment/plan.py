@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from knitcore.base.arrays import Mask
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.regions import (
@@ -29,8 +30,8 @@ FABRIC_COLOURS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class GarmentPlan:
+@dataclass(frozen=True, eq=False, repr=False)
+class GarmentPlan(Result):
     """A garment, ready to be edited as a chart.
 
     Attributes
@@ -75,7 +76,7 @@ class GarmentPlan:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class OutlinePart:
     """A named part of an outline in one pure fabric, before it is filled."""
 
     name: str
@@ -86,7 +87,7 @@ class Part:
 def make_plan(
     name: str,
     stitch: Mask,
-    parts: tuple[Part, ...],
+    parts: tuple[OutlinePart, ...],
     material: Material,
     gauges: GaugeSet,
     *,

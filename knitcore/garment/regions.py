@@ -86,7 +86,7 @@ def fill_regions(stitch: Mask, regions: Sequence[Region]) -> ShapedChart:
             raise InputError(
                 "regions",
                 f"the size of {region.name} is not that of the chart.",
-                "Mark every cell.",
+                "Give True or False for every cell of the chart.",
             )
         times += region.cells
         purl[region.cells] = region.fill.resized(*stitch.shape).purl[region.cells]
@@ -176,6 +176,10 @@ class YarnUse:
 
     length_m: float
     mass_g: float | None
+
+    def __str__(self) -> str:
+        mass = "" if self.mass_g is None else f", {self.mass_g:.3g} g"
+        return f"{self.length_m:.3g} m of yarn{mass}"
 
     @property
     def length_interval_m(self) -> Interval:

@@ -11,7 +11,7 @@ from knitcore.base import showing
 from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.phases import continued
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_chart import StitchChart, size_in_words
 
 INSIDE, OUTSIDE = "x", "."
 
@@ -41,6 +41,10 @@ class ShapedChart:
         check_outline(inside)
         inside.setflags(write=False)
         object.__setattr__(self, "stitch", inside)
+
+    def __str__(self) -> str:
+        size = size_in_words(self.chart.columns, self.chart.rows)
+        return f"{np.count_nonzero(self.stitch)} stitches in {size}"
 
     @classmethod
     def rectangle(cls, chart: StitchChart) -> ShapedChart:

@@ -10,7 +10,7 @@ from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.garment.gauge import GaugeSet
-from knitcore.garment.plan import GarmentPlan, Part, make_plan
+from knitcore.garment.plan import GarmentPlan, OutlinePart, make_plan
 from knitcore.garment.worn_piece import Fit, Worn, worn
 from knitcore.materials import Material
 
@@ -92,9 +92,9 @@ def limb_tube(
     hem_rows = min(gauge.rows_for(hem_mm), rows // 3) if hem_mm > 0 else 0
     row = np.broadcast_to(np.arange(rows)[:, None], stitch.shape)
     parts = (
-        Part("lower ribbing", row < hem_rows, hem),
-        Part("body", (row >= hem_rows) & (row < rows - hem_rows), body),
-        Part("upper ribbing", row >= rows - hem_rows, hem),
+        OutlinePart("lower ribbing", row < hem_rows, hem),
+        OutlinePart("body", (row >= hem_rows) & (row < rows - hem_rows), body),
+        OutlinePart("upper ribbing", row >= rows - hem_rows, hem),
     )
 
     def place(along: float) -> Worn:
@@ -221,9 +221,9 @@ def wrist_brace(
     wide = min(gauge.stitches_for(edge_mm), columns // 3) if edge_mm > 0 else 0
     column = np.broadcast_to(np.arange(columns), (rows, columns))
     parts = (
-        Part("edge at the forearm", column < wide, edge),
-        Part("support", (column >= wide) & (column < columns - wide), support),
-        Part("edge at the hand", column >= columns - wide, edge),
+        OutlinePart("edge at the forearm", column < wide, edge),
+        OutlinePart("support", (column >= wide) & (column < columns - wide), support),
+        OutlinePart("edge at the hand", column >= columns - wide, edge),
     )
     edge_mm = wide * gauge.stitch_course_mm
     pressed = [

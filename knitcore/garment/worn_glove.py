@@ -10,12 +10,14 @@ part's fabric (:mod:`knitcore.garment.limb`).
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.in_space import ClothInSpace
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.glove import (
@@ -56,8 +58,8 @@ Curve = Callable[[Array, Array], Array]
 over the back, and at distances from where it begins, mm."""
 
 
-@dataclass(frozen=True, eq=False)
-class GloveOnHand:
+@dataclass(frozen=True, eq=False, repr=False)
+class GloveOnHand(ClothInSpace):
     """A left glove on a hand, the back in front (z), the arm along y, mm.
 
     Attributes
@@ -76,6 +78,15 @@ class GloveOnHand:
     mmhg: Array
     parts: dict[str, LimbPlace]
     body_mm: tuple[Array, ...]
+
+    @property
+    def stitches(self) -> Mask:
+        """Mask (rows, columns) of the stitches."""
+        return self.plan.shaped.stitch
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Collect the shape and the pressure as arrays."""
+        return super().arrays() | {"mmhg": self.mmhg}
 
 
 def glove_on_hand(

@@ -11,6 +11,7 @@ import numpy as np
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.materials import Material
 from knitcore.mechanics.pressure import LimbPressure, limb_pressure, rest_circumference
 
@@ -19,7 +20,7 @@ Profile = Sequence[tuple[float, float]]
 
 
 @dataclass(frozen=True)
-class Worn:
+class Worn(Result):
     """One place along a limb.
 
     Attributes

@@ -92,6 +92,9 @@ class ConstitutiveLaw:
     kappa_yy: float = 0.0
     shear_stiffening: float = 0.0
 
+    def __str__(self) -> str:
+        return f"Y = {self.modulus_course:.3g} N/mm course-wise, {self.modulus_wale:.3g} wale-wise"
+
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)

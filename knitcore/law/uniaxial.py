@@ -8,7 +8,9 @@ from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.stiffening import StiffeningForm, stiffening
 
@@ -17,8 +19,8 @@ _HALVINGS = 52
 _NEWTON_STEPS = 200
 
 
-@dataclass(frozen=True, eq=False)
-class UniaxialCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class UniaxialCurve(Result):
     """Response of a sheet pulled in one direction; arrays of one length.
 
     Attributes
@@ -48,7 +50,7 @@ def uniaxial_response(
     InputError
         If a strain reaches the lock-up of the full law, or leaves no free transverse equilibrium.
     """
-    axial = np.atleast_1d(np.asarray(strain, dtype=float))
+    axial = np.atleast_1d(as_numbers("strain", strain, "Give finite strains."))
     if not np.all(np.isfinite(axial)):
         raise InputError("strain", "has values that are not numbers.", "Give finite strains.")
     check_below_lock_up(law, direction, float(axial.max(initial=0.0)), form)
@@ -97,9 +99,10 @@ def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
 
 
 def _checked(stress: ArrayLike) -> Array:
-    stresses = np.asarray(stress, dtype=float)
+    remedy = "Give 0 N/mm or more."
+    stresses = as_numbers("stress", stress, remedy)
     if not np.all(np.isfinite(stresses)) or np.any(stresses < 0):
-        raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
+        raise InputError("stress", "has values that are negative or no numbers.", remedy)
     return stresses
 
 

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from knitcore.base.errors import InputError
 from knitcore.base.extensions import Group, offered
+from knitcore.base.kinds import check_kind
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.consistency import LAW_QUANTITIES, consistent_law
@@ -21,6 +22,7 @@ SIMULATION = "simulation"
 NEEDLE_2_MM = "needle-2.0mm"
 GLOVE = "glove"
 
+IDENTIFIER = "the identifier of a material such as 'acrylic'."
 INCONSISTENT = {("acrylic", Fabric.GARTER): frozenset({Direction.COURSE})}
 """Rows of the paper's tables that its own data contradict. Acrylic garter course-wise: the raw file
 has the clamp measured twice in place of the width, so stress, C_xxxx, beta_xx and Y_x are 1.6 to
@@ -101,6 +103,7 @@ def material(identifier: str, laws: Laws | str | None = None) -> Material:
     >>> material("glove-wool:glove").record(Fabric.STOCKINETTE).loop_length_mm
     9.83
     """
+    check_kind("material", identifier, str, f"Give {IDENTIFIER}")
     key = identifier.strip().lower()
     sample = Laws.REFITTED.of(key)
     named = Laws.PUBLISHED if sample != key else Laws.REFITTED
@@ -127,9 +130,7 @@ def as_material(of: Material | str) -> Material:
     """
     if isinstance(of, Material):
         return of
-    if not isinstance(of, str):
-        remedy = "Give a Material, or the identifier of one such as 'acrylic'."
-        raise InputError("material", f"is of type {type(of).__name__}.", remedy)
+    check_kind("material", of, str, f"Give a Material, or {IDENTIFIER}")
     return material(of)
 
 

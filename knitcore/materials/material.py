@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -189,6 +190,12 @@ class Material:
         """The yarn's diameter in that fabric, or its nominal one if that was not measured."""
         measured = self.record(fabric).yarn_diameter_mm
         return self.yarn.diameter_mm if measured is None else measured
+
+    def to_dict(self) -> dict[str, Any]:
+        """Collect the material as :func:`~knitcore.materials.load_material_file` reads it."""
+        from knitcore.materials.material_document import MaterialDocument
+
+        return MaterialDocument.from_material(self).model_dump(mode="json", exclude_none=True)
 
     def __repr__(self) -> str:
         return f"Material({self.identifier}: {self.name}, {', '.join(self.fabrics)})"

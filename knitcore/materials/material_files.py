@@ -103,10 +103,8 @@ def save_material_file(material: Material, path: str | Path) -> None:
     """Write a material as JSON or YAML (by the suffix), so that it can be loaded again."""
     import yaml
 
-    from knitcore.materials.material_document import MaterialDocument
-
     file = Path(path)
-    data = MaterialDocument.from_material(material).model_dump(mode="json", exclude_none=True)
+    data = material.to_dict()
     if file.suffix.lower() == ".json":
         text = json.dumps(data, indent=2, ensure_ascii=False)
     else:

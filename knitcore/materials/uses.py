@@ -23,8 +23,8 @@ class Serves(Choice):
 
 
 @dataclass(frozen=True)
-class Use:
-    """A use of a yarn.
+class Suitability:
+    """A use, and how well a yarn serves for it.
 
     Attributes
     ----------
@@ -38,24 +38,26 @@ class Use:
     missing: str = ""
 
 
-def uses_of(material: Material) -> tuple[Use, ...]:
+def uses_of(material: Material) -> tuple[Suitability, ...]:
     """The uses that the page and the library have for a yarn, the commonest first."""
     return (_any_chart(material), *_under_load(material), _amount(material), _yarn_level(material))
 
 
-def _any_chart(material: Material) -> Use:
+def _any_chart(material: Material) -> Suitability:
     name = "charts on the page, which mix fabrics"
     lacking = [fabric.value for fabric in Fabric if fabric not in material.fabrics]
     if lacking:
         missing = f"laws of {', '.join(lacking)}: let them be estimated, or test them"
-        return Use(name, Serves.NO, missing)
+        return Suitability(name, Serves.NO, missing)
     worst = max(material.fabrics, key=lambda fabric: max(_errors(material, fabric)))
     if max(_errors(material, worst)) <= ROUGH_LOG_STRESS:
-        return Use(name, Serves.YES)
-    return Use(name, Serves.ROUGHLY, f"a swatch of {worst}, hung or tested, narrows it most")
+        return Suitability(name, Serves.YES)
+    return Suitability(
+        name, Serves.ROUGHLY, f"a swatch of {worst}, hung or tested, narrows it most"
+    )
 
 
-def _under_load(material: Material) -> list[Use]:
+def _under_load(material: Material) -> list[Suitability]:
     """Sizes of fabrics, together where they are rough in the same directions."""
     groups: dict[tuple[Direction, ...], list[str]] = {}
     for fabric in material.fabrics:
@@ -68,19 +70,23 @@ def _under_load(material: Material) -> list[Use]:
         ways = " and ".join(f"{direction}-wise" for direction in rough)
         swatch = "its swatch" if len(fabrics) == 1 else "a swatch of each"
         missing = f"photos or tests of {swatch}, pulled {ways}"
-        uses.append(Use(name, Serves.ROUGHLY, missing) if rough else Use(name, Serves.YES))
+        uses.append(
+            Suitability(name, Serves.ROUGHLY, missing) if rough else Suitability(name, Serves.YES)
+        )
     return uses
 
 
-def _amount(material: Material) -> Use:
+def _amount(material: Material) -> Suitability:
     name = "amount of yarn, and weight (with the tex of the ball band)"
     lacking = [f.value for f, r in material.fabrics.items() if r.loop_length_mm is None]
     if lacking:
-        return Use(name, Serves.NO, f"yarn in a stitch of {', '.join(lacking)}: unravel ten")
-    return Use(name, Serves.YES)
+        return Suitability(
+            name, Serves.NO, f"yarn in a stitch of {', '.join(lacking)}: unravel ten"
+        )
+    return Suitability(name, Serves.YES)
 
 
-def _yarn_level(material: Material) -> Use:
+def _yarn_level(material: Material) -> Suitability:
     name = "curl, drape and yarn simulations"
     yarn = material.yarn
     missing = []
@@ -89,15 +95,15 @@ def _yarn_level(material: Material) -> Use:
     if any(record.loop_length_mm is None for record in material.fabrics.values()):
         missing.append("yarn in a stitch: unravel ten")
     if missing:
-        return Use(name, Serves.NO, "; ".join(missing))
+        return Suitability(name, Serves.NO, "; ".join(missing))
     deviation = log_deviation(
         yarn.bending_modulus_n_mm2 or 1.0, yarn.bending_modulus_sd_n_mm2 or 0.0
     )
     if deviation > ROUGH_LOG_BENDING:
-        return Use(name, Serves.ROUGHLY, "the bending stiffness: photos of hanging yarn")
+        return Suitability(name, Serves.ROUGHLY, "the bending stiffness: photos of hanging yarn")
     if yarn.compression_stiffness_n_per_mm3 is None:
-        return Use(name, Serves.ROUGHLY, "a squeezing test of the yarn")
-    return Use(name, Serves.YES)
+        return Suitability(name, Serves.ROUGHLY, "a squeezing test of the yarn")
+    return Suitability(name, Serves.YES)
 
 
 def _errors(material: Material, fabric: Fabric) -> tuple[float, float]:

@@ -16,6 +16,8 @@ from scipy.optimize import minimize_scalar
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_linear_density, check_positive, check_range
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
+from knitcore.chart.result import Result
 from knitcore.measure.centreline import Centreline, load_grey, trace_centreline
 from knitcore.measure.heavy_elastica import heavy_elastica
 
@@ -55,8 +57,8 @@ class BendingPhoto:
     fitted_mm: Array
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredBending:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredBending(Result):
     """Mean over photos.
 
     Attributes
@@ -147,11 +149,11 @@ def _doubts(name: str, line: Centreline, length_mm: float | None) -> list[str]:
 def _lengths(length_mm: float | Sequence[float] | None, count: int) -> list[float | None]:
     if length_mm is None:
         return [None] * count
-    given = [float(v) for v in np.atleast_1d(np.asarray(length_mm, dtype=float))]
+    remedy = "Give one length for all, or one per photo in the same order."
+    given: list[float] = np.ravel(as_numbers("length_mm", length_mm, remedy)).tolist()
     if len(given) == 1:
         given = given * count
     if len(given) != count:
-        remedy = "Give one length for all, or one per photo in the same order."
         raise InputError("length_mm", f"{len(given)} lengths are given for {count} photos.", remedy)
     for value in given:
         check_range("length_mm", value, 5, 5000, "mm", "a hanging length")

@@ -16,6 +16,7 @@ from scipy.optimize import curve_fit
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 from knitcore.measure.compression_files import CompressionTest
 
 PROBE_WIDTH_MM = 5.0
@@ -28,8 +29,8 @@ THICKNESS_TIMES = 4.0
 """The squeezed thickness is between the diameter over this and the diameter times this."""
 
 
-@dataclass(frozen=True, eq=False)
-class CompressionSample:
+@dataclass(frozen=True, eq=False, repr=False)
+class CompressionSample(Result):
     """Result of one test.
 
     Attributes

@@ -15,14 +15,15 @@ from pathlib import Path
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 from knitcore.measure.table_reading import TableReading
 from knitcore.measure.tables import numbers, read_table, rows_by_label
 from knitcore.measure.tester_tables import read_specimens
 from knitcore.measure.workbooks import MAX_BYTES, Worksheet, is_workbook, read_workbook
 
 
-@dataclass(frozen=True, eq=False)
-class CompressionTest:
+@dataclass(frozen=True, eq=False, repr=False)
+class CompressionTest(Result):
     """One squeeze of one yarn.
 
     Attributes
@@ -52,7 +53,9 @@ def read_compression(path: Path) -> list[CompressionTest]:
     if not path.is_file():
         raise InputError(str(path), "is not a file.", "Give the path of an XLS, XLSX or CSV file.")
     if path.stat().st_size > MAX_BYTES:
-        raise InputError(path.name, "is larger than 50 MB.", "Give the tests only.")
+        raise InputError(
+            path.name, "is larger than 50 MB.", "Keep only the sheets with tests in it."
+        )
     if is_workbook(path):
         return _of_workbook(path)
     if path.suffix.lower() in (".xls", ".xlsx"):

@@ -1,8 +1,8 @@
 """Check stretch tests for slack, strains not zeroed, and units or signs that cannot be right.
 
-A strain that begins late is corrected and told, where the readings leave no doubt. What cannot be
-corrected with certainty is refused if it is impossible for knitted fabric, and told if it is rare;
-either way as a doubt with the readings that it may have.
+A strain that begins late is corrected, with a note, where the readings leave no doubt. What cannot
+be corrected with certainty is refused if it is impossible for knitted fabric, and noted if it is
+rare. In both cases a doubt lists the ways in which the table may be meant.
 """
 
 from collections.abc import Iterator

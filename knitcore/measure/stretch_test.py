@@ -12,6 +12,7 @@ from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.measure.table_reading import Doubt, DoubtError, OtherReading
 
 MIN_POINTS = 20
@@ -72,8 +73,8 @@ class StretchRun:
         return StretchRun(self.name, along, across, stress)
 
 
-@dataclass(frozen=True, eq=False)
-class StretchTest:
+@dataclass(frozen=True, eq=False, repr=False)
+class StretchTest(Result):
     """Repeated pulls of one fabric in one direction.
 
     Attributes

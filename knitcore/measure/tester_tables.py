@@ -163,7 +163,9 @@ def _sheets(path: Path, notes: list[str]) -> Iterator[tuple[str, Rows]]:
         if max(map(len, rows), default=0) < 2:
             rows = [line.split() for line in lines]
     if max(map(len, rows), default=0) > MAX_COLUMNS:
-        raise InputError(path.name, f"has more than {MAX_COLUMNS} columns.", "Give the test only.")
+        raise InputError(
+            path.name, f"has more than {MAX_COLUMNS} columns.", "Keep only the columns of the test."
+        )
     stripped = [[_ungrouped(cell.strip()) for cell in row] for row in rows]
     if _has_decimal_commas(stripped, separator):
         notes.append(f"{path.name}: commas are read as decimal commas.")

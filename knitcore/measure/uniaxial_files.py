@@ -258,7 +258,7 @@ def _numbers(name: str, file: h5py.File, key: str) -> Array:
         raise InputError(f"{name}, {key}", "is not a dataset of numbers.", "Store plain numbers.")
     if data.size > 14 * MAX_FRAMES:
         raise InputError(
-            f"{name}, {key}", f"holds {data.size} numbers.", f"Up to {MAX_FRAMES} frames."
+            f"{name}, {key}", f"holds {data.size} numbers.", f"Give at most {MAX_FRAMES} frames."
         )
     return np.asarray(data[()], dtype=float)
 

@@ -105,10 +105,14 @@ def tension_parameter(
         If the segment is straight or shorter than the distance of its ends.
     """
     if not (math.isfinite(slope) and slope != 0):
-        raise InputError("slope", f"{slope} leaves the segment straight.", "Give v above 0.")
+        raise InputError(
+            "slope", f"{slope} leaves the segment straight.", "Give a slope other than 0."
+        )
     if not (math.isfinite(excess) and excess > 0):
         raise InputError(
-            "length_mm", "is not above the distance of the ends.", "A segment needs L > lambda."
+            "length_mm",
+            "is not above the distance of the ends.",
+            "Give a length above the distance of the ends.",
         )
     target = 2 * excess / slope**2
     if form is EnergyForm.QUARTIC:
@@ -191,7 +195,9 @@ def rest_separation_mm(parity: Parity, slope: float, length_mm: float) -> float:
     0.998337
     """
     if not (math.isfinite(slope) and slope != 0):
-        raise InputError("slope", f"{slope} leaves the segment straight.", "Give v above 0.")
+        raise InputError(
+            "slope", f"{slope} leaves the segment straight.", "Give a slope other than 0."
+        )
 
     def force(tension: float) -> float:
         f, rate, _ = energy_function(parity, tension)
@@ -214,7 +220,9 @@ def high_tension_energy(
     """
     if not 0 < separation_mm < length_mm:
         raise InputError(
-            "separation_mm", "must lie between 0 and the length.", "A segment needs L > lambda."
+            "separation_mm",
+            "must lie between 0 and the length.",
+            "Give a length above the distance of the ends.",
         )
     gap = 1 - separation_mm / length_mm
     return bending_modulus_n_mm2 * slope**4 / (4 * length_mm * gap)

@@ -21,6 +21,7 @@ from scipy.optimize import brentq
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials.law_uncertainty import Interval
@@ -43,7 +44,7 @@ ELASTIC_MEAN = (
 
 
 @dataclass(frozen=True)
-class LimbPressure:
+class LimbPressure(Result):
     """Mean pressure of a tube on a limb; intervals go from axially free to fixed, or back.
 
     Attributes

@@ -33,7 +33,9 @@ from numpy.typing import ArrayLike
 
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.materials import paper_figures
 from knitcore.mechanics.elastica import Parity
 
@@ -74,12 +76,16 @@ class SegmentGeometry:
         for name in ("separation_mm", "length_mm"):
             check_positive(name, getattr(self, name), "mm", "a length")
         if not math.isfinite(self.slope) or (self.parity is Parity.EVEN and self.slope == 0):
-            raise InputError("slope", f"{self.slope} leaves it rigid.", "Give v above 0.")
+            raise InputError(
+                "slope", f"{self.slope} leaves it rigid.", "Give a slope other than 0."
+            )
         if self.parity is Parity.ODD and not (
             self.angle_rad is not None and 0 < self.angle_rad <= math.pi / 2
         ):
             raise InputError(
-                "angle_rad", f"{self.angle_rad} cannot be used.", "Give 0 < phi <= pi / 2."
+                "angle_rad",
+                f"{self.angle_rad} cannot be used.",
+                "Give an angle above 0, up to pi / 2.",
             )
 
     @classmethod
@@ -97,13 +103,10 @@ class SegmentGeometry:
         InputError
             If there are fewer than 5 points or they do not describe a segment.
         """
-        curve = np.asarray(curve_mm, dtype=float)
+        remedy = f"Give at least {_MIN_POINTS} points of 2 or 3 coordinates."
+        curve = as_numbers("curve_mm", curve_mm, remedy)
         if curve.ndim != 2 or curve.shape[1] not in (2, 3) or len(curve) < _MIN_POINTS:
-            raise InputError(
-                "curve_mm",
-                f"has the shape {curve.shape}.",
-                f"Give at least {_MIN_POINTS} points of 2 or 3 coordinates.",
-            )
+            raise InputError("curve_mm", f"has the shape {curve.shape}.", remedy)
         length = float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum())
         points = curve[:, :2]
         chord = points[-1] - points[0]
@@ -169,7 +172,7 @@ class SegmentResult:
 
 
 @dataclass(frozen=True)
-class RSFabric:
+class RSFabric(Result):
     """A pure fabric in the RS model."""
 
     fabric: Fabric
@@ -210,7 +213,7 @@ def rs_fabric(
             raise InputError(
                 name,
                 f"is {segment.parity}, but {fabric} has {expected} segments.",
-                "Exchange them.",
+                "Exchange the segments along the course and along the wale.",
             )
     return RSFabric(
         fabric,

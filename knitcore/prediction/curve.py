@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from knitcore.base import showing
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
@@ -65,10 +66,13 @@ def increasing(stress_n_per_mm: ArrayLike) -> Array:
     InputError
         If they do not increase from 0 to at most :data:`MAX_STRESS_N_PER_MM`.
     """
-    stress = np.atleast_1d(np.asarray(stress_n_per_mm, dtype=float))
+    remedy = "Give, for example, 0, 0.1, 0.2 N/mm."
+    stress = np.atleast_1d(as_numbers("stress", stress_n_per_mm, remedy))
+    if stress.ndim > 1 or not stress.size:
+        raise InputError("stress", "is not a list of numbers.", remedy)
     if not np.all(np.isfinite(stress)) or np.any(np.diff(stress) <= 0) or np.any(stress < 0):
         problem = "must be finite, increasing and at least 0."
-        raise InputError("stress", problem, "Give, for example, 0, 0.1, 0.2 N/mm.")
+        raise InputError("stress", problem, remedy)
     if stress[-1] > MAX_STRESS_N_PER_MM:
         problem = f"{stress[-1]:g} N/mm is more than any fabric carries."
         remedy = f"Give at most {MAX_STRESS_N_PER_MM:g} N/mm."

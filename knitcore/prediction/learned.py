@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material, Origin
 from knitcore.prediction.densities import Densities, densities
@@ -65,8 +66,8 @@ class SweptChart:
     unfolding: Array
 
 
-@dataclass(frozen=True, eq=False)
-class LearnedResponse:
+@dataclass(frozen=True, eq=False, repr=False)
+class LearnedResponse(Result):
     """Size and response of a mixed chart.
 
     Attributes

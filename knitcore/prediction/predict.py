@@ -17,7 +17,7 @@ Measured materials do not look sweeps up: the packaged ones are of one of severa
 repeat may take, and no nearer to another of its shapes than the learned prediction is.
 """
 
-from knitcore.base.errors import InputError
+from knitcore.base.kinds import check_kind
 from knitcore.chart.phases import pure_fabric
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.materials import Material, as_material
@@ -27,7 +27,7 @@ from knitcore.prediction.mixed import predict_mixed
 from knitcore.prediction.patches import Patches, in_patches, is_large
 from knitcore.prediction.prediction import Prediction
 from knitcore.prediction.pure import predict_pure
-from knitcore.prediction.size import RelaxedSize
+from knitcore.prediction.size import RelaxedSize, check_size
 
 
 def predict(
@@ -62,42 +62,40 @@ def predict(
     >>> predict("KKPP", "acrylic:simulation").provenance
     <Source.SWEPT: 'swept'>
     """
-    chart, material = as_chart(chart), as_material(material)
-    if not isinstance(size, RelaxedSize | None):
-        remedy = "Give a RelaxedSize, such as RelaxedSize.from_gauge(22, 30)."
-        raise InputError("size", f"is of type {type(size).__name__}.", remedy)
-    fabric = pure_fabric(chart)
-    if fabric is not None:
-        pure = predict_pure(fabric, material)
-        return pure if size is None else pure.with_size(size)
-    repeat = chart.repeat_cut()
-    if swept is None and material.is_simulated:
-        swept = packaged_model().sweep_of(repeat, material)
-    if swept is None and is_large(repeat):
-        return in_patches(repeat, material, size).together()
-    composition = densities(repeat)
-    learned = packaged_model().response(composition, material, size, swept)
-    return predict_mixed(repeat, composition, material, learned, size, swept)
+    return patches_of(as_chart(chart), as_material(material), size, swept).together()
 
 
-def patches_of(chart: StitchChart, material: Material, size: RelaxedSize | None = None) -> Patches:
-    """Divide a chart into the patches that :func:`predict` puts together; a small one is one patch.
+def patches_of(
+    chart: StitchChart,
+    material: Material,
+    size: RelaxedSize | None = None,
+    swept: SweptChart | None = None,
+) -> Patches:
+    """Divide a chart into the patches that :func:`predict` puts together; most are one patch.
 
     Parameters
     ----------
-    chart, material, size : as for :func:`predict`.
+    chart, material, size, swept : as for :func:`predict`.
 
     Raises
     ------
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
+    if size is not None:
+        check_size(size)
+    if swept is not None:
+        check_kind("swept", swept, SweptChart, "Give a SweptChart, as swept_chart() returns it.")
+    fabric = pure_fabric(chart)
+    if fabric is not None:
+        pure = predict_pure(fabric, material)
+        return Patches.whole(chart, pure if size is None else pure.with_size(size))
     repeat = chart.repeat_cut()
-    in_one = (
-        not is_large(repeat)
-        or pure_fabric(chart) is not None
-        or (material.is_simulated and packaged_model().sweep_of(repeat, material) is not None)
-    )
-    if not in_one:
+    if swept is None and material.is_simulated:
+        swept = packaged_model().sweep_of(repeat, material)
+    if swept is None and is_large(repeat):
         return in_patches(repeat, material, size)
-    return Patches.whole(chart, predict(chart, material, size))
+    composition = densities(repeat)
+    learned = packaged_model().response(composition, material, size, swept)
+    mixed = predict_mixed(repeat, composition, material, learned, size, swept)
+    return Patches.whole(chart, mixed)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from knitcore.base import showing
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
 from knitcore.law.response import Response
 from knitcore.materials.law_uncertainty import Interval, log_interval, normal_interval
@@ -284,7 +285,8 @@ class Prediction:
 
 
 def _not_negative(field: str, values: ArrayLike) -> Array:
-    array = np.asarray(values, dtype=float)
+    remedy = "Give, for example, 0, 0.1, 0.2."
+    array = as_numbers(field, values, remedy)
     if not np.all(np.isfinite(array)) or np.any(array < 0):
-        raise InputError(field, "must be finite and at least 0.", "Give, for example, 0, 0.1, 0.2.")
+        raise InputError(field, "must be finite and at least 0.", remedy)
     return array

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 
-from knitcore.base.bounds import check_positive
+from knitcore.base.bounds import check_positive, check_range
+from knitcore.base.choice import Choice
+from knitcore.base.kinds import check_kind
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 
 
-class KnownBy(StrEnum):
+class KnownBy(Choice):
     """How a relaxed size became known."""
 
     GAUGE = "gauge"
@@ -28,7 +30,7 @@ _ERRORS = {
 
 
 @dataclass(frozen=True)
-class RelaxedSize:
+class RelaxedSize(Result):
     """Relaxed size of one mean stitch of a chart.
 
     Attributes
@@ -41,7 +43,7 @@ class RelaxedSize:
     Raises
     ------
     InputError
-        If a size is not a positive number.
+        If a size is not a positive number, or the standard deviation not from 0 to 1.
     """
 
     course_mm: float
@@ -52,6 +54,8 @@ class RelaxedSize:
     def __post_init__(self) -> None:
         for name in ("course_mm", "wale_mm"):
             check_positive(name, getattr(self, name), "mm", "a stitch size", 500)
+        check_range("log_sd", self.log_sd, 0, 1, what="a standard deviation of logarithms")
+        object.__setattr__(self, "known_by", KnownBy.parse(self.known_by))
 
     @classmethod
     def from_gauge(cls, stitches_per_10_cm: float, rows_per_10_cm: float) -> RelaxedSize:
@@ -82,3 +86,14 @@ class RelaxedSize:
     def extent_mm(self, direction: Direction) -> float:
         """Relaxed size along a direction, mm."""
         return direction.of(self.course_mm, self.wale_mm)
+
+
+def check_size(size: RelaxedSize) -> None:
+    """Refuse what is no relaxed size.
+
+    Raises
+    ------
+    InputError
+    """
+    remedy = "Give a RelaxedSize, such as RelaxedSize.from_gauge(22, 30)."
+    check_kind("size", size, RelaxedSize, remedy)

@@ -134,10 +134,14 @@ def _piece_file(piece: Path) -> dict[str, Any]:
     try:
         return {"piece": PieceInput.model_validate_json(piece.read_bytes())}
     except OSError as error:
-        raise InputError("piece", f"{piece}: {error.strerror}.", "Name a JSON file.") from None
+        raise InputError(
+            "piece", f"{piece}: {error.strerror}.", "Name a JSON file that can be read."
+        ) from None
     except ValidationError as error:
         problem = f"{piece.name}: {first_fault(error)}."
-        raise InputError("piece", problem, "See docs/piece.md.") from None
+        raise InputError(
+            "piece", problem, "Correct the file as docs/piece.md describes it."
+        ) from None
 
 
 @out_option("--out", help="Write FILE.npz, .csv or .vtu.", suffixes=SUFFIXES)

@@ -152,7 +152,7 @@ def _read(path: Path, reading: TableReading) -> tuple[TableResult, StretchTest |
 
 
 def _missing(known: set[str]) -> list[str]:
-    """List what nobody has said yet, of all that a law needs."""
+    """List the quantities that a law needs and neither the file nor the request gives."""
     missing = [] if {"strain_along", "extension_mm"} & known else ["strain_along"]
     missing += [name for name in ("force_n", "width_mm") if name not in known]
     from_extension = "extension_mm" in known and "strain_along" not in known

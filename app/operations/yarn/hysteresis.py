@@ -42,7 +42,7 @@ class HysteresisRequest(StitchRequest, LawsRequest):
 
 
 class LoopLeg(ResultModel):
-    """One way of a cycle."""
+    """Loading or unloading: half of a cycle."""
 
     loading: bool
     strain: Floats = Field(description="Strain, from the rest size without friction.")
@@ -51,7 +51,7 @@ class LoopLeg(ResultModel):
 
 
 class HysteresisResult(IntervalResult):
-    """Cycles of pulling and letting go, and what is left of them."""
+    """Cycles of loading and unloading, the energy that they lose, and the sizes at rest."""
 
     kind: Literal["hysteresis"] = "hysteresis"
     direction: Direction

@@ -39,7 +39,7 @@ from ..registry import Command, Operation
 
 
 class RelaxRequest(RubbedRequest):
-    """A repeat, its yarn, what may be held while it relaxes, and what happened to the fabric."""
+    """A repeat, its yarn, what is held while it relaxes, and the fabric's history of loading."""
 
     branch: Branch | None = Field(
         None,
@@ -246,7 +246,7 @@ def _after_history(
 
 
 def _unmirrored(cell: RelaxedCell, context: Context) -> tuple[RelaxedCell, RelaxedRepeat | None]:
-    """A mirrored shape that knows whether it is a minimum, and the one it leads to otherwise."""
+    """Note whether a mirrored shape is a minimum; return the minimum that it leads to otherwise."""
     if not isinstance(cell, RelaxedRepeat):
         return cell, None
     lower = lowest(cell, cancelled=context.cancelled)
@@ -261,9 +261,9 @@ def _unmirrored(cell: RelaxedCell, context: Context) -> tuple[RelaxedCell, Relax
 
 
 def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> RelaxedGauge | None:
-    """The gauge of a simulated material's cloth: its pure fabrics are relaxed in the same way.
+    """The gauge of a simulated material's cloth, which other requests take; None for any other.
 
-    It is that of the mirrored shape, as learned answers are.
+    It compares the mirrored shape with the material's pure fabrics, relaxed in the same way.
     """
     usual = RelaxRequest(
         chart=request.chart, material=request.material, convention=request.convention

@@ -118,7 +118,7 @@ USER_LIMITS = UserLimits()
 
 
 class Use(BaseModel):
-    """Use of a limit."""
+    """How much of a limit a user holds, and the most that the limit allows."""
 
     used: float
     most: float

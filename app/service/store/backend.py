@@ -77,7 +77,7 @@ class Backend(ABC):
         """Let other transactions of this name wait until this one ends."""
 
     def check_writable(self) -> None:  # noqa: B027
-        """Do the same before each change, without a question to the server."""
+        """Refuse to change a database that is not this process's any more; asks no server."""
 
     def part_of(
         self,

@@ -214,7 +214,7 @@ class SqliteFile(Backend):
         partial.rename(copy)
 
     def close(self) -> None:
-        """Close all connections, the last one, which was kept, too."""
+        """Close all connections, the one that was kept open last."""
         super().close()
         if self._kept is not None:
             self._kept.close()

@@ -176,5 +176,5 @@ def now() -> float:
 
 
 def hash_of(secret: str) -> str:
-    """Secrets here are 256 random bits, so that a plain hash cannot be turned back."""
+    """Hash a secret; secrets here are 256 random bits, which nobody can guess from a plain hash."""
     return hashlib.sha256(secret.encode()).hexdigest()

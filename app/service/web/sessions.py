@@ -22,7 +22,7 @@ MAX_SESSIONS = 50
 """Sessions of one user at once."""
 USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
 REMEMBERED_S = 5.0
-"""Time for which an answer of the database is cached: a revoked token works no longer."""
+"""Time for which an answer of the database is kept; a revoked token may still work for as long."""
 MAX_REMEMBERED = 10_000
 ENVIRONMENT = "environment"
 """Identifier of the token in the settings."""

@@ -1,4 +1,4 @@
-"""Answers that are not read: their connections are closed."""
+"""Close connections whose clients do not read their answers."""
 
 import asyncio
 import contextlib
@@ -10,6 +10,12 @@ import termios
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 log = logging.getLogger("knitcore.app")
+
+TESTED_UVICORN = "0.54"
+"""The minor version that this module and :mod:`app.viewer.sockets` were tested with.
+
+``pyproject.toml`` allows no other, since both change protocols that uvicorn does not document.
+"""
 
 STALLED_S = 30.0
 """Time in which a client must take a part of an answer, or the rest of it."""
@@ -23,7 +29,7 @@ class WatchedProtocol(HttpToolsProtocol):
     _watch: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Begin; from now on every byte that has to wait is noticed."""
+        """Begin, with :meth:`pause_writing` called as soon as a single byte has to wait."""
         super().connection_made(transport)
         transport.set_write_buffer_limits(0)
 
@@ -33,17 +39,17 @@ class WatchedProtocol(HttpToolsProtocol):
         super().handle_websocket_upgrade()
 
     def pause_writing(self) -> None:
-        """Look from time to time whether what waits gets less."""
+        """Begin to check, from time to time, whether the client takes what waits."""
         super().pause_writing()
         self._look_after(self._unread_bytes())
 
     def resume_writing(self) -> None:
-        """Look no more: all was taken."""
+        """End the checks: the client has taken everything."""
         self._stop_looking()
         super().resume_writing()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Look no more: the client has left, or was given up."""
+        """End the checks: the connection is closed."""
         self._stop_looking()
         super().connection_lost(exc)
 

@@ -281,5 +281,5 @@ def _check(condition: Condition) -> None:
         raise InputError(
             "shear_angle",
             f"{condition.shear_angle} rad is out of range.",
-            f"Use up to {MAX_SHEAR_ANGLE}, not 0.",
+            f"Give {-MAX_SHEAR_ANGLE} to {MAX_SHEAR_ANGLE} rad, but not 0.",
         )

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.cloth.cut.outline import CutPiece
 from knitcore.cloth.flat.grid_sheet import Sheet
@@ -17,8 +18,8 @@ from knitcore.materials import Material
 from knitcore.prediction.quarter_laws import quarter_laws
 
 
-@dataclass(frozen=True, eq=False)
-class Cloth:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cloth(Result):
     """A sheet of cells with laws, larger than the piece.
 
     Attributes

@@ -81,7 +81,9 @@ def _changes(test: PieceTest, material: Material, step: int) -> Iterator[tuple[A
     sheet = test.energy.cloth.sheet
     if sheet.model.tension_field:
         raise InputError(
-            "tension_field", "there are no intervals for cloth that wrinkles.", "Turn it off."
+            "tension_field",
+            "there are no intervals for cloth that wrinkles.",
+            "Turn tension_field off.",
         )
     u, spread = test.equilibria[step].displacement, test.constraints.spread
     tangent = test.energy.at(u, test.constraints.tapes).tangent

@@ -13,6 +13,7 @@ import shapely
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
+from knitcore.base.kinds import as_numbers
 
 Point = tuple[float, float]
 
@@ -60,13 +61,11 @@ class CutPiece:
         for name, ring in zip(("outline", *("holes",) * len(self.holes)), rings, strict=True):
             if len(ring) < 3:
                 raise InputError(name, f"{len(ring)} corners are too few.", "Give at least three.")
-            if not np.all(np.abs(np.asarray(ring, dtype=float)) <= MAX_SIZE_MM):
-                raise InputError(
-                    name,
-                    "a corner has no usable coordinates.",
-                    f"Give mm, at most {MAX_SIZE_MM:g} from 0.",
-                )
-            if np.any(np.all(np.asarray(ring) == np.roll(ring, -1, axis=0), axis=1)):
+            remedy = f"Give x and y in mm, at most {MAX_SIZE_MM:g} from 0."
+            places = as_numbers(name, ring, remedy)
+            if places.shape[1:] != (2,) or not np.all(np.abs(places) <= MAX_SIZE_MM):
+                raise InputError(name, "a corner has no usable coordinates.", remedy)
+            if np.any(np.all(places == np.roll(places, -1, axis=0), axis=1)):
                 raise InputError(
                     name,
                     "a corner is given twice in a row.",
@@ -144,5 +143,7 @@ class CutPiece:
         """
         if edge not in self.edges:
             known = ", ".join(self.edges) or "none"
-            raise InputError("edge", f"there is no edge {edge!r}.", f"Name it; there are {known}.")
+            raise InputError(
+                "edge", f"there is no edge {edge!r}.", f"Use one of these edges: {known}."
+            )
         return [side - 1 for side in self.edges[edge]]

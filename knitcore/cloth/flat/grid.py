@@ -15,7 +15,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Fabric
-from knitcore.chart.phases import quarter_phases
+from knitcore.chart.phases import as_stitches, quarter_phases
 from knitcore.chart.stitch_chart import StitchChart
 
 Indices = NDArray[np.int64]
@@ -116,7 +116,7 @@ class QuarterGrid:
         ``length_mm`` all sizes are scaled so that the fabric measures that from edge to edge.
         """
         check_cells(2 * chart.rows, 2 * chart.columns)
-        inside = np.ones_like(chart.purl) if stitch is None else np.asarray(stitch, dtype=bool)
+        inside = np.ones_like(chart.purl) if stitch is None else as_stitches(stitch, chart)
         check_cloth(inside, chart.rows, chart.columns)
         cloth = inside.repeat(2, axis=0).repeat(2, axis=1)
         phases = quarter_phases(chart, stitch=inside)

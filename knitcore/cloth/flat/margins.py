@@ -7,6 +7,7 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
+from knitcore.chart.result import Result
 from knitcore.cloth.flat import Clamps, StripTest
 from knitcore.cloth.flat.strip_uncertainty import StripSpread, interval_source
 from knitcore.materials import Material
@@ -18,8 +19,8 @@ strain: in 20 steps to 0.28 this is off by less than 5 % of a step's widest inte
 and by less than 12 % of its widest interval of a utilisation."""
 
 
-@dataclass(frozen=True, eq=False)
-class StretchMargins:
+@dataclass(frozen=True, eq=False, repr=False)
+class StretchMargins(Result):
     """Half widths of 90 % intervals.
 
     Attributes

@@ -54,7 +54,7 @@ class SheetModel:
 
     Parameters
     ----------
-    energy : which energy.
+    energy : ``full`` or ``published``.
     coupling : symmetrisation rule; by default the model's own: ``geometric`` for ``full``,
         ``script`` for ``published``, because the published figures were made with it.
     shear_modulus : N/mm, replaces the laws' assumed shear modulus if given.

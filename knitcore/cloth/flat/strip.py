@@ -7,10 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
-from knitcore.base.bounds import check_range
+from knitcore.base.bounds import check_count
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, InputError, Progress
+from knitcore.base.kinds import as_numbers, check_callables, check_flags, check_kind
 from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.phases import as_stitches
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.cloth.flat.equilibrium_path import Path, run_path
 from knitcore.cloth.flat.grid import QuarterGrid, check_cloth
@@ -102,6 +104,8 @@ def strip_test(
     >>> test.converged, test.strain.round(2).tolist()
     (True, [0.1, 0.2, 0.3])
     """
+    check_flags(draw_in=draw_in)
+    check_callables(progress=progress, cancelled=cancelled)
     sheet = chart_sheet(
         as_chart(chart),
         as_material(material),
@@ -145,6 +149,10 @@ def chart_sheet(
     chosen = sheet_model(model, shear_modulus)
     if draw_in and not isinstance(model, SheetModel) and chosen.energy is EnergyModel.FULL:
         chosen = replace(chosen, tension_field=True)
+    if stitch is not None:
+        stitch = as_stitches(stitch, chart)
+    if laws is not None:
+        check_kind("laws", laws, QuarterLaws, "Give QuarterLaws, as quarter_laws() returns them.")
     sizes = {fabric: record.stitch_mm for fabric, record in material.fabrics.items()}
     local = laws or _local_laws(chart, material, stitch, size)
     grid = QuarterGrid.of_chart(
@@ -166,12 +174,11 @@ def _local_laws(
     """Laws of a piece; a shaped one counts as its bounding rectangle, filled with its pattern."""
     if stitch is None or np.all(stitch):
         return quarter_laws(chart, material, size)
-    inside = np.asarray(stitch, dtype=bool)
-    check_cloth(inside, chart.rows, chart.columns)
-    rows, columns = (np.flatnonzero(inside.any(axis=axis)) for axis in (1, 0))
+    check_cloth(stitch, chart.rows, chart.columns)
+    rows, columns = (np.flatnonzero(stitch.any(axis=axis)) for axis in (1, 0))
     here = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    laws = quarter_laws(_continued(chart.purl[here], inside[here]), material, size)
-    patch, scale = np.zeros(inside.shape, dtype=np.intp), np.ones((*inside.shape, 2))
+    laws = quarter_laws(_continued(chart.purl[here], stitch[here]), material, size)
+    patch, scale = np.zeros(stitch.shape, dtype=np.intp), np.ones((*stitch.shape, 2))
     patch[here], scale[here] = laws.patch, laws.scale
     return replace(laws, patch=patch, scale=scale)
 
@@ -280,10 +287,10 @@ def load_levels(strain: float | Sequence[float], steps: int) -> Array:
     InputError
         If they are not positive and increasing, or the number of steps cannot be used.
     """
-    check_range("steps", steps, 1, MAX_STEPS)
-    values = np.asarray(strain, dtype=float)
+    check_count("steps", steps, 1, MAX_STEPS)
+    values = as_numbers("strain", strain, "Give a number above 0, or several.")
     levels = values * (np.arange(1, steps + 1) / steps) if values.ndim == 0 else values
-    if levels.size == 0 or not np.all(np.isfinite(levels)) or levels[0] <= 0:
+    if levels.ndim > 1 or levels.size == 0 or not np.all(np.isfinite(levels)) or levels[0] <= 0:
         raise InputError("strain", f"{strain} is not a stretch.", "Give a number above 0.")
     if np.any(np.diff(levels) <= 0):
         raise InputError("strain", "the strains do not increase.", "Give increasing strains.")

@@ -148,7 +148,9 @@ class StripSpread:
     ) -> None:
         if test.sheet.model.tension_field:
             raise InputError(
-                "tension_field", "there are no intervals for a sheet that wrinkles.", "Turn it off."
+                "tension_field",
+                "there are no intervals for a sheet that wrinkles.",
+                "Turn tension_field off.",
             )
         grid = test.sheet.grid
         fixed = clamp_mask(grid, test.direction, clamps) | ~grid.used_corners[:, None]

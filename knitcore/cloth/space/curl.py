@@ -2,7 +2,6 @@
 
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,14 +12,13 @@ from knitcore.base import showing
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, InputError
 from knitcore.chart.fabric import Direction
+from knitcore.chart.in_space import ClothInSpace
 from knitcore.chart.phases import continued
-from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart, check_stitches
 from knitcore.cloth.space.folds import balances
 from knitcore.cloth.space.rolled import start
 from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import StitchSheet, sheet_of
-from knitcore.cloth.space.surface import corners_of
 from knitcore.materials import Material, as_material
 
 MAX_STITCHES = 10_000
@@ -48,7 +46,7 @@ NOTE = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CurledPiece(Result):
+class CurledPiece(ClothInSpace):
     """A piece at rest, on average aligned with the flat one: x along the rows, z towards the face.
 
     Parameters
@@ -86,55 +84,14 @@ class CurledPiece(Result):
     stitches: NDArray[np.bool_] | None = None
     notes: tuple[str, ...] = (NOTE,)
 
-    @property
-    def used(self) -> NDArray[np.bool_]:
-        """Mask (rows + 1, columns + 1) of the corners that a stitch has."""
-        if self.stitches is None:
-            return np.ones(self.corners_mm.shape[:2], dtype=bool)
-        return corners_of(self.stitches)
-
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Collect the shape as arrays.
 
         ``corners_mm`` and ``flat_mm``, (rows + 1, columns + 1, 3), are NaN where there is no
         stitch; ``purl`` and ``stitch`` are (rows, columns).
         """
-        known = np.where(self.used[..., None], (self.corners_mm, self.flat_mm), np.nan)
-        stitch = np.ones_like(self.chart.purl) if self.stitches is None else self.stitches
-        return {
-            "corners_mm": known[0],
-            "flat_mm": known[1],
-            "purl": self.chart.purl,
-            "stitch": stitch,
-        }
-
-    def write(self, path: Path | str) -> None:
-        """Write by the file's suffix: ``.npz`` (:meth:`arrays`) or ``.vtu``, stitches as
-        quadrilaterals in space.
-
-        Raises
-        ------
-        InputError
-            If the suffix is neither of these.
-        """
-        target = Path(path)
-        arrays = self.arrays()
-        if target.suffix.lower() == ".npz":
-            np.savez_compressed(target, allow_pickle=False, **arrays)
-        elif target.suffix.lower() == ".vtu":
-            import meshio
-
-            corner = np.arange(self.used.size).reshape(self.used.shape)
-            around = corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]
-            stitches = np.stack(around, axis=-1)[arrays["stitch"]]
-            purl = arrays["purl"][arrays["stitch"]].astype(np.int8)
-            meshio.Mesh(
-                np.where(self.used[..., None], self.corners_mm, 0.0).reshape(-1, 3),
-                [("quad", stitches)],
-                cell_data={"purl": [purl]},
-            ).write(target, file_format="vtu")
-        else:
-            raise InputError("out", f"{target.name} has an unknown suffix.", "Use .npz or .vtu.")
+        flat = np.where(self.used[..., None], self.flat_mm, np.nan)
+        return super().arrays() | {"flat_mm": flat, "purl": self.chart.purl}
 
     def _repr_html_(self) -> str:
         step = max(1, max(self.corners_mm.shape[:2]) // 30)
@@ -197,10 +154,12 @@ def curl(
     chart, material = as_chart(chart), as_material(material)
     check_piece(chart, stitches)
     if pull is not None and min(chart.rows, chart.columns) < _BETWEEN:
-        raise InputError("chart", "is too small for clamps.", f"Give {_BETWEEN} rows and columns.")
+        remedy = f"Give at least {_BETWEEN} rows and {_BETWEEN} columns."
+        raise InputError("chart", "is too small for clamps.", remedy)
     shape = (chart.rows + 1, chart.columns + 1, 3)
     if begin is not None and begin.shape != shape:
-        raise InputError("begin", "has another size.", "Give the corners of as many stitches.")
+        remedy = f"Give the corners of a piece of {chart.columns} x {chart.rows} stitches."
+        raise InputError("begin", "has another size than the chart.", remedy)
     if stitches is not None:
         chart = continued(chart, stitches)
     sheet = sheet_of(chart, material, stitches)
@@ -277,9 +236,8 @@ def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -
     if stitches is None:
         return
     if stitches.shape != chart.purl.shape or not stitches.any():
-        raise InputError(
-            "outline", "does not fit the chart.", "Give as many cells, one stitch at least."
-        )
+        remedy = "Give True or False for every stitch of the chart, True for at least one."
+        raise InputError("outline", "does not fit the chart.", remedy)
     parts, count = label(stitches, structure=np.ones((3, 3)))
     if count > 1:
         sizes = np.bincount(parts.ravel())[1:]

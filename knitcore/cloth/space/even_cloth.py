@@ -18,6 +18,7 @@ from scipy.ndimage import map_coordinates
 from knitcore.base.arrays import Array, rounded
 from knitcore.base.bounds import check_linear_density
 from knitcore.chart.fabric import PHASES, Direction
+from knitcore.chart.in_space import ClothInSpace
 from knitcore.chart.phases import pure_fabric, quarter_phases
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.bending_constants import bends_of, mirrored_bending
@@ -166,8 +167,8 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     )
 
 
-@dataclass(frozen=True, eq=False)
-class StitchedCloth:
+@dataclass(frozen=True, eq=False, repr=False)
+class StitchedCloth(ClothInSpace):
     """The stitches of a sheet of even cloth in a test, lines following the columns.
 
     Attributes

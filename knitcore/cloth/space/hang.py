@@ -9,14 +9,13 @@ from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 from knitcore.base.arrays import Array
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled
+from knitcore.chart.in_space import ClothInSpace, corners_of
 from knitcore.chart.phases import continued
-from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.cloth.space.curl import TIME_LIMIT_S, check_piece
 from knitcore.cloth.space.even_cloth import stitch_weights_n
 from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import sheet_of
-from knitcore.cloth.space.surface import corners_of
 from knitcore.materials import Material, as_material
 
 
@@ -28,7 +27,7 @@ class HungBy(Choice):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class HungPiece(Result):
+class HungPiece(ClothInSpace):
     """A hanging piece at rest: x along the rows, y up, z towards the face.
 
     Parameters
@@ -39,7 +38,7 @@ class HungPiece(Result):
     width_mm, depth_mm : extent of the piece.
     lengthening : of the middle column, over its length at rest in the flat sheet.
     converged : whether every corner is in equilibrium.
-    used : (rows + 1, columns + 1) whether a stitch has this corner.
+    stitches : (rows, columns) False where the piece has none.
     """
 
     corners_mm: Array
@@ -49,7 +48,7 @@ class HungPiece(Result):
     depth_mm: float
     lengthening: float
     converged: bool
-    used: NDArray[np.bool_]
+    stitches: NDArray[np.bool_]
 
     @property
     def weight_g(self) -> float:
@@ -121,5 +120,5 @@ def hang(
         depth_mm=float(depth),
         lengthening=float(lengths[0] / lengths[1]) - 1.0,
         converged=shape.converged,
-        used=used,
+        stitches=there,
     )

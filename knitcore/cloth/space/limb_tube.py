@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
-from knitcore.chart.result import Result
+from knitcore.chart.in_space import ClothInSpace
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.limb import LimbPlace, MeasuredLimb, place_on
 from knitcore.garment.shaped import ShapedChart
@@ -34,7 +34,7 @@ BARE = 0.12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TubeOnLimb(Result):
+class TubeOnLimb(ClothInSpace):
     """A tube on a limb, in space: the limb's axis along y (x if the columns run around it).
 
     Attributes
@@ -43,6 +43,7 @@ class TubeOnLimb(Result):
         front (z), the seam behind. The face is outside.
     places : of every line of stitches around the limb, from where the tube begins.
     length_mm, relaxed_length_mm : of the tube along the limb's surface, worn and unworn.
+    stitches : (rows, columns) False where the tube has none.
     limb_mm : (rings, sides, 3) the limb under it and a little beyond, closed around.
     """
 
@@ -50,6 +51,7 @@ class TubeOnLimb(Result):
     places: tuple[LimbPlace, ...]
     length_mm: float
     relaxed_length_mm: float
+    stitches: Mask
     limb_mm: Array
 
 
@@ -111,7 +113,9 @@ def worn_tube(
     if not by_row:
         corners, skin = (points[..., [1, 0, 2]] for points in (corners, skin))
         corners = corners.transpose(1, 0, 2)
-    return TubeOnLimb(corners, tuple(places), along_mm[-1], float(heights.sum()), skin)
+    return TubeOnLimb(
+        corners, tuple(places), along_mm[-1], float(heights.sum()), shaped.stitch, skin
+    )
 
 
 def _check_tube(inside: Mask) -> None:

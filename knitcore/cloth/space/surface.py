@@ -9,12 +9,6 @@ from scipy.sparse.linalg import splu
 from knitcore.base.arrays import Array
 
 
-def corners_of(stitches: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Mask (rows + 1, columns + 1) of the corners that stitches (rows, columns) have."""
-    around = np.pad(stitches, 1)
-    return np.asarray(around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1])
-
-
 def filled(corners_mm: Array, used: NDArray[np.bool_]) -> Array:
     """Fill in the corners (rows + 1, columns + 1, 3) that no stitch has, as smoothly as possible.
 

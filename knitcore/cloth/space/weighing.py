@@ -26,6 +26,8 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import Cancelled, InputError
+from knitcore.chart.in_space import ClothInSpace
+from knitcore.chart.result import Result
 from knitcore.cloth.space.even_cloth import EvenCloth
 from knitcore.cloth.space.sheet_shape import Shape, settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import StitchSheet
@@ -59,8 +61,8 @@ MAX_WIDTH_MM = 500.0
 _RECTANGLE_MM = 2.5
 
 
-@dataclass(frozen=True, eq=False)
-class Overhang:
+@dataclass(frozen=True, eq=False, repr=False)
+class Overhang(ClothInSpace):
     """A strip at rest; x along it from the edge of the table, z up.
 
     Parameters
@@ -143,8 +145,8 @@ def overhang(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Drape:
+@dataclass(frozen=True, eq=False, repr=False)
+class Drape(ClothInSpace):
     """A draped piece: the state of least energy of those found; z up.
 
     Parameters
@@ -193,7 +195,11 @@ def drape(
         If ``cancelled`` returned True.
     """
     if not 0.0 < disc_mm < 0.95 * piece_mm:
-        raise InputError("disc_mm", f"{disc_mm:g} mm is too large.", "Give less than the piece.")
+        raise InputError(
+            "disc_mm",
+            f"{disc_mm:g} mm is no disc inside the piece.",
+            "Give above 0 and below 0.95 piece_mm.",
+        )
     check_range("across", across, 10, MAX_ACROSS)
     sheet, held = _round(cloth, piece_mm, disc_mm, across)
     load = sheet.load_n(cloth.weight_n_per_mm2 * _area(sheet))
@@ -272,8 +278,8 @@ def _folds(sheet: StitchSheet, shape: Shape, ring_mm: float) -> int:
     return int(np.count_nonzero((crests >= 144) & (crests < 288)))
 
 
-@dataclass(frozen=True, eq=False)
-class BorderAdvice:
+@dataclass(frozen=True, eq=False, repr=False)
+class BorderAdvice(Result):
     """A border along one pair of edges.
 
     Parameters
@@ -281,7 +287,8 @@ class BorderAdvice:
     moment_n : per width, with which the piece curls there; 0 if it does not.
     width_mm : of the border that its weight just keeps from being tipped over; 0 for none.
     stitches : the same in stitches, or rows, of the border.
-    rule_share : share of the moment that the weight of a border by the knitters' rule holds.
+    rule_share : share of the moment that the weight of a border of the usual width holds: five
+        stitches at the sides, four rows at top and bottom.
     holds : whether a border of 1.2 times this width keeps a smooth strip from rolling up.
     ridge_mm : how high this strip rises beside its borders.
     line_mm : (n, 2) the strip in cross-section, along the table and up.
@@ -304,7 +311,7 @@ def advice(
     time_limit_s: float = 20.0,
     cancelled: Cancelled | None = None,
 ) -> BorderAdvice:
-    """How wide a border must be.
+    """Advise how wide a border must be to keep a curling piece flat by its weight.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from knitcore.formats.designs.layout import DesignRegion, runs_of
 from knitcore.garment.plan import FABRIC_COLOURS, GarmentPlan
 
 YARN_NAMES = dict(zip(FABRIC_COLOURS.values(), ("blue", "orange", "green", "purple"), strict=True))
-"""One colour a fabric, as the study's glove; its seed was pink."""
+"""Name of each fabric's yarn, by its colour in the paper's glove (which had pink for seed)."""
 
 
 def design_of_plan(

@@ -30,7 +30,7 @@ MOST_INLAID_TUCKS = 3
 EDGE_WALES = 2
 
 
-class StitchKind(StrEnum):
+class StitchWithoutSign(StrEnum):
     """A kind of stitch for which a chart of knits and purls has no sign."""
 
     TUCK = "a tuck within the piece"
@@ -46,22 +46,22 @@ class StitchKind(StrEnum):
 
 
 NOT_CHARTED = {
-    StitchKind.TUCK: "knit it instead",
-    StitchKind.MISS: "knit every needle in every course",
-    StitchKind.LACE: "shape at the edges only",
-    StitchKind.YARN_OVER: "cast on every needle before the first course",
-    StitchKind.CABLE: "knit without crossing",
-    StitchKind.MOVED: "bring each loop back to its needle before it is knitted",
-    StitchKind.SPLIT: "cast on at the edge instead",
-    StitchKind.DROPPED: "keep its loop",
-    StitchKind.TWO_BEDS: "knit one face of it, each wale on one bed at a time",
-    StitchKind.SHORT_ROW: "knit every course from edge to edge",
+    StitchWithoutSign.TUCK: "knit it instead",
+    StitchWithoutSign.MISS: "knit every needle in every course",
+    StitchWithoutSign.LACE: "shape at the edges only",
+    StitchWithoutSign.YARN_OVER: "cast on every needle before the first course",
+    StitchWithoutSign.CABLE: "knit without crossing",
+    StitchWithoutSign.MOVED: "bring each loop back to its needle before it is knitted",
+    StitchWithoutSign.SPLIT: "cast on at the edge instead",
+    StitchWithoutSign.DROPPED: "keep its loop",
+    StitchWithoutSign.TWO_BEDS: "knit one face of it, each wale on one bed at a time",
+    StitchWithoutSign.SHORT_ROW: "knit every course from edge to edge",
 }
 """Kinds that are refused, with what to do."""
 
 
 @dataclass(frozen=True)
-class Fabric:
+class KnittedCourses:
     """Stitches with their columns, course by course, from the bottom."""
 
     courses: tuple[dict[Loop, int], ...]
@@ -69,7 +69,7 @@ class Fabric:
     notes: tuple[str, ...]
 
 
-def fabric_of(loops: Sequence[Loop], stitches: Sequence[Loop]) -> Fabric:
+def fabric_of(loops: Sequence[Loop], stitches: Sequence[Loop]) -> KnittedCourses:
     """Put the stitches of a piece into courses and wales.
 
     Raises
@@ -101,7 +101,7 @@ def fabric_of(loops: Sequence[Loop], stitches: Sequence[Loop]) -> Fabric:
     used = sorted({wale(loop) for loop in reading.all})
     notes += _empty_needles(used, wale)
     column = {place: index for index, place in enumerate(used)}
-    return Fabric(
+    return KnittedCourses(
         tuple({loop: column[wale(loop)] for run in course for loop in run} for course in courses),
         len(used),
         tuple(notes),
@@ -311,7 +311,7 @@ def _without_unfinished_start(
 
 
 def _is_inside(names: Mapping[str, int], seen: set[str], beside: Mapping[str, int]) -> bool:
-    """Say whether many needles within a course are none of those seen."""
+    """Say whether a course has many new needles between its outermost ones."""
     low, high = min(beside.values()), max(beside.values())
     new = [name for name, place in names.items() if name not in seen and low < place < high]
     places = set(beside.values())
@@ -320,7 +320,7 @@ def _is_inside(names: Mapping[str, int], seen: set[str], beside: Mapping[str, in
 
 
 def _empty_needles(used: Sequence[int], wale: _Wales) -> Iterator[str]:
-    """Tell of needles that stay empty; half gauge, where every second one does, is told so."""
+    """Yield notes on needles that stay empty within the piece, such as every second one."""
     steps = {b - a for a, b in pairwise(used)}
     if wale.both is not None:
         yield "Both beds knit at every number, racked between each other: each needle is a wale."
@@ -370,11 +370,11 @@ class _Reading:
             if laid is None:
                 inlaid.append(tuck)
                 if len(inlaid) > MOST_INLAID_TUCKS:
-                    raise self._refused(row - 1, inlaid[0], StitchKind.TUCK)
+                    raise self._refused(row - 1, inlaid[0], StitchWithoutSign.TUCK)
                 continue
             needle_mates = [p for p in stitch.parents if p is not tuck and p in self._row]
             if row != laid and all(self._row[p] != laid for p in needle_mates):
-                raise self._refused(laid, tuck, StitchKind.TUCK)
+                raise self._refused(laid, tuck, StitchWithoutSign.TUCK)
         if inlaid:
             self.notes.append(
                 f"{len(inlaid)} tucks of carrier {named(inlaid[0].carriers)} from line "
@@ -405,17 +405,17 @@ class _Reading:
             self._refuse_gap(row, place)
         for place, loop in course.items():
             if loop.kind == "split":
-                raise self._refused(row, loop, StitchKind.SPLIT)
+                raise self._refused(row, loop, StitchWithoutSign.SPLIT)
             own = below.get(place)
             if own is not None and own not in loop.parents:
                 kind = self._kind_of_moved(loop, own, below)
                 raise self._refused(row, loop, kind)
             places = {self._wale(p): p for p in loop.parents if self._row.get(p) == row - 1}
             if row and any(at != place and at in course for at in places):
-                raise self._refused(row, loop, StitchKind.LACE)
+                raise self._refused(row, loop, StitchWithoutSign.LACE)
             if row and own is None and any(parent.parents for parent in loop.parents):
                 rows = [self._row.get(p, -1) for p in loop.parents if self._wale(p) == place]
-                kind = StitchKind.SHORT_ROW if rows else StitchKind.MOVED
+                kind = StitchWithoutSign.SHORT_ROW if rows else StitchWithoutSign.MOVED
                 raise self._refused(row, loop, kind)
 
     def _check_passes(self, row: int) -> None:
@@ -429,9 +429,9 @@ class _Reading:
                 beds = {o.bed for o in (*run, *widest)}
                 clash = any(self._wale(o) in mine for o in widest)
                 if clash or len(beds) > 1:
-                    raise self._refused(row, run[0], StitchKind.TWO_BEDS)
+                    raise self._refused(row, run[0], StitchWithoutSign.TWO_BEDS)
                 if run[0].strand == widest[0].strand:
-                    raise self._refused(row, run[0], StitchKind.MISS)
+                    raise self._refused(row, run[0], StitchWithoutSign.MISS)
                 self._tell_colours(row)
             if max(places) > end:
                 end, widest = max(places), run
@@ -439,7 +439,7 @@ class _Reading:
         if len(held) < sum(map(len, runs)):
             place = held.most_common(1)[0][0]
             twice = [loop for run in runs for loop in run if self._wale(loop) == place]
-            raise self._refused(row, twice[1], StitchKind.TWO_BEDS)
+            raise self._refused(row, twice[1], StitchWithoutSign.TWO_BEDS)
 
     def _tell_colours(self, row: int) -> None:
         if not self._colours_noted:
@@ -459,33 +459,33 @@ class _Reading:
         course, below = self._by_wale[row], self._by_wale[row - 1] if row else {}
         beside = course[max(p for p in course if p < place)]
         own = below.get(place)
-        kind, loop = StitchKind.MISS, beside
+        kind, loop = StitchWithoutSign.MISS, beside
         if own is None:
             later = next((held[place] for held in self._by_wale[row + 1 :] if place in held), None)
             begun = later is not None and all(not parent.parents for parent in later.parents)
             if begun:
-                kind = StitchKind.YARN_OVER
+                kind = StitchWithoutSign.YARN_OVER
             elif any(place in held for held in self._by_wale[:row]):
-                kind = StitchKind.LACE
+                kind = StitchWithoutSign.LACE
         elif own.child is None:
-            kind = StitchKind.DROPPED if own.dropped else StitchKind.MISS
+            kind = StitchWithoutSign.DROPPED if own.dropped else StitchWithoutSign.MISS
         elif own.child in self._row and self._wale(own.child) != place:
-            kind, loop = StitchKind.LACE, own.child
+            kind, loop = StitchWithoutSign.LACE, own.child
         held = own or next((h[place] for h in self._by_wale if place in h), loop)
         raise self._refused(row, loop, kind, needle=held.name)
 
-    def _kind_of_moved(self, loop: Loop, own: Loop, below: Mapping[int, Loop]) -> StitchKind:
+    def _kind_of_moved(self, loop: Loop, own: Loop, below: Mapping[int, Loop]) -> StitchWithoutSign:
         """The kind of a stitch that is not pulled through the one below it."""
         if own.child is None:
-            return StitchKind.DROPPED
+            return StitchWithoutSign.DROPPED
         if own.child not in self._row:
-            return StitchKind.MOVED
+            return StitchWithoutSign.MOVED
         moved = [parent for parent in loop.parents if parent in below.values()]
         alone = len(loop.parents) == 1 and len(own.child.parents) == 1
-        return StitchKind.CABLE if moved and alone else StitchKind.LACE
+        return StitchWithoutSign.CABLE if moved and alone else StitchWithoutSign.LACE
 
     def _refused(
-        self, row: int, loop: Loop, kind: StitchKind, *, needle: str | None = None
+        self, row: int, loop: Loop, kind: StitchWithoutSign, *, needle: str | None = None
     ) -> InputError:
         return InputError(
             "knitout",

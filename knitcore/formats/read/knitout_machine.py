@@ -2,7 +2,7 @@
 
 Reads programs as other tools write them: a byte order mark, any line ends, headers and ``x-``
 operations of any name, carriers of any name and number, needles below 0, sliders, and racking by
-fractions. What says nothing about loops is told in a note. A program is read line by line in a
+fractions. Lines that do not concern loops are listed in notes. A program is read line by line in a
 time in proportion to its length, and lines are counted from 1.
 
 Specification: https://textiles-lab.github.io/knitout/knitout.html

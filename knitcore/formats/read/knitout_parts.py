@@ -28,7 +28,7 @@ Carriers = tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class Part:
+class KnittedPart:
     """The stitches of the piece, in the order in which they are made."""
 
     stitches: tuple[Loop, ...]
@@ -114,16 +114,16 @@ def _following(loop: Loop) -> Iterator[Loop]:
         yield loop
 
 
-def part_knitted_by(loops: Sequence[Loop], carriers: Collection[Carriers]) -> Part:
+def part_knitted_by(loops: Sequence[Loop], carriers: Collection[Carriers]) -> KnittedPart:
     """The stitches of carriers that the program itself names; others are waste."""
     stitches = tuple(loop for loop in stitches_of(loops) if loop.carriers in carriers)
     others = dict.fromkeys(loop.carriers for loop in loops if loop.carriers not in carriers)
-    return Part(
+    return KnittedPart(
         stitches, tuple(f"Yarn of carrier {named(other)} counts as waste yarn." for other in others)
     )
 
 
-def main_part(loops: Sequence[Loop]) -> Part:
+def main_part(loops: Sequence[Loop]) -> KnittedPart:
     """The piece among everything that a program knits.
 
     Raises
@@ -133,7 +133,7 @@ def main_part(loops: Sequence[Loop]) -> Part:
     """
     stitches, notes = _joined(stitches_of(loops), loops)
     if not stitches:
-        return Part((), ())
+        return KnittedPart((), ())
     bound_off = {parent for loop in bound_off_by(loops) for parent in loop.parents}
     sections = _sections(stitches, bound_off)
     first, last = _span_of_piece(sections, bound_off)
@@ -155,7 +155,7 @@ def main_part(loops: Sequence[Loop]) -> Part:
                 "out; if it belongs to the piece, name the yarns of the piece by lines such as: "
                 f"; carrier {carriers[0]} knits #efe9dd wool"
             )
-    return Part(tuple(loop for section in inside for loop in section.stitches), tuple(notes))
+    return KnittedPart(tuple(loop for section in inside for loop in section.stitches), tuple(notes))
 
 
 def named(carriers: Carriers) -> str:

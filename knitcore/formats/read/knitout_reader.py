@@ -22,7 +22,7 @@ import numpy as np
 from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.read.chart_files import PieceInFile
-from knitcore.formats.read.knitout_courses import Fabric, fabric_of
+from knitcore.formats.read.knitout_courses import KnittedCourses, fabric_of
 from knitcore.formats.read.knitout_machine import Loop, knitting_of
 from knitcore.formats.read.knitout_parts import main_part, named, part_knitted_by
 from knitcore.formats.write.knitout import MAX_NEEDLES, Finish, KnitoutProgram, knitout_program
@@ -86,7 +86,7 @@ def _yarns(
     }
 
 
-def _piece(fabric: Fabric, yarns: Mapping[tuple[str, ...], PieceYarn]) -> Piece:
+def _piece(fabric: KnittedCourses, yarns: Mapping[tuple[str, ...], PieceYarn]) -> Piece:
     rows, columns = len(fabric.courses), fabric.columns
     purl = np.zeros((rows, columns), dtype=bool)
     stitch, yarn_of = purl.copy(), np.zeros(purl.shape, dtype=np.intp)

@@ -27,6 +27,7 @@ from knitcore.materials.measured_curves import MeasuredCurve
 
 FORMAT = "knitcore-law"
 MAX_BYTES = 10_000_000
+_GIVE = "Give a LAW.json that `knitcore fit` wrote."
 _UNIT = "_n_per_mm"
 
 
@@ -74,15 +75,15 @@ def load_law(path: Path) -> LawFile:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError("law", f"{path} is not a file.", "Give a file that `knitcore fit` wrote.")
+        raise InputError("law", f"{path} is not a file.", _GIVE)
     if path.stat().st_size > MAX_BYTES:
-        raise InputError("law", f"{path.name} is too large for a law.", "Give a LAW.json.")
+        raise InputError("law", f"{path.name} is too large for a law.", _GIVE)
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except (ValueError, RecursionError):
-        raise InputError("law", f"{path.name} is not JSON.", "Give a LAW.json.") from None
+        raise InputError("law", f"{path.name} is not JSON.", _GIVE) from None
     if not isinstance(data, dict):
-        raise InputError("law", f"{path.name} does not hold an object.", "Give a LAW.json.")
+        raise InputError("law", f"{path.name} does not hold an object.", _GIVE)
     return law_from_mapping(data)
 
 

@@ -28,7 +28,7 @@ MIN_CELL_PIXELS = 8
 MOST_LONG = 2.5
 """Height over width of a cell, or width over height, beyond which it is several stitches."""
 MAX_UNTOLD = 64
-"""Side up to which nobody asks whether a pixel is a stitch."""
+"""Pixels of the longer side up to which a pixel counts as a stitch without a note."""
 _LINE = 0.75
 """Part of a picture's side that a line of a grid crosses."""
 _WHOLE = 0.1
@@ -40,7 +40,7 @@ _CLEAR = 0.8
 _NOISE = 24.0
 """Difference of two groups that are told apart although they are not clear, of 255."""
 _PLAIN_LIGHT, _PLAIN_DARK = 170.0, 84.0
-"""Tones beyond which nobody asks which is the light one."""
+"""Least tone of light stitches, and greatest of dark ones, that need no note on which is which."""
 
 
 def read_picture(

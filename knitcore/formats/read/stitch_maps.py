@@ -25,7 +25,8 @@ def read_target_moduli(file: Path) -> tuple[Array, Array]:
         Naming the line that cannot be read.
     """
     if not file.is_file() or file.stat().st_size > MAX_BYTES:
-        raise InputError("target", f"{file} is not a usable CSV file.", "Check the path and size.")
+        remedy = f"Give the path of a CSV file of at most {MAX_BYTES // 10**6} MB."
+        raise InputError("target", f"{file} is not a usable CSV file.", remedy)
     try:
         with file.open(newline="", encoding="utf-8-sig") as stream:
             table = csv.DictReader(stream)

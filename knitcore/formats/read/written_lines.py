@@ -155,7 +155,7 @@ class RepeatLine:
 
 
 @dataclass
-class Pattern:
+class PatternLines:
     """The contents of the lines.
 
     Attributes
@@ -190,7 +190,7 @@ def looks_written(text: str) -> bool:
     return False
 
 
-def read_lines(text: str) -> Pattern:
+def read_lines(text: str) -> PatternLines:
     """Tell the lines apart.
 
     Raises
@@ -241,13 +241,13 @@ def _row_begins(text: str, at: int = 0) -> re.Match[str] | None:
 
 class _Reader:
     def __init__(self) -> None:
-        self._pattern = Pattern()
+        self._pattern = PatternLines()
         self._open: list[str] | None = None
         """Words of the row that goes on in the next line."""
         self._began: tuple[Line, re.Match[str]] | None = None
         self._depth = 0
 
-    def read(self, text: str) -> Pattern:
+    def read(self, text: str) -> PatternLines:
         lines = text.lstrip("\ufeff").splitlines()
         if len(lines) > MAX_LINES:
             problem = f"the text has {len(lines)} lines."
@@ -269,7 +269,9 @@ class _Reader:
                 self._line(Line(number, part))
         self._close()
         if self._depth:
-            raise InputError("rows", "a bracket is not closed.", "Close it.")
+            raise InputError(
+                "rows", "a bracket is not closed.", "Close every bracket that is opened."
+            )
         return self._pattern
 
     def _without_remarks(self, words: str) -> str:

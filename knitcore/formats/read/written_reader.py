@@ -16,7 +16,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.row_sides import Construction, Side, side_of_row
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
 from knitcore.formats.read.written_lines import (
-    Pattern,
+    PatternLines,
     RepeatLine,
     RowLine,
     again,
@@ -100,7 +100,7 @@ def read_noted_rows(text: str) -> tuple[Piece, tuple[str, ...]]:
 class _Reader:
     """Puts the rows in order and works them."""
 
-    def __init__(self, pattern: Pattern, *, often_more: bool) -> None:
+    def __init__(self, pattern: PatternLines, *, often_more: bool) -> None:
         self._pattern, self._often_more = pattern, often_more
         self._yarns: list[PieceYarn] = []
         self._rows: dict[int, RowWords | int] = {}

@@ -116,7 +116,7 @@ def taken(stitches: Stitches) -> int:
 
 
 @dataclass(frozen=True)
-class Part:
+class RowPart:
     """Stitches that are worked once or, with ``leave``, until so many of the row below are left."""
 
     unit: Stitches
@@ -137,7 +137,7 @@ class RowWords:
     line: Line
     first: int
     last: int
-    parts: tuple[Part, ...]
+    parts: tuple[RowPart, ...]
     count: int | None = None
 
     @property
@@ -155,7 +155,7 @@ class RowWords:
         if not self.is_fixed or any(s.form for part in self.parts for s in part.unit):
             return self
         unit = sum((part.unit for part in self.parts), ())
-        return RowWords(self.line, self.first, self.last, (Part(unit, 0),), self.count)
+        return RowWords(self.line, self.first, self.last, (RowPart(unit, 0),), self.count)
 
     def fits(self, needles: Indices) -> Mask:
         """For each number of stitches on the needle, whether the row comes out."""
@@ -301,7 +301,7 @@ class _Frame:
     """The words inside an open bracket or after a star."""
 
     mark: str = ""
-    parts: list[Part] = field(default_factory=list)
+    parts: list[RowPart] = field(default_factory=list)
     size: int = 0
 
 
@@ -315,7 +315,7 @@ class _Reader:
         self._yarn = None if yarns > 1 else 0
         self._stack = [_Frame()]
 
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[RowPart, ...]:
         while self._next < len(self._tokens):
             self._step()
         if len(self._stack) > 1:
@@ -328,7 +328,7 @@ class _Reader:
         if not parts:
             raise self._line.wrong("a part of it is empty.", "Write stitches, such as k3.")
         if len(self._tokens) == 1 and self._tokens[0][0] in ("k", "p"):
-            return (Part(parts[0].unit, 0),)
+            return (RowPart(parts[0].unit, 0),)
         elastic = [index for index, part in enumerate(parts) if part.leave is not None]
         for index in elastic:
             part = parts[index]
@@ -365,7 +365,7 @@ class _Reader:
             self._stitch(word)
         elif word in _SHAPED:
             purl = word in ("ssp", "p2tog", "p3tog", "m1p")
-            self._add(Part((WrittenStitch(purl, word, self._named_yarn()),)))
+            self._add(RowPart((WrittenStitch(purl, word, self._named_yarn()),)))
         else:
             raise self._unknown(self._next - 1)
 
@@ -396,7 +396,7 @@ class _Reader:
             return True
         return False
 
-    def _add(self, part: Part) -> None:
+    def _add(self, part: RowPart) -> None:
         frame = self._stack[-1]
         if part.leave is not None and frame.mark:
             raise self._line.wrong(
@@ -479,12 +479,12 @@ class _Reader:
             if any(stitch.form for stitch in unit):
                 remedy = "Increase and decrease at the edges only."
                 raise self._line.wrong("a repeat increases or decreases.", remedy)
-            self._add(Part(unit, leave))
+            self._add(RowPart(unit, leave))
         elif times < 1:
             raise self._line.wrong("a part of it is worked 0 times.", "Leave it out.")
         else:
             # More than a row can hold is refused without being written out.
-            self._add(Part(unit * min(times, MAX_STITCHES_PER_SIDE + 1)))
+            self._add(RowPart(unit * min(times, MAX_STITCHES_PER_SIDE + 1)))
 
     def _tail(self) -> tuple[int | None, int | None, int]:
         """How far or how often a repeat goes: stitches left, times, and 1 for "more".
@@ -576,26 +576,26 @@ class _Reader:
         if count is not None:
             self._skip("st", "sts", "stitch", "stitches")
             if self._peek() in ("to", "until", "till", "til", "across", "around") and count:
-                self._add(Part(stitch * min(count, MAX_STITCHES_PER_SIDE + 1)))
+                self._add(RowPart(stitch * min(count, MAX_STITCHES_PER_SIDE + 1)))
                 self._repeat_all()
                 return
         elif self._peek() in ("all", "every", "each"):
             self._next += 1
             self._skip("st", "sts", "stitch", "stitches")
             self._skip("across", "around")
-            self._add(Part(stitch, 0))
+            self._add(RowPart(stitch, 0))
             return
         elif self._peek() in ("to", "until", "till", "til", "across", "around", "even"):
-            self._add(Part(stitch, self._tail()[0]))
+            self._add(RowPart(stitch, self._tail()[0]))
             return
         if not self._goes_on():
             raise self._unknown(start)
         if count == 0:
             raise self._line.wrong(f"{token!r} is no stitch.", "Leave it out.")
         if count is None and is_word:
-            self._add(Part(stitch, 0))
+            self._add(RowPart(stitch, 0))
         else:
-            self._add(Part(stitch * min(count or 1, MAX_STITCHES_PER_SIDE + 1)))
+            self._add(RowPart(stitch * min(count or 1, MAX_STITCHES_PER_SIDE + 1)))
 
     def _goes_on(self) -> bool:
         """Say whether the next token belongs to something else than the stitch before it."""

@@ -15,8 +15,9 @@ from scipy.interpolate import PchipInterpolator
 
 from knitcore.base.arrays import Array, Codes, Mask, runs
 from knitcore.chart.fabric import Fabric
+from knitcore.chart.in_space import corners_of
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
-from knitcore.cloth.space.surface import Surface, corners_of, filled
+from knitcore.cloth.space.surface import Surface, filled
 from knitcore.draw.laid_out import laid_corners_mm
 from knitcore.draw.tubes import TriangleMesh, tube_mesh
 from knitcore.garment.piece import Piece

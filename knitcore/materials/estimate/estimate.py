@@ -16,6 +16,7 @@ from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials.estimate.yarn_statistics import (
@@ -94,8 +95,8 @@ class FabricEstimate:
     curves: Mapping[Direction, MeasuredCurve]
 
 
-@dataclass(frozen=True)
-class YarnEstimate:
+@dataclass(frozen=True, repr=False)
+class YarnEstimate(Result):
     """All four fabrics of a new yarn, with warnings.
 
     Attributes

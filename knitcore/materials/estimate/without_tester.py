@@ -140,7 +140,7 @@ class Step:
 
 @dataclass(frozen=True)
 class UntestedYarn:
-    """A yarn that no tester has seen.
+    """A yarn whose laws were found without a tensile tester.
 
     Attributes
     ----------

@@ -102,7 +102,7 @@ def table_of(materials: Sequence[Material]) -> LibraryTable:
             record = material.record(fabric)
             if bending is None or record.loop_length_mm is None:
                 problem = f"has no bending modulus or no loop length of its {fabric}."
-                raise InputError(material.identifier, problem, "Give both.")
+                raise InputError(material.identifier, problem, "Add both to the material.")
             for direction in DIRECTIONS:
                 scale = math.log(bending / record.loop_length_mm**3)
                 modulus = math.log(record.law.modulus(direction))
@@ -168,7 +168,7 @@ def left_out(measured: tuple[Fabric, ...] = ()) -> LeftOut:
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class PredictedCells:
     """Logarithms (4, 2) by quantity, their standard deviations, and the laws they make."""
 
     values: dict[str, Array]
@@ -178,7 +178,7 @@ class Prediction:
 
 def predict_cells(
     table: LibraryTable, own: Mapping[str, Array], measured: Mask, scale: Array
-) -> Prediction:
+) -> PredictedCells:
     """All cells of a yarn from a table of others and its own measured cells.
 
     Parameters
@@ -215,7 +215,7 @@ def predict_cells(
     values["strain"] = np.log(
         [[free_strains_at_stress(law, d, LOAD_N_PER_MM) for d in DIRECTIONS] for law in laws]
     )
-    return Prediction(values, deviation, laws)
+    return PredictedCells(values, deviation, laws)
 
 
 @cache

@@ -20,6 +20,7 @@ from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.measure.photos.photo_scale import MARKS_MM, PhotoScale, coin_scale, sheet_scale
 from knitcore.measure.photos.stitch_spacing import StitchSpacing, stitch_spacing
 from knitcore.measure.stretch_points import StretchPoint
@@ -115,8 +116,8 @@ class PhotoReading:
     fabric_mm: tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False)
-class HangingSwatch:
+@dataclass(frozen=True, eq=False, repr=False)
+class HangingSwatch(Result):
     """Points of the stretch curve by increasing load, and what each photo shows."""
 
     points: tuple[StretchPoint, ...]

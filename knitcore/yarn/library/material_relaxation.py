@@ -2,7 +2,6 @@
 
 from typing import Any, overload
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.base.errors import InputError
@@ -11,7 +10,7 @@ from knitcore.materials import Material, as_material
 from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.model.relaxed_cell import Branch, RelaxedCell
 from knitcore.yarn.model.yarn_model import YarnModel
-from knitcore.yarn.solve.splines import RelaxedRepeat
+from knitcore.yarn.solve.splines import RelaxedRepeat, loop_lengths
 from knitcore.yarn.study.relax import OnSplines
 from knitcore.yarn.study.relax import relax as relax_yarn
 
@@ -77,9 +76,7 @@ def relax(
         yarn = material
     elif material is not None:
         length = (
-            None
-            if loop_length_mm is None
-            else float(np.asarray(loop_length_mm, dtype=float).mean())
+            None if loop_length_mm is None else float(loop_lengths(loop_length_mm, chart)[1].mean())
         )
         used = yarn_for(as_material(material), chart, length)
         yarn = used.yarn

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Fabric
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarn.kernels.curve_samples import sample_curve
@@ -68,8 +69,8 @@ class Unmirrored:
     converged: bool
 
 
-@dataclass(frozen=True, eq=False)
-class StoredStitch:
+@dataclass(frozen=True, eq=False, repr=False)
+class StoredStitch(Result):
     """A relaxed repeat from the store.
 
     Parameters

@@ -15,6 +15,7 @@ from knitcore.base.arrays import sum_in_order
 from knitcore.base.batch import BatchProgress, run_batch
 from knitcore.base.errors import Cancelled, InputError
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Material
@@ -43,8 +44,8 @@ class StitchSetting:
     loop_length_mm: Mapping[Fabric, float]
 
 
-@dataclass(frozen=True)
-class YarnPlan:
+@dataclass(frozen=True, repr=False)
+class YarnPlan(Result):
     """The fabrics and settings to compute for a yarn.
 
     Attributes
@@ -243,8 +244,8 @@ class YarnRow:
         return row
 
 
-@dataclass(frozen=True)
-class YarnTable:
+@dataclass(frozen=True, repr=False)
+class YarnTable(Result):
     """A characterised yarn.
 
     Attributes

@@ -20,6 +20,7 @@ from knitcore.base.arrays import sum_in_order
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Fabric
 from knitcore.chart.phases import quarter_phases
+from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material, material
 from knitcore.yarn.model.paper_samples import Sample, load_samples
@@ -27,7 +28,7 @@ from knitcore.yarn.model.yarn_model import YarnModel
 
 
 @dataclass(frozen=True)
-class ChartYarn:
+class ChartYarn(Result):
     """Yarn and loop length for a chart.
 
     Parameters

@@ -42,7 +42,7 @@ STIFF_SPACING_PER_BENDING = 1000.0
 """Stiffness on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
 the lengths, is then convex in them. It costs 1e-4 of the energy, so the fine grid goes without."""
 PAIRS_TO_SHARE = 1_000_000
-"""From this many pairs on a second thread pays."""
+"""Fewest pairs of samples for which a second thread saves time."""
 BLOCK = 12
 """Unknowns in a block of the sparse Hessian: those of four control points."""
 PENALTY_PER_BENDING = 3e4

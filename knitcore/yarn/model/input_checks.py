@@ -1,6 +1,7 @@
 """Checks of the input of a relaxation or a stretch."""
 
 from collections.abc import Callable
+from math import inf
 
 from knitcore.base.bounds import check_count, check_positive
 from knitcore.base.errors import InputError
@@ -51,8 +52,11 @@ def check_stitch_size(name: str, size_mm: float | None, loop_length_mm: float) -
     InputError
         Naming a usable range.
     """
+    if size_mm is None:
+        return
     low, high = 0.05 * loop_length_mm, 0.9 * loop_length_mm
-    if size_mm is not None and not low <= size_mm <= high:
+    check_positive(name, size_mm, "mm", "a size of a stitch")
+    if not low <= size_mm <= high:
         raise InputError(
             name,
             f"{size_mm:g} mm cannot be reached with {loop_length_mm:g} mm of yarn.",
@@ -70,12 +74,8 @@ def check_stretch(max_strain: float, points: int, max_stress_n_per_mm: float | N
     """
     check_positive("max_strain", max_strain, what="a stretch")
     check_count("points", points, 2, MAX_POINTS)
-    if max_stress_n_per_mm is not None and not max_stress_n_per_mm > 0.0:
-        raise InputError(
-            "max_stress_n_per_mm",
-            f"{max_stress_n_per_mm} N/mm is not a limit.",
-            "Give a stress above 0.",
-        )
+    if max_stress_n_per_mm is not None and max_stress_n_per_mm != inf:
+        check_positive("max_stress_n_per_mm", max_stress_n_per_mm, "N/mm", "a limit")
 
 
 def is_at_rest(relaxed: RelaxedCell) -> bool:
@@ -112,8 +112,7 @@ def check_time(
     """
     if time_limit_s is None:
         return
-    if not time_limit_s > 0.0:
-        raise InputError("time_limit_s", f"{time_limit_s} is not a time.", "Give seconds above 0.")
+    check_positive("time_limit_s", time_limit_s, "s", "a time")
     if seconds_of(stitches) > time_limit_s:
         fitting = next((n for n in range(stitches, 1, -1) if seconds_of(n) <= time_limit_s), 1)
         raise InputError(

@@ -25,7 +25,7 @@ _BINS = 3
 _ROOM = 128
 """Pairs per sample for which there is room at first."""
 _SAMPLES_TO_SHARE = 20_000
-"""From this many samples on a second thread pays."""
+"""Fewest samples for which a second thread saves time."""
 _LEAST_CHANGE = 1e-300
 """Smallest change that is divided by, mm."""
 

@@ -7,6 +7,7 @@ from importlib.resources import files
 
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
+from knitcore.chart.result import Result
 from knitcore.yarn.model.yarn_model import YarnModel
 
 
@@ -31,7 +32,7 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Sample:
+class Sample(Result):
     """One knitted sample as the paper simulated it.
 
     Parameters

@@ -25,13 +25,15 @@ from knitcore.yarn.model.constraints import beyond
 
 @dataclass(frozen=True, eq=False)
 class SlideConstraint:
-    """One component of the vector between two points of yarn that is held.
+    """A rule that keeps two touching points of yarn from sliding along one of the strands.
+
+    It holds the component, along that strand, of the vector from one point to the other.
 
     Attributes
     ----------
     apart : (3, unknowns), the vector between the points as a function of the unknowns.
-    along : (3, unknowns), the direction of one strand, in loop lengths.
-    rest_mm : the component at rest.
+    along : (3, unknowns), the direction of the strand, in loop lengths.
+    rest_mm : the component in the state where the rule was made.
     """
 
     apart: Array
@@ -39,16 +41,16 @@ class SlideConstraint:
     rest_mm: float
 
     def value(self, state: Array) -> float:
-        """Component beyond that at rest, mm."""
+        """Component in a state less ``rest_mm``, mm; 0 where the rule is kept."""
         return dot(times(self.apart, state), times(self.along, state)) - self.rest_mm
 
     def gradient(self, state: Array) -> Array:
-        """Its derivative by the unknowns."""
+        """Derivative of the component by the unknowns, mm per unknown."""
         apart, along = times(self.apart, state), times(self.along, state)
         return times(self.apart.T, along) + times(self.along.T, apart)
 
     def hessian(self) -> Array:
-        """Its second derivative."""
+        """Second derivative of the component by the unknowns, which is the same in every state."""
         half = product(self.apart.T, self.along)
         return half + half.T
 

@@ -36,7 +36,7 @@ _NORMAL_FORCES = 2
 _LEAST = 1e-12
 """Limit, N, and stiffness, N/mm, of a pair without pressure."""
 _IMAGES = 64
-"""More images of a sample than can touch, on either side."""
+"""Repeats on either side whose samples get numbers of their own; farther ones cannot touch."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,8 @@ _STIFFENED = 20.0
 _STAGES = 40
 STAGE = Options(tolerance=1e-3, iterations=12)
 _SHORT_STAGE = Options(tolerance=1e-3, slack=1e-2, iterations=3)
-"""In large cells: strands part in a few steps; more would settle the shape of a stiff shell."""
+"""Settings of a stage in large cells: a few steps part the strands, and more would only relax the
+shape under a stiffened shell, which is not the final one."""
 START_HEIGHT = 0.8
 """Height of the first shape's crossings above the middle plane, in radii."""
 

@@ -117,7 +117,7 @@ def turned(
     charts = placements(relaxed.chart.resized(free.rows, free.wales).purl)
     same = [placed for placed, purl in charts if np.array_equal(purl, free.purl)]
     if not same:
-        raise ValueError("It is no image of the same fabric.")
+        raise ValueError("This is no image of the repeat, shifted, mirrored or turned over.")
     placed = min(same, key=lambda symmetry: symmetry.swap)  # from the same side if possible
     points, tension = placed.points(points, free.wales), np.roll(tension, placed.up)
     energy = CellEnergy(

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, ConvergenceError, InputError, UnravelledError
+from knitcore.base.kinds import as_numbers
 from knitcore.chart.stitch_chart import StitchChart, check_stitches, size_in_words
 from knitcore.materials.law_uncertainty import (
     YARN_LEVEL_FREE_SIZE_LOG_SD,
@@ -358,12 +359,8 @@ def loop_lengths(
     InputError
         If the lengths do not fit the chart.
     """
-    try:
-        lengths = np.atleast_1d(np.asarray(loop_length_mm, dtype=float))
-    except ValueError as error:
-        raise InputError(
-            "loop_length_mm", "is not a table of numbers.", "Give mm for every stitch."
-        ) from error
+    remedy = "Give mm of yarn per stitch, or a table with mm for every stitch."
+    lengths = np.atleast_1d(as_numbers("loop_length_mm", loop_length_mm, remedy))
     repeat = chart.repeat()
     if by_stitch and lengths.ndim == 2 and lengths.shape in (chart.purl.shape, repeat.purl.shape):
         if np.all(lengths == lengths[:, :1]):

@@ -11,6 +11,7 @@ from knitcore.base.bounds import check_count
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, ConvergenceError, check_cancelled
 from knitcore.chart.fabric import Direction
+from knitcore.chart.result import Result
 from knitcore.yarn.model.input_checks import check_stretch
 from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
 from knitcore.yarn.solve.friction import RubbedCell, agitated, check_coefficient, rubbed
@@ -73,8 +74,8 @@ class Leg(Sweep):
         return float(np.trapezoid(self.stress_n_per_mm, self.strain))
 
 
-@dataclass(frozen=True, eq=False)
-class Hysteresis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Hysteresis(Result):
     """Cycles of pulling and letting go, with friction.
 
     Attributes
@@ -144,8 +145,8 @@ class Hysteresis:
         return float(abs(last - first) / abs(first))
 
 
-@dataclass(frozen=True, eq=False)
-class RestSize:
+@dataclass(frozen=True, eq=False, repr=False)
+class RestSize(Result):
     """Size of a stitch that is left free of force after a history, and the yarn's state there."""
 
     history: History

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.base.errors import Cancelled, InputError
+from knitcore.base.kinds import check_callables, check_flags, check_kind
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.input_checks import check_time
@@ -111,7 +112,15 @@ def relax(
         If ``cancelled`` says so.
     """
     factors = Convention.parse(convention)
-    prescribed = flat or (cell_course_mm, cell_wale_mm, grid, starts) != (None,) * 4
+    check_flags(flat=flat)
+    check_callables(cancelled=cancelled)
+    if grid is not None:
+        check_kind("grid", grid, SplineGrid, "Give a SplineGrid, such as SplineGrid(16, 5).")
+    if starts is not None:
+        for start in starts if isinstance(starts, Sequence) else (starts,):
+            check_kind("starts", start, Start, "Give a list of Start, such as [Start('usual')].")
+    set_by_caller = (cell_course_mm, cell_wale_mm, grid, starts)
+    prescribed = flat or any(option is not None for option in set_by_caller)
     free, _, lengths = drafted(chart, loop_length_mm, Branch.FREE)
     prescribed = prescribed or lengths.ndim > 1
     uniform = bool(np.ptp(lengths) == 0.0)

@@ -82,7 +82,7 @@ _FIRSTS = ((0, 0), (_WINDOW // 2, _WINDOW // 2), (0, _WINDOW // 2), (_WINDOW // 
 _GROWING = Options(tolerance=1e-3, iterations=4, mended=False)
 _PASS = Options(tolerance=1e-6, iterations=3, mended=False)
 _LAST_PASS = Options(tolerance=1e-6, iterations=6)
-"""Its steps keep the lengths, which no later pass would mend."""
+"""Settings of the last pass: its steps keep the lengths of yarn, which no later pass restores."""
 _PROBE = Options(tolerance=1e-3, iterations=4, damping=0.1, mended=False)
 """Settings of a pass whose windows leave saddles: they count as settled early, and seek one."""
 _EXACT_FLAT = 36
@@ -161,7 +161,7 @@ class WholeShape:
         return max(abs(self.energy_change), self.size_change / _SIZES)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class RelaxedChart(RelaxedRepeat):
     """A chart relaxed as a whole.
 

@@ -19,11 +19,7 @@ from app.viewer.views import Views
 ROOT = Path(__file__).resolve().parents[3]
 
 
-def test_viser_is_the_version_that_its_patches_were_tested_with() -> None:
-    assert viser.__version__.startswith(f"{TESTED_VISER}.")
-    major, minor = map(int, TESTED_VISER.split("."))
-    allowed = f'"viser>={TESTED_VISER},<{major}.{minor + 1}"'
-    assert allowed in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+def test_its_page_was_tested_with_the_same_viser() -> None:
     assert f"viser {TESTED_VISER}" in (ROOT / "frontend" / "README.md").read_text(encoding="utf-8")
 
 

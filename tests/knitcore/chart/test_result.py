@@ -5,14 +5,12 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import meshio
 import numpy as np
 import pytest
 
 from knitcore import Direction, InputError, StitchChart, curve, predict, strip_test
 from knitcore.base.arrays import Array
 from knitcore.chart.result import Result
-from knitcore.cloth.space.curl import CurledPiece
 from knitcore.materials import Interval
 
 
@@ -71,23 +69,3 @@ def test_predictions_curves_and_strip_tests_become_plain_values(tmp_path: Path) 
     assert plain["force_n"] == test.force_n.tolist()
     with pytest.raises(InputError, match="suffix"):
         test.write(tmp_path / "x.xlsx")
-
-
-def test_a_curled_piece_is_written_and_shown_in_brief(tmp_path: Path) -> None:
-    corners = np.zeros((3, 4, 3))
-    corners[..., 0], corners[..., 1] = np.meshgrid(np.arange(4.0), np.arange(3.0))
-    stitches = np.array([[True, True, False], [True, True, True]])
-    chart = StitchChart.parse("KKP/KKK")
-    piece = CurledPiece(
-        chart, corners, corners, 1.0, 3.0, 2.0, 0.0, 0.0, 0.0, 0.0, True, 0.0, 0.0, stitches
-    )
-    assert len(repr(piece)) < 400
-    for name in ("x.npz", "x.vtu"):
-        piece.write(tmp_path / name)
-    mesh = meshio.read(tmp_path / "x.vtu")
-    assert len(mesh.cells[0].data) == 5
-    assert mesh.cell_data["purl"][0].tolist() == [0, 0, 0, 0, 1]
-    with np.load(tmp_path / "x.npz") as stored:
-        assert np.array_equal(stored["purl"], chart.purl)
-    with pytest.raises(InputError, match="suffix"):
-        piece.write(tmp_path / "x.obj")

@@ -1,5 +1,9 @@
 """The glove on a hand of simple bodies."""
 
+import json
+from pathlib import Path
+
+import meshio
 import numpy as np
 import pytest
 
@@ -14,6 +18,18 @@ HAND = Hand()
 @pytest.fixture(scope="module")
 def worn() -> GloveOnHand:
     return glove_on_hand(HAND, WOOL, ease=-0.1)
+
+
+def test_it_is_written_with_its_pressure_and_shown_in_brief(
+    worn: GloveOnHand, tmp_path: Path
+) -> None:
+    worn.write(tmp_path / "x.vtu")
+    mesh = meshio.read(tmp_path / "x.vtu")
+    assert len(mesh.cells[0].data) == len(mesh.cell_data["mmhg"][0])
+    assert len(repr(worn)) < 400
+    plain = worn.to_dict()
+    assert json.loads(json.dumps(plain, allow_nan=False)) == plain
+    assert plain["plan"]["regions"][0]["name"]
 
 
 def test_every_stitch_has_a_place_and_its_face_outside(worn: GloveOnHand) -> None:

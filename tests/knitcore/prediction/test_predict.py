@@ -208,19 +208,6 @@ def test_missing_fabrics_are_named():
         predict(StitchChart.parse("KKPP"), material("glove-wool:needle-2.0mm"))
 
 
-def test_the_public_face():
-    """Notebooks import from there."""
-    import knitcore
-
-    for name in ("StitchChart", "material", "predict", "curve", "relax", "strip_test"):
-        assert name in knitcore.__all__
-        assert callable(getattr(knitcore, name))
-    for name in knitcore.__all__:
-        assert getattr(knitcore, name) is not None
-    with pytest.raises(AttributeError, match="no attribute 'moduli'"):
-        _ = knitcore.moduli
-
-
 def test_an_answer_says_what_its_intervals_rest_on():
     yarn = material("acrylic")
     tests = yarn.record("garter").uncertainty.source

@@ -1,11 +1,14 @@
 """Pieces that hang."""
 
+from pathlib import Path
+
+import meshio
 import numpy as np
 import pytest
 
 from knitcore import CancelledError, Direction, Fabric, StitchChart, material
+from knitcore.chart.in_space import corners_of
 from knitcore.cloth.space.hang import HungBy, hang
-from knitcore.cloth.space.surface import corners_of
 from knitcore.garment.shaped import outline_marks
 
 ACRYLIC = material("acrylic")
@@ -49,7 +52,7 @@ def test_it_can_be_cancelled() -> None:
         hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5, cancelled=lambda: True)
 
 
-def test_a_piece_with_a_hole_hangs_by_its_highest_edge() -> None:
+def test_a_piece_with_a_hole_hangs_by_its_highest_edge(tmp_path: Path) -> None:
     stitches = outline_marks("..xxxx..\nxxxxxxxx\nxxx..xxx\nxxx..xxx\nxxxxxxxx\n........")
     chart = StitchChart.of_fabric(Fabric.GARTER, rows=6, columns=8)
     hung = hang(chart, ACRYLIC, linear_density_g_per_m=0.5, stitches=stitches)
@@ -61,3 +64,5 @@ def test_a_piece_with_a_hole_hangs_by_its_highest_edge() -> None:
     height = ACRYLIC.record(Fabric.GARTER).stitch_wale_mm
     assert hung.drop_mm == pytest.approx(5 * height, rel=0.1)
     assert np.array_equal(hung.used, corners_of(stitches))
+    hung.write(tmp_path / "x.vtu")
+    assert len(meshio.read(tmp_path / "x.vtu").cells[0].data) == np.count_nonzero(stitches)

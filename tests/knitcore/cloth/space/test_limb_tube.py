@@ -1,5 +1,8 @@
 """A whole piece worn as a tube."""
 
+from pathlib import Path
+
+import meshio
 import numpy as np
 import pytest
 
@@ -109,11 +112,13 @@ def test_impossible_limbs_are_refused(at: tuple[float, ...], girths: tuple[float
 SLEEVE = limb_tube("sleeve", [Girth(0, 180), Girth(120, 250)], ACRYLIC)
 
 
-def test_a_shaped_tube_has_the_stitches_of_its_rows() -> None:
+def test_a_shaped_tube_has_the_stitches_of_its_rows(tmp_path: Path) -> None:
     stitch = SLEEVE.shaped.stitch
     plain = StitchChart(np.zeros_like(stitch))
     limb = MeasuredLimb((0.0, 300.0), (260.0, 260.0))
     tube = worn_tube(plain, ACRYLIC, limb, stitches=stitch)
+    tube.write(tmp_path / "x.vtu")
+    assert len(meshio.read(tmp_path / "x.vtu").cells[0].data) == np.count_nonzero(stitch)
     counts = stitch.sum(axis=1)
     rests = np.array([place.rest_mm for place in tube.places])
     assert np.ptp(counts) > 10

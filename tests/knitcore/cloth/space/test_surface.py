@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from knitcore.cloth.space.surface import Surface, corners_of, filled
+from knitcore.chart.in_space import corners_of
+from knitcore.cloth.space.surface import Surface, filled
 from knitcore.garment.shaped import outline_marks
 
 
