@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import label
 
 from knitcore.base import showing
 from knitcore.base.arrays import Array
@@ -280,7 +280,7 @@ def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -
         raise InputError(
             "outline", "does not fit the chart.", "Give as many cells, one stitch at least."
         )
-    parts, count = label(stitches, structure=np.ones((3, 3)))
+    parts, count = scipy.ndimage.label(stitches, structure=np.ones((3, 3)))
     if count > 1:
         sizes = np.bincount(parts.ravel())[1:]
         row, column = np.argwhere(parts == sizes.argmin() + 1)[0]
