@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 
 import numpy as np
-from scipy.sparse import bsr_matrix
+import scipy
 
 from knitcore import StitchChart, curve, material, relax, strip_test
 from knitcore.cloth.space.curl import curl
@@ -75,7 +75,7 @@ def latter_half(module: str) -> None:
 
 
 def _last_of_shape() -> None:
-    SheetFactor(bsr_matrix(np.eye(12), blocksize=(3, 3)), columns=2).solve(np.ones(12))
+    SheetFactor(scipy.sparse.bsr_matrix(np.eye(12), blocksize=(3, 3)), columns=2).solve(np.ones(12))
 
 
 def _last_of_yarn() -> None:

@@ -5,11 +5,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import click
-from pydantic import ValidationError
 
 from knitcore.base.errors import KnitcoreError
+from knitcore.base.loading import loading
 
-from ..requests.base import first_fault
 from .options import CHART_HELP
 
 Entry = tuple[str, str]
@@ -141,7 +140,8 @@ class Commands(click.Group):
         if not module:
             return Commands(name=cmd_name, help=line, sections={"Commands": GROUPS[cmd_name]})
         try:
-            return _loaded(cmd_name, module, line)
+            with loading():
+                return _loaded(cmd_name, module, line)
         except ModuleNotFoundError as error:
             return _not_installed(cmd_name, error)
 
@@ -164,6 +164,11 @@ class Commands(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; expected errors are printed in one line each."""
+        with loading():
+            from pydantic import ValidationError
+
+            from ..requests.base import first_fault
+
         try:
             return super().invoke(ctx)
         except KnitcoreError as error:

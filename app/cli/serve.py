@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import click
 
 from knitcore.base.errors import InputError
+from knitcore.base.loading import loading
 
 from ..service.settings import Settings
 from .common import json_option, user_settings
@@ -65,9 +66,10 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
 @contextlib.contextmanager
 def _prepared(settings: Settings, address: str) -> Iterator[Database]:
     """Lock and migrate the data, and report failed checks; yields the database to serve."""
-    from ..service.doctor import check_folder, examine
-    from ..service.store.database import Database
-    from ..service.store.schema import migrate
+    with loading():
+        from ..service.doctor import check_folder, examine
+        from ..service.store.database import Database
+        from ..service.store.schema import migrate
 
     check_folder(settings.folder)
     settings.make_folder()
@@ -84,17 +86,18 @@ def _prepared(settings: Settings, address: str) -> Iterator[Database]:
 
 def serve_on(settings: Settings, listener: socket.socket, database: Database) -> None:
     """Serve a database on an open socket until a signal ends the service."""
-    import uvicorn
-
-    from ..service import memory
-    from ..service.main import create_app
-    from ..service.web.unread import WatchedProtocol
-    from ..viewer.incoming import MAX_BYTES
-    from ..viewer.sockets import SizedProtocol
-
     sys.setswitchinterval(SWITCH_S)
-    memory.keep_no_large_blocks()
-    app = create_app(settings, database)
+    with loading():
+        import uvicorn
+
+        from ..service import memory
+        from ..service.main import create_app
+        from ..service.web.unread import WatchedProtocol
+        from ..viewer.incoming import MAX_BYTES
+        from ..viewer.sockets import SizedProtocol
+
+        memory.keep_no_large_blocks()
+        app = create_app(settings, database)
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:

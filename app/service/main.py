@@ -24,7 +24,7 @@ from . import VERSION, health, memory
 from .api import routers
 from .compute.answers import Answers, RecentResults
 from .compute.compute import Compute
-from .compute.processes import processes
+from .compute.processes import load, processes
 from .compute.workers import Worker
 from .designs.conditions import forget_old_keys
 from .designs.store import DesignStore
@@ -55,6 +55,7 @@ log = logging.getLogger("knitcore.app")
 
 JANITOR_PERIOD_S = 30.0
 TIDY_PERIOD_S = 3600.0
+READY_AFTER_S = 2.0
 THREADS = 8
 """Threads of the service besides the event loop. Python runs one at a time: with FastAPI's 40, the
 loop could wait for all of them each time it returns from reading or sending."""
@@ -93,7 +94,8 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     janitors = [
         asyncio.create_task(repeated(*chore)) for chore in _chores(app, chosen, tokens, job_store)
     ]
-    janitors.append(asyncio.create_task(asyncio.to_thread(_warm_up)))
+    app.state.visited = asyncio.Event()
+    janitors.append(asyncio.create_task(_get_ready(app)))
     yield
     for task in (*janitors, *app.state.backs):
         task.cancel()
@@ -170,11 +172,28 @@ def _gauges(app: FastAPI) -> dict[str, tuple[str, Callable[[], float]]]:
     }
 
 
+async def _get_ready(app: FastAPI) -> None:
+    """Load what computations need, once the first page is sent or nobody opens it."""
+    with contextlib.suppress(TimeoutError):
+        await asyncio.wait_for(app.state.visited.wait(), READY_AFTER_S)
+    if app.state.cluster is None:
+        load()
+    await asyncio.to_thread(_warm_up)
+
+
 @cache
 def _warm_up() -> None:
-    """Read the learned answers, which the first prediction would wait a second for."""
+    """Read the learned answers, which the first prediction would wait a second for, and load what
+    pressures and views need.
+    """
+    import scipy.ndimage
+    import scipy.optimize  # noqa: F401
+
+    from ..viewer import private_port  # noqa: F401
+
     mixed = PredictRequest(chart="KP/KK", material="acrylic")
     predict(mixed, Context(Path()))
+    memory.give_back()
 
 
 def _chores(

@@ -1,11 +1,16 @@
 """Camera positions: the sides from which a fabric is seen."""
 
+from __future__ import annotations
+
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
-import viser
 
 from knitcore.base.arrays import Array
+
+if TYPE_CHECKING:
+    import viser
 
 FIELD_OF_VIEW = 0.5
 """Vertical angle of view, radians: a long lens, so that loops at the edge look like those in the

@@ -1,10 +1,11 @@
 """The yarn of a fabric in a viser scene: one node for every shape of stitch, drawn many times."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import viser
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
@@ -13,6 +14,9 @@ from knitcore.draw.stitches import StitchShapes
 
 from ..drawing.colours import linear
 from ..drawing.fabric import FabricScene
+
+if TYPE_CHECKING:
+    import viser
 
 UNITS_PER_MM = 0.01
 """A scene is drawn in dm: browsers draw nothing that is 1000 units from the camera or farther, and

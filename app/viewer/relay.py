@@ -8,10 +8,10 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.metadata import distribution
 from pathlib import Path
 from types import NoneType
 
-import viser
 import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
@@ -22,14 +22,13 @@ from ..service.identity import current_user
 from ..service.limits.user_limits import ConcurrencyLimit, OverLimitError, RateLimit
 from ..service.web.page import script_tag
 from .incoming import BURST, MAX_BYTES, MAX_PICTURE_BYTES, PER_S, RefusedMessageError, passed_on
-from .private_port import RELAY_HEADERS
 from .sockets import ALLOW
 from .views import View, Views
 
 log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
-CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
+CLIENT_PAGE = Path(str(distribution("viser").locate_file("viser/client/build/index.html")))
 SCRIPTS = ("viser/notices.js", "viser/yarn.js", "viser/aside.js", "viser/frame.js")
 STYLE = """<style>
   /* viser's notes are about the computer, not about the fabric. */
@@ -113,6 +112,8 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
 
 
 async def _watched(socket: WebSocket, name: str, view: View, views: Views) -> None:
+    from .private_port import RELAY_HEADERS  # an open view has loaded it
+
     coarse = "coarse" in socket.query_params
     views.watch(name, +1, coarse=coarse)
     try:

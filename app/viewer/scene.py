@@ -1,10 +1,11 @@
 """The scene of a fabric in viser: yarn, rectangles, a mark."""
 
+from __future__ import annotations
+
 import threading
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import viser
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
@@ -15,6 +16,9 @@ from ..drawing.fabric import Box, Drawing, FabricScene, Ground
 from .balls import Picture
 from .camera import CameraSide, place_camera
 from .cloth import UNITS_PER_MM, ShownStitches
+
+if TYPE_CHECKING:
+    import viser
 
 Colour = tuple[int, int, int]
 

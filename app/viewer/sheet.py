@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 from PIL import Image, ImageFilter
-from scipy.ndimage import grey_closing
 
 from knitcore.draw.body import Floats
 from knitcore.draw.placing import mean_sizes_mm
@@ -116,7 +116,7 @@ def _filled(picture: Picture) -> Picture:
     around = image.reduce(AROUND).resize((width, height), Image.Resampling.BILINEAR)
     mean = np.asarray(around).astype(np.float32)
     shade = GAP ** (1 / 2.2) * mean[..., :3] * (255 / np.maximum(mean[..., 3:], 1.0))
-    cloth = grey_closing(np.pad(picture[..., 3], CLOSED), (2 * CLOSED + 1,) * 2)
+    cloth = scipy.ndimage.grey_closing(np.pad(picture[..., 3], CLOSED), (2 * CLOSED + 1,) * 2)
     filled = np.dstack([shade.astype(np.uint8), cloth[CLOSED:-CLOSED, CLOSED:-CLOSED]])
     filled = np.where(picture[..., 3:] > 0, picture, filled)
     soft = Image.fromarray(filled, "RGBA").convert("RGBa").filter(ImageFilter.GaussianBlur(SOFT))

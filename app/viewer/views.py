@@ -1,11 +1,12 @@
 """One private viser server per open design, closed when it is not watched for a while."""
 
+from __future__ import annotations
+
 import logging
 import threading
 import time
 from dataclasses import dataclass, field
-
-import viser
+from typing import TYPE_CHECKING
 
 from ..drawing.fabric import Drawing, Ground
 from ..service.limits.user_limits import USER_LIMITS, OverLimitError
@@ -15,8 +16,10 @@ from .balls import Picture
 from .camera import FARTHEST
 from .cloth import UNITS_PER_MM
 from .incoming import WantedPicture
-from .private_port import private_server
 from .scene import SceneWriter
+
+if TYPE_CHECKING:
+    import viser
 
 log = logging.getLogger("knitcore.app")
 Cell = tuple[int, int]
@@ -197,6 +200,8 @@ def _owner(design: str) -> str:
 
 def new_view() -> View:
     """An empty view, with a server of its own."""
+    from .private_port import private_server  # viser loads for 0.2 s
+
     server = private_server()
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     scene = server.scene

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy import ndimage
+import scipy
 
 from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.chart.phases import surroundings
@@ -88,7 +88,7 @@ def _shift(
     look: Look,
 ) -> None:
     """Shift or turn every patch so that it fits its neighbours, until nothing improves."""
-    boxes = ndimage.find_objects(patches + 1)
+    boxes = scipy.ndimage.find_objects(patches + 1)
     for sweep in range(_SWEEPS):
         improved = False
         for count, patch in enumerate(rng.permutation(len(repeats)).tolist()):
@@ -119,7 +119,7 @@ def _turn(
     edge = np.zeros(purl.shape, dtype=bool)
     edge[:, :-1] |= patches[:, :-1] != patches[:, 1:]
     edge[:-1] |= patches[:-1] != patches[1:]
-    near = np.argwhere(ndimage.binary_dilation(edge, iterations=BORDER) & free)
+    near = np.argwhere(scipy.ndimage.binary_dilation(edge, iterations=BORDER) & free)
     for sweep in range(_SWEEPS):
         improved = False
         for count, (row, column) in enumerate(rng.permutation(near).tolist()):

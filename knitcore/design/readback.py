@@ -12,8 +12,7 @@ given up: a spanning tree of the most certain segments decides knit or purl.
 """
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
+import scipy
 
 from knitcore.base.arrays import Array, Mask
 from knitcore.chart.phases import ABOVE, BELOW, LEFT, RIGHT, surroundings
@@ -110,8 +109,10 @@ def _integrated(course: Mask, wale: Mask, cost: Array) -> StitchChart:
     ]
     start, end, odd, certain = (np.concatenate([e[k].ravel() for e in edges]) for k in range(4))
     weight = 1 / (1e-3 + np.maximum(certain, 0))
-    tree = minimum_spanning_tree(coo_array((weight, (start, end)), shape=(node.size,) * 2))
-    order, before = breadth_first_order(tree, 0, directed=False)
+    tree = scipy.sparse.csgraph.minimum_spanning_tree(
+        scipy.sparse.coo_array((weight, (start, end)), shape=(node.size,) * 2)
+    )
+    order, before = scipy.sparse.csgraph.breadth_first_order(tree, 0, directed=False)
     parity = {(int(a), int(b)): bool(o) for a, b, o in zip(start, end, odd, strict=True)}
     purl = np.zeros(node.size, dtype=bool)
     for stitch in order[1:].tolist():

@@ -1,7 +1,7 @@
 """Choose patches of an atlas's repeats so that they meet a map of target moduli."""
 
 import numpy as np
-from scipy import ndimage
+import scipy
 
 from knitcore.base.arrays import Array, Indices
 from knitcore.chart.phases import surroundings
@@ -85,7 +85,7 @@ def connected(labels: Indices) -> Indices:
     numbered = np.zeros(labels.shape, dtype=np.intp)
     count = 0
     for label in np.unique(labels):
-        parts, added = ndimage.label(labels == label)
+        parts, added = scipy.ndimage.label(labels == label)
         numbered[parts > 0] = parts[parts > 0] - 1 + count
         count += added
     return numbered
@@ -110,12 +110,12 @@ def _absorb(labels: Indices, cost: Array, smallest: int) -> Indices:
             return labels
         index = min(small, key=lambda i: (sizes[i], i))
         cells = patches == index
-        beside = ndimage.binary_dilation(cells) & ~cells
+        beside = scipy.ndimage.binary_dilation(cells) & ~cells
         choices = np.unique(labels[beside])
         labels[cells] = choices[np.argmin(cost[choices][:, cells].sum(axis=1))]
 
 
 def _sides(numbered: Indices) -> Indices:
     """(numbers, 2) rows and columns that each number extends over."""
-    boxes = ndimage.find_objects(numbered + 1)
+    boxes = scipy.ndimage.find_objects(numbered + 1)
     return np.array([[side.stop - side.start for side in box] for box in boxes], dtype=np.intp)

@@ -13,8 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from knitcore.base.arrays import Array, Indices
 from knitcore.base.bounds import check_positive, check_range
@@ -215,7 +215,9 @@ class _Run:
             return float(mean) - self._strain
 
         last = float(STRESS_N_PER_MM[-1])
-        return last if excess(last) < 0 else float(brentq(excess, 0.0, last, xtol=1e-4))
+        return (
+            last if excess(last) < 0 else float(scipy.optimize.brentq(excess, 0.0, last, xtol=1e-4))
+        )
 
     def _pull(self, labels: tuple[int, ...]) -> _Pulled | None:
         """The outline of these bands; None if the swatch cannot be stretched so far."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from scipy.special import ndtr
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.choice import Choice
@@ -191,7 +191,7 @@ class Target:
 
         def up_to(end: float) -> Array:
             away = end - value
-            return np.asarray(ndtr(away / np.where(away < 0, below, above)))
+            return np.asarray(scipy.special.ndtr(away / np.where(away < 0, below, above)))
 
         return np.nan_to_num(up_to(centre + half) - up_to(centre - half))
 

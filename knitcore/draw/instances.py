@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from knitcore.base.arrays import Array
 from knitcore.draw.placing import PlacedStitches, mean_sizes_mm
@@ -105,7 +105,7 @@ def _tips(end: Array, before: Array, radius_mm: float) -> Array:
 def quaternions(placement: PlacedStitches) -> Floats:
     """Rotation of every stitch as a quaternion w, x, y, z, (rows * columns, 4)."""
     if placement.frames is not None:
-        turns = Rotation.from_matrix(placement.frames.reshape(-1, 3, 3))
+        turns = scipy.spatial.transform.Rotation.from_matrix(placement.frames.reshape(-1, 3, 3))
         return turns.as_quat(scalar_first=True).astype(np.float32)
     angles = placement.angles.ravel()
     half = 0.5 * angles

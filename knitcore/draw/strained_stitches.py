@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from knitcore.base.arrays import Array, Mask
 from knitcore.chart.result import Result
@@ -63,6 +63,8 @@ def stitch_at(test: StripTest, spot: LockUp) -> tuple[int, int]:
 
 def _carried(rest_mm: Array, moved_mm: Array, strain: Array, there: Mask) -> Array:
     """Positions at each step, extrapolated from the nearest stitch where there is none."""
-    row, column = distance_transform_edt(~there, return_distances=False, return_indices=True)
+    row, column = scipy.ndimage.distance_transform_edt(
+        ~there, return_distances=False, return_indices=True
+    )
     stretched = (rest_mm - rest_mm[row, column]) * (1 + strain[:, row, column])
     return np.asarray(rest_mm[row, column] + moved_mm[:, row, column] + stretched)

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, InputError, check_cancelled
@@ -143,7 +143,7 @@ def calibrate(
     problem = _Problem(field, law, direction, forces, tuple(names), cancelled or (lambda: False))
     low, high = np.array([_BOUNDS[name] for name in names]).T
     scaled = _to_unknowns(np.array(start))
-    fit = least_squares(
+    fit = scipy.optimize.least_squares(
         problem.residuals,
         scaled,
         bounds=(_to_unknowns(low), _to_unknowns(high)),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import Direction
@@ -129,7 +129,9 @@ def field_differences(
             break
         moved = (path.equilibria[step].state.corners - grid.corners).reshape(shape)
         at = _in_grid(grid, frame.points if axis == 1 else frame.points[:, ::-1])
-        value = RegularGridInterpolator((grid.row_lines, grid.column_lines), moved)(at[:, ::-1])
+        value = scipy.interpolate.RegularGridInterpolator(
+            (grid.row_lines, grid.column_lines), moved
+        )(at[:, ::-1])
         simulated = value if axis == 1 else value[:, ::-1]
         differences.append(simulated - frame.displacement)
     return differences, path.problem

@@ -12,6 +12,8 @@ unknown the ends are left free to narrow, so that the strip strains evenly.
 :mod:`knitcore.fit.strip_errors` estimates the errors of the result.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +21,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import OptimizeResult, least_squares
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
@@ -235,10 +237,10 @@ class _Problem:
         self.strips, self.cancelled = strips, cancelled
         self.evaluations = 0
 
-    def solve(self, start: Array, cells: int, steps: int) -> OptimizeResult:
+    def solve(self, start: Array, cells: int, steps: int) -> scipy.optimize.OptimizeResult:
         """Least squares from a start."""
         low, high = self.bounds
-        return least_squares(
+        return scipy.optimize.least_squares(
             self.residuals,
             np.clip(start, low + 1e-6, high - 1e-6),
             bounds=(low, high),

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_positive
@@ -120,7 +120,7 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
             raise InputError(
                 "target_mmhg", f"no size gives {mmhg:g} mmHg.", "Ask for less pressure."
             )
-        sizes.append(worn_mm / (1 + float(brentq(missing, 0.0, upper, xtol=1e-9))))
+        sizes.append(worn_mm / (1 + float(scipy.optimize.brentq(missing, 0.0, upper, xtol=1e-9))))
     return Interval(min(sizes), max(sizes))
 
 

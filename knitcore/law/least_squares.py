@@ -13,7 +13,7 @@ tests, alpha and S much less.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -112,7 +112,7 @@ def fit_direction(
         shares[max(best - 1, 0)] if best > 0 else 1e-3,
         shares[best + 1] if best + 1 < len(shares) else ALPHA_SHARE_LIMIT,
     )
-    minimum = minimize_scalar(
+    minimum = scipy.optimize.minimize_scalar(
         lambda share: solve(share / largest)[0],
         bounds=bounds,
         method="bounded",

@@ -12,13 +12,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
-from knitcore.base.compiled import compiled
+from knitcore.base.compiled import compiled, intrinsic
 
 Floats = NDArray[np.floating]
 
@@ -39,6 +36,9 @@ def _tile(columns: int) -> Callable[..., None]:
         _context: Any, target: Any, step: Any, left: Any, down: Any, right: Any, over: Any,
         count: Any, number: Any,
     ) -> Any:  # fmt: skip
+        from llvmlite import ir
+        from numba import types
+
         def code(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
             to, stride, a, a_stride, b, b_stride, terms, _ = values
             kind = context.get_value_type(number)
@@ -91,8 +91,7 @@ def _tile(columns: int) -> Callable[..., None]:
 
         return types.void(target, step, left, down, right, over, count, number), code
 
-    compiled: Callable[..., None] = intrinsic(generate)
-    return compiled
+    return intrinsic(generate)
 
 
 def _lane_sum(_context: Any, first: Any, second: Any, count: Any, number: Any) -> Any:
@@ -101,6 +100,8 @@ def _lane_sum(_context: Any, first: Any, second: Any, count: Any, number: Any) -
 
     Called with both addresses, how many columns there are, and any number of the type in question.
     """
+
+    from llvmlite import ir
 
     def code(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
         a, b, terms, _ = values

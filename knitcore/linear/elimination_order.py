@@ -8,9 +8,8 @@ wave halves it, and a least vertex cover of what crosses the halves is the cut (
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import breadth_first_order, maximum_bipartite_matching, shortest_path
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
@@ -50,7 +49,9 @@ def _halved(touching: Bools, begin: Array) -> tuple[Ints, Ints, Ints]:
 
 def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:
     """Least set of rows and columns that together hold every True of a matrix."""
-    partner = maximum_bipartite_matching(csr_array(crossing), perm_type="column")
+    partner = scipy.sparse.csgraph.maximum_bipartite_matching(
+        scipy.sparse.csr_array(crossing), perm_type="column"
+    )
     matched = partner >= 0
     row_of = np.full(crossing.shape[1], -1)
     row_of[partner[matched]] = np.flatnonzero(matched)
@@ -69,9 +70,9 @@ def vertex_cover(crossing: Bools) -> tuple[Bools, Bools]:
 
 def _steps(touching: Bools) -> Array:
     """(n,) steps to each block of a pattern from the one farthest from the first."""
-    links: Any = csr_array(touching)
-    farthest = breadth_first_order(links, 0, return_predecessors=False)[-1]
-    steps = shortest_path(links, "D", unweighted=True, indices=farthest)
+    links: Any = scipy.sparse.csr_array(touching)
+    farthest = scipy.sparse.csgraph.breadth_first_order(links, 0, return_predecessors=False)[-1]
+    steps = scipy.sparse.csgraph.shortest_path(links, "D", unweighted=True, indices=farthest)
     return np.where(np.isfinite(steps), steps, -1.0)
 
 

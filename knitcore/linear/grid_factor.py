@@ -15,8 +15,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
@@ -196,7 +196,7 @@ def positive_definite_factor(matrix: Any) -> Callable[[Array], Array]:
     # pivots stay on the diagonal, so that their signs are those of the eigenvalues
     options = {"SymmetricMode": True}
     try:
-        factor = splu(csc_matrix(matrix), "MMD_AT_PLUS_A", 0.0, options=options)
+        factor = splu(scipy.sparse.csc_matrix(matrix), "MMD_AT_PLUS_A", 0.0, options=options)
     except RuntimeError as error:  # exactly singular
         raise IndefiniteTangentError from error
     if not np.all(factor.U.diagonal() > 0.0):

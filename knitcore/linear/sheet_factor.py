@@ -6,11 +6,13 @@ of what crosses. Cuts are eliminated after what they part, each as a dense front
 sparse solvers do not know the sheet, and take several times as long where it is rolled up.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import bsr_matrix, csr_matrix
 
 from knitcore.base.arrays import Array
 from knitcore.linear.elimination_order import vertex_cover
@@ -37,7 +39,9 @@ class SheetFactor:
         If the matrix is not positive definite in single precision.
     """
 
-    def __init__(self, matrix: bsr_matrix, columns: int, *, again: bool = False) -> None:
+    def __init__(
+        self, matrix: scipy.sparse.bsr_matrix, columns: int, *, again: bool = False
+    ) -> None:
         pattern = (part.astype(np.int32).tobytes() for part in (matrix.indptr, matrix.indices))
         self._tree = (_tree if again else _tree.__wrapped__)(*pattern, columns)
         self._factor = np.empty(self._tree.entries, np.float32)
@@ -54,7 +58,7 @@ class SheetFactor:
 def _tree(indptr: bytes, indices: bytes, columns: int) -> FrontTree:
     first, near = np.frombuffer(indptr, np.int32), np.frombuffer(indices, np.int32)
     count = len(first) - 1
-    touching = csr_matrix((np.ones(len(near), bool), near, first), (count, count))
+    touching = scipy.sparse.csr_matrix((np.ones(len(near), bool), near, first), (count, count))
     at = np.stack(np.divmod(np.arange(count), columns))
     fronts: list[CornerFront] = []
     eliminated = np.zeros(count, bool)
@@ -78,7 +82,9 @@ def _tree(indptr: bytes, indices: bytes, columns: int) -> FrontTree:
     return FrontTree(fronts, 3)
 
 
-def _halved(touching: csr_matrix, part: Ints, at: Ints) -> tuple[Ints, Ints, Ints] | None:
+def _halved(
+    touching: scipy.sparse.csr_matrix, part: Ints, at: Ints
+) -> tuple[Ints, Ints, Ints] | None:
     """Two parts that do not touch, and the cut between them, along the axis where it is shorter."""
     inside = touching[part][:, part]
     divisions = []

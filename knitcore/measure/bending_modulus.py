@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_linear_density, check_positive, check_range
@@ -221,7 +221,7 @@ def _elastica_through(
         raise InputError(
             name, "the yarn is too straight: its bend is not resolved.", "Hang a shorter piece."
         )
-    minimum = minimize_scalar(
+    minimum = scipy.optimize.minimize_scalar(
         cost, bounds=(LOG_LOADS[best - 1], LOG_LOADS[best + 1]), method="bounded"
     )
     rms = float(np.sqrt(minimum.fun))

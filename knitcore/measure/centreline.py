@@ -1,19 +1,16 @@
 """Trace the centreline of one yarn in a photo."""
 
+from __future__ import annotations
+
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import scipy
+import skimage
 from numpy.typing import NDArray
 from PIL import Image, ImageOps, UnidentifiedImageError
-from scipy.ndimage import distance_transform_edt, gaussian_filter1d
-from scipy.sparse import coo_array, csr_array
-from scipy.sparse.csgraph import dijkstra
-from skimage.filters import gaussian, threshold_otsu
-from skimage.measure import label, regionprops
-from skimage.morphology import isotropic_opening, skeletonize
-from skimage.transform import rescale
 
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
@@ -115,7 +112,7 @@ def trace_centreline(grey: Array, *, name: str = "photo") -> Centreline:
             name, f"is too small ({grey.shape}).", "Give a photo of 40 pixels or more."
         )
     factor = min(1.0, WORKING_PIXELS / max(grey.shape))
-    small = rescale(grey, factor, anti_aliasing=True) if factor < 1 else grey
+    small = skimage.transform.rescale(grey, factor, anti_aliasing=True) if factor < 1 else grey
     mask, next_largest = _yarn_mask(small, name)
     path, width = _ribbon_axis(mask, name)
     if path[0, 0] > path[-1, 0]:
@@ -139,27 +136,29 @@ def _yarn_mask(grey: Array, name: str) -> tuple[Mask, float]:
     ground = float(np.median(border))
     low, high = np.percentile(grey, [0.5, 99.5])
     lighter = high - ground >= ground - low
-    signal = gaussian(grey - ground if lighter else ground - grey, sigma=1.0)
+    signal = skimage.filters.gaussian(grey - ground if lighter else ground - grey, sigma=1.0)
     if max(high - ground, ground - low) < MIN_CONTRAST:
         raise _no_yarn(name, "nothing stands out from the background")
-    mask: Mask = signal > threshold_otsu(signal)
+    mask: Mask = signal > skimage.filters.threshold_otsu(signal)
     if mask.mean() > 0.6:
         raise _no_yarn(name, f"{mask.mean():.0%} of the photo stands out")
     whole = mask
     mask, _ = _largest(mask, name)
     # Fibres are thinner than half a yarn: opening removes them and leaves the yarn.
-    area, length = float(mask.sum()), float(skeletonize(mask).sum())
+    area, length = float(mask.sum()), float(skimage.morphology.skeletonize(mask).sum())
     if length**2 < MIN_SLENDERNESS * area:
         raise _no_yarn(name, "what stands out is a spot, not a yarn")
     radius = max(1.0, 0.3 * area / length)
-    _, next_largest = _largest(isotropic_opening(whole, radius), name)
-    return _largest(isotropic_opening(mask, radius), name)[0], next_largest
+    _, next_largest = _largest(skimage.morphology.isotropic_opening(whole, radius), name)
+    return _largest(skimage.morphology.isotropic_opening(mask, radius), name)[0], next_largest
 
 
 def _largest(mask: Mask, name: str) -> tuple[Mask, float]:
     """The largest piece alone, and the area of the next one over its own."""
     regions = sorted(
-        regionprops(label(mask, connectivity=2)), key=lambda region: region.area, reverse=True
+        skimage.measure.regionprops(skimage.measure.label(mask, connectivity=2)),
+        key=lambda region: region.area,
+        reverse=True,
     )
     if not regions:
         raise _no_yarn(name, "nothing stands out from the background")
@@ -179,7 +178,7 @@ def _no_yarn(name: str, why: str) -> InputError:
 
 def _longest_path(mask: Mask) -> tuple[Array, float]:
     """(n, 2) rows and columns of the skeleton's longest shortest path, and the yarn's width."""
-    skeleton = skeletonize(mask)
+    skeleton = skimage.morphology.skeletonize(mask)
     points = np.argwhere(skeleton)
     index = np.full(mask.shape, -1)
     index[tuple(points.T)] = np.arange(len(points))
@@ -192,8 +191,8 @@ def _longest_path(mask: Mask) -> tuple[Array, float]:
         first.append(np.flatnonzero(inside)[linked])
         second.append(other[linked])
         weight.append(np.full(int(linked.sum()), np.hypot(*step)))
-    graph = csr_array(
-        coo_array(
+    graph = scipy.sparse.csr_array(
+        scipy.sparse.coo_array(
             (np.concatenate(weight), (np.concatenate(first), np.concatenate(second))),
             shape=(len(points), len(points)),
         )
@@ -208,9 +207,9 @@ def _longest_path(mask: Mask) -> tuple[Array, float]:
     return path, float(mask.sum()) / max(length, 1.0)
 
 
-def _farthest(graph: csr_array, start: int) -> tuple[int, NDArray[np.int32]]:
+def _farthest(graph: scipy.sparse.csr_array, start: int) -> tuple[int, NDArray[np.int32]]:
     """The reachable point farthest from a start, and each point's predecessor on the way."""
-    distance, before = dijkstra(
+    distance, before = scipy.sparse.csgraph.dijkstra(
         graph, directed=False, indices=np.array([start]), return_predecessors=True
     )
     along = np.asarray(distance).ravel()
@@ -225,7 +224,7 @@ def _ribbon_axis(mask: Mask, name: str) -> tuple[Array, float]:
     piece.
     """
     # A frame of background lets the skeleton end at the border like anywhere else.
-    area, length = float(mask.sum()), float(skeletonize(mask).sum())
+    area, length = float(mask.sum()), float(skimage.morphology.skeletonize(mask).sum())
     if length**2 < MIN_SLENDERNESS * area:
         raise _no_yarn(name, "what stands out is a spot, not a yarn")
     frame = max(4, round(1.5 * area / length))
@@ -235,7 +234,7 @@ def _ribbon_axis(mask: Mask, name: str) -> tuple[Array, float]:
         raise _no_yarn(name, "what stands out is a spot, not a yarn")
     cut = round(width)
     core = path[cut:-cut]
-    radius = distance_transform_edt(wide)[tuple(core.astype(int).T)]
+    radius = scipy.ndimage.distance_transform_edt(wide)[tuple(core.astype(int).T)]
     if radius.std() > MAX_UNEVENNESS * radius.mean():
         raise _no_yarn(name, "what stands out has no even width")
     ends = (_straight_end(core[::-1], wide, width)[::-1], _straight_end(core, wide, width))
@@ -275,5 +274,5 @@ def _odd_smooth(values: Array, sigma: float) -> Array:
     pad = min(len(values) - 1, int(4 * sigma) + 1)
     head = 2 * values[0] - values[pad:0:-1]
     tail = 2 * values[-1] - values[-2 : -2 - pad : -1]
-    padded = gaussian_filter1d(np.concatenate([head, values, tail]), sigma)
+    padded = scipy.ndimage.gaussian_filter1d(np.concatenate([head, values, tail]), sigma)
     return np.asarray(padded[pad : pad + len(values)])

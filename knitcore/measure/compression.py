@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import curve_fit
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
@@ -106,7 +106,7 @@ def fit_compression(
         return np.asarray(area * k * thickness / p * (ratio**p - 1))
 
     try:
-        best, covariance = curve_fit(
+        best, covariance = scipy.optimize.curve_fit(
             law,
             depth,
             force,

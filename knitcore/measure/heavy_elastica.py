@@ -10,8 +10,7 @@ so the shape depends on one number only.
 """
 
 import numpy as np
-from scipy.integrate import cumulative_simpson
-from scipy.linalg import solve_banded
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
@@ -75,13 +74,13 @@ def heavy_elastica(load: float) -> tuple[Array, Array, Array]:
         bands[1, 1:-1] = -(lower + upper) - pull * np.sin(theta[1:-1])
         bands[2, :-2] = lower
         bands[1, -1], bands[2, -2] = 1 / last, -1 / last
-        step = solve_banded((1, 1), bands, residual)
+        step = scipy.linalg.solve_banded((1, 1), bands, residual)
         theta = theta - step * min(1.0, 0.5 / max(float(np.abs(step).max()), 1e-300))
         if np.abs(step).max() < 1e-11:
             break
     else:
         raise ConvergenceError(f"heavy elastica: no convergence at load {load:.3g}.")
     # d(s) = 2 u du
-    x = cumulative_simpson(np.cos(theta) * 2 * u, x=u, initial=0.0)
-    y = cumulative_simpson(np.sin(theta) * 2 * u, x=u, initial=0.0)
+    x = scipy.integrate.cumulative_simpson(np.cos(theta) * 2 * u, x=u, initial=0.0)
+    y = scipy.integrate.cumulative_simpson(np.sin(theta) * 2 * u, x=u, initial=0.0)
     return s, np.asarray(x), np.asarray(y)

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from scipy.signal import find_peaks
+import scipy
 
 from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
@@ -192,7 +192,7 @@ def _growing(strain: Array) -> list[Indices]:
     """Readings of each pull: from the lowest strain after the one before to the highest."""
     least = TURNS * float(np.ptp(strain))
     padded = np.concatenate([[-np.inf], strain, [-np.inf]])
-    tops = find_peaks(padded, prominence=least)[0] - 1
+    tops = scipy.signal.find_peaks(padded, prominence=least)[0] - 1
     parts, begin = [], 0
     for top in tops.tolist() or [len(strain) - 1]:
         begin += int(np.argmin(strain[begin : top + 1]))

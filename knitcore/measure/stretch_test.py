@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.ndimage import median_filter
+import scipy
 
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_positive
@@ -156,7 +156,7 @@ def misread_forces(force: Array) -> Mask:
     """Isolated readings far from their neighbours (a digit misread from a display)."""
     if len(force) < 7:
         return np.zeros(len(force), dtype=bool)
-    away = np.abs(force - median_filter(force, size=7, mode="nearest"))
+    away = np.abs(force - scipy.ndimage.median_filter(force, size=7, mode="nearest"))
     return away > SPIKE_SHARE * float(force.max(initial=0.0))
 
 

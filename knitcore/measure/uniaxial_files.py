@@ -10,12 +10,14 @@ is not used.
 Tables are in :mod:`knitcore.measure.stretch_tables`.
 """
 
+from __future__ import annotations
+
 import re
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import h5py
 import numpy as np
 
 from knitcore.base.arrays import Array
@@ -23,6 +25,9 @@ from knitcore.base.errors import InputError
 from knitcore.measure.stretch_tables import WIDER_THAN_CLAMPED, read_stretch_table, sound_runs
 from knitcore.measure.stretch_test import MIN_POINTS, StretchRun, StretchTest, misread_forces
 from knitcore.measure.table_reading import TableReading
+
+if TYPE_CHECKING:
+    import h5py
 
 CLAMP_MM = 35.5
 MAX_PIXEL = 1e6
@@ -69,6 +74,8 @@ def read_stretch_test(
     InputError
         If the file is missing, is not of the given format, or has no usable run.
     """
+    import h5py  # 10 MB, for those who read a file
+
     path = Path(path)
     if not path.is_file():
         raise InputError(str(path), "is not a file.", "Give the path of an HDF5, CSV or XLSX file.")
@@ -97,6 +104,8 @@ def read_stretch_test(
 
 
 def _read_hdf5(path: Path, marks: Marks) -> StretchTest:
+    import h5py
+
     try:
         with h5py.File(path, "r") as file:
             return _test_from_hdf5(path.name, file, marks)
@@ -249,6 +258,8 @@ def _seven(points: Array, notes: list[str]) -> Array:
 
 def _numbers(name: str, file: h5py.File, key: str) -> Array:
     """A dataset of numbers stored in this very file, of bounded size."""
+    import h5py
+
     if key not in file:
         raise InputError(f"{name}, {key}", "is missing.", "See docs/fit-a-law.md for the layout.")
     if not isinstance(file.get(key, getlink=True), h5py.HardLink):

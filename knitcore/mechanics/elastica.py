@@ -17,7 +17,7 @@ so f, f' and f'' come from one code, also for Q < 0 (a segment under compression
 import math
 from enum import StrEnum
 
-from scipy.optimize import brentq
+import scipy
 
 from knitcore.base.errors import InputError
 
@@ -129,7 +129,7 @@ def tension_parameter(
     high = 1.0
     while mismatch(high) > 0:
         high *= 4
-    return float(brentq(mismatch, low, high, xtol=1e-14, rtol=1e-14))
+    return float(scipy.optimize.brentq(mismatch, low, high, xtol=1e-14, rtol=1e-14))
 
 
 def segment_energy(
@@ -206,7 +206,7 @@ def rest_separation_mm(parity: Parity, slope: float, length_mm: float) -> float:
     high = 1.0
     while force(high) > 0:
         high *= 4
-    tension = float(brentq(force, 0.0, high, xtol=1e-15, rtol=1e-14))
+    tension = float(scipy.optimize.brentq(force, 0.0, high, xtol=1e-15, rtol=1e-14))
     _, rate, _ = energy_function(parity, tension)
     return length_mm / (1 + slope**2 * rate / 2)
 

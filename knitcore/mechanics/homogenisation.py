@@ -15,10 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
-import skfem
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import PHASES, Direction
@@ -157,16 +155,13 @@ def _sheet_grid(grid: PhaseGrid, material: Material) -> SheetGrid:
 
 
 def _stiffness_density(u: Any, v: Any, w: Any) -> Any:
+    """Virtual work of an orthotropic sheet; its constants are fields at the quadrature points."""
     shear = u.grad[0, 1] + u.grad[1, 0]
     return (
         (w.xxxx * u.grad[0, 0] + w.xxyy * u.grad[1, 1]) * v.grad[0, 0]
         + (w.xxyy * u.grad[0, 0] + w.yyyy * u.grad[1, 1]) * v.grad[1, 1]
         + w.xyxy * shear * (v.grad[0, 1] + v.grad[1, 0])
     )
-
-
-stiffness_form = skfem.BilinearForm(_stiffness_density)
-"""Virtual work of an orthotropic sheet; its constants are fields at the quadrature points."""
 
 
 class _PeriodicMesh:
@@ -187,6 +182,8 @@ class _PeriodicMesh:
     def __init__(self, width_mm: Array, height_mm: Array) -> None:
         self._x: Array = np.concatenate([[0.0], np.cumsum(width_mm)])
         self._y: Array = np.concatenate([[0.0], np.cumsum(height_mm)])
+        import skfem  # slow to import
+
         mesh = skfem.MeshQuad.init_tensor(self._x, self._y)
         # Three Gauss points a side are exact for the work of biquadratic shapes on rectangles.
         self.basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuad2()), intorder=5)
@@ -224,8 +221,8 @@ class _PeriodicMesh:
         along_x, along_y = component == 0, component == 1
         affine[along_x, 0], affine[along_y, 1] = x[along_x], y[along_y]
         affine[along_x, 2], affine[along_y, 2] = y[along_x] / 2, x[along_y] / 2
-        shape = sp.csr_matrix((np.ones(size), (np.arange(size), periodic.ravel())))
-        self.map = sp.hstack([shape, sp.csr_matrix(affine)]).tocsr()
+        shape = scipy.sparse.csr_matrix((np.ones(size), (np.arange(size), periodic.ravel())))
+        self.map = scipy.sparse.hstack([shape, scipy.sparse.csr_matrix(affine)]).tocsr()
         held = [periodic.ravel()[np.flatnonzero(component == c)[0]] for c in (0, 1)]
         self.free = np.setdiff1d(np.arange(count), held)
         self.macro = np.arange(count, count + 3)
@@ -233,15 +230,18 @@ class _PeriodicMesh:
 
 def _solve(grid: SheetGrid) -> Array:
     """Effective stiffness (3, 3)."""
+    import skfem
+
     mesh = _PeriodicMesh(grid.width_mm, grid.height_mm)
     fields = {
         name: mesh.cell_field(getattr(grid, name)) for name in ("xxxx", "yyyy", "xxyy", "xyxy")
     }
-    full = stiffness_form.assemble(mesh.basis, **fields)
+    form = skfem.BilinearForm(_stiffness_density)
+    full = form.assemble(mesh.basis, **fields)
     reduced = (mesh.map.T @ full @ mesh.map).tocsc()
     free, macro = mesh.free, mesh.macro
     coupling = reduced[free][:, macro].toarray()
-    factor = splu(
+    factor = scipy.sparse.linalg.splu(
         reduced[free][:, free].tocsc(),
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,

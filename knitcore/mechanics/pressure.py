@@ -16,7 +16,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scipy.optimize import brentq
+import scipy
 
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
@@ -186,7 +186,7 @@ def rest_circumference(
         # Free to narrow, a fabric may carry less than that even at the lock-up of a held one.
         reached = _tension(law, direction, upper, transverse) >= tension
         strain = (
-            brentq(
+            scipy.optimize.brentq(
                 lambda e, t=transverse: _tension(law, direction, e, t) - tension,
                 0.0,
                 upper,

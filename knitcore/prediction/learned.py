@@ -15,6 +15,7 @@ their intervals on charts left out, and reports the errors for those. Real fabri
 the yarn level predicts: see :data:`MAX_FOLDED`.
 """
 
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -320,7 +321,9 @@ def follows(mixture: Mixture) -> Array:
     return np.append((1.0 + strains) / (strains + _TOE), [1.0, 1.0])[:, None]
 
 
-@cache
+_fitting = threading.Lock()
+
+
 def packaged_model(left_out: frozenset[str] = frozenset()) -> LearnedModel:
     """The model that comes with the package, fitted to its samples as it is loaded.
 
@@ -328,6 +331,12 @@ def packaged_model(left_out: frozenset[str] = frozenset()) -> LearnedModel:
     ----------
     left_out : keys of charts (:attr:`StitchChart.key`, canonical) to leave out, for tests.
     """
+    with _fitting:  # a second thread waits for the first, which takes half as long as two fits
+        return _fitted(left_out)
+
+
+@cache
+def _fitted(left_out: frozenset[str]) -> LearnedModel:
     path = files("knitcore.prediction") / "data" / "learned.npz"
     with path.open("rb") as stream, np.load(stream) as stored:
         arrays = {name: stored[name] for name in stored.files}

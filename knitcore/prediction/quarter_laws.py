@@ -28,7 +28,7 @@ from functools import lru_cache, partial
 from itertools import pairwise
 
 import numpy as np
-from scipy.ndimage import maximum_filter, minimum_filter
+import scipy
 
 from knitcore.base.arrays import Array, Codes, Indices
 from knitcore.chart.fabric import PHASES, Direction
@@ -263,7 +263,7 @@ def _parts(cells: Codes, material: Material) -> Array:
     They are half as far from 1 as in the flat composite, and as far in wide areas of one phase.
     """
     records = _records(cells, material)
-    wide = maximum_filter(cells, _WIDE) == minimum_filter(cells, _WIDE)
+    wide = scipy.ndimage.maximum_filter(cells, _WIDE) == scipy.ndimage.minimum_filter(cells, _WIDE)
     contrast = (1 + wide.mean()) / 2
     ratios = []
     for direction in Direction:

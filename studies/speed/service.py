@@ -64,7 +64,8 @@ class Figures:
         if not reached:
             self.missed.append(name)
         mark = "pass" if reached else "FAIL"
-        print(f"{mark}  {name:58} {value:8.1f} {unit:3} (at most {most:g})", flush=True)
+        ratio = f", {value / most:.0%} of it" if most else ""
+        print(f"{mark}  {name:58} {value:8.2f} {unit:3} (at most {most:g}{ratio})", flush=True)
 
 
 @dataclass

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import h5py
 from pydantic import Field
 
 from knitcore.base.errors import InputError
@@ -119,6 +118,8 @@ def tables(request: TablesRequest, context: Context) -> TablesResult:
 
 
 def _read(path: Path, reading: TableReading) -> tuple[TableResult, StretchTest | None]:
+    import h5py  # 10 MB, for those who read a file
+
     is_own = h5py.is_hdf5(path) or is_own_table(path)
     result = TableResult(name=path.name, is_own=is_own)
     test = None

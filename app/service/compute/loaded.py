@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from knitcore.base.loading import loading
+
 from .processes import be_nice
 
 SERVICE = os.getppid()
@@ -53,7 +55,8 @@ def _load() -> None:
 _watch = threading.Thread(target=_end_with_service, daemon=True)
 _watch.start()
 try:
-    _load()
+    with loading():
+        _load()
 finally:
     _loaded.set()
     _watch.join()  # a process that forks should have one thread

@@ -79,7 +79,7 @@ class ProcessWorker:
     async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
         """Begin a job."""
         self._slots[:] = [0.0] * len(Slot)
-        await asyncio.shield(asyncio.wrap_future(_loaded()))
+        await asyncio.shield(asyncio.wrap_future(load()))
         return asyncio.wrap_future(await asyncio.to_thread(self._submit, job))
 
     def _submit(self, job: Callable[..., T]) -> Future[T]:
@@ -150,13 +150,12 @@ def processes(
 ) -> list[ProcessWorker]:
     """Several workers, each with a memory limit."""
     _sweep()
-    _loaded()
     return [ProcessWorker(memory_bytes, idle=idle, begin=begin) for _ in range(count)]
 
 
 @cache
-def _loaded() -> Future[None]:
-    """Done once the process that workers are forked from has loaded what they need."""
+def load() -> Future[None]:
+    """Start the process that workers are forked from; done once it has loaded what they need."""
     done: Future[None] = Future()
     forkserver.set_forkserver_preload([f"{__package__}.loaded"])
 

@@ -10,7 +10,6 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, TypeVar
 
-from fastapi.concurrency import run_in_threadpool
 from sqlalchemy import (
     Column,
     ColumnElement,
@@ -30,7 +29,6 @@ from knitcore.base.errors import InputError
 
 from ..problems import DamagedError, StoreError, StoreFullError
 from .backend import Backend
-from .postgresql import PostgresqlServer
 from .sqlite import SqliteFile
 
 log = logging.getLogger("knitcore.store")
@@ -222,6 +220,8 @@ class Database:
             As in :meth:`write`.
         """
         if self._writer is None:
+            from fastapi.concurrency import run_in_threadpool  # loads for 0.3 s
+
             return await run_in_threadpool(self.write, action)
         with self.failures():
             return await asyncio.wrap_future(self._hand_in(action))
@@ -295,6 +295,8 @@ def backend_of(url: str) -> Backend:
     parts = make_url(url)
     if parts.get_backend_name() == "sqlite":
         return SqliteFile(Path(parts.database or ""))
+    from .postgresql import PostgresqlServer  # its dialect loads for 0.05 s
+
     return PostgresqlServer(url)
 
 

@@ -9,6 +9,7 @@ import plotly
 from fastapi import FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, Response
+from starlette.background import BackgroundTask
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
@@ -36,7 +37,9 @@ def serve_page(app: FastAPI) -> None:
 
     @app.get("/", include_in_schema=False)
     async def page(request: Request) -> Response:
-        return packed(folder / "index.html", request.headers, CHECK_AGAIN)
+        answer = packed(folder / "index.html", request.headers, CHECK_AGAIN)
+        answer.background = BackgroundTask(request.app.state.visited.set)
+        return answer
 
     if not built:  # the bundle has a smaller one
 

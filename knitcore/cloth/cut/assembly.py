@@ -1,12 +1,13 @@
 """Energy, forces and tangent of a piece by scikit-fem's bases and forms."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
+import scipy
 from numpy.typing import NDArray
-from skfem import Basis, BilinearForm, ElementQuad2, ElementTriP2, LinearForm, MeshQuad
 
 from knitcore.base.arrays import Array
 from knitcore.cloth.cut.cut_cloth import Cloth
@@ -29,7 +30,7 @@ class Assembled:
 
     energy: float
     force: Array
-    tangent: sp.csr_array
+    tangent: scipy.sparse.csr_array
 
 
 class PieceEnergy:
@@ -53,6 +54,8 @@ class PieceEnergy:
         element: Any = None,
         order: int = QUADRATURE_ORDER,
     ) -> None:
+        from skfem import Basis, ElementQuad2, ElementTriP2, MeshQuad  # slow to import
+
         if element is None:
             element = ElementQuad2() if isinstance(mesh, MeshQuad) else ElementTriP2()
         self.basis = Basis(mesh, element, intorder=order)
@@ -86,7 +89,7 @@ class PieceEnergy:
         density, stress, stiffness = self._respond(displacement, self.cloth.sheet.parameters)
         energy = float(np.sum(density * self.basis.dx))
         if energy == np.inf:
-            return Assembled(energy, np.empty(0), sp.csr_array((0, 0)))
+            return Assembled(energy, np.empty(0), scipy.sparse.csr_array((0, 0)))
         # by column j and component i of the gradient, twice
         h = (self._turned @ stiffness @ self._turned.T).reshape(*self.shape, 2, 2, 2, 2)
         force = self._force(stress)
@@ -98,7 +101,9 @@ class PieceEnergy:
             energy += more
             force += pull
             xx, xy, yy = (a + b for a, b in zip((xx, xy, yy), blocks, strict=True))
-        return Assembled(energy, force, sp.csr_array(sp.block_array([[xx, xy], [xy.T, yy]])))
+        return Assembled(
+            energy, force, scipy.sparse.csr_array(scipy.sparse.block_array([[xx, xy], [xy.T, yy]]))
+        )
 
     def law_force(self, laws: NDArray[np.void], displacement: Array) -> Array:
         """Force (2, nodes), N, under other laws, given as records like the sheet's parameters."""
@@ -128,6 +133,8 @@ class PieceEnergy:
 
 def _force(basis: Any, p: Array) -> Array:
     """Integral of p (elements, points, 2) times the gradient of each shape function."""
+    from skfem import LinearForm
+
     px, py = p[..., 0], p[..., 1]
     form = LinearForm(lambda v, _: px * v.grad[0] + py * v.grad[1])
     forces: Array = form.assemble(basis)
@@ -136,6 +143,8 @@ def _force(basis: Any, p: Array) -> Array:
 
 def _tangent(basis: Any, h: Array) -> Any:
     """Integral of the gradients of two shape functions times h (elements, points, 2, 2)."""
+    from skfem import BilinearForm
+
     hxx, hxy, hyx, hyy = h[..., 0, 0], h[..., 0, 1], h[..., 1, 0], h[..., 1, 1]
 
     def form(u: Any, v: Any, _: Any) -> Array:
@@ -150,6 +159,8 @@ def _tape(edge: Any, displacement: Array, stiffness: float) -> tuple[float, Arra
     """Energy, forces (2, nodes) and the blocks xx, xy, yy of the tangent of a tape, which is slack
     where it would be compressed.
     """
+    from skfem import BilinearForm, LinearForm
+
     normal = edge.normals
     tangent = np.array([-normal[1], normal[0]])
     along = np.array(

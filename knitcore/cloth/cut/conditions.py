@@ -1,12 +1,14 @@
 """Conditions on the edges of a piece."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
+import scipy
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
@@ -229,7 +231,7 @@ class Constraints:
             prescribed[:, nodes] = np.where(np.isnan(before), moved, before)
         return prescribed
 
-    def _spread(self) -> sp.csr_array:
+    def _spread(self) -> scipy.sparse.csr_array:
         """Matrix (2 * nodes, unknowns) that turns the unknowns into displacements."""
         count = self.held.size
         leader = np.arange(count).reshape(self.held.shape)
@@ -249,7 +251,7 @@ class Constraints:
         leaders, unknown = np.unique(leader.ravel()[free], return_inverse=True)
         rows = np.flatnonzero(free)
         ones = np.ones(len(rows))
-        return sp.csr_array((ones, (rows, unknown)), shape=(count, len(leaders)))
+        return scipy.sparse.csr_array((ones, (rows, unknown)), shape=(count, len(leaders)))
 
     def _check_rest(self) -> None:
         """Refuse a piece that can move or turn as a whole."""

@@ -9,9 +9,9 @@ import math
 from typing import Any
 
 import numpy as np
+import scipy
 import shapely
 from numpy.typing import NDArray
-from scipy.spatial import Delaunay, QhullError
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_positive
@@ -92,8 +92,8 @@ def triangulation(piece: CutPiece, size_mm: float) -> tuple[Array, Indices]:
         boundary = np.concatenate(rings)
         points = np.concatenate([boundary, inside])
         try:
-            triangles = Delaunay(points).simplices.astype(np.int64)
-        except QhullError:
+            triangles = scipy.spatial.Delaunay(points).simplices.astype(np.int64)
+        except scipy.spatial.QhullError:
             break
         corners = points[triangles]
         doubled = _doubled_areas(corners)

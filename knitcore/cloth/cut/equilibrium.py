@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, check_cancelled
@@ -176,7 +176,7 @@ class Balance:
         raise StepError("The tangent could not be factorised.")
 
     def _reduced(self, assembled: Assembled) -> Any:
-        return sp.csc_array(self._spread.T @ assembled.tangent @ self._spread)
+        return scipy.sparse.csc_array(self._spread.T @ assembled.tangent @ self._spread)
 
     def _gathered(self, force: Array) -> Array:
         return np.asarray(self._spread.T @ force.ravel())

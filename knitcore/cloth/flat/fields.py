@@ -1,10 +1,12 @@
 """Strain, stress and energy fields of a deformed sheet, at cells and at nodes."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from knitcore.base.arrays import Array
 from knitcore.cloth.flat.grid import QuarterGrid, sums_at_corners
@@ -78,7 +80,7 @@ def cell_strains(sheet: Sheet, state: State) -> CellStrains:
     return CellStrains(*(s.reshape(grid.rows, grid.columns, 4) for s in strains))
 
 
-def strain_slopes(sheet: Sheet, state: State) -> csr_array:
+def strain_slopes(sheet: Sheet, state: State) -> scipy.sparse.csr_array:
     """Derivatives of the cells' mean strains, course-wise and then wale-wise, by the positions of
     all nodes, the corners first: (2 * cells, 2 * nodes).
     """
@@ -97,7 +99,7 @@ def strain_slopes(sheet: Sheet, state: State) -> csr_array:
     unknowns = (2 * _cell_nodes(grid)[:, :, None] + np.arange(2)).reshape(-1, 10)
     ends = np.arange(0, 2 * unknowns.size + 1, 10)
     columns = np.concatenate([unknowns, unknowns]).ravel()
-    return csr_array((np.concatenate(slopes).ravel(), columns, ends))
+    return scipy.sparse.csr_array((np.concatenate(slopes).ravel(), columns, ends))
 
 
 def _triangle_fibres(grid: QuarterGrid, state: State) -> tuple[Array, Array]:

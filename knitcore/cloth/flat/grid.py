@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import label
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_positive
@@ -305,7 +305,7 @@ def check_cloth(cloth: NDArray[np.bool_], rows: int, columns: int) -> None:
         )
     if cloth.all():
         return
-    _, pieces = label(cloth)
+    _, pieces = scipy.ndimage.label(cloth)
     if pieces == 0:
         raise InputError("outline", "it holds no stitch.", "Mark at least one stitch.")
     if pieces > 1:

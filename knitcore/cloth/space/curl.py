@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import label
 
 from knitcore.base import showing
 from knitcore.base.arrays import Array
@@ -238,7 +238,7 @@ def check_piece(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -
     if stitches.shape != chart.purl.shape or not stitches.any():
         remedy = "Give True or False for every stitch of the chart, True for at least one."
         raise InputError("outline", "does not fit the chart.", remedy)
-    parts, count = label(stitches, structure=np.ones((3, 3)))
+    parts, count = scipy.ndimage.label(stitches, structure=np.ones((3, 3)))
     if count > 1:
         sizes = np.bincount(parts.ravel())[1:]
         row, column = np.argwhere(parts == sizes.argmin() + 1)[0]

@@ -11,9 +11,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
-from scipy.ndimage import map_coordinates
 
 from knitcore.base.arrays import Array, rounded
 from knitcore.base.bounds import check_linear_density
@@ -27,7 +26,12 @@ from knitcore.materials import Material
 from knitcore.materials.material import loop_lengths_mm
 from knitcore.prediction.predict import predict
 from knitcore.yarn.library.yarns import yarn_for
-from knitcore.yarn.study.bending import MAX_STITCHES, ROLLS_FROM, bending_length_mm
+from knitcore.yarn.study.bending import (
+    MAX_STITCHES,
+    ROLLS_FROM,
+    STANDARD_GRAVITY,
+    bending_length_mm,
+)
 
 _MAX_POISSON = 0.95
 """Upper limit of √(ν_xy ν_yx); from 1 on, the membrane energy is not positive definite."""
@@ -207,7 +211,7 @@ def stitched(
     grid = np.meshgrid(at[1], at[0], indexing="ij")
     parts = np.moveaxis(corners_mm, 2, 0)
     corners = np.stack(
-        [map_coordinates(part, grid, order=1, cval=np.nan) for part in parts], axis=-1
+        [scipy.ndimage.map_coordinates(part, grid, order=1, cval=np.nan) for part in parts], axis=-1
     )
     known = np.isfinite(corners)
     stitches = known[1:, 1:, 0] & known[1:, :-1, 0] & known[:-1, 1:, 0] & known[:-1, :-1, 0]

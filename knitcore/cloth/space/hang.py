@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from knitcore.base.arrays import Array
 from knitcore.base.choice import Choice
@@ -17,6 +16,7 @@ from knitcore.cloth.space.even_cloth import stitch_weights_n
 from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import sheet_of
 from knitcore.materials import Material, as_material
+from knitcore.yarn.study.bending import STANDARD_GRAVITY
 
 
 class HungBy(Choice):

@@ -21,8 +21,8 @@ Unknowns are the corners of the stitches, ``x`` (n, 3) in mm. Four parts, each a
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
@@ -294,7 +294,7 @@ def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
     """
     if not len(at):
         return np.empty((0, 2), np.int64)
-    tree = cKDTree(at, compact_nodes=False, balanced_tree=False)
+    tree = scipy.spatial.cKDTree(at, compact_nodes=False, balanced_tree=False)
     first, second = tree.query_pairs(reach, output_type="ndarray").T
     along, up = (home[second] - home[first]).T
     far = along * along + up * up >= apart * apart

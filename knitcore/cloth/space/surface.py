@@ -1,10 +1,10 @@
 """Points on and above a curled piece."""
 
+from __future__ import annotations
+
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
-from scipy.sparse import csr_array, eye_array, kron, vstack
-from scipy.sparse.linalg import splu
 
 from knitcore.base.arrays import Array
 
@@ -18,17 +18,19 @@ def filled(corners_mm: Array, used: NDArray[np.bool_]) -> Array:
         return corners_mm
     second = [line[2:] - 2.0 * line[1:-1] + line[:-2] for line in map(_unit, used.shape)]
     rows, columns = map(_unit, used.shape)
-    both = vstack([kron(second[0], columns), kron(rows, second[1])], format="csc")
+    both = scipy.sparse.vstack(
+        [scipy.sparse.kron(second[0], columns), scipy.sparse.kron(rows, second[1])], format="csc"
+    )
     corners, there = corners_mm.reshape(-1, 3).copy(), used.ravel()
     missing = both[:, ~there]
-    corners[~there] = -splu((missing.T @ missing).tocsc()).solve(
+    corners[~there] = -scipy.sparse.linalg.splu((missing.T @ missing).tocsc()).solve(
         missing.T @ (both[:, there] @ corners[there])
     )
     return corners.reshape(corners_mm.shape)
 
 
-def _unit(count: int) -> csr_array:
-    return eye_array(count, format="csr")
+def _unit(count: int) -> scipy.sparse.csr_array:
+    return scipy.sparse.eye_array(count, format="csr")
 
 
 def _halved(lines: Array) -> Array:
@@ -54,7 +56,8 @@ class Surface:
         along = np.linspace(0.0, columns, corners_mm.shape[1])
         kx, ky = min(3, len(up) - 1), min(3, len(along) - 1)
         self._parts = [
-            RectBivariateSpline(up, along, corners_mm[..., m], kx=kx, ky=ky) for m in range(3)
+            scipy.interpolate.RectBivariateSpline(up, along, corners_mm[..., m], kx=kx, ky=ky)
+            for m in range(3)
         ]
 
     def at(self, across: Array, up: Array, height_mm: Array) -> Array:

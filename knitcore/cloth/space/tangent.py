@@ -1,10 +1,12 @@
 """Hessian of a sheet's energy as a sparse matrix, compiled."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import bsr_matrix
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
@@ -38,7 +40,7 @@ class Tangent:
         net = (part.tobytes() for part in (sheet.quarters, sheet.hinges, sheet.quads))
         self._blocks, self._places = _pattern(self._count, *net)
 
-    def is_apart(self, matrix: bsr_matrix) -> bool:
+    def is_apart(self, matrix: scipy.sparse.bsr_matrix) -> bool:
         """Tell if only neighbouring corners have an entry in the matrix."""
         return len(matrix.indices) == len(self._blocks)
 
@@ -50,7 +52,7 @@ class Tangent:
         *,
         convex: bool,
         shift: Array | float = 0.0,
-    ) -> bsr_matrix:
+    ) -> scipy.sparse.bsr_matrix:
         """Hessian at a shape, in blocks of (3, 3). Rows of coordinates that are not free are those
         of the unit matrix.
 
@@ -82,7 +84,7 @@ class Tangent:
         data[own] += np.where(free, shift, 1.0)[:, :, None] * np.eye(3)
         start = np.searchsorted(row, np.arange(self._count + 1))
         size = 3 * self._count
-        return bsr_matrix((data, column, start), shape=(size, size))
+        return scipy.sparse.bsr_matrix((data, column, start), shape=(size, size))
 
 
 @lru_cache(maxsize=8)

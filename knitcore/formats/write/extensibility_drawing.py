@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import label
+import scipy
 
 from knitcore.base.arrays import runs
 from knitcore.chart.stitch_chart import StitchChart
@@ -70,7 +70,7 @@ def region_fields(
             continue
         inside = piece.chart.purl[largest_rectangle(cells)]
         prediction = predict(StitchChart.parse(fill) if fill else StitchChart(inside), material)
-        parts, _ = label(cells)
+        parts, _ = scipy.ndimage.label(cells)
         largest = parts == np.bincount(parts[cells]).argmax()
         row, column = (float(np.median(place)) for place in np.nonzero(largest))
         fields.append(RegionField(name, colour, int(cells.sum()), prediction, row, column))

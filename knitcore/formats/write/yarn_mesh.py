@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from knitcore.base.arrays import Array, Codes, Mask, runs
 from knitcore.chart.fabric import Fabric
@@ -158,8 +158,12 @@ def loop_centre_line(kind: int, points: int = 48) -> Array:
     side, left, right, above = (1.0 - 2.0 * bool(kind & bit) for bit in (SELF, LEFT, RIGHT, ABOVE))
     x = u - 0.5 + _NECK * np.sin(4 * np.pi * u)
     y = -_REACH * np.cos(2 * np.pi * u)
-    half_left = PchipInterpolator(_KNOTS, [(side + left) / 2, side, -side, -above, above, above])
-    half_right = PchipInterpolator(_KNOTS, [(side + right) / 2, side, -side, -above, above, above])
+    half_left = scipy.interpolate.PchipInterpolator(
+        _KNOTS, [(side + left) / 2, side, -side, -above, above, above]
+    )
+    half_right = scipy.interpolate.PchipInterpolator(
+        _KNOTS, [(side + right) / 2, side, -side, -above, above, above]
+    )
     z = np.where(u <= 0.5, half_left(np.minimum(u, 0.5)), half_right(np.minimum(1 - u, 0.5)))
     line = np.stack([x, y, -z], axis=1)
     line.setflags(write=False)

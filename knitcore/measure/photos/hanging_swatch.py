@@ -11,10 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import binary_fill_holes, binary_opening, uniform_filter
-from skimage.filters import threshold_otsu
-from skimage.measure import label, regionprops
-from skimage.transform import rescale
+import scipy
+import skimage
 
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_range
@@ -177,7 +175,7 @@ def read_photo(photo: SwatchPhoto, swatch: Swatch, *, coin_mm: float | None = No
     if grey.ndim != 2 or min(grey.shape) < 200:
         raise InputError(photo.name, "is too small.", "Give a photo of 1000 pixels or more.")
     factor = WORKING_PIXELS / max(grey.shape)
-    small = rescale(grey, factor, anti_aliasing=True) if factor < 1 else grey
+    small = skimage.transform.rescale(grey, factor, anti_aliasing=True) if factor < 1 else grey
     scale = (
         sheet_scale(small, name=photo.name)
         if coin_mm is None
@@ -241,13 +239,18 @@ def _fabric(
     outside = np.isnan(plane)
     filled = np.where(outside, np.nanmedian(plane), plane)
     side = max(3, round(2 * stitch_mm * scale.px_per_mm))
-    varies = uniform_filter(filled**2, side) - uniform_filter(filled, side) ** 2
-    rough = np.log(np.maximum(varies, MIN_CONTRAST**2))
-    mask: Mask = (rough > threshold_otsu(rough)) & ~outside
-    mask = binary_opening(
-        binary_fill_holes(mask), np.ones((3, 3), dtype=bool), iterations=max(1, side // 2)
+    varies = (
+        scipy.ndimage.uniform_filter(filled**2, side)
+        - scipy.ndimage.uniform_filter(filled, side) ** 2
     )
-    regions = regionprops(label(mask))
+    rough = np.log(np.maximum(varies, MIN_CONTRAST**2))
+    mask: Mask = (rough > skimage.filters.threshold_otsu(rough)) & ~outside
+    mask = scipy.ndimage.binary_opening(
+        scipy.ndimage.binary_fill_holes(mask),
+        np.ones((3, 3), dtype=bool),
+        iterations=max(1, side // 2),
+    )
+    regions = skimage.measure.regionprops(skimage.measure.label(mask))
     region = max(regions, key=lambda r: r.area, default=None)
     rows = np.zeros(0) if region is None else region.image.sum(axis=1)
     if region is None or region.extent < 0.4:

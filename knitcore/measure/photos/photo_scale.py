@@ -7,14 +7,15 @@ little of it is accepted. The tilt is that of the parallel projection at the mid
 ratio of the smaller to the larger scale.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import binary_fill_holes, map_coordinates, uniform_filter
-from skimage.measure import label, regionprops
-from skimage.transform import ProjectiveTransform
+import scipy
+import skimage
 
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
@@ -56,7 +57,7 @@ class PhotoScale:
     source : "sheet" or "coin".
     """
 
-    projection: ProjectiveTransform
+    projection: skimage.transform.ProjectiveTransform
     middle_mm: Array
     px_per_mm: float
     tilt_deg: float
@@ -80,7 +81,7 @@ class PhotoScale:
         step = 1 / self.px_per_mm
         x, y = np.meshgrid(np.arange(left, right, step), np.arange(top, bottom, step))
         seen = self.projection(np.stack([x.ravel(), y.ravel()], axis=1))
-        values = map_coordinates(grey, seen[:, ::-1].T, order=1, cval=np.nan)
+        values = scipy.ndimage.map_coordinates(grey, seen[:, ::-1].T, order=1, cval=np.nan)
         return np.asarray(values.reshape(x.shape))
 
 
@@ -129,21 +130,23 @@ def coin_scale(grey: Array, diameter_mm: float, *, name: str = "photo") -> Photo
     matrix = np.eye(3)
     matrix[:2, :2] = turn @ np.diag(axes / diameter_mm) @ turn.T
     matrix[:2, 2] = centre
-    scale = _scale(ProjectiveTransform(matrix), np.zeros(2), "coin")
+    scale = _scale(skimage.transform.ProjectiveTransform(matrix), np.zeros(2), "coin")
     _check_tilt(scale, MAX_COIN_TILT_DEG, name)
     return _with_blur(scale, grey, np.zeros((1, 2)), diameter_mm / 2)
 
 
-def _estimated(plane_mm: Array, seen_px: Array) -> ProjectiveTransform:
+def _estimated(plane_mm: Array, seen_px: Array) -> skimage.transform.ProjectiveTransform:
     """The homography of four points."""
     rows = []
     for (x, y), (u, v) in zip(plane_mm, seen_px, strict=True):
         rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y], [0, 0, 0, x, y, 1, -v * x, -v * y]]
     unknowns = np.linalg.solve(np.array(rows), seen_px.ravel())
-    return ProjectiveTransform(np.append(unknowns, 1.0).reshape(3, 3))
+    return skimage.transform.ProjectiveTransform(np.append(unknowns, 1.0).reshape(3, 3))
 
 
-def _scale(projection: ProjectiveTransform, middle: Array, source: str) -> PhotoScale:
+def _scale(
+    projection: skimage.transform.ProjectiveTransform, middle: Array, source: str
+) -> PhotoScale:
     steps = np.array([[0.5, 0.0], [-0.5, 0.0], [0.0, 0.5], [0.0, -0.5]])
     right, left, down, up = projection(middle + steps)
     larger, smaller = np.linalg.svd(np.stack([right - left, down - up]))[1]
@@ -170,7 +173,7 @@ def _with_blur(scale: PhotoScale, grey: Array, centres: Array, radius_mm: float)
     around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     points = centres[:, None, None] + radii[None, :, None, None] * around
     seen = scale.projection(points.reshape(-1, 2))[:, ::-1].T
-    levels = map_coordinates(grey, seen, order=1, mode="nearest")
+    levels = scipy.ndimage.map_coordinates(grey, seen, order=1, mode="nearest")
     profile = levels.reshape(len(centres), len(radii), len(angles)).mean(axis=(0, 2))
     ends = profile.min(), profile[-len(radii) // 4 :].mean()
     share = np.maximum.accumulate((profile - ends[0]) / (ends[1] - ends[0]))
@@ -181,7 +184,7 @@ def _with_blur(scale: PhotoScale, grey: Array, centres: Array, radius_mm: float)
 
 def _marks(grey: Array) -> Array:
     """(marks, 2) centres x, y of discs inside rings."""
-    regions = regionprops(label(_dark(grey), connectivity=2))
+    regions = skimage.measure.regionprops(skimage.measure.label(_dark(grey), connectivity=2))
     discs = [r for r in regions if r.area >= 20 and _is_elliptic(r)]
     centres = []
     for ring in regions:
@@ -193,7 +196,7 @@ def _marks(grey: Array) -> Array:
         for disc in discs:
             apart = math.dist(disc.centroid, ring.centroid)
             if apart < near and _DISC_SHARE[0] < disc.area / filled < _DISC_SHARE[1]:
-                rows, columns = np.nonzero(binary_fill_holes(ring.image))
+                rows, columns = np.nonzero(scipy.ndimage.binary_fill_holes(ring.image))
                 top, left = ring.bbox[:2]
                 centres.append((left + columns.mean(), top + rows.mean()))
     return np.array(centres).reshape(-1, 2)
@@ -203,7 +206,9 @@ def _coins(grey: Array) -> list[tuple[Array, Array, float]]:
     """Centre (x, y), axes (px) and angle of the first axis of each large ellipse."""
     coins: list[tuple[Array, Array, float]] = []
     for mask in (_dark(grey), _dark(1.0 - grey)):
-        for region in regionprops(label(binary_fill_holes(mask))):
+        for region in skimage.measure.regionprops(
+            skimage.measure.label(scipy.ndimage.binary_fill_holes(mask))
+        ):
             if min(region.image.shape) < MIN_MARK_PX or not _is_elliptic(region):
                 continue
             rows, columns = region.coords.T
@@ -225,7 +230,9 @@ def _edge_of_coin(
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
     rays = np.stack([np.cos(angles), np.sin(angles)], axis=1) * axes / 2 @ turn.T
     points = centre + shares[:, None, None] * rays
-    levels = map_coordinates(grey, np.moveaxis(points[..., ::-1], -1, 0), order=1, mode="nearest")
+    levels = scipy.ndimage.map_coordinates(
+        grey, np.moveaxis(points[..., ::-1], -1, 0), order=1, mode="nearest"
+    )
     quarter = len(shares) // 4
     inside, ground = np.median(levels[:quarter]), np.median(levels[-quarter:], axis=0)
     beyond = (levels - inside) / np.where(np.abs(ground - inside) < 0.02, np.nan, ground - inside)
@@ -260,4 +267,4 @@ def _is_elliptic(region: Any) -> bool:
 
 def _dark(grey: Array) -> Mask:
     side = max(3, round(_SURROUNDINGS * max(grey.shape)))
-    return np.asarray(grey < _DARKER * uniform_filter(grey, side))
+    return np.asarray(grey < _DARKER * scipy.ndimage.uniform_filter(grey, side))

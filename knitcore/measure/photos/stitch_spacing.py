@@ -10,9 +10,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import irfft2, next_fast_len, rfft2
-from scipy.ndimage import gaussian_filter, map_coordinates
-from scipy.signal.windows import tukey
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
@@ -118,7 +116,9 @@ def stitch_spacing(
 def _check_periodicity(
     correlation: Array, middle: Array, vectors: Array, heights: list[float], name: str
 ) -> None:
-    twice = map_coordinates(correlation, (2 * vectors[:, ::-1] + middle).T, order=1, cval=0.0)
+    twice = scipy.ndimage.map_coordinates(
+        correlation, (2 * vectors[:, ::-1] + middle).T, order=1, cval=0.0
+    )
     if (twice > np.maximum(_HIGHER * np.array(heights), MIN_PERIODICITY)).any():
         remedy = "Count stitches and rows per 10 cm again, and say which fabric it is."
         raise InputError(name, "the stitches are twice as large as the gauge says.", remedy)
@@ -152,18 +152,18 @@ def _check_size(size: Array, lengths: Array, px_per_mm: float, name: str) -> Non
 
 def _evened(grey: Array, period_px: float) -> Array:
     """Grey levels without shading over more than a stitch, of one contrast everywhere."""
-    flat = grey - gaussian_filter(grey, 0.7 * period_px)
-    contrast = np.sqrt(gaussian_filter(flat**2, 1.5 * period_px))
+    flat = grey - scipy.ndimage.gaussian_filter(grey, 0.7 * period_px)
+    contrast = np.sqrt(scipy.ndimage.gaussian_filter(flat**2, 1.5 * period_px))
     return np.asarray(flat / np.maximum(contrast, 1e-6 + 0.2 * np.median(contrast)))
 
 
 def _autocorrelation(even: Array) -> Array:
     """Correlation with itself at every shift; no shift is in the middle."""
-    window = np.outer(*(tukey(size, 0.5) for size in even.shape))
-    shape = [next_fast_len(2 * size, real=True) for size in even.shape]
+    window = np.outer(*(scipy.signal.windows.tukey(size, 0.5) for size in even.shape))
+    shape = [scipy.fft.next_fast_len(2 * size, real=True) for size in even.shape]
 
     def squared(values: Array) -> Array:
-        return np.asarray(irfft2(np.abs(rfft2(values, shape)) ** 2, shape))
+        return np.asarray(scipy.fft.irfft2(np.abs(scipy.fft.rfft2(values, shape)) ** 2, shape))
 
     mean = float((even * window).sum() / window.sum())
     own = squared((even - mean) * window)
@@ -184,7 +184,7 @@ def _first_peak(
     angles = np.radians(np.linspace(-MAX_ROTATION_DEG, MAX_ROTATION_DEG, 25))
     shifts = np.stack([np.outer(along, np.cos(angles)), np.outer(along, np.sin(angles))], axis=-1)
     shifts = shifts if axis == 0 else shifts[..., ::-1]
-    heights = map_coordinates(
+    heights = scipy.ndimage.map_coordinates(
         correlation, np.moveaxis(shifts[..., ::-1] + middle, -1, 0), order=1, cval=-1.0
     )
     best = heights.max(axis=1)

@@ -1,7 +1,7 @@
 """A first shape of the yarn for any repeat of knits and purls."""
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.yarn.model.cell import FACE_LEGS, YarnCell
@@ -63,4 +63,4 @@ def _height(cell: YarnCell, row: int, wale: int, u: Array) -> Array:
     left, right = (-0.5 * (own + legs(row, wale + side)) for side in (-1, 1))
     half = [-own, own, above, -above]
     knots = [left, *half, -above, *half[::-1], right]
-    return PchipInterpolator(_KNOTS, knots)(u)
+    return scipy.interpolate.PchipInterpolator(_KNOTS, knots)(u)

@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.threads import one_blas_thread
@@ -149,7 +149,7 @@ def minimise_bezier(
         reach = _REACH * problem.typical
         near_lower, near_upper = np.maximum(lower, x - reach), np.minimum(upper, x + reach)
         with one_blas_thread():
-            result = minimize(
+            result = scipy.optimize.minimize(
                 problem.energy,
                 x,
                 jac=problem.gradient,

@@ -15,12 +15,13 @@ one, so the modulus of the determinant is an invariant. Courses that have come l
 of parallel lines, and a stitch on the wrong side yet another.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
@@ -203,16 +204,16 @@ def _determinants(crossed: Array, courses: int, points: int) -> Array:
             np.concatenate([rows, rows, rows, alone]),
             np.concatenate([before, arc, rows, alone]),
         )
-        codes.append(_log_modulus(sparse.coo_array((entries, places), shape=(size, size))))
+        codes.append(_log_modulus(scipy.sparse.coo_array((entries, places), shape=(size, size))))
     return np.array(codes)
 
 
 @in_one_blas_thread
-def _log_modulus(matrix: sparse.coo_array) -> float:
+def _log_modulus(matrix: scipy.sparse.coo_array) -> float:
     """Logarithm of the modulus of a determinant."""
     if matrix.shape[0] <= _DENSE_UP_TO:
         return float(np.linalg.slogdet(matrix.toarray())[1])
-    return float(np.log(np.abs(splu(matrix.tocsc()).U.diagonal())).sum())
+    return float(np.log(np.abs(scipy.sparse.linalg.splu(matrix.tocsc()).U.diagonal())).sum())
 
 
 def _arcs(

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError
@@ -21,6 +20,8 @@ from knitcore.yarn.solve.splines import RelaxedRepeat
 from knitcore.yarn.study.bent_cell import BendingResponse, settled
 from knitcore.yarn.study.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
 
+STANDARD_GRAVITY = 9.80665
+"""Of the earth, in m/s²."""
 FAR_APART = 1.5
 """Factor between the two states' rigidities from which on a rigidity is a range."""
 MAX_STITCHES = 36

@@ -40,8 +40,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, cho_factor, lu_factor, lu_solve
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import ConvergenceError
@@ -190,7 +190,7 @@ class BentCell:
         none = np.zeros((len(self.rows), len(self.rows)))
         with one_blas_thread():
             matrix = np.block([[self._hessian, self.rows.T], [self.rows, none]])
-            lower_upper, pivots = lu_factor(matrix)
+            lower_upper, pivots = scipy.linalg.lu_factor(matrix)
         return lower_upper, pivots
 
     def is_minimum(self) -> bool:
@@ -198,8 +198,8 @@ class BentCell:
         stiff = self._hessian + self.energy.penalty * self.rows.T @ self.rows
         with one_blas_thread():
             try:
-                cho_factor(stiff, lower=True, overwrite_a=True)
-            except LinAlgError:
+                scipy.linalg.cho_factor(stiff, lower=True, overwrite_a=True)
+            except scipy.linalg.LinAlgError:
                 return False
         return True
 
@@ -279,7 +279,7 @@ class BentCell:
         if held is not None:
             right[held % len(by_state), 1] = 1.0
         with one_blas_thread():
-            moved, push = lu_solve(self._factor, right).T
+            moved, push = scipy.linalg.lu_solve(self._factor, right).T
         if held is not None:
             moved = moved - push * (moved[: len(by_state)][held] / push[: len(by_state)][held])
         return -moved[: len(by_state)], -moved[len(by_state) :]

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import root
+import scipy
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
@@ -164,7 +164,7 @@ def _turned(
 
     nothing = np.zeros(len(begin.state) + len(begin.rows))
     try:
-        solution = root(
+        solution = scipy.optimize.root(
             residual, nothing, method="krylov",
             options={"fatol": _SETTLED * begin.energy.yarn.radius_mm, "maxiter": _STEPS},
         )  # fmt: skip

@@ -62,8 +62,8 @@ def test_killed_it_leaves_no_worker_behind() -> None:
 def test_killed_while_modules_are_loaded_it_leaves_no_process_behind() -> None:
     code = (
         "import os; from multiprocessing import forkserver\n"
-        "from app.service.compute.processes import processes\n"
-        "processes(1); forkserver.ensure_running(); os.kill(os.getpid(), 9)\n"
+        "from app.service.compute.processes import load, processes\n"
+        "processes(1); load(); forkserver.ensure_running(); os.kill(os.getpid(), 9)\n"
     )
     process = subprocess.Popen([sys.executable, "-c", _as_main(code)], start_new_session=True)
     assert process.wait(60) == -signal.SIGKILL

@@ -1,5 +1,6 @@
 """The page's files: which are served, how they are cached and packed."""
 
+import asyncio
 import gzip
 import os
 from pathlib import Path
@@ -42,6 +43,7 @@ def test_a_wheel_brings_its_page(sources: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(page_module, "IN_WHEEL", sources / "dist")
     monkeypatch.setattr(page_module, "SOURCES", sources / "not-there")
     app = FastAPI()
+    app.state.visited = asyncio.Event()
     serve_page(app)
     with TestClient(app) as client:
         assert client.get("/").content == SCRIPT
