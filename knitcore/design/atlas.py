@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
@@ -249,6 +250,7 @@ def save_atlas(atlas: Atlas, file: Path) -> None:
         Path(name).unlink(missing_ok=True)
 
 
+@in_reading_time
 def load_atlas(file: Path) -> Atlas:
     """Read an atlas.
 

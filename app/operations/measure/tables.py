@@ -8,6 +8,7 @@ import h5py
 from pydantic import Field
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.measure.plausibility import order_doubt, unit_doubts
 from knitcore.measure.stretch_tables import is_own_table
@@ -118,6 +119,7 @@ def tables(request: TablesRequest, context: Context) -> TablesResult:
     return TablesResult(tests=results, doubts=list(_of_both(course, wale, request.fabric)))
 
 
+@in_reading_time
 def _read(path: Path, reading: TableReading) -> tuple[TableResult, StretchTest | None]:
     is_own = h5py.is_hdf5(path) or is_own_table(path)
     result = TableResult(name=path.name, is_own=is_own)
