@@ -74,7 +74,7 @@ def test_readers_share_the_time_of_the_one_that_calls_them() -> None:
 
 
 def test_time_ends_with_the_reader() -> None:
-    """What comes after it has all the time it needs; results and errors come as they are."""
+    """Leave what comes after it all its time, and results and errors as they are."""
     read = in_reading_time(lambda path: path.upper())
     assert read("photo.png") == "PHOTO.PNG"
     with pytest.raises(AttributeError):
