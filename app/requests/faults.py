@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 from pydantic import BaseModel
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import ReadingTimeError
 
 if TYPE_CHECKING:
     from ..context import Context
@@ -34,6 +35,8 @@ class CheckedBy:
 
 def all_faults(error: InputError, request: BaseModel, context: Context) -> InputError:
     """The error that stopped an operation, with those of the request's other parts."""
+    if isinstance(error, ReadingTimeError):
+        return error  # the other files would take as long
     return with_others(error, [*error.others, *_faults_of_parts(request, context)])
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.measure.stretch_points import StretchPoint
 
@@ -31,6 +32,7 @@ class PointModel(RequestModel):
         return StretchPoint(**dict(self))
 
 
+@in_reading_time
 def points_in(path: Path) -> list[PointModel]:
     """The points in a file of `knitcore measure photos`.
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated
 
-from pydantic import EncodedBytes, EncoderProtocol, Field, PrivateAttr
+from pydantic import BaseModel, EncodedBytes, EncoderProtocol, Field, PrivateAttr
 from pydantic_core import PydanticCustomError
 
 from .base import RequestModel
@@ -57,6 +57,12 @@ class UploadedFile(RequestModel):
         file = cls.model_construct(name=path.name, content=b"")
         file._path = path
         return file
+
+
+def has_files(request: BaseModel) -> bool:
+    """Say whether a request brings files."""
+    lists = (value if isinstance(value, list) else [value] for _, value in request)
+    return any(isinstance(part, UploadedFile) for parts in lists for part in parts)
 
 
 def example_file(name: str) -> dict[str, str]:

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
@@ -251,6 +252,7 @@ def save_atlas(atlas: Atlas, file: Path) -> None:
         Path(name).unlink(missing_ok=True)
 
 
+@in_reading_time
 def load_atlas(file: Path) -> Atlas:
     """Read an atlas.
 

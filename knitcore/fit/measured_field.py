@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.result import Result
 
 PITCH_PX = 8.0
@@ -96,6 +97,7 @@ def _listed(numbers: set[int]) -> str:
     return ", ".join(str(number) for number in sorted(numbers)) or "at all"
 
 
+@in_reading_time
 def load_field(path: Path | str) -> MeasuredField:
     """Read a displacement field.
 

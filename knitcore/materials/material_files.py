@@ -33,6 +33,7 @@ from pathlib import Path
 from typing import Any
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.materials.material import Material
 
 MAX_FILE_BYTES = 1_000_000
@@ -62,6 +63,7 @@ def material_from_mapping(data: Mapping[str, Any]) -> Material:
     return document.to_material()
 
 
+@in_reading_time
 def load_material_file(path: str | Path) -> Material:
     """Read a user's material from a ``.json``, ``.yaml`` or ``.yml`` file.
 

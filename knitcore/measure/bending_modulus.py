@@ -17,6 +17,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_linear_density, check_positive, check_range
 from knitcore.base.errors import InputError
 from knitcore.base.kinds import as_numbers
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.result import Result
 from knitcore.measure.centreline import Centreline, load_grey, trace_centreline
 from knitcore.measure.heavy_elastica import heavy_elastica
@@ -110,8 +111,7 @@ def measure_bending(
             problem = "neither the hanging length nor a scale is given, so the photo has no scale."
             remedy = "Give length_mm (clamp to free end, along the yarn) or px_per_mm."
             raise InputError("length_mm", problem, remedy)
-        name = Path(path).name
-        line = trace_centreline(load_grey(path), name=name)
+        name, line = Path(path).name, _traced(Path(path))
         notes += _doubts(name, line, length)
         photos.append(
             _fit_photo(name, line, linear_density_g_per_m, length_mm=length, px_per_mm=px_per_mm)
@@ -128,6 +128,11 @@ def measure_bending(
         photos=tuple(photos),
         notes=tuple(notes),
     )
+
+
+@in_reading_time
+def _traced(path: Path) -> Centreline:
+    return trace_centreline(load_grey(path), name=path.name)
 
 
 def _doubts(name: str, line: Centreline, length_mm: float | None) -> list[str]:

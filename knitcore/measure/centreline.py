@@ -14,6 +14,7 @@ from PIL import Image, ImageOps, UnidentifiedImageError
 
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 
 MAX_PIXELS = 60_000_000
 MAX_BYTES = 100 * 2**20
@@ -54,6 +55,7 @@ class Centreline:
         return float(self.arc_px[-1])
 
 
+@in_reading_time
 def load_grey(path: Path) -> Array:
     """A photo as grey levels between 0 and 1, upright.
 
@@ -76,6 +78,8 @@ def load_grey(path: Path) -> Array:
                     raise InputError(path.name, problem, "Give a photo of up to 60 megapixels.")
                 upright = ImageOps.exif_transpose(image).convert("L")
                 return np.asarray(upright, dtype=float) / 255.0
+    except InputError:
+        raise
     except UnidentifiedImageError:
         raise InputError(path.name, "is not an image.", "Give a JPEG or PNG photo.") from None
     except (
@@ -155,16 +159,14 @@ def _yarn_mask(grey: Array, name: str) -> tuple[Mask, float]:
 
 def _largest(mask: Mask, name: str) -> tuple[Mask, float]:
     """The largest piece alone, and the area of the next one over its own."""
-    regions = sorted(
-        skimage.measure.regionprops(skimage.measure.label(mask, connectivity=2)),
-        key=lambda region: region.area,
-        reverse=True,
-    )
-    if not regions:
+    pieces = skimage.measure.label(mask, connectivity=2)
+    areas = np.bincount(pieces.ravel())
+    areas[0] = 0  # the background
+    if not areas.any():
         raise _no_yarn(name, "nothing stands out from the background")
-    alone = np.zeros_like(mask)
-    alone[tuple(regions[0].coords.T)] = True
-    return alone, float(regions[1].area / regions[0].area) if len(regions) > 1 else 0.0
+    largest = int(areas.argmax())
+    next_largest = np.delete(areas, largest).max(initial=0)
+    return np.asarray(pieces == largest), float(next_largest / areas[largest])
 
 
 def _no_yarn(name: str, why: str) -> InputError:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.result import Result
 from knitcore.measure.table_reading import TableReading
 from knitcore.measure.tables import numbers, read_table, rows_by_label
@@ -41,6 +42,7 @@ class CompressionTest(Result):
     diameter_mm: float | None
 
 
+@in_reading_time
 def read_compression(path: Path) -> list[CompressionTest]:
     """All tests of a file.
 

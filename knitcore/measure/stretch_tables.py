@@ -68,7 +68,8 @@ def read_stretch_table(path: Path, reading: TableReading | None = None) -> Stret
 def is_own_table(path: Path) -> bool:
     """Tell whether the first line has names of our own columns, between commas, in our units."""
     if is_workbook(path):
-        rows: Worksheet = [*next(iter(read_workbook(path).values()), []), [], []]
+        head = read_workbook(path, only_head=True)
+        rows: Worksheet = [*next(iter(head.values()), []), [], []]
         names, below = ([str(cell) for cell in row] for row in rows[:2])
     else:
         with path.open("rb") as file:

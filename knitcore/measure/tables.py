@@ -10,7 +10,7 @@ import numpy as np
 
 from knitcore.base.arrays import Array, Indices
 from knitcore.base.errors import InputError
-from knitcore.measure.workbooks import is_workbook, read_workbook
+from knitcore.measure.workbooks import MAX_COLUMNS, is_workbook, read_workbook
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,6 +35,11 @@ def read_table(path: Path, header: str) -> pd.DataFrame:
         width = len(names)
         texts = [[str(cell) for cell in (*row, *[""] * width)][:width] for row in rows]
         return pd.DataFrame(texts, columns=[str(name) for name in names], dtype=str)
+    with path.open("rb") as file:
+        head = next((line for line in file if line.strip()), b"")
+    if head.count(b",") >= MAX_COLUMNS:  # pandas looks at each name among those before it
+        remedy = f"Keep the columns of the test: at most {MAX_COLUMNS}."
+        raise InputError(path.name, "has too many columns.", remedy)
     try:
         table = pd.read_csv(path, skipinitialspace=True, dtype=str, engine="c")
     except UnicodeDecodeError:

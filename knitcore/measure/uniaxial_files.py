@@ -22,6 +22,7 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.measure.stretch_tables import WIDER_THAN_CLAMPED, read_stretch_table, sound_runs
 from knitcore.measure.stretch_test import MIN_POINTS, StretchRun, StretchTest, misread_forces
 from knitcore.measure.table_reading import TableReading
@@ -53,6 +54,7 @@ class Marks(StrEnum):
         return (_CENTRE, _CLAMP_BOTTOM) if self is Marks.CENTRE else (_CLAMP_BOTTOM, _CLAMP_TOP)
 
 
+@in_reading_time
 def read_stretch_test(
     path: Path,
     *,

@@ -34,11 +34,15 @@ def is_workbook(path: Path) -> bool:
         return file.read(8).startswith((_XLS, _XLSX))
 
 
-def read_workbook(path: Path) -> dict[str, Worksheet]:
+def read_workbook(path: Path, *, only_head: bool = False) -> dict[str, Worksheet]:
     """The cells of each sheet that has any, in the order of the sheets.
 
     A formula counts as the value that was saved with it, an empty cell as ``""``; empty cells at
     the end of a row and empty rows at the end of a sheet are left out.
+
+    Parameters
+    ----------
+    only_head : whether two rows, or all down to the first with a cell, of one sheet are enough.
 
     Raises
     ------
@@ -58,13 +62,17 @@ def read_workbook(path: Path) -> dict[str, Worksheet]:
             for row in rows:
                 sheet.append(_cells(row))
                 filled = len(sheet) if sheet[-1] else filled
-                if len(sheet) - filled > MAX_EMPTY_ROWS:
+                if len(sheet) - filled > MAX_EMPTY_ROWS or (
+                    only_head and filled and len(sheet) > 1
+                ):
                     break
                 room -= 1 + len(sheet[-1])
                 if room < 0:
                     raise _too_large(path)
             if filled:
                 sheets[name] = sheet[:filled]
+                if only_head:
+                    break
     except InputError:
         raise
     except Exception as error:  # on a damaged file both readers may raise anything

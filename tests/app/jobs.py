@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 from pydantic import BaseModel
 
@@ -15,6 +16,10 @@ from app.operations.perform import perform
 from app.operations.registry import Operation
 from app.requests.base import read
 from knitcore import InputError
+from knitcore.base import reading_time
+from knitcore.base.reading_time import in_reading_time
+from knitcore.formats.read import chart_files
+from knitcore.formats.read.chart_files import PieceInFile
 
 
 async def never() -> bool:
@@ -60,6 +65,24 @@ def climb(folder: str, steps: int, *, cancelled: object, progress: Callable[...,
 
 def stubborn(seconds: float, *, cancelled: Callable[[], bool]) -> None:
     time.sleep(seconds)
+
+
+@in_reading_time
+def spin(file: Path) -> PieceInFile:
+    """A reader that never ends."""
+    while True:
+        pass
+
+
+def read_endlessly(*, cancelled: Callable[[], bool]) -> None:
+    with patch.object(reading_time, "READING_S", 0.1):
+        spin(Path("endless.ks"))
+
+
+def spin_over_knitspeak() -> None:
+    """From now on, reading a file of KnitSpeak never ends by itself, and is ended soon."""
+    reading_time.READING_S = 1.0
+    chart_files._READERS[".ks"] = spin
 
 
 def die(*, cancelled: Callable[[], bool]) -> None:

@@ -10,6 +10,7 @@ import click
 from pydantic import Field, ValidationError
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.cloth.cut import CutPiece, PieceTest, cloth_under, solve
 from knitcore.cloth.cut.cut_results import SUFFIXES
 from knitcore.cloth.cut.cut_uncertainty import piece_spreads
@@ -130,6 +131,7 @@ def _shape(test: PieceTest) -> DeformedPiece:
     required=True,
     help="FILE.json with outline, holes, grain_deg, edges and conditions.",
 )
+@in_reading_time
 def _piece_file(piece: Path) -> dict[str, Any]:
     try:
         return {"piece": PieceInput.model_validate_json(piece.read_bytes())}

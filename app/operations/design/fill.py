@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
@@ -368,6 +369,7 @@ def _shape_command(
 
 
 @click.argument("profile", type=click.Path(path_type=Path))
+@in_reading_time
 def _widths(profile: Path) -> dict[str, Any]:
     """Read the column ``width`` of a CSV; an empty field means any width."""
     try:

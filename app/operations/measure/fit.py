@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction
 from knitcore.fit.pull_fit import LawFit, Reduction, Residuals
 from knitcore.fit.strip_fit import fit_tests
@@ -193,6 +194,7 @@ def _columns(column: tuple[str, ...], template: tuple[Path, ...]) -> dict[str, A
     }
 
 
+@in_reading_time
 def _template(path: Path) -> TableTemplate:
     try:
         return TableTemplate.model_validate_json(path.read_bytes())

@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import Field
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.measure.plausibility import order_doubt, unit_doubts
 from knitcore.measure.stretch_tables import is_own_table
@@ -117,6 +118,7 @@ def tables(request: TablesRequest, context: Context) -> TablesResult:
     return TablesResult(tests=results, doubts=list(_of_both(course, wale, request.fabric)))
 
 
+@in_reading_time
 def _read(path: Path, reading: TableReading) -> tuple[TableResult, StretchTest | None]:
     import h5py  # 10 MB, for those who read a file
 

@@ -11,6 +11,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 from starlette.types import Receive, Scope, Send
 
+from ...requests.uploads import has_files
 from ..compute.answers import Answers
 from ..designs.conditions import ConflictError
 from ..designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
@@ -51,11 +52,10 @@ async def post_job(
     """Queue a job, which waits for its turn among all users. If the result is known, the job is
     done immediately."""
     answers: Answers = request.app.state.answers
-    if isinstance(body, Undecoded):
-        supplies = await answers.supplies(body.content)
-        kind, text = await answers.compute.run(
-            request.is_disconnected, read_job, body.content, supplies
-        )
+    if isinstance(body, Undecoded) or has_files(body.request):
+        content = await request.body()
+        supplies = await answers.supplies(content)
+        kind, text = await answers.compute.run(request.is_disconnected, read_job, content, supplies)
     else:
         lock: FairLock = request.app.state.light_work
         async with lock.turn(owner):

@@ -22,6 +22,7 @@ from knitcore.base.errors import (
 
 from ...requests.base import InvalidRequestError, MissingError
 from ...requests.faults import faults_of, problem_in_words, remedy_in_words
+from ...requests.uploads import UploadedFile
 from ..problems import (
     MAX_FAULTS,
     PROBLEM_TYPE,
@@ -34,8 +35,8 @@ from ..problems import (
 )
 
 MAX_BYTES = 10_000
-"""Largest request that is checked here, on the event loop. In a larger one, what the library finds
-wrong is reported once the rest is valid."""
+"""Largest request that is checked here, on the event loop, but for its files. In a larger one, what
+the library finds wrong is reported once the rest is valid."""
 
 
 def also_wrong(error: RequestValidationError, request: Request) -> Iterator[InputError]:
@@ -64,9 +65,11 @@ def _of_their_kinds(model: type[BaseModel], fields: dict[str, Any]) -> Iterator[
     for name, value in fields.items():
         try:
             kind: Any = model.model_fields[name].rebuild_annotation()
-            yield name, TypeAdapter(kind).validate_python(value)
+            read = TypeAdapter(kind).validate_python(value)
         except ValidationError:
             continue
+        if not isinstance(read, UploadedFile):  # a worker reads it
+            yield name, read
 
 
 log = logging.getLogger("knitcore.app")

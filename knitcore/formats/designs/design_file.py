@@ -17,6 +17,7 @@ from typing import Any, Final, Literal
 from pydantic import ConfigDict, Field, ValidationError
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.layout import MAX_TEXT, DesignLayout, check_layout, piece_of
 from knitcore.garment.piece import Piece
@@ -68,6 +69,7 @@ def write_design(design: DesignFile) -> str:
     return "{\n" + ",\n".join(fields) + "\n}\n"
 
 
+@in_reading_time
 def read_design(file: Path) -> DesignFile:
     """The design in a file.
 

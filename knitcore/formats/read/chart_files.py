@@ -7,6 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.read.knitout_machine import looks_like_program
@@ -70,6 +71,7 @@ class PictureReading:
     light_is_purl: bool = False
 
 
+@in_reading_time
 def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
     """The chart in a file, and the notes of the reader; cells outside its outline, if it has one,
     have no meaning.
@@ -90,6 +92,7 @@ def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
     return content.chart, content.notes
 
 
+@in_reading_time
 def read_noted_piece(path: str | Path, reading: PictureReading | None = None) -> PieceInFile:
     """The chart in a file, with its outline and its yarns, and the notes of the reader.
 

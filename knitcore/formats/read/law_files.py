@@ -20,6 +20,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.material_document import CurveDocument, LawDocument
@@ -65,6 +66,7 @@ def save_law(file: LawFile, path: Path) -> None:
     Path(path).write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
 
 
+@in_reading_time
 def load_law(path: Path) -> LawFile:
     """Read a law.
 

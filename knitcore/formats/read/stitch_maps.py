@@ -7,12 +7,14 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, check_chart_size
 
 MAX_BYTES = 80_000_000
 WANTED = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
 
 
+@in_reading_time
 def read_target_moduli(file: Path) -> tuple[Array, Array]:
     """Two maps (rows, columns), row 0 at the bottom; NaN where a cell is empty or missing.
 

@@ -17,6 +17,7 @@ import skimage
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
+from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.result import Result
 from knitcore.measure.photos.photo_scale import MARKS_MM, PhotoScale, coin_scale, sheet_scale
@@ -163,6 +164,7 @@ def read_hanging(
     return HangingSwatch(points, tuple(readings), tuple(notes))
 
 
+@in_reading_time
 def read_photo(photo: SwatchPhoto, swatch: Swatch, *, coin_mm: float | None = None) -> PhotoReading:
     """The size of a stitch in one photo.
 

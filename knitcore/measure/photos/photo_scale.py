@@ -34,6 +34,8 @@ COIN_DISTANCE = 5.0
 """Distance of the camera over that of coin and swatch, at least; it bounds the error of a coin."""
 MIN_MARK_PX = 24
 """Least diameter of a mark or a coin."""
+MIN_DISC_PX = 20
+"""Least area of a disc, or of anything else that is looked at."""
 _DARKER = 0.82
 """Grey level over that of its surroundings below which a pixel is dark."""
 _SURROUNDINGS = 0.12
@@ -184,8 +186,8 @@ def _with_blur(scale: PhotoScale, grey: Array, centres: Array, radius_mm: float)
 
 def _marks(grey: Array) -> Array:
     """(marks, 2) centres x, y of discs inside rings."""
-    regions = skimage.measure.regionprops(skimage.measure.label(_dark(grey), connectivity=2))
-    discs = [r for r in regions if r.area >= 20 and _is_elliptic(r)]
+    regions = _regions(_dark(grey))
+    discs = [r for r in regions if _is_elliptic(r)]
     centres = []
     for ring in regions:
         height, width = ring.image.shape
@@ -206,9 +208,7 @@ def _coins(grey: Array) -> list[tuple[Array, Array, float]]:
     """Centre (x, y), axes (px) and angle of the first axis of each large ellipse."""
     coins: list[tuple[Array, Array, float]] = []
     for mask in (_dark(grey), _dark(1.0 - grey)):
-        for region in skimage.measure.regionprops(
-            skimage.measure.label(scipy.ndimage.binary_fill_holes(mask))
-        ):
+        for region in _regions(scipy.ndimage.binary_fill_holes(mask)):
             if min(region.image.shape) < MIN_MARK_PX or not _is_elliptic(region):
                 continue
             rows, columns = region.coords.T
@@ -258,8 +258,19 @@ def _edge_of_coin(
     )
 
 
+def _regions(mask: Mask) -> list[Any]:
+    """The connected regions of a mask, without specks: noise has hundreds of thousands."""
+    labels = skimage.measure.label(mask, connectivity=2)
+    is_speck = np.bincount(labels.ravel()) < MIN_DISC_PX
+    regions: list[Any] = skimage.measure.regionprops(np.where(is_speck[labels], 0, labels))
+    return regions
+
+
 def _is_elliptic(region: Any) -> bool:
     """Say whether a region fills the ellipse of its moments, and is not slender."""
+    shape = region.image.shape
+    if min(shape) < 0.7 * max(shape) or region.extent < 0.6:
+        return False  # as most of noise, whose moments would take long
     major, minor = float(region.axis_major_length), float(region.axis_minor_length)
     area = math.pi / 4 * major * minor
     return minor > 0.8 * major and abs(float(region.area_filled) / area - 1) < 0.03

@@ -52,6 +52,11 @@ class WorkerContract:
         assert mark.read_text() == "stopped"
         assert await compute.run(never, jobs.add, 1, 1) == 2
 
+    async def test_a_reader_without_end_is_ended(self, compute: Compute) -> None:
+        with pytest.raises(InputError, match="to read"):
+            await compute.run(never, jobs.read_endlessly)
+        assert await compute.run(never, jobs.add, 1, 2) == 3
+
     async def test_a_job_that_does_not_stop_loses_only_its_process(
         self, compute: Compute, monkeypatch: pytest.MonkeyPatch
     ) -> None:

@@ -6,7 +6,10 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from app.operations.registry import operations
+from app.requests.uploads import has_files
 from app.service.problems import KINDS, ServiceError, type_uri
+from knitcore.base import reading_time
 from tests.app.rest import refusal
 
 API = "/api/v1"
@@ -14,6 +17,11 @@ STRETCH = {"chart": "KP\nPK", "material": "acrylic", "direction": "wale", "strai
 FIND = {"targets": [{"quantity": "modulus_course_n_per_mm", "value": 0.2}]}
 NO_TEST = {"name": "a.csv", "content": "bm90aGluZw=="}
 TESTS = {"a.csv", "b.csv"}
+WITH_FILES = [
+    name
+    for name, operation in operations().items()
+    if operation.example and has_files(operation.request.model_validate(operation.example))
+]
 RIB = {"fabric": "rib", "columns": 120, "rows": 100}
 VIEW = {"material": "acrylic"}
 
@@ -181,3 +189,28 @@ def test_head_requests_have_the_headers_of_get(client: TestClient) -> None:
         assert head.status_code == whole.status_code
         assert head.headers["content-type"] == whole.headers["content-type"]
     assert client.head(f"{API}/stretch").status_code == 405
+
+
+@pytest.mark.parametrize("name", WITH_FILES)
+def test_only_workers_read_files(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """Even a small file can keep its reader busy, and with it the service for everybody: it is
+    read neither to find all faults of a request nor to queue a job."""
+    monkeypatch.setattr(reading_time, "_Watch", None)  # of this process; workers have their own
+    operation = operations()[name]
+    body = _with_nothing_in_files(operation.example)
+    problem = refusal(client, operation.address.removeprefix("/"), body | {"nonsense": 1})
+    assert problem["field"] == "nonsense"
+    if operation.job:
+        for request in (body, body | {"nonsense": 1}):
+            answer = client.post(f"{API}/jobs", json={"kind": name, "request": request})
+            assert answer.status_code in (202, 422)
+
+
+def _with_nothing_in_files(example: Any) -> Any:
+    if isinstance(example, list):
+        return [_with_nothing_in_files(part) for part in example]
+    if not isinstance(example, dict):
+        return example
+    return {n: "AAAA" if n == "content" else _with_nothing_in_files(v) for n, v in example.items()}
