@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore import CancelledError, Direction, Fabric, StitchChart, material
+from knitcore import CancelledError, Direction, Fabric, RelaxedSize, StitchChart, material
 from knitcore.cloth.space.hang import HungBy, hang
 from knitcore.cloth.space.surface import corners_of
 from knitcore.garment.shaped import outline_marks
@@ -61,3 +61,15 @@ def test_a_piece_with_a_hole_hangs_by_its_highest_edge() -> None:
     height = ACRYLIC.record(Fabric.GARTER).stitch_wale_mm
     assert hung.drop_mm == pytest.approx(5 * height, rel=0.1)
     assert np.array_equal(hung.used, corners_of(stitches))
+
+
+def test_a_piece_that_was_counted_larger_hangs_lower_and_has_more_yarn() -> None:
+    """Loops are longer by the root of the area: 1.1 times here."""
+    record = ACRYLIC.record(Fabric.GARTER)
+    counted = RelaxedSize(1.1 * record.stitch_course_mm, 1.1 * record.stitch_wale_mm)
+    plain, large = (
+        hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5, size=size) for size in (None, counted)
+    )
+    assert large.weight_n == pytest.approx(1.1 * plain.weight_n, rel=0.01)
+    assert large.width_mm == pytest.approx(1.1 * plain.width_mm, rel=0.01)
+    assert large.drop_mm == pytest.approx(1.1 * plain.drop_mm, rel=0.01)
