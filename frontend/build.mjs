@@ -26,8 +26,12 @@ function failed({ message, loc }) {
   return process.exit(1);
 }
 
+/** Names of the files of this build. @type {Set<string>} */
+const current = new Set();
+
 /** @param {string} name @param {string | Uint8Array} content */
 async function put(name, content) {
+  current.add(name);
   const file = join(DIST, name);
   const draft = `${file}.${process.pid}`;
   for (const [target, bytes] of [
@@ -73,10 +77,7 @@ const { output } = await bundle
   })
   .catch(failed);
 const [theme, styles] = await Promise.all(
-  [
-    ["theme.js", "es2022"],
-    ["styles/index.css", "chrome110"],
-  ].map(([entry, target]) =>
+  Object.entries({ "theme.js": "es2022", "styles/index.css": "chrome110" }).map(([entry, target]) =>
     build({
       absWorkingDir: ROOT,
       entryPoints: [entry],
@@ -93,10 +94,7 @@ const [theme, styles] = await Promise.all(
 
 await mkdir(DIST, { recursive: true });
 const files = [
-  ...output.map((file) => ({
-    name: file.fileName,
-    contents: Buffer.from(file.type === "chunk" ? file.code : file.source),
-  })),
+  ...output.map((file) => ({ name: file.fileName, contents: Buffer.from(file.code ?? file.source) })),
   ...theme.outputFiles.map(({ path, contents }) => ({ name: basename(path), contents })),
 ];
 for (const { name, contents } of files) await put(name, contents);
@@ -106,15 +104,14 @@ const PLOTLY = "plotly.js-basic-dist-min/plotly-basic.min.js";
 // and compiled by another thread while it is read: on the page's own that is nine tenths of starting it
 const COMPILED_AT_ONCE = "//# allFunctionsCalledOnLoad\n";
 await put("plotly.min.js", COMPILED_AT_ONCE + (await readFile(join(ROOT, "node_modules", PLOTLY), "utf8")));
-const inFrame = ["notices", "aside", "frame", "yarn"].map((name) => `viser/${name}.js`);
 await mkdir(join(DIST, "viser"), { recursive: true });
-for (const name of inFrame) {
-  const { code } = await transform(await readFile(join(ROOT, name), "utf8"), { minify: true, target: "es2022" });
-  await put(name, code);
+for (const name of ["notices", "aside", "frame", "yarn"]) {
+  const source = await readFile(join(ROOT, "viser", `${name}.js`), "utf8");
+  await put(`viser/${name}.js`, (await transform(source, { minify: true, target: "es2022" })).code);
 }
 
 // --- the page itself ----------------------------------------------------------------------------
-const entry = output.find((file) => file.type === "chunk" && file.isEntry);
+const entry = output.find((file) => file.isEntry);
 const first = [entry.fileName, ...entry.imports];
 const themeName = files.find(({ name }) => /^theme-.*\.js$/.test(name)).name;
 
@@ -152,14 +149,6 @@ const sizes = {
 await put("sizes.json", `${JSON.stringify(sizes, null, 2)}\n`);
 await put("index.html", page);
 
-const current = new Set([
-  "index.html",
-  "icon.svg",
-  "plotly.min.js",
-  ...inFrame,
-  "sizes.json",
-  ...files.map(({ name }) => name),
-]);
 for (const name of await readdir(DIST)) {
   if (current.has(name.replace(/\.gz$/, ""))) continue;
   const { mtimeMs } = await stat(join(DIST, name)).catch(() => ({ mtimeMs: Date.now() }));

@@ -29,6 +29,7 @@ from ..requests.charts import (
     size_of_chart,
     to_chart,
 )
+from ..requests.fabrics import Gauged
 from .computed import PosedView, StretchView
 from .fabric import FabricScene
 from .stitch_colours import Colour, FieldColours, Palette, region_labels, stitch_colours
@@ -69,7 +70,7 @@ class Focus(RequestModel):
     column: Column
 
 
-class ViewRequest(RequestModel):
+class ViewRequest(Gauged):
     """A design and how to show it."""
 
     chart: ChartInput
@@ -132,6 +133,8 @@ def build_scene(
     posed = _posed(request, computed, chart)
     step = _checked_step(request, stretch, chart)
     shapes = stitch_shapes(chart, material, folded=posed is None)
+    if (size := request.relaxed_size) is not None:
+        shapes = shapes.resized(size, drawn)
     placement, room = unstretched(shapes), None
     if posed is not None:
         placement = lying(posed.corners_mm.astype(float))

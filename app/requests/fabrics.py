@@ -100,8 +100,8 @@ class RelaxedGauge(ResultModel):
     known_by: KnownBy
 
 
-class GaugedRequest(FabricRequest):
-    """A chart of a material, and how somebody knits it."""
+class Gauged(RequestModel):
+    """A part of every request about a chart whose gauge may have been counted."""
 
     gauge: GaugeInput | None = Field(
         None, description="Measured gauge of the chart; its relaxed size is estimated if left out."
@@ -111,6 +111,10 @@ class GaugedRequest(FabricRequest):
     def relaxed_size(self) -> RelaxedSize | None:
         """The relaxed size of one stitch, if the gauge was measured."""
         return self.gauge.relaxed_size() if self.gauge else None
+
+
+class GaugedRequest(Gauged, FabricRequest):
+    """A chart of a material, and how somebody knits it."""
 
 
 class Moduli(ResultModel):

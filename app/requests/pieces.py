@@ -17,7 +17,7 @@ from knitcore.materials.law_uncertainty import Z_SCORE
 from ..context import Context
 from .base import Floats, IntervalResult, RequestModel
 from .charts import MaterialName, RepeatInput, to_repeat
-from .fabrics import LawsRequest
+from .fabrics import Gauged, LawsRequest
 
 T = TypeVar("T")
 MAX_ELEMENT_STEPS = 40_000
@@ -103,7 +103,7 @@ class PieceInput(RequestModel):
         return [given.pass_to(_CONDITIONS[given.kind]) for given in self.conditions]
 
 
-class PieceTestRequest(LawsRequest):
+class PieceTestRequest(Gauged, LawsRequest):
     """Cloth of a chart, repeated over a piece, and how finely it is computed."""
 
     chart: RepeatInput
@@ -139,8 +139,9 @@ class PieceTestRequest(LawsRequest):
         """A test of the library on a rectangle of the chart's cloth, and the cloth's material."""
         self.check_parts(context)
         material = context.material(self.material)
-        control = {"progress": context.progress, "cancelled": context.cancelled}
-        return self.pass_to(test, to_repeat(self.chart), material, **control, **more), material
+        more |= {"progress": context.progress, "cancelled": context.cancelled}
+        more["size"] = self.relaxed_size
+        return self.pass_to(test, to_repeat(self.chart), material, **more), material
 
 
 class PieceTestResult(IntervalResult):

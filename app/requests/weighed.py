@@ -12,7 +12,7 @@ from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of
 
 from ..context import Context
 from .charts import MaterialName
-from .fabrics import LawsRequest
+from .fabrics import Gauged, LawsRequest
 
 LinearDensity = Annotated[
     float,
@@ -42,16 +42,17 @@ FRICTIONLESS = (
 )
 
 
-class WeighedRequest(LawsRequest):
-    """A material and the weight of its yarn."""
+class WeighedRequest(Gauged, LawsRequest):
+    """A material, the weight of its yarn, and how somebody knits it."""
 
     material: MaterialName
     linear_density_g_per_m: LinearDensity
 
     def cloth(self, repeat: StitchChart, context: Context) -> EvenCloth:
-        """Cloth of a repeat."""
-        density = self.linear_density_g_per_m
-        return cloth_of(repeat, context.material(self.material), linear_density_g_per_m=density)
+        """Cloth of the repeat whose gauge the request may have."""
+        return self.pass_to(
+            cloth_of, repeat, context.material(self.material), size=self.relaxed_size
+        )
 
 
 def corner_lists(corners_mm: Array, there: NDArray[np.bool_]) -> list[list[Corner]]:

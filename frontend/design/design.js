@@ -59,8 +59,10 @@ export function readDesign(value) {
 export function readContent(value) {
   if (typeof value.chart !== "string") throw new DesignError("It holds no chart.");
   const chart = value.chart.trim();
-  const lines = chart.split("\n");
-  const [rows, columns] = [lines.length, lines[0].length];
+  const {
+    length: rows,
+    0: { length: columns },
+  } = chart.split("\n");
   if (Math.max(rows, columns) > MAX_SIDE) {
     throw new DesignError(
       `Its chart has ${columns} stitches × ${rows} rows.`,
@@ -115,12 +117,7 @@ function readOutline(value, rows, columns) {
   return lines.join("\n");
 }
 
-/**
- * @param {Record<string, unknown>} item
- * @param {number} rows
- * @param {number} columns
- * @returns {RegionItem}
- */
+/** @param {Record<string, unknown>} item @param {number} rows @param {number} columns @returns {RegionItem} */
 function readRegion(item, rows, columns) {
   const name = text(item.name, "name of a region", 80);
   if (typeof item.colour !== "string" || !/^#[0-9a-f]{6}$/i.test(item.colour)) {
@@ -138,32 +135,21 @@ function readRegion(item, rows, columns) {
     id: identifier(item.id),
     name,
     colour: item.colour.toLowerCase(),
-    yarn: item.yarn === null || item.yarn === undefined ? null : text(item.yarn, "yarn", 80),
-    fill: item.fill === null || item.fill === undefined ? null : motif(item.fill, `region ${name}`),
+    yarn: (item.yarn ?? null) === null ? null : text(item.yarn, "yarn", 80),
+    fill: (item.fill ?? null) === null ? null : motif(item.fill, `region ${name}`),
     runs,
     locked: item.locked === true,
     hidden: item.hidden === true,
   };
 }
 
-/**
- * @param {Record<string, unknown>} item
- * @param {number} rows
- * @param {number} columns
- * @returns {RepeatItem}
- */
+/** @param {Record<string, unknown>} item @param {number} rows @param {number} columns @returns {RepeatItem} */
 function readRepeat(item, rows, columns) {
   const name = text(item.name, "name of a repeat", 80);
   const placements = items(item.placements, `placements of ${name}`).map((place) => {
     const { row, column, rows: high, columns: wide } = place;
-    if (
-      !isCount(row, 0) ||
-      !isCount(column, 0) ||
-      !isCount(high, 1) ||
-      !isCount(wide, 1) ||
-      row + high > rows ||
-      column + wide > columns
-    ) {
+    const whole = isCount(row, 0) && isCount(column, 0) && isCount(high, 1) && isCount(wide, 1);
+    if (!whole || row + high > rows || column + wide > columns) {
       throw new DesignError(`A placement of repeat ${name} reaches beyond the chart of ${columns} × ${rows}.`);
     }
     return { row, column, rows: high, columns: wide };
@@ -181,12 +167,12 @@ function readRepeat(item, rows, columns) {
 
 /** @param {unknown} value @param {string} what @returns {Record<string, unknown>[]} */
 function items(value, what) {
-  if (value === undefined || value === null) return [];
-  if (!Array.isArray(value) || !value.every(isObject)) throw new DesignError(`Its ${what} are not a list.`);
-  if (value.length > MAX_ITEMS) throw new DesignError(`It has more than ${MAX_ITEMS} ${what}.`);
-  const ids = value.map(({ id }) => id).filter((id) => id !== undefined);
+  const list = value ?? [];
+  if (!Array.isArray(list) || !list.every(isObject)) throw new DesignError(`Its ${what} are not a list.`);
+  if (list.length > MAX_ITEMS) throw new DesignError(`It has more than ${MAX_ITEMS} ${what}.`);
+  const ids = list.map(({ id }) => id).filter((id) => id !== undefined);
   if (new Set(ids).size < ids.length) throw new DesignError(`Two of its ${what} have one id.`);
-  return value;
+  return list;
 }
 
 /** @param {unknown} value @param {string} what @param {number} most */
@@ -215,21 +201,12 @@ function identifier(value) {
 }
 
 /** @param {unknown} value @param {number} least @returns {value is number} */
-function isCount(value, least) {
-  return Number.isInteger(value) && /** @type {number} */ (value) >= least;
-}
+const isCount = (value, least) => Number.isInteger(value) && Number(value) >= least;
 
 /** @param {unknown} value @returns {value is Record<string, unknown>} */
-function isObject(value) {
-  return typeof value === "object" && value !== null && !Array.isArray(value);
-}
+const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
 
-/**
- * @param {string} name
- * @param {string} chart
- * @param {string} material
- * @returns {DesignDocument}
- */
+/** @param {string} name @param {string} chart @param {string} material @returns {DesignDocument} */
 export const plainDesign = (name, chart, material) => ({
   format: "knitcore-design",
   version: 2,

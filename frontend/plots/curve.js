@@ -13,7 +13,7 @@ import { Belonging, clothOf } from "../services/belonging.js";
 import { Latest } from "../services/latest.js";
 import { paced } from "../core/paced.js";
 import { FABRICS } from "../grid/segments.js";
-import { scopeOf } from "../services/scope.js";
+import { clothIn, scopeOf } from "../services/scope.js";
 import { themedReader } from "../state/palette.js";
 import { drawPlot, loadPlotly, movePoint } from "./plotly.js";
 
@@ -32,9 +32,7 @@ export function curvePlot(host, studio) {
   /** @type {{key: string, curve: CurveResult} | null} */
   let answer = null;
   const belonging = new Belonging(studio, () => {
-    const cloth = clothOf(studio);
-    const gauge = studio.gauges.of({ chart: cloth.chart, material: cloth.yarn });
-    return { ...cloth, gauge, direction: studio.seeing.pull.value };
+    return { ...clothOf(studio), direction: studio.seeing.pull.value };
   });
   belonging.marks(host, "curve");
   const latest = new Latest(DELAY_MS);
@@ -59,10 +57,7 @@ export function curvePlot(host, studio) {
     if (host.hidden) return;
     latest.run(
       async (signal) => {
-        const { grid } = scopeOf(studio);
-        const direction = studio.seeing.pull.value;
-        const cloth = { chart: grid.text, material: studio.materialId.value };
-        const body = { ...cloth, direction, gauge: studio.gauges.of(cloth) };
+        const body = { ...clothIn(studio, scopeOf(studio)), direction: studio.seeing.pull.value };
         const key = JSON.stringify(body);
         const { basis } = belonging;
         if (answer?.key !== key) {

@@ -11,7 +11,7 @@
 
 import { paced } from "../core/paced.js";
 import { Signal } from "../core/signal.js";
-import { scopeOf } from "./scope.js";
+import { clothIn, scopeOf } from "./scope.js";
 
 /** What to say of a result once its basis is another. @type {Record<string, string>} */
 const CHANGED = {
@@ -92,8 +92,9 @@ export class Belonging {
 
 /** What the numbers of a part of the chart depend on. @param {Studio} studio */
 export function clothOf(studio) {
-  const { kind, title, grid } = scopeOf(studio);
-  return { part: [kind, title, placeOf(studio)], chart: grid.text, yarn: studio.materialId.value };
+  const scope = scopeOf(studio);
+  const { chart, material, gauge } = clothIn(studio, scope);
+  return { part: [scope.kind, scope.title, placeOf(studio)], chart, yarn: material, gauge };
 }
 
 /** Where the part of the chart is that numbers are asked of. @param {Studio} studio */
@@ -106,7 +107,5 @@ export function placeOf({ selection, seeing }) {
 export const predictionOf = (studio) =>
   new Belonging(studio, () => {
     const cloth = clothOf(studio);
-    const { shaped } = scopeOf(studio);
-    const gauge = studio.gauges.of({ chart: cloth.chart, material: cloth.yarn });
-    return { ...cloth, chart: [cloth.chart, shaped], gauge };
+    return { ...cloth, chart: [cloth.chart, scopeOf(studio).shaped] };
   });

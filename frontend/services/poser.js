@@ -10,6 +10,7 @@
 import { ApiError, api } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "./latest.js";
+import { pieceOf } from "./scope.js";
 import { figure, percent } from "../core/format.js";
 import { POSES } from "../state/seeing.js";
 import { REST } from "../state/studio.js";
@@ -43,12 +44,14 @@ export const hindrance = (studio, pose) => (pose in OPERATIONS ? studio.tooLarge
 export function startPoser(studio) {
   const latest = new Latest(DELAY_MS);
   const { pose, posed, limb, curling } = studio.seeing;
+  let limbNow = "";
   /** @returns {Posed["pose"]} */
   const poseToShow = () => (pose.value === "flat" && curling.value && studio.currentStrain() ? "pulled" : pose.value);
   const ask = () => {
     latest.cancel();
     const now = poseToShow();
     const shapes = SHAPES[now];
+    limbNow = JSON.stringify(studio.limb);
     const { rows, columns } = studio.document.grid;
     const old = posed.value;
     const fits = old?.pose === now && old.rows === rows && old.columns === columns;
@@ -90,6 +93,10 @@ export function startPoser(studio) {
     else if (pose.value === "hung") ask();
   });
   limb.listen(() => pose.value === "worn" && ask());
+  // A limb of the chart's size grows with it.
+  studio.prediction.listen(({ busy, scope }) => {
+    if (pose.value === "worn" && !busy && scope === "chart" && JSON.stringify(studio.limb) !== limbNow) ask();
+  });
   studio.step.listen((step) => {
     if (step !== REST) pose.value = "flat"; // it is pulled
     if (curling.value) ask();
@@ -98,6 +105,7 @@ export function startPoser(studio) {
   curling.listen(ask);
   studio.document.onChange(again);
   studio.materialId.listen(again);
+  studio.gauges.changes.listen(again);
 }
 
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
@@ -119,11 +127,7 @@ async function* pulled(studio, signal) {
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* hung(studio, signal) {
   const { rows, columns } = studio.document.grid;
-  const request = {
-    ...studio.request,
-    outline: studio.document.outlineText,
-    linear_density_g_per_m: studio.weight.value,
-  };
+  const request = { ...pieceOf(studio), linear_density_g_per_m: studio.weight.value };
   for (const time_limit_s of PATIENCE_S) {
     const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.run(
       "hang",
@@ -138,7 +142,7 @@ async function* hung(studio, signal) {
 
 /** @param {Studio} studio @param {AbortSignal} signal @param {import("../types.js").CurlRequest["pull"]} pull */
 async function* curled(studio, signal, pull) {
-  const request = { ...studio.request, outline: studio.document.outlineText, pull };
+  const request = { ...pieceOf(studio), pull };
   /** The first shape begins at the old one; the last one depends on the chart only. */
   let after = studio.seeing.posed.value?.id ?? null;
   for (const time_limit_s of PATIENCE_S) {
@@ -154,6 +158,7 @@ async function* worn(studio, signal) {
   const hand = gloveOf(studio);
   if (hand) {
     const { id, parts, limit_mmhg, notes } = await api.run("glove", hand, signal);
+    const planned = pieceOf(studio).gauge ? "hand, with the gauge of its plan" : "hand";
     yield {
       pose: "worn",
       id,
@@ -161,11 +166,11 @@ async function* worn(studio, signal) {
       columns,
       converged: true,
       note: notes.at(-1) ?? "",
-      ...pressed(parts, limit_mmhg, notes, "hand"),
+      ...pressed(parts, limit_mmhg, notes, planned),
     };
     return;
   }
-  const request = { ...studio.request, outline: studio.document.outlineText, ...studio.limb };
+  const request = { ...pieceOf(studio), ...studio.limb };
   const { id, places, limit_mmhg, notes } = await api.run("limb", request, signal);
   if (!id) return;
   const note = notes.find((words) => !isWarning(words)) ?? "";

@@ -7,7 +7,7 @@
 import { api } from "../api.js";
 import { predictionOf } from "./belonging.js";
 import { Latest } from "./latest.js";
-import { scopeOf } from "./scope.js";
+import { clothIn, scopeOf } from "./scope.js";
 
 const DELAY_MS = 80;
 
@@ -20,16 +20,12 @@ export function startPredictor(studio) {
     if (!prediction.value.busy) prediction.value = { ...prediction.value, busy: true };
     latest.run(
       async (signal) => {
-        const { kind: scope, grid, shaped } = scopeOf(studio);
+        const scope = scopeOf(studio);
         const { basis } = belonging;
-        const cloth = { chart: grid.text, material: studio.materialId.value };
-        const value = await api.run(
-          "predict",
-          { ...cloth, ...shaped, gauge: studio.gauges.of(cloth), hand: true },
-          signal,
-        );
+        const body = { ...clothIn(studio, scope), ...scope.shaped, hand: true };
+        const value = await api.run("predict", body, signal);
         if (signal.aborted) return;
-        prediction.value = { value, busy: false, problem: null, basis, scope };
+        prediction.value = { value, busy: false, problem: null, basis, scope: scope.kind };
         studio.online.value = true;
       },
       ({ offline, problem }) => {

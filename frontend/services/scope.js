@@ -5,7 +5,7 @@
  * @import {ChartState} from "../design/state.js"
  * @import {Selection} from "../design/selection.js"
  * @import {Studio} from "../state/studio.js"
- * @import {Direction, PredictResult} from "../types.js"
+ * @import {Direction, GaugeInput, PredictResult} from "../types.js"
  *
  * @typedef {object} Scope
  * @property {"chart" | "selection" | "region"} kind
@@ -50,6 +50,24 @@ export function scopeIn(chart, id) {
   const around = /** @type {Selection} */ (selectionOf(region.cells, grid));
   const part = partOf(around, grid, "region", region.name);
   return region.fill ? { ...part, grid: region.fill, note: "Of the repeat that fills it." } : part;
+}
+
+/**
+ * The cloth of a scope as the service takes it, with its gauge if that is known.
+ *
+ * @param {Pick<Studio, "gauges" | "materialId">} studio
+ * @param {{grid: Grid}} scope
+ * @returns {{chart: string, material: string, gauge: GaugeInput | null}}
+ */
+export function clothIn({ gauges, materialId }, { grid }) {
+  const cloth = { chart: grid.text, material: materialId.value };
+  return { ...cloth, gauge: gauges.of(cloth) };
+}
+
+/** The whole piece as the service takes it. @param {Studio} studio */
+export function pieceOf(studio) {
+  const { document: chart } = studio;
+  return { ...clothIn(studio, scopeIn(chart, null)), chart: chart.grid.text, outline: chart.outlineText };
 }
 
 /**

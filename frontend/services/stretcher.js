@@ -12,6 +12,7 @@ import { ApiError, api, isAbort } from "../api.js";
 import { Belonging } from "./belonging.js";
 import { OVERLAYS } from "../state/overlays.js";
 import { Signal } from "../core/signal.js";
+import { pieceOf } from "./scope.js";
 import { runJob } from "./jobs.js";
 
 const STEPS = 20;
@@ -34,11 +35,10 @@ export class Stretcher {
   constructor(studio) {
     this.studio = studio;
     const { stretch } = studio;
-    this.belonging = new Belonging(studio, () => ({
-      chart: [studio.request.chart, studio.document.outlineText],
-      yarn: studio.materialId.value,
-      gauge: studio.gauges.of(studio.request),
-    }));
+    this.belonging = new Belonging(studio, () => {
+      const { chart, outline, material: yarn, gauge } = pieceOf(studio);
+      return { chart: [chart, outline], yarn, gauge };
+    });
     const pullSoon = () => {
       clearTimeout(this.#soon);
       if (stretch.value.stale && (stretch.value.value?.seconds ?? Infinity) < FAST_S) {
@@ -83,10 +83,8 @@ export class Stretcher {
     const controller = new AbortController();
     this.#running = controller;
     this.progress.value = null;
-    const outline = studio.document.outlineText;
-    const gauge = studio.gauges.of(studio.request);
     const { basis } = this.belonging;
-    const request = { ...studio.request, gauge, outline, direction, ...pull, steps: STEPS, ...options };
+    const request = { ...pieceOf(studio), direction, ...pull, steps: STEPS, ...options };
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
       /** @type {StretchResult} */

@@ -2,14 +2,14 @@
  * How the fabric and its mechanics are looked at: state of the panels that is not part of the design.
  *
  * @import {Cell} from "../grid/raster.js"
- * @import {Direction} from "../types.js"
+ * @import {Direction, GaugeInput} from "../types.js"
  *
  * @typedef {"chart" | "yarn" | "region" | "fabric" | "phase"} YarnColours of the 3D view: as the chart
  *   has them, or one of its own
  * @typedef {"flat" | "lying" | "worn" | "hung" | "tested"} Pose of the fabric in 3D: held flat, as it lies, on
  *   the body, hanging from its top edge, a piece of it over an edge or a disc
  * @typedef {{pose: Pose | "pulled", id: string, rows: number, columns: number, converged: boolean, words: string,
- *   note: string, piece?: {chart: string, outline: string}, pressure?: {most: number, limit: number, warning: string}}} Posed a
+ *   note: string, piece?: {chart: string, outline: string, gauge: GaugeInput | null}, pressure?: {most: number, limit: number, warning: string}}} Posed a
  *   shape that was computed, and what to say of it; the piece is another than the chart; the most pressure, mmHg,
  *   is that of its brightest stitches, and above the limit it can stop the blood
  * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb

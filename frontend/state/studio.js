@@ -153,11 +153,6 @@ export class Studio {
     else this.document.load(design, label);
   }
 
-  /** What the service has to know of the design. */
-  get request() {
-    return { chart: this.document.grid.text, material: this.materialId.value };
-  }
-
   /** The limb that the chart is worn on: as given, or one on which a tube of it sits firmly. */
   get limb() {
     const { direction, girths } = this.seeing.limb.value;

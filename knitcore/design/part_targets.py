@@ -18,6 +18,7 @@ from knitcore.design.explain import OFF, Nearest, nearest_repeat
 from knitcore.garment.shaped import largest_rectangle
 from knitcore.materials import Material
 from knitcore.prediction.predict import predict
+from knitcore.prediction.size import RelaxedSize
 
 _WORTH = 0.9
 """A part is repainted if at most this share of its distance from the target remains."""
@@ -32,12 +33,14 @@ class PartTarget:
     name : for messages.
     runs : (row, first column, length) of its stitches, row 0 at the bottom; of any shape.
     course_n_per_mm, wale_n_per_mm : target moduli; None where any value will do.
+    size : relaxed size of its mean stitch in the chart as it is, if known.
     """
 
     name: str
     runs: tuple[tuple[int, int, int], ...]
     course_n_per_mm: float | None
     wale_n_per_mm: float | None
+    size: RelaxedSize | None = None
 
 
 def target_maps(targets: Sequence[PartTarget], rows: int, columns: int) -> tuple[Array, Array]:
@@ -163,15 +166,22 @@ class PartsNow:
         """(parts, 2) logarithms of the moduli of the chart as it is; NaN without it."""
         if self.kept is None:
             return np.full(self.log_target.shape, np.nan)
-        return self.log_moduli(self.kept)
+        return self.log_moduli(self.kept, [target.size for target in self.targets])
 
-    def log_moduli(self, chart: StitchChart) -> Array:
-        """(parts, 2) logarithms of the moduli of a chart's parts, by their largest rectangles."""
+    def log_moduli(
+        self, chart: StitchChart, sizes: Sequence[RelaxedSize | None] | None = None
+    ) -> Array:
+        """(parts, 2) logarithms of the moduli of a chart's parts, by their largest rectangles.
+
+        Parameters
+        ----------
+        sizes : of the parts' mean stitches, where known; a filled part has none.
+        """
         moduli = np.full((len(self.cells), 2), np.nan)
         for part, cells in enumerate(self.cells):
             if cells.any():
                 inside = StitchChart(chart.purl[largest_rectangle(cells)])
-                predicted = predict(inside, self.material)
+                predicted = predict(inside, self.material, sizes[part] if sizes else None)
                 moduli[part] = [predicted.modulus_n_per_mm(direction) for direction in Direction]
         logarithms: Array = np.log(moduli)
         return logarithms

@@ -106,10 +106,11 @@ def laid_corners_mm(
         If the material lacks a pure fabric that the chart needs.
     """
     lattice = resting_lattice(shaped.continued(), material)
+    if gauge is None and shaped.is_rectangle:
+        gauge = RelaxedSize(*mean_stitch_mm(shaped, material).tolist())
     corners = lattice.corners_mm
-    if shaped.is_rectangle or gauge is not None:
-        drawn = lattice.sizes_mm[shaped.stitch].mean(axis=0)
-        corners = corners * (mean_stitch_mm(shaped, material, gauge) / drawn)
+    if gauge is not None:
+        corners = corners * gauge.over(lattice.sizes_mm, shaped.stitch)
     return np.asarray(corners - corners.min(axis=(0, 1)))
 
 

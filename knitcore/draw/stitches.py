@@ -15,12 +15,14 @@ relaxed fabrics, and pure fabrics are exactly relaxed. A purl is the mirror imag
 surroundings (a few more with their neighbours) represent all.
 """
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.base.arrays import Array, Indices
+from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.chart.fabric import PHASES
 from knitcore.chart.phases import (
     ABOVE,
@@ -42,6 +44,7 @@ from knitcore.draw.fabric_loops import (
 )
 from knitcore.draw.lattice import Lattice, flat_lattice, resting_lattice
 from knitcore.materials import Material
+from knitcore.prediction.size import RelaxedSize
 from knitcore.yarn.library.store import StoredStitch, stored_fabric, stored_stitch
 
 MAX_STORED = 36
@@ -77,6 +80,24 @@ class StitchShapes:
     lattice: Lattice
     yarn_radius_mm: float
     source: str
+
+    def resized(self, size: RelaxedSize, stitches: Mask | None = None) -> StitchShapes:
+        """The same stitches with a mean stitch of a known size.
+
+        Loops open where it is larger; where it is smaller, the yarn is squeezed with them.
+
+        Parameters
+        ----------
+        stitches : (rows, columns) False where the piece has none.
+        """
+        ratio = size.over(self.lattice.sizes_mm, stitches)
+        squeezed = min(1.0, float(np.sqrt(ratio.prod())))
+        return replace(
+            self,
+            lines=self.lines * (1.0, 1.0, squeezed),
+            lattice=Lattice(self.lattice.centres_mm * ratio, self.lattice.sizes_mm * ratio),
+            yarn_radius_mm=self.yarn_radius_mm * squeezed,
+        )
 
 
 def stitch_shapes(chart: StitchChart, material: Material, *, folded: bool = True) -> StitchShapes:

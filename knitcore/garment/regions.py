@@ -1,5 +1,6 @@
 """Regions of a garment, their fills, and the borders between them."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,7 +16,9 @@ from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
 from knitcore.materials.law_uncertainty import log_interval
 from knitcore.materials.material import loop_lengths_mm
+from knitcore.prediction.neighbourhood import counted_over_computed
 from knitcore.prediction.predict import predict
+from knitcore.prediction.size import RelaxedSize
 
 MISFIT = 0.10
 """Relative difference of stitch sizes above which a seam between regions puckers visibly."""
@@ -198,6 +201,7 @@ def yarn_use(
     *,
     linear_density_tex: float | None = None,
     cells: Mask | None = None,
+    size: RelaxedSize | None = None,
 ) -> YarnUse:
     """Yarn of all stitches; each needs the mean loop length of its four quarters' fabrics.
 
@@ -207,18 +211,19 @@ def yarn_use(
     material : with loop lengths.
     linear_density_tex : g per km of the yarn.
     cells : which stitches, such as those of one yarn; all inside the outline if left out.
+    size : relaxed size of the mean stitch, if known: loops grow with the root of its area.
 
     Raises
     ------
     InputError
         If a fabric in the chart has no loop length, or the density is not positive.
     """
-    phases = quarter_phases(shaped.continued()).reshape(
-        shaped.chart.rows, 2, shaped.chart.columns, 2
-    )
+    chart = shaped.continued()
+    phases = quarter_phases(chart).reshape(chart.rows, 2, chart.columns, 2)
     counted = shaped.stitch if cells is None else shaped.stitch & cells
     quarters = phases.transpose(0, 2, 1, 3).reshape(*shaped.stitch.shape, 4)[counted]
     metres = float(loop_lengths_mm(quarters, material).sum()) / 1000
+    metres *= math.sqrt(counted_over_computed(chart, material, size, shaped.stitch).prod())
     if linear_density_tex is None:
         return YarnUse(metres, None)
     check_positive("linear_density_tex", linear_density_tex, "tex", "a linear density", 1e5)

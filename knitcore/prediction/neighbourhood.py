@@ -26,6 +26,7 @@ from knitcore.materials import Material, Origin
 from knitcore.prediction.densities import densities_of
 from knitcore.prediction.learned import packaged_model
 from knitcore.prediction.mixture import present, pure_numbers
+from knitcore.prediction.size import RelaxedSize
 
 WINDOW = 16
 """Rows and columns of a window."""
@@ -57,6 +58,25 @@ def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
     True
     """
     return sizes_and_folds(chart, material)[0]
+
+
+def counted_over_computed(
+    chart: StitchChart, material: Material, size: RelaxedSize | None, stitches: Mask | None = None
+) -> Array:
+    """How much wider and higher the stitches of a piece are than computed, (2,).
+
+    Parameters
+    ----------
+    chart : continued where the piece has no stitch.
+    size : relaxed size of the piece's mean stitch; both are 1 if it is not known.
+    stitches : (rows, columns) False where the piece has none.
+
+    Raises
+    ------
+    InputError
+        If the material lacks a pure fabric that the chart needs.
+    """
+    return np.ones(2) if size is None else size.over(neighbourhood_sizes(chart, material), stitches)
 
 
 def sizes_and_folds(chart: StitchChart, material: Material) -> tuple[Array, Array]:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_positive, check_range
 from knitcore.base.choice import Choice
 from knitcore.base.kinds import check_kind
@@ -86,6 +89,20 @@ class RelaxedSize(Result):
     def extent_mm(self, direction: Direction) -> float:
         """Relaxed size along a direction, mm."""
         return direction.of(self.course_mm, self.wale_mm)
+
+    def over(self, sizes_mm: Array, stitches: Mask | None = None) -> Array:
+        """How much wider and higher it is than the mean stitch of a piece, (2,).
+
+        All stitches of a piece whose mean stitch has this size are so much wider and higher than
+        they were computed: this is the rule by which a counted gauge enters a piece.
+
+        Parameters
+        ----------
+        sizes_mm : (rows, columns, 2) computed width and height.
+        stitches : (rows, columns) False where the piece has none.
+        """
+        mean = sizes_mm.mean(axis=(0, 1), where=True if stitches is None else stitches[..., None])
+        return np.asarray([self.course_mm, self.wale_mm] / mean)
 
 
 def check_size(size: RelaxedSize) -> None:

@@ -1,8 +1,9 @@
 """Mechanics on the page: stretch tests, their intervals, measured curves, targets."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -12,7 +13,7 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import MeasuredCurve, material
 from knitcore.materials.material_document import MaterialDocument
 from tests.browser.conftest import flat, open_small_chart
-from tests.browser.page import Chart, kept_chart
+from tests.browser.page import Chart, drag, kept_chart
 
 NUMBER = r"−?\d+(\.\d+)?"
 LEARNED = "How sure? Estimated from simulations"
@@ -74,7 +75,7 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     page.press("#own-gauge-rows", "Enter")
     expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(size).to_have_text("4.80")  # 12 stitches
-    expect(page.locator("#gauge-brings")).to_contain_text("Fill use the computed size")
+    expect(page.locator("#gauge-brings")).to_be_empty()
     with page.expect_request("**/api/v1/jobs") as sent:
         page.click("#stretch-run")
     counted = {"stitches_per_10_cm": 25, "rows_per_10_cm": 36}
@@ -97,6 +98,56 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
         page.fill(f"#own-gauge-{field}", "")
         page.press(f"#own-gauge-{field}", "Enter")
     expect(size).to_have_text(guessed)
+
+
+@pytest.mark.slow
+def test_a_counted_gauge_counts_in_3d_in_tests_and_in_a_fill(visitor: Page, service: str) -> None:
+    """A part's own gauge counts for that part only, and the page says so."""
+    page = open_design(visitor, service)
+
+    counted = {"stitches_per_10_cm": 20, "rows_per_10_cm": 28}
+
+    def is_sent(address: str, act: Callable[[], None]) -> None:
+        """Wait for a request of the counted cloth."""
+        with page.expect_request(
+            lambda sent: address in sent.url and (sent.post_data_json or {}).get("gauge") == counted
+        ):
+            act()
+
+    def count(stitches: str, rows: str) -> None:
+        page.fill("#own-gauge-stitches", stitches)
+        page.fill("#own-gauge-rows", rows)
+        page.press("#own-gauge-rows", "Enter")
+
+    is_sent("/views/", partial(count, "20", "28"))
+    for operation, pose in (("curl", "lying"), ("limb", "worn")):
+        is_sent(f"/{operation}", partial(page.click, f"#fabric-{pose}"))
+    is_sent("/limb", partial(page.click, "#tab-limb"))
+    expect(page.locator("#limb-answer")).to_contain_text("unworn")
+    page.click("#tab-drape")
+    is_sent("/overhang", partial(page.click, "#drape-overhang"))
+    expect(page.locator("#drape-answer")).to_contain_text("Bending length")
+    is_sent("/drape", partial(page.click, "#drape-drape"))
+    is_sent("/hang", partial(page.click, "#drape-hang"))
+
+    page.keyboard.press("Shift+W")
+    page.click("#part-add")
+    expect(page.locator("#part-0-course-now")).to_have_text(re.compile(NUMBER))
+    expect(page.locator("#parts-uncounted")).to_be_hidden()
+    page.fill("#part-0-course", "0.3")
+    with page.expect_request("**/api/v1/jobs") as filling:
+        page.click("#fill-run")
+    assert filling.value.post_data_json["request"]["targets"][0]["gauge"] == counted
+    expect(page.locator("#fill-answer")).to_contain_text("Before: with your gauge.")
+    page.click("#fill-back")
+
+    page.keyboard.press("m")
+    drag(page, 60, 40)
+    page.click("#part-add")
+    expect(page.locator("#parts-uncounted")).to_contain_text("parts of it have their computed size")
+    count("22", "30")
+    expect(page.locator("#gauge-brings")).to_contain_text("of this part only")
+    expect(page.locator("#parts-uncounted")).to_be_hidden()
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from ...context import Context
 from ...drawing.computed import PosedView
 from ...requests.base import Known, RequestModel, ResultModel
 from ...requests.charts import OutlineInput
-from ...requests.fabrics import FabricRequest
+from ...requests.fabrics import GaugedRequest
 from ...requests.weighed import Corners, TimeLimit, corner_lists
 from ..perform import Viewed
 from ..registry import Command, Operation
@@ -34,7 +34,7 @@ class PullInput(RequestModel):
     strain: float = Field(gt=0, le=1, description="Strain from clamp to clamp: 0.3 is 30 %.")
 
 
-class CurlRequest(FabricRequest):
+class CurlRequest(GaugedRequest):
     """A whole piece whose edges are free, all or beside two clamps."""
 
     outline: OutlineInput = None
@@ -102,6 +102,7 @@ def _curled(request: CurlRequest, context: Context) -> CurledPiece:
         chart,
         material,
         stitches=stitches,
+        size=request.relaxed_size,
         begin=begin if begin is not None and begin.shape == shape else None,
         pull=None if request.pull is None else request.pull.pass_to(Pull),
         cancelled=context.cancelled,

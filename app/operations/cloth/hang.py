@@ -64,7 +64,12 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
     chart, material = to_chart(request.chart), context.material(request.material)
     stitches = None if request.outline is None else outline_marks(request.outline)
     hanging = request.pass_to(
-        hang_piece, chart, material, stitches=stitches, cancelled=context.cancelled
+        hang_piece,
+        chart,
+        material,
+        stitches=stitches,
+        size=request.relaxed_size,
+        cancelled=context.cancelled,
     )
     result = HangResult.of(
         hanging,

@@ -90,7 +90,9 @@ def piece(request: PieceRequest, context: Context) -> PieceResult:
 def _test(request: PieceRequest, material: Material, context: Context) -> PieceTest:
     request.check_parts(context)
     cut = request.cut()
-    cloth = request.pass_to(cloth_under, cut, to_repeat(request.chart), material)
+    cloth = request.pass_to(
+        cloth_under, cut, to_repeat(request.chart), material, size=request.relaxed_size
+    )
     control = {"progress": context.progress, "cancelled": context.cancelled}
     return request.pass_to(solve, cut, cloth, request.piece.loads(), **control)
 

@@ -54,6 +54,10 @@ _ROLLS = (
     "fabric beside it rises."
 )
 
+_UNCOUNTED = (
+    "The gauge is that of the piece; the border, which nobody has counted, has the computed size."
+)
+
 
 class ClothPiece(ResultModel):
     """The stitches of a piece of cloth in a test, to show them in 3D: chart and shape."""
@@ -225,11 +229,13 @@ def border(request: BorderRequest, context: Context) -> BorderResult:
     """
     inner = request.cloth(to_repeat(request.chart), context)
     edge = StitchChart.of_fabric(request.border, rows=2, columns=2)
-    around = request.cloth(edge, context)
+    around = request.model_copy(update={"gauge": None}).cloth(edge, context)
     sides, ends = (advice(inner, around, axis, cancelled=context.cancelled) for axis in (0, 1))
     notes = [_RULE] if max(sides.moment_n, ends.moment_n) > 0.0 else []
     if not (sides.holds and ends.holds):
         notes.append(_ROLLS)
+    if request.gauge:
+        notes.append(_UNCOUNTED)
     if inner.from_quarters:
         notes.append(_FROM_QUARTERS)
     return BorderResult(sides=EdgesResult.of(sides), ends=EdgesResult.of(ends), notes=notes)

@@ -22,7 +22,7 @@ from knitcore.garment.shaped import outline_marks
 
 from ...cli.options import atlas_option, design_option, resolve_chart, write_design_of
 from ...context import Context
-from ...requests.base import Ends, IntervalResult, Known, RequestModel, ResultModel, Seed
+from ...requests.base import Ends, IntervalResult, Known, ResultModel, Seed
 from ...requests.charts import (
     ChartLines,
     ChartText,
@@ -32,7 +32,7 @@ from ...requests.charts import (
     RepeatText,
     Row,
 )
-from ...requests.fabrics import LawsRequest
+from ...requests.fabrics import Gauged, LawsRequest
 from ...service.results.atlases import Extent
 from ..registry import Command, Operation
 
@@ -56,8 +56,8 @@ Gaps = Annotated[list[Known], BeforeValidator(list)]
 Width = Annotated[float, Field(gt=0.05, lt=3)] | None
 
 
-class PartTargetInput(RequestModel):
-    """Target stiffness of one part of the chart."""
+class PartTargetInput(Gauged):
+    """Target stiffness of one part of the chart, which may have been counted as it is."""
 
     name: str = Field("part", min_length=1, max_length=80)
     runs: list[StitchRun] = Field(
@@ -71,7 +71,11 @@ class PartTargetInput(RequestModel):
     def target(self) -> PartTarget:
         """The library's object."""
         return PartTarget(
-            self.name, tuple(self.runs), self.modulus_course_n_per_mm, self.modulus_wale_n_per_mm
+            self.name,
+            tuple(self.runs),
+            self.modulus_course_n_per_mm,
+            self.modulus_wale_n_per_mm,
+            self.relaxed_size,
         )
 
 
@@ -173,10 +177,13 @@ class PartResult(ResultModel):
     )
     nearest: NearestResult = Field(description="To its target, of all repeats of the yarn.")
     course_before_n_per_mm: Known = Field(
-        description="Modulus of the largest rectangle inside, as the chart was; null without one."
+        description="Modulus of the largest rectangle inside, as the chart was, with "
+        "its gauge; null without one."
     )
     wale_before_n_per_mm: Known
-    course_n_per_mm: Known = Field(description="The same in the filled chart.")
+    course_n_per_mm: Known = Field(
+        description="The same in the filled chart, which nobody has counted: of its computed size."
+    )
     wale_n_per_mm: Known
 
 

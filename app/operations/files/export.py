@@ -18,7 +18,7 @@ from ...cli.options import out_option
 from ...context import Context
 from ...requests.base import ResultModel
 from ...requests.charts import ChartInput, MaterialName, to_chart
-from ...requests.fabrics import GaugeInput, LawsRequest
+from ...requests.fabrics import Gauged, LawsRequest
 from ...requests.uploads import Content
 from ..registry import Command, Operation
 
@@ -34,7 +34,7 @@ ExtensionName = Annotated[str, Field(pattern=f"^{IDENTIFIER.pattern}$")]
 """The identifier of a format that is not built in."""
 
 
-class ExportRequest(DesignLayout, LawsRequest):
+class ExportRequest(DesignLayout, Gauged, LawsRequest):
     """A chart and the format to write it in."""
 
     model_config = ConfigDict(extra="forbid")
@@ -50,9 +50,6 @@ class ExportRequest(DesignLayout, LawsRequest):
     symbols: Symbols = Field(
         Symbols.DOTS,
         description="Symbols of printed charts: a dot or a dash for a purl, or the Japanese ones.",
-    )
-    gauge: GaugeInput | None = Field(
-        None, description="Known gauge of the chart; its relaxed size is estimated if left out."
     )
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     note: str = Field("", max_length=20_000, description="Note to print with the chart.")
@@ -108,8 +105,7 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
 
 
 def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
-    gauge = None if request.gauge is None else request.gauge.relaxed_size()
-    options = request.pass_to(ExportOptions, layout=request, gauge=gauge)
+    options = request.pass_to(ExportOptions, layout=request, gauge=request.relaxed_size)
     return export_chart(chart, request.to, context.material(request.material), options)
 
 

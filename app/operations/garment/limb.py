@@ -34,7 +34,7 @@ from ...context import Context
 from ...drawing.computed import PosedView
 from ...requests.base import Ends, IntervalResult, RequestModel, ResultModel
 from ...requests.charts import OutlineInput
-from ...requests.fabrics import FabricRequest
+from ...requests.fabrics import GaugedRequest
 from ..perform import Viewed
 from ..registry import Command, Operation
 
@@ -68,7 +68,7 @@ class TubeGirth(RequestModel):
     )
 
 
-class LimbRequest(FabricRequest):
+class LimbRequest(GaugedRequest):
     """A tube of a chart, and a limb by its girths."""
 
     outline: OutlineInput = None
@@ -163,7 +163,8 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
     """
     rests = [g.rest_mm for g in request.girths if g.rest_mm is not None]
     shaped, material = _shaped(request, context)
-    answer = predict(shaped.rectangle_inside() if rests else shaped.continued(), material)
+    worn = shaped.rectangle_inside() if rests else shaped.continued()
+    answer = predict(worn, material, request.relaxed_size)
     source = in_a_sentence(answer.stretch_errors)
     if not rests:
         tube = _tube(request, context)
@@ -197,7 +198,14 @@ def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
     check_stitches(shaped.chart.stitches, MAX_STITCHES)
     girths = request.girths
     on = MeasuredLimb(tuple(g.at_mm for g in girths), tuple(g.girth_mm for g in girths))
-    return worn_tube(shaped.chart, material, on, request.direction, stitches=shaped.stitch)
+    return worn_tube(
+        shaped.chart,
+        material,
+        on,
+        request.direction,
+        stitches=shaped.stitch,
+        size=request.relaxed_size,
+    )
 
 
 def _of_tube(

@@ -32,13 +32,13 @@ from knitcore.prediction.prediction import Prediction
 from ...context import Context
 from ...requests.base import Ends, IntervalResult
 from ...requests.charts import ChartInput, MaterialName, to_chart
-from ...requests.fabrics import LawsRequest
+from ...requests.fabrics import Gauged, LawsRequest
 from ..registry import Command, Operation
 
 NO_INTERVAL = "No interval: the law comes without standard errors."
 
 
-class PressureRequest(LawsRequest):
+class PressureRequest(Gauged, LawsRequest):
     """A tube on a limb: its law, or a fabric or chart of a material, and its sizes."""
 
     direction: Direction = Field(description="The material direction around the limb.")
@@ -84,8 +84,11 @@ def pressure(request: PressureRequest, context: Context) -> PressureResult:
     Raises
     ------
     InputError
-        If neither or both of a law and a material are given, or not one of fabric and chart.
+        If neither or both of a law and a material are given, or not one of fabric and chart, or
+        a gauge without a chart.
     """
+    if request.gauge is not None and request.chart is None:
+        raise InputError("gauge", "is that of a chart.", "Give the chart, or leave the gauge out.")
     if request.law is None and request.material is None:
         raise InputError("material", "is missing.", "Give a material, or a law.")
     if request.law is not None and request.material is not None:
@@ -94,7 +97,8 @@ def pressure(request: PressureRequest, context: Context) -> PressureResult:
         return _of_file(law_from_mapping(request.law or {}), request)
     material = context.material(request.material)
     if request.chart is not None and request.fabric is None:
-        return _of_answer(predict(to_chart(request.chart), material), request)
+        answer = predict(to_chart(request.chart), material, request.relaxed_size)
+        return _of_answer(answer, request)
     if request.fabric is None:
         raise InputError("fabric", "is missing.", "Give a fabric, or a chart.")
     if request.chart is not None:
@@ -217,7 +221,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         more="It is an interval, never a medical class.",
-        names={"law": None, "chart": None},
+        names={"law": None, "chart": None, "gauge": None},
         run=_command,
     ),
 )

@@ -51,11 +51,11 @@ export function testReader(fabric, pickers) {
   let read = null;
   let turn = 0;
   const status = h("div", { class: "dialog-status", role: "status" });
-  const body = h("div", { class: "test-pair" });
+  const body = h("div", { class: "test-pair stack" });
   const element = h(
     "section",
     {
-      class: "test-reading",
+      class: "test-reading sunken rounded",
       id: `yarn-${fabric}-reading`,
       hidden: true,
       "aria-label": `How the tests of ${fabric} are read`,
@@ -132,7 +132,7 @@ export function testReader(fabric, pickers) {
     const name = `${fabric}-${direction ?? "both"}-${doubt.field}`;
     return h(
       "fieldset",
-      { class: `test-question ${doubt.is_open ? "open" : ""}` },
+      { class: `test-question line wrap rounded ${doubt.is_open ? "open" : ""}` },
       h("legend", {}, icon("warning"), ` ${doubt.field}: ${doubt.problem}`),
       ...doubt.readings.map((reading) =>
         h(
@@ -228,7 +228,7 @@ export function testReader(fabric, pickers) {
     };
     return h(
       "section",
-      { class: "test-half", "aria-label": `${test.name}, along the ${along}` },
+      { class: "test-half stack gap-8 shrinks-x", "aria-label": `${test.name}, along the ${along}` },
       h("h5", {}, test.name, h("span", { class: "muted" }, ` along the ${along}`)),
       wrong && h("p", { class: "problem-text", role: "alert" }, wrong),
       ...test.doubts.map((doubt) => question(doubt, direction)),

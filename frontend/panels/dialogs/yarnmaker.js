@@ -181,7 +181,7 @@ export function yarnMaker(studio, made) {
   };
 
   const title = h("h3", {}, "Make a yarn");
-  const dropped = h("div", { class: "test-question open", id: "yarn-dropped", hidden: true });
+  const dropped = h("div", { class: "test-question line wrap rounded open", id: "yarn-dropped", hidden: true });
   /** Ask which test a table is that was dropped on the page. @param {File} file */
   const offer = (file) => {
     const fabric = selectField({ id: "yarn-dropped-fabric", "aria-label": "Fabric of the test" }, sameWords(FABRICS));

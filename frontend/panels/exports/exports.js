@@ -12,7 +12,7 @@ import { base64 } from "../../grid/bits.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { download } from "../../services/exporter.js";
-import { scopeIn } from "../../services/scope.js";
+import { pieceOf } from "../../services/scope.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
@@ -156,7 +156,7 @@ export function create(studio, { view }) {
       ...chosen,
       to: kind.to,
       symbols: studio.editing.symbols.value,
-      gauge: studio.gauges.of({ chart: scopeIn(studio.document, null).grid.text, material: studio.materialId.value }),
+      gauge: pieceOf(studio).gauge,
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
       photo: isPattern(kind.to) ? await photo() : null,
     };

@@ -17,6 +17,7 @@ import { icon } from "../../elements/icons.js";
 import { ViewLink } from "./link.js";
 import { Still } from "./still.js";
 import { toolbar } from "./toolbar.js";
+import { pieceOf } from "../../services/scope.js";
 import { POSES, wordsOf } from "../../state/seeing.js";
 import { REST } from "../../state/studio.js";
 import { legendOf } from "../../widgets/legend.js";
@@ -290,7 +291,15 @@ export function fabricview(host, studio, view) {
 
   studio.document.onChange(soon);
   const { yarnColours, groups, block, pose, posed } = studio.seeing;
-  for (const signal of [studio.materialId, studio.overlay, studio.rectangles, studio.stretch, groups, block]) {
+  for (const signal of [
+    studio.materialId,
+    studio.gauges.changes,
+    studio.overlay,
+    studio.rectangles,
+    studio.stretch,
+    groups,
+    block,
+  ]) {
     signal.listen(soon);
   }
   yarnColours.listen(now);
@@ -360,11 +369,10 @@ export function viewRequest(studio, view) {
   const { written: palette } = readPalette();
   const seen = view.viewport.visible(chart.grid);
   if (posed?.piece) {
-    return { ...studio.request, ...posed.piece, colour: "yarn", palette, curl: { id: posed.id } };
+    return { material: studio.materialId.value, ...posed.piece, colour: "yarn", palette, curl: { id: posed.id } };
   }
   return {
-    ...studio.request,
-    outline: chart.outlineText,
+    ...pieceOf(studio),
     colour: /** @type {ViewRequest["colour"]} */ (colour),
     palette,
     regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],

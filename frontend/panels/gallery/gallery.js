@@ -54,7 +54,7 @@ export function create(studio, { keeper, open }) {
       { class: "card" },
       h(
         "button",
-        { class: "card-open whole sunken", id: `gallery-${id}`, onclick: perform },
+        { class: "card-open whole sunken stack gap-2", id: `gallery-${id}`, onclick: perform },
         h("span", { class: "card-picture centred muted" }, picture),
         h("span", { class: "card-name" }, name),
         h("span", { class: "card-facts muted" }, note),

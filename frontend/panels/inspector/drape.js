@@ -10,12 +10,12 @@ import { figure, percent } from "../../core/format.js";
 import { Belonging, clothOf } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
-import { scopeOf } from "../../services/scope.js";
+import { clothIn, scopeOf } from "../../services/scope.js";
 import { labelled, numberField } from "../../widgets/fields.js";
 import { textButton } from "../../widgets/buttons.js";
 import { problemText } from "../../widgets/problem.js";
 
-/** @typedef {{chart: string, material: string, linear_density_g_per_m: number}} Weighed */
+/** @typedef {ReturnType<typeof clothIn> & {linear_density_g_per_m: number}} Weighed */
 /**
  * @typedef {{words: string[], notes: string[], converged?: boolean, piece?: {id: string, chart: string, outline: string}}} Findings
  *   words, and what to show in 3D and whether that is at rest
@@ -95,8 +95,8 @@ export function drape(host, studio) {
   weight.addEventListener("change", () => {
     if (weight.valueAsNumber > 0) studio.weight.value = weight.valueAsNumber;
   });
-  /** @param {string} label @param {NonNullable<Findings["piece"]>} piece @param {boolean} converged @param {string} note */
-  const show = (label, { id, chart, outline }, converged, note) => {
+  /** @param {string} label @param {NonNullable<Findings["piece"]> & Pick<Weighed, "gauge">} piece @param {boolean} converged @param {string} note */
+  const show = (label, { id, ...piece }, converged, note) => {
     const { rows, columns } = studio.document.grid;
     studio.seeing.pose.value = "tested";
     studio.seeing.posed.value = {
@@ -107,17 +107,13 @@ export function drape(host, studio) {
       converged,
       words: `${label}, by its weight`,
       note,
-      piece: { chart, outline },
+      piece,
     };
   };
   /** @param {(typeof TESTS)[number]} test */
   const run = ({ label, compute }) => {
-    const { grid } = scopeOf(studio);
-    const request = {
-      chart: grid.text,
-      material: studio.materialId.value,
-      linear_density_g_per_m: studio.weight.value,
-    };
+    const cloth = clothIn(studio, scopeOf(studio));
+    const request = { ...cloth, linear_density_g_per_m: studio.weight.value };
     const { basis } = belonging;
     belonging.clear();
     answer.replaceChildren(h("span", { class: "spinner" }), `${label}: being computed`);
@@ -129,7 +125,7 @@ export function drape(host, studio) {
           ...notes.map((text) => h("p", { class: "muted" }, text)),
         );
         belonging.show(basis);
-        if (piece && !belonging.stale.value) show(label, piece, converged, notes[0]);
+        if (piece && !belonging.stale.value) show(label, { ...piece, gauge: cloth.gauge }, converged, notes[0]);
       },
       ({ problem }) => answer.replaceChildren(problemText(problem)),
     );

@@ -13,7 +13,7 @@ import { Latest } from "../../services/latest.js";
 import { isWarning } from "../../services/poser.js";
 import { h, remark } from "../../elements/dom.js";
 import { pressurePlot } from "../../plots/pressure.js";
-import { scopeOf } from "../../services/scope.js";
+import { clothIn, pieceOf, scopeOf } from "../../services/scope.js";
 import { iconButton } from "../../widgets/buttons.js";
 import { table, tableRow } from "../../widgets/table.js";
 import { labelled, numberField, selectField } from "../../widgets/fields.js";
@@ -32,17 +32,16 @@ export function limb(host, studio) {
     if (host.hidden || !studio.prediction.value.value) return;
     const { girths, direction } = studio.limb;
     if (!chosen.value.girths) showGirths(girths); // those that fit the chart
-    const { kind, grid } = scopeOf(studio);
+    const scope = scopeOf(studio);
     // A part is a repeat of the tube, the whole chart is the tube.
     const rest_mm = tube.valueAsNumber > 0 ? tube.valueAsNumber : null;
     const sized = rest_mm ? girths.map((girth) => ({ ...girth, rest_mm })) : girths;
-    const chart = rest_mm || kind !== "chart" ? grid.text : studio.request.chart;
+    const cloth = rest_mm || scope.kind !== "chart" ? clothIn(studio, scope) : pieceOf(studio);
     belonging.check(); // the tube may be another
-    const outline = rest_mm || kind !== "chart" ? null : studio.document.outlineText;
     const { basis } = belonging;
     latest.run(
       async (signal) => {
-        show(await api.run("limb", { ...studio.request, chart, outline, direction, girths: sized }, signal));
+        show(await api.run("limb", { ...cloth, direction, girths: sized }, signal));
         belonging.show(basis);
       },
       ({ problem }) => {

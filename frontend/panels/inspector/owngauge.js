@@ -7,13 +7,12 @@
 
 import { percent } from "../../core/format.js";
 import { h } from "../../elements/dom.js";
-import { scopeOf } from "../../services/scope.js";
+import { clothIn, scopeOf } from "../../services/scope.js";
 import { numberField } from "../../widgets/fields.js";
 
 /** Half of a 90 % interval of a size that was counted, as a share of it. */
 const COUNTED = 0.05;
-const COUNTS =
-  "It counts here, in curves, stretch tests, Compare and files. 3D, hanging, wearing and Fill use the computed size.";
+const OF_A_PART = "It is of this part only: the whole chart, in 3D and in tests, keeps its own size.";
 
 /**
  * `show` fills in what is known, and says what a count would bring.
@@ -22,7 +21,7 @@ const COUNTS =
  * @returns {{element: HTMLElement, show: (predicted: PredictResult | null) => void}}
  */
 export function ownGauge(studio) {
-  const cloth = () => ({ chart: scopeOf(studio).grid.text, material: studio.materialId.value });
+  const cloth = () => clothIn(studio, scopeOf(studio));
   const keep = () => {
     const fields = [stitches, rows];
     if (fields.some((field) => !field.validity.valid)) return;
@@ -47,9 +46,10 @@ export function ownGauge(studio) {
     brings,
   );
   const show = (/** @type {PredictResult | null} */ predicted) => {
-    const known = studio.gauges.changes.value ? studio.gauges.of(cloth()) : null;
-    const counted = known?.known_by === "relaxation" ? null : known;
-    brings.textContent = counted ? COUNTS : predicted ? gain(predicted) : "";
+    const { gauge } = cloth();
+    const counted = gauge?.known_by === "relaxation" ? null : gauge;
+    const ofPart = scopeOf(studio).kind === "chart" ? "" : OF_A_PART;
+    brings.textContent = counted ? ofPart : predicted ? gain(predicted) : "";
     if (element.contains(document.activeElement)) return;
     stitches.value = counted ? String(counted.stitches_per_10_cm) : "";
     rows.value = counted ? String(counted.rows_per_10_cm) : "";

@@ -2,12 +2,13 @@
  * Stitches from stiffness: parts of the chart, and how stiff each should be.
  *
  * @import {Studio} from "../../state/studio.js"
- * @import {FillResult} from "../../types.js"
+ * @import {FillResult, GaugeInput} from "../../types.js"
  *
  * @typedef {{course: number, wale: number}} Stiffness moduli in N/mm
  * @typedef {{name: string, cells: number[], course: number | null, wale: number | null, now: Stiffness | null,
- *   wish: (() => Stiffness | null) | null, show?: () => void}} Part
- * `wish` is what was asked for in words, until the numbers that it goes by have come
+ *   gauge: GaugeInput | null, wish: (() => Stiffness | null) | null, show?: () => void}} Part
+ * `gauge` is that of the part as it is, if it was counted; `wish` is what was asked for in words, until the
+ * numbers that it goes by have come
  */
 
 import { UNDO } from "../../core/pointing.js";
@@ -19,6 +20,7 @@ import { Grid } from "../../grid/grid.js";
 import { largestRectangle } from "../../grid/inscribed.js";
 import { FABRICS } from "../../grid/segments.js";
 import { selectedCells } from "../../design/selection.js";
+import { clothIn, pieceOf } from "../../services/scope.js";
 import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { nameField } from "../../widgets/fields.js";
@@ -51,6 +53,11 @@ export function fromStiffness(studio) {
   }));
   belonging.marks(answer, "fill");
   belonging.bars(answer);
+  const uncounted = h(
+    "li",
+    { class: "muted inverse-hint", id: "parts-uncounted", hidden: true },
+    "Your gauge is of the whole chart: parts of it have their computed size.",
+  );
   /** @type {Part[]} */
   let parts = [];
   /** Size of the chart that the parts were drawn on. */
@@ -66,7 +73,7 @@ export function fromStiffness(studio) {
     if (!cells.length) return;
     if (size !== sizeNow()) parts = [];
     size = sizeNow();
-    parts.push({ name, cells, course: null, wale: null, now: null, wish: null });
+    parts.push({ name, cells, course: null, wale: null, now: null, gauge: null, wish: null });
     show();
   };
   const clear = () => {
@@ -89,7 +96,9 @@ export function fromStiffness(studio) {
     for (const i of part.cells) mask[i] = 1;
     const inside = largestRectangle(mask, grid.columns);
     if (!inside || size !== sizeNow()) return;
-    const body = { chart: grid.region(inside).text, material: studio.materialId.value };
+    const body = clothIn(studio, { grid: grid.region(inside) });
+    part.gauge = body.gauge;
+    uncounted.hidden = !pieceOf(studio).gauge || parts.every(({ gauge }) => gauge);
     try {
       const predicted = await api.run("predict", body);
       part.now = { course: predicted.modulus_course_n_per_mm, wale: predicted.modulus_wale_n_per_mm };
@@ -210,7 +219,7 @@ export function fromStiffness(studio) {
     belonging.check();
     list.replaceChildren(
       ...(parts.length
-        ? [h("li", { class: "muted inverse-hint" }, "Stiffness in N/mm, now → target"), ...parts.map(item)]
+        ? [h("li", { class: "muted inverse-hint" }, "Stiffness in N/mm, now → target"), uncounted, ...parts.map(item)]
         : [
             h(
               "li",
@@ -268,8 +277,9 @@ export function fromStiffness(studio) {
         columns,
         chart: chart.grid.text,
         outline: start.outline,
-        targets: targeted.map(({ name, cells, course, wale }) => ({
+        targets: targeted.map(({ name, cells, course, wale, gauge }) => ({
           name,
+          gauge,
           runs: runsOf(cells, columns),
           modulus_course_n_per_mm: course,
           modulus_wale_n_per_mm: wale,
@@ -342,6 +352,9 @@ export function fromStiffness(studio) {
       ),
       painted ? h("p", {}, `Painted meanwhile, and left so: ${painted} sts.`) : "",
       partList(fillResult, targeted),
+      fillResult.parts.some(({ repainted }, i) => repainted && targeted[i].gauge)
+        ? h("p", { class: "muted small" }, "Before: with your gauge. Now: of the computed size, until you count it.")
+        : "",
       h("div", { class: "inverse-buttons" }, changed && keep, changed && back, other),
       h(
         "details",
@@ -382,6 +395,7 @@ export function fromStiffness(studio) {
   );
   chart.onSettle(measureAll);
   studio.materialId.listen(show);
+  studio.gauges.changes.listen(() => void measureAll());
   return { element, opened: measureAll };
 }
 

@@ -17,13 +17,14 @@ function studio() {
     curling: signal(false),
     glove: signal(null),
   };
-  return {
+  const page = {
     seeing,
     weight: signal(0.5),
     step: signal(0),
     stretch: signal(null),
+    prediction: signal({ busy: false, scope: "chart" }),
     materialId: signal("acrylic"),
-    request: { chart: "KP", material: "acrylic" },
+    gauges: { changes: signal(0), known: null, of: () => page.gauges.known },
     limb: { direction: "course", girths: [] },
     online: signal(true),
     problem: signal(null),
@@ -40,6 +41,7 @@ function studio() {
     },
     paint: () => change(),
   };
+  return page;
 }
 
 /** Shapes that are shown one after the other, until `count` are there. @param {any} page @param {number} count */
@@ -144,6 +146,54 @@ test("a shaped chart is worn with its outline, and its bar ends at the highest p
   assert.deepEqual([pressure.most, pressure.limit], [40, 32]);
   page.seeing.limb.value = {};
   assert.equal(page.seeing.posed.value.pressure, undefined); // that of another limb
+  page.seeing.pose.value = "flat";
+});
+
+test("every pose has the size of a counted gauge, and is computed anew when one is counted", async () => {
+  for (const pose of ["lying", "hung", "worn"]) {
+    /** @type {unknown[]} */
+    const sent = [];
+    /** @type {any} */ (api).run = (/** @type {string} */ _, /** @type {any} */ { gauge }) => {
+      sent.push(gauge);
+      return Promise.resolve({ id: `shape ${sent.length}`, places: [], converged: true, notes: [] });
+    };
+    const page = studio();
+    startPoser(page);
+    const atRest = () =>
+      new Promise((resolve) =>
+        page.seeing.posed.listen((/** @type {any} */ posed) => posed?.converged && resolve(posed)),
+      );
+    const uncounted = atRest();
+    page.seeing.pose.value = pose;
+    await uncounted;
+    const counted = atRest();
+    page.gauges.known = "counted";
+    page.gauges.changes.value += 1;
+    await counted;
+    assert.deepEqual(sent, [null, "counted"]);
+    page.seeing.pose.value = "flat";
+  }
+});
+
+test("a limb of the chart's size grows with it, once that is known", async () => {
+  /** @type {[string, any][]} */
+  const sent = [];
+  pressing(sent);
+  const page = studio();
+  startPoser(page);
+  const first = shown(page, 1);
+  page.seeing.pose.value = "worn";
+  await first;
+  page.prediction.value = { busy: false, scope: "chart" }; // of the same size
+  const second = shown(page, 2); // the old one as a preview first
+  page.limb.girths = [{ at_mm: 0, girth_mm: 90 }];
+  page.prediction.value = { busy: false, scope: "selection" };
+  page.prediction.value = { busy: false, scope: "chart" };
+  await second;
+  assert.deepEqual(
+    sent.map(([, { girths }]) => girths.length),
+    [0, 1],
+  );
   page.seeing.pose.value = "flat";
 });
 

@@ -16,6 +16,7 @@ from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel
 from knitcore.cloth.flat.strip import chart_sheet
 from knitcore.materials import Material
 from knitcore.prediction.quarter_laws import quarter_laws
+from knitcore.prediction.size import RelaxedSize
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -52,6 +53,7 @@ def cloth_under(
     model: EnergyModel | str | SheetModel = EnergyModel.FULL,
     *,
     shear_modulus: float | None = None,
+    size: RelaxedSize | None = None,
     quarters: bool = False,
 ) -> Cloth:
     """Cloth of a chart, repeated from the piece's lower left corner along rows and columns.
@@ -63,6 +65,7 @@ def cloth_under(
     material : yarn and laws.
     model : energy model by name, or with all its options.
     shear_modulus : N/mm, replaces the laws' own.
+    size : relaxed size of the mean stitch, if known.
     quarters : whether the quarters of mixed stitches have laws of their own, as in the swatch; by
         default each patch of stitches has one, because elements are larger than stitches.
 
@@ -82,7 +85,7 @@ def cloth_under(
                 f"Use pieces of at most {MAX_STITCHES_PER_SIDE} stitches a side.",
             )
         covering = chart.tile(rows // chart.rows, columns // chart.columns)
-        laws = quarter_laws(covering, material, even=not quarters)
+        laws = quarter_laws(covering, material, size, even=not quarters)
         sheet = chart_sheet(covering, material, model, shear_modulus, laws=laws)
         missing = extent - (sheet.grid.width_mm, sheet.grid.length_mm)
         if np.all(missing <= 1e-9 * extent):

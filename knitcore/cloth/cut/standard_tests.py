@@ -19,6 +19,7 @@ from knitcore.cloth.cut.cut_uncertainty import force_log_sd
 from knitcore.cloth.cut.outline import CutPiece
 from knitcore.cloth.flat.strip import LOCK_UP_SHARE, MAX_STRAIN
 from knitcore.materials import Material, as_material
+from knitcore.prediction.size import RelaxedSize
 
 STRETCH = "a stretch that can be computed"
 MIN_STRAIN = 1e-9
@@ -105,6 +106,7 @@ def bias_test(
     angle_deg: float = 45.0,
     steps: int = 10,
     shear_modulus: float | None = None,
+    size: RelaxedSize | None = None,
     mesh_mm: float | None = None,
     progress: Progress | None = None,
     cancelled: Cancelled | None = None,
@@ -120,6 +122,7 @@ def bias_test(
     angle_deg : from the width to the rows: 0 pulls along columns, 90 along rows.
     steps : of the load.
     shear_modulus : N/mm, replaces the laws' own.
+    size : relaxed size of the mean stitch, if known.
     mesh_mm : length of an element's side.
     progress, cancelled : as for :func:`knitcore.cloth.cut.cut_piece.solve`.
 
@@ -140,7 +143,7 @@ def bias_test(
     """
     piece = CutPiece.rectangle(width_mm, length_mm, grain_deg=angle_deg)
     chart, material = as_chart(chart), as_material(material)
-    cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
+    cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus, size=size)
     check_range("strain", strain, MIN_STRAIN, MAX_STRAIN, what=STRETCH)
     most = LOCK_UP_SHARE * _largest_strain(cloth, width_mm, length_mm, angle_deg)
     if strain > most:
@@ -177,6 +180,7 @@ def biaxial_test(
     grain_deg: float = 0.0,
     steps: int = 10,
     shear_modulus: float | None = None,
+    size: RelaxedSize | None = None,
     mesh_mm: float | None = None,
     progress: Progress | None = None,
     cancelled: Cancelled | None = None,
@@ -202,7 +206,7 @@ def biaxial_test(
         raise InputError("strain_x", "both strains are 0, or nearly.", remedy)
     piece = CutPiece.rectangle(width_mm, length_mm, grain_deg=grain_deg)
     chart, material = as_chart(chart), as_material(material)
-    cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
+    cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus, size=size)
     stretched = piece.turn * (1 + np.array([[strain_x], [strain_y]]))
     for direction, needed in zip(Direction, np.linalg.norm(stretched, axis=0) - 1, strict=True):
         locked = LOCK_UP_SHARE * _lock_up(cloth, direction)
@@ -246,6 +250,7 @@ def trellis_test(
     grain_deg: float = 0.0,
     steps: int = 10,
     shear_modulus: float | None = None,
+    size: RelaxedSize | None = None,
     mesh_mm: float | None = None,
     progress: Progress | None = None,
     cancelled: Cancelled | None = None,
@@ -267,7 +272,7 @@ def trellis_test(
     check_range("shear_angle", shear_angle, MIN_STRAIN, MAX_SHEAR_ANGLE, "rad")
     piece = CutPiece.rectangle(side_mm, side_mm, grain_deg=grain_deg)
     chart, material = as_chart(chart), as_material(material)
-    cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
+    cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus, size=size)
     conditions = [Framed(edge, shear_angle) for edge in piece.edges]
     test = solve(
         piece, cloth, conditions, steps=steps, mesh_mm=mesh_mm,

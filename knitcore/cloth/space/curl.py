@@ -20,6 +20,7 @@ from knitcore.cloth.space.rolled import start
 from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import StitchSheet, sheet_of
 from knitcore.materials import Material, as_material
+from knitcore.prediction.size import RelaxedSize
 
 MAX_STITCHES = 10_000
 """Largest number of stitches of a piece."""
@@ -122,6 +123,7 @@ def curl(
     material: Material | str,
     *,
     stitches: NDArray[np.bool_] | None = None,
+    size: RelaxedSize | None = None,
     pull: Pull | None = None,
     begin: Array | None = None,
     time_limit_s: float = TIME_LIMIT_S,
@@ -134,6 +136,7 @@ def curl(
     chart : the whole piece, from the face side.
     stitches : (rows, columns) False where the piece has none: around it, or in a hole. The chart
         says nothing there.
+    size : relaxed size of the mean stitch, if known.
     pull : by clamps, if any.
     begin : (rows + 1, columns + 1, 3) corners, mm, to descend from, such as those of the piece
         before a stitch was changed: the first steps come soon. By default the flat or a bent
@@ -162,7 +165,7 @@ def curl(
         raise InputError("begin", "has another size than the chart.", remedy)
     if stitches is not None:
         chart = continued(chart, stitches)
-    sheet = sheet_of(chart, material, stitches)
+    sheet = sheet_of(chart, material, stitches, size)
     clock = time.process_time()
     before = None if begin is None else begin.reshape(-1, 3).astype(float)
     held = None

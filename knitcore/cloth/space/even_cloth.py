@@ -25,6 +25,7 @@ from knitcore.cloth.space.stitch_sheet import TWIST, Net, StitchSheet
 from knitcore.materials import Material
 from knitcore.materials.material import loop_lengths_mm
 from knitcore.prediction.predict import predict
+from knitcore.prediction.size import RelaxedSize
 from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.study.bending import (
     MAX_STITCHES,
@@ -136,12 +137,19 @@ class EvenCloth:
         )
 
 
-def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: float) -> EvenCloth:
+def cloth_of(
+    chart: StitchChart,
+    material: Material,
+    *,
+    linear_density_g_per_m: float,
+    size: RelaxedSize | None = None,
+) -> EvenCloth:
     """The cloth of a repeat.
 
     Parameters
     ----------
     linear_density_g_per_m : of the yarn.
+    size : relaxed size of the mean stitch, if known.
 
     Raises
     ------
@@ -151,7 +159,7 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
         If it does not relax at the yarn level, or folds by itself.
     """
     repeat = chart.repeat()
-    prediction = predict(repeat, material)
+    prediction = predict(repeat, material, size)
     course, wale = prediction.along(Direction.COURSE), prediction.along(Direction.WALE)
     poisson = np.sqrt(max(course.poisson * wale.poisson, 0.0)).clip(max=_MAX_POISSON)
     stiff = [along.modulus_n_per_mm / (1.0 - poisson**2) for along in (course, wale)]
@@ -159,6 +167,10 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     stitch = course.relaxed_mm, wale.relaxed_mm
     rigidity, curvature, thickness = _bent(repeat, material)
     weight = float(stitch_weights_n(repeat, material, linear_density_g_per_m, periodic=True).mean())
+    if size is not None:
+        computed = predict(repeat, material)
+        area = computed.course.relaxed_mm * computed.wale.relaxed_mm
+        weight *= math.sqrt(stitch[0] * stitch[1] / area)
     return EvenCloth(
         stitch_mm=stitch,
         membrane_n_per_mm=(*stiff, coupling, prediction.shear_modulus_n_per_mm),

@@ -1,5 +1,6 @@
 """A piece that hangs under its own weight."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ from knitcore.cloth.space.even_cloth import stitch_weights_n
 from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import sheet_of
 from knitcore.materials import Material, as_material
+from knitcore.prediction.neighbourhood import counted_over_computed
+from knitcore.prediction.size import RelaxedSize
 from knitcore.yarn.study.bending import STANDARD_GRAVITY
 
 
@@ -62,6 +65,7 @@ def hang(
     *,
     linear_density_g_per_m: float,
     stitches: NDArray[np.bool_] | None = None,
+    size: RelaxedSize | None = None,
     by: HungBy = HungBy.EDGE,
     time_limit_s: float = TIME_LIMIT_S,
     cancelled: Cancelled | None = None,
@@ -73,6 +77,7 @@ def hang(
     chart : the whole piece, from the face side.
     linear_density_g_per_m : of the yarn.
     stitches : (rows, columns) False where the piece has none, around it or in a hole.
+    size : relaxed size of the mean stitch, if known.
     by : the part that does not move: the top edge of its highest stitches, or the two ends of
         that edge.
     time_limit_s : CPU time after which the current shape is returned, not converged.
@@ -91,7 +96,8 @@ def hang(
     there = np.ones_like(chart.purl) if stitches is None else stitches
     chart = continued(chart, there)
     weights = stitch_weights_n(chart, material, linear_density_g_per_m, stitches=there)
-    sheet = sheet_of(chart, material, there).cut(there)
+    weights *= math.sqrt(counted_over_computed(chart, material, size, there).prod())
+    sheet = sheet_of(chart, material, there, size).cut(there)
     load = sheet.load_n(weights[there], axis=1)
     used = corners_of(there)
     held = np.zeros_like(used)

@@ -20,8 +20,9 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.limb import LimbPlace, MeasuredLimb, place_on
 from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Material
-from knitcore.prediction.neighbourhood import neighbourhood_sizes
+from knitcore.prediction.neighbourhood import counted_over_computed, neighbourhood_sizes
 from knitcore.prediction.predict import patches_of
+from knitcore.prediction.size import RelaxedSize
 
 LEAST_AROUND = 4
 """Smallest number of stitches that can close to a tube."""
@@ -62,6 +63,7 @@ def worn_tube(
     around: Direction = Direction.COURSE,
     *,
     stitches: Mask | None = None,
+    size: RelaxedSize | None = None,
 ) -> TubeOnLimb:
     """The whole chart as a tube on a limb.
 
@@ -71,6 +73,7 @@ def worn_tube(
     limb : beyond its ends its girth stays that of the end.
     around : which direction runs around the limb: rows, or columns.
     stitches : (rows, columns), where the chart has an outline.
+    size : relaxed size of the mean stitch, if known.
 
     Raises
     ------
@@ -84,11 +87,12 @@ def worn_tube(
     _check_tube(inside)
     chart = shaped.continued()
     sizes = neighbourhood_sizes(chart, material)
+    sizes *= counted_over_computed(chart, material, size, shaped.stitch)
     if not by_row:
         sizes = sizes.transpose(1, 0, 2)[..., ::-1]
     rests = sizes[..., 0].sum(axis=1, where=inside)
     heights = sizes[..., 1].mean(axis=1, where=inside)
-    predictions = patches_of(chart, material).lines(around)
+    predictions = patches_of(chart, material, size).lines(around)
     places, along_mm = [], [0.0]
     for line, (rest, height) in enumerate(zip(rests.tolist(), heights.tolist(), strict=True)):
         prediction = predictions[line % len(predictions)].along(around)

@@ -30,6 +30,8 @@ from knitcore.cloth.space import sheet_kernels as kernels
 from knitcore.cloth.space.bending_constants import Bend, bends_of
 from knitcore.cloth.space.folds import folds_of, rest_turns, turning
 from knitcore.materials import Material
+from knitcore.prediction.neighbourhood import counted_over_computed
+from knitcore.prediction.size import RelaxedSize
 
 Ints = NDArray[np.int64]
 
@@ -248,7 +250,10 @@ def _between(corner: Ints) -> Ints:
 
 
 def sheet_of(
-    chart: StitchChart, material: Material, stitches: NDArray[np.bool_] | None = None
+    chart: StitchChart,
+    material: Material,
+    stitches: NDArray[np.bool_] | None = None,
+    size: RelaxedSize | None = None,
 ) -> StitchSheet:
     """The sheet of a chart; :meth:`StitchSheet.cut` leaves out places without a stitch.
 
@@ -256,6 +261,7 @@ def sheet_of(
     ----------
     chart : continued where the piece has no stitch (:func:`knitcore.chart.phases.continued`).
     stitches : (rows, columns) False where the piece has none: its edges are free there.
+    size : relaxed size of the mean stitch, if known.
 
     Raises
     ------
@@ -267,23 +273,24 @@ def sheet_of(
     if stitches is not None:
         own = stitches.repeat(2, axis=0).repeat(2, axis=1)
         phases = np.where(own, quarter_phases(chart, stitch=stitches), phases)
-    of = _Fabrics.of(material)
+    ratio = counted_over_computed(chart, material, size, stitches)
+    of = _Fabrics.of(material, ratio)
     folds = folds_of(chart, material, of.free_turns, stitches)
-    size = folds.sizes_mm  # (rows, columns, 2)
+    sizes = folds.sizes_mm * ratio  # (rows, columns, 2)
     net = Net.of(rows, columns)
     by_stitch = phases.reshape(rows, 2, columns, 2).transpose(0, 2, 1, 3).reshape(-1, 4)
-    quarter_size = size.reshape(-1, 2).repeat(4, axis=0)
+    quarter_size = sizes.reshape(-1, 2).repeat(4, axis=0)
     area = 0.25 * quarter_size.prod(axis=1, keepdims=True)
     membrane = np.concatenate([quarter_size, area * of.membrane[by_stitch].reshape(-1, 4)], axis=1)
     side = turning(chart, stitches)
     along = _turning(side, chart.purl, phases, of, folds.share[..., 0])
     across = _turning(side.T, chart.purl.T, phases.T, of.turned(), folds.share[..., 1].T)
     rigidity = np.sqrt(of.rigidity_n_mm.prod(axis=1))[by_stitch].mean(axis=1)
-    twisting = 4.0 * TWIST * rigidity / size.reshape(-1, 2).prod(axis=1)
-    mean = size.mean(axis=(0, 1))
+    twisting = 4.0 * TWIST * rigidity / sizes.reshape(-1, 2).prod(axis=1)
+    mean = sizes.mean(axis=(0, 1))
     flat = np.zeros(((rows + 1) * (columns + 1), 3))
-    flat[:, 0] = np.tile(np.append(0.0, np.cumsum(size[..., 0].mean(axis=0))), rows + 1)
-    flat[:, 1] = np.repeat(np.append(0.0, np.cumsum(size[..., 1].mean(axis=1))), columns + 1)
+    flat[:, 0] = np.tile(np.append(0.0, np.cumsum(sizes[..., 0].mean(axis=0))), rows + 1)
+    flat[:, 1] = np.repeat(np.append(0.0, np.cumsum(sizes[..., 1].mean(axis=1))), columns + 1)
     flat[:, :2] -= flat[:, :2].mean(axis=0)
     return StitchSheet(
         rows=rows,
@@ -322,7 +329,8 @@ class _Fabrics:
     thickness_mm: float
 
     @classmethod
-    def of(cls, material: Material) -> _Fabrics:
+    def of(cls, material: Material, ratio: Array) -> _Fabrics:
+        """Tables of a material whose stitches are wider and higher by a ratio (2,)."""
         bends: Mapping[Fabric, Bend] = bends_of(material)
         records = [material.record(fabric) for fabric in PHASES]
         laws = [record.law for record in records]
@@ -332,7 +340,7 @@ class _Fabrics:
             knit.curvature_course_per_mm, knit.curvature_wale_per_mm
         )  # fmt: skip
         return cls(
-            np.array([(r.stitch_course_mm, r.stitch_wale_mm) for r in records]),
+            ratio * [r.stitch_mm for r in records],
             np.array(
                 [
                     (

@@ -285,7 +285,11 @@ def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tup
         said = f"{int(cells.sum())} sts"
         try:
             use = yarn_use(
-                piece.shaped, material, linear_density_tex=options.linear_density_tex, cells=cells
+                piece.shaped,
+                material,
+                linear_density_tex=options.linear_density_tex,
+                cells=cells,
+                size=piece.gauge,
             )
         except InputError:  # the material has no loop length, so only stitches are given
             facts.append(said)

@@ -18,7 +18,7 @@ from app.operations.cloth.stretch import StretchResult
 from app.operations.registry import Command, Operation, operations
 from app.requests.base import Ends, Floats, IntervalResult, Known, RequestModel, ResultModel
 from app.requests.charts import ChartInput, MaterialName, OutlineInput, RepeatInput
-from app.requests.fabrics import GaugeInput
+from app.requests.fabrics import Gauged, GaugeInput
 from app.requests.uploads import UploadedFile, stored
 from knitcore.chart.fabric import Direction
 from knitcore.materials import Interval
@@ -40,6 +40,16 @@ def test_every_operation_has_a_route_or_is_a_job(schema: dict[str, Any]) -> None
         made = paths[f"/api/v1{operation.address}"][operation.method.lower()]
         assert (made["operationId"], made["summary"]) == (name, operation.summary)
         assert made["description"]
+
+
+def test_every_operation_on_a_chart_of_a_material_takes_its_gauge() -> None:
+    """But not what computes its size from the yarn, and a fill, whose parts have one each."""
+    without = set()
+    for name, operation in operations().items():
+        fields = operation.request.model_fields
+        if {"chart", "material"} <= fields.keys() and not issubclass(operation.request, Gauged):
+            without |= {name} if operation.tag != "yarn level" else set()
+    assert without == {"fill"}
 
 
 Lines = Callable[[Any], list[str]]

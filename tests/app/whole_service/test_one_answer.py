@@ -34,7 +34,7 @@ from knitcore.materials import Interval, Material, material
 from knitcore.prediction.prediction import Prediction
 from knitcore.yarn.library.store import stored_charts
 from tests.app.command_line import run
-from tests.app.rest import post
+from tests.app.rest import post, solid
 
 LOADS = [0.01, 0.05, 0.2]
 
@@ -220,6 +220,65 @@ def test_files_and_pages_have_the_size_of_a_known_gauge(
     pages = pattern_pages(piece, acrylic, ChartStyle())
     for texts in (_texts(pages), _report(piece, "acrylic", monkeypatch)):
         assert any(_in_cm(result) in text for text in texts)
+
+
+GAUGED = {
+    "chart": {"fabric": "garter", "columns": 12, "rows": 12},
+    "material": "acrylic",
+    "gauge": {"stitches_per_10_cm": 20, "rows_per_10_cm": 30},
+}
+GIRTHS = [{"at_mm": 0, "girth_mm": 60}, {"at_mm": 40, "girth_mm": 61}]
+
+
+def test_a_counted_piece_has_its_size_flat_unpinned_hanging_pulled_worn_and_in_3d(
+    client: TestClient,
+) -> None:
+    """12 stitches of 5 mm and 12 rows of 3.3 mm; a strip of the cloth weighs accordingly."""
+    yarn = {"linear_density_g_per_m": 0.5}
+    lying, hanging = post(client, "curl", GAUGED), post(client, "hang", GAUGED | yarn)
+    pulled = post(client, "stretch", GAUGED | {"direction": "wale", "strain": 0.1, "steps": 1})
+    worn = post(client, "limb", GAUGED | {"girths": GIRTHS})
+    for size in (
+        (lying["flat_width_mm"], lying["flat_height_mm"]),
+        (hanging["width_mm"], hanging["drop_mm"] / (1 + hanging["lengthening"])),
+        (pulled["width_mm"], pulled["length_mm"]),
+        (worn["places"][0]["rest_mm"], worn["relaxed_length_mm"]),
+    ):
+        assert size == pytest.approx((60, 40), rel=0.01)
+    large = GAUGED | {"chart": {"fabric": "garter", "columns": 40, "rows": 60}}
+    np.testing.assert_allclose(1000 * solid(client, large).extents[:2], 200, rtol=0.03)
+    strip = GAUGED | yarn | {"chart": "K/P"}
+    counted, plain = (
+        post(client, "overhang", body)["weight_g_per_m2"]
+        for body in (strip, strip | {"gauge": None})
+    )
+    record = material("acrylic").record(Fabric.GARTER)
+    area = record.stitch_course_mm * record.stitch_wale_mm
+    assert counted == pytest.approx(plain * (area / (5 * 100 / 30)) ** 0.5)
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "options"),
+    [
+        ("curl", {}, ()),
+        ("hang", {"linear_density_g_per_m": 0.5}, ("--linear-density-g-per-m", 0.5)),
+        ("limb", {"girths": GIRTHS}, ("--girth", "0:60", "--girth", "40:61")),
+    ],
+)
+def test_a_gauge_counts_alike_over_rest_and_on_the_command_line(
+    client: TestClient, name: str, more: dict[str, Any], options: tuple[str | float, ...]
+) -> None:
+    served = post(client, name, GAUGED | more)
+    gauge = "--stitches-per-10-cm", 20, "--rows-per-10-cm", 30
+    shown = run(name, "garter", "--size", "12x12", "--material", "acrylic", *options, *gauge)
+    assert served | {"seconds": 0} == shown | {"seconds": 0}
+
+
+def test_the_border_of_a_counted_piece_is_said_to_be_uncounted(client: TestClient) -> None:
+    body = GAUGED | {"chart": "K/P", "border": "seed", "linear_density_g_per_m": 0.5}
+    assert any("nobody has counted" in note for note in post(client, "border", body)["notes"])
+    plain = post(client, "border", body | {"gauge": None})
+    assert not any("counted" in note for note in plain["notes"])
 
 
 KNOWN = RelaxedSize.from_gauge(stitches_per_10_cm=24, rows_per_10_cm=36)

@@ -1,8 +1,11 @@
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from knitcore import InputError
-from knitcore.design.part_targets import PartTarget, target_maps, target_parts
+from knitcore import Direction, InputError, RelaxedSize, StitchChart, material, predict
+from knitcore.design.part_targets import PartsNow, PartTarget, target_maps, target_parts
 
 
 def box(
@@ -53,3 +56,18 @@ def test_contradictions_are_named_with_both_parts_and_where() -> None:
 def test_unusable_targets_are_refused(target: PartTarget, says: str) -> None:
     with pytest.raises(InputError, match=says):
         target_maps([target], 8, 8)
+
+
+def test_a_counted_part_does_before_it_is_filled_what_its_gauge_says() -> None:
+    """Nobody has counted what it is filled with."""
+    acrylic, chart = material("acrylic"), StitchChart.parse("KKPP").tile(8, 2)
+    size = RelaxedSize(2.9, 2.7)
+    part = replace(box("rib", range(8), range(8), 0.1, None), size=size)
+    now = PartsNow([part], np.ones_like(chart.purl), chart, acrylic)
+    counted, computed = (
+        [math.log(predict(chart, acrylic, known).modulus_n_per_mm(d)) for d in Direction]
+        for known in (size, None)
+    )
+    assert now.log_now[0] == pytest.approx(counted)
+    assert now.log_moduli(chart)[0] == pytest.approx(computed)
+    assert counted[0] != pytest.approx(computed[0])

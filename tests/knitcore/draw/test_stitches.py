@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from knitcore import Fabric, StitchChart
+from knitcore import Fabric, RelaxedSize, StitchChart
 from knitcore.draw.fabric_loops import POINTS, cell_lines, fabric_lines
 from knitcore.draw.instances import COARSE_LEVELS, LEVELS, level_of, stitch_meshes
 from knitcore.draw.lattice import flat_lattice
@@ -154,3 +154,19 @@ def test_some_shapes_are_drawn_as_among_all() -> None:
     np.testing.assert_allclose(some.vertices, every.vertices[[3, 1]], atol=1e-6)
     np.testing.assert_allclose(some.light, every.light[[3, 1]], atol=1e-6)
     assert stitch_meshes(shapes, unstretched(shapes), 14, 6, []).vertices.shape == (0, 96, 3)
+
+
+@pytest.mark.parametrize("chart", [BASKET.tile(2, 2), MIXED])
+def test_counted_stitches_are_as_large_as_counted_and_their_yarn_never_overlaps(
+    chart: StitchChart,
+) -> None:
+    """Loops open in a loose piece; a tight one squeezes its yarn."""
+    shapes = stitch_shapes(chart, ACRYLIC)
+    width, height = shapes.lattice.sizes_mm.mean(axis=(0, 1)).tolist()
+    for factor in (0.7, 1.3):
+        counted = shapes.resized(RelaxedSize(factor * width, factor * height))
+        np.testing.assert_allclose(counted.lattice.centres_mm, factor * shapes.lattice.centres_mm)
+        thinner = min(factor, 1.0)
+        assert counted.yarn_radius_mm == pytest.approx(thinner * shapes.yarn_radius_mm)
+        apart = _strand_distance_mm(shapes)
+        assert _strand_distance_mm(counted) > 0.99 * thinner * apart

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from knitcore import Direction, Fabric, InputError, StitchChart, material
+from knitcore import Direction, Fabric, InputError, RelaxedSize, StitchChart, material
 from knitcore.formats.designs.design_file import design_from_mapping
 from knitcore.formats.designs.garment_design import design_of_plan
 from knitcore.formats.designs.layout import layout_notes
@@ -230,6 +230,9 @@ def test_yarn_of_a_pure_fabric_is_its_loop_length(fabric: Fabric) -> None:
     use = yarn_use(shaped, WOOL, linear_density_tex=500)
     assert use.length_m == pytest.approx(0.2 * (WOOL.record(fabric).loop_length_mm or 0))
     assert use.mass_g == pytest.approx(use.length_m / 2)
+    course, wale = WOOL.record(fabric).stitch_mm
+    loose = yarn_use(shaped, WOOL, size=RelaxedSize(1.2 * course, 1.2 * wale))
+    assert loose.length_m == pytest.approx(1.2 * use.length_m, rel=0.01)
     with pytest.raises(InputError, match="not a linear density"):
         yarn_use(shaped, WOOL, linear_density_tex=0)
 

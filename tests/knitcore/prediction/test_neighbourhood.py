@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from knitcore import StitchChart, material
+from knitcore import RelaxedSize, StitchChart, material
 from knitcore.chart.fabric import PHASES
 from knitcore.prediction import neighbourhood
 from knitcore.prediction.learned import learned
-from knitcore.prediction.neighbourhood import neighbourhood_sizes
+from knitcore.prediction.neighbourhood import counted_over_computed, neighbourhood_sizes
 from tests.knitcore.charts import flipped, stitch_charts
 
 ACRYLIC = material("acrylic:published")
@@ -56,3 +56,15 @@ def test_sizes_do_not_depend_on_what_was_asked_before(monkeypatch: pytest.Monkey
     after = [neighbourhood_sizes(changed, yarn) for yarn in yarns]
     assert np.allclose(after, alone, rtol=1e-12)
     assert not np.allclose(alone[0], alone[1], rtol=1e-3)
+
+
+@settings(max_examples=10)
+@given(stitch_charts(9))
+def test_a_counted_piece_has_the_mean_stitch_that_was_counted(piece: StitchChart) -> None:
+    """Stitches outside its outline do not count."""
+    known, sizes = RelaxedSize(4.0, 3.0), neighbourhood_sizes(piece, ACRYLIC)
+    inside = np.ones_like(piece.purl)
+    inside[0, 1:] = False
+    counted = sizes * counted_over_computed(piece, ACRYLIC, known, inside)
+    assert np.allclose(counted[inside].mean(axis=0), (4.0, 3.0))
+    assert counted_over_computed(piece, ACRYLIC, None).tolist() == [1.0, 1.0]

@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 from skfem import ElementTriP1
 
-from knitcore import CancelledError, Direction, Fabric, InputError, StitchChart, material, predict
+from knitcore import (
+    CancelledError,
+    Direction,
+    Fabric,
+    InputError,
+    RelaxedSize,
+    StitchChart,
+    material,
+    predict,
+)  # fmt: skip
 from knitcore.cloth.cut import (
     Cloth,
     Condition,
@@ -223,6 +232,12 @@ def test_a_piece_covers_itself_with_whole_repeats() -> None:
     assert corners.min(axis=0) == pytest.approx(0.0, abs=1e-9)
     assert corners[:, 0].max() <= cloth.sheet.grid.width_mm
     assert corners[:, 1].max() <= cloth.sheet.grid.length_mm
+
+
+def test_a_piece_of_counted_cloth_has_as_many_stitches_as_its_gauge_says() -> None:
+    square, size = CutPiece.rectangle(100.0, 100.0), RelaxedSize.from_gauge(20, 25)
+    grid = cloth_under(square, StitchChart.parse("K"), ACRYLIC, size=size).sheet.grid
+    assert (grid.columns, grid.rows) == (2 * 20, 2 * 25)  # quarters
 
 
 def test_a_patch_of_mixed_stitches_has_one_law_with_the_strains_of_its_answer() -> None:

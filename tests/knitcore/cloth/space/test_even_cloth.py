@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore import Fabric, InputError, StitchChart, material, predict
+from knitcore import Fabric, InputError, RelaxedSize, StitchChart, material, predict
 from knitcore.cloth.space.bending_constants import bends_of
 from knitcore.cloth.space.even_cloth import EvenCloth, cloth_of, stitch_weights_n, stitched
 from knitcore.cloth.space.stitch_sheet import sheet_of
@@ -95,3 +95,14 @@ def test_stitches_lie_evenly_on_the_rectangles_of_a_sheet() -> None:
     assert stitches[2:, 1:].all()
     assert np.allclose(np.diff(corners[4, :, 0]), 2.5)
     assert np.allclose(np.diff(corners[:, 4, 1]), 1.5)
+
+
+def test_counted_cloth_has_the_size_stretch_and_weight_of_its_gauge() -> None:
+    plain, chart = _cloth("KKPP"), StitchChart.parse("KKPP")
+    size = RelaxedSize(1.1 * plain.stitch_mm[0], 1.1 * plain.stitch_mm[1])
+    counted = cloth_of(chart, ACRYLIC, linear_density_g_per_m=0.5, size=size)
+    answer = predict(chart, ACRYLIC, size)
+    c11, c22, c12, _ = counted.membrane_n_per_mm
+    assert counted.stitch_mm == pytest.approx((size.course_mm, size.wale_mm))
+    assert c11 - c12**2 / c22 == pytest.approx(answer.course.modulus_n_per_mm)
+    assert counted.weight_g_per_m2 == pytest.approx(plain.weight_g_per_m2 / 1.1)

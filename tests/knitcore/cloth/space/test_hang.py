@@ -6,7 +6,7 @@ import meshio
 import numpy as np
 import pytest
 
-from knitcore import CancelledError, Direction, Fabric, StitchChart, material
+from knitcore import CancelledError, Direction, Fabric, RelaxedSize, StitchChart, material
 from knitcore.chart.in_space import corners_of
 from knitcore.cloth.space.hang import HungBy, hang
 from knitcore.garment.shaped import outline_marks
@@ -66,3 +66,15 @@ def test_a_piece_with_a_hole_hangs_by_its_highest_edge(tmp_path: Path) -> None:
     assert np.array_equal(hung.used, corners_of(stitches))
     hung.write(tmp_path / "x.vtu")
     assert len(meshio.read(tmp_path / "x.vtu").cells[0].data) == np.count_nonzero(stitches)
+
+
+def test_a_piece_that_was_counted_larger_hangs_lower_and_has_more_yarn() -> None:
+    """Loops are longer by the root of the area: 1.1 times here."""
+    record = ACRYLIC.record(Fabric.GARTER)
+    counted = RelaxedSize(1.1 * record.stitch_course_mm, 1.1 * record.stitch_wale_mm)
+    plain, large = (
+        hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5, size=size) for size in (None, counted)
+    )
+    assert large.weight_n == pytest.approx(1.1 * plain.weight_n, rel=0.01)
+    assert large.width_mm == pytest.approx(1.1 * plain.width_mm, rel=0.01)
+    assert large.drop_mm == pytest.approx(1.1 * plain.drop_mm, rel=0.01)

@@ -6,7 +6,7 @@ import meshio
 import numpy as np
 import pytest
 
-from knitcore import Direction, InputError, StitchChart, material, predict
+from knitcore import Direction, InputError, RelaxedSize, StitchChart, material, predict
 from knitcore.cloth.space.limb_tube import worn_tube
 from knitcore.draw.placing import lying
 from knitcore.garment.glove import Hand, glove
@@ -147,3 +147,19 @@ def test_a_glove_is_no_tube(around: Direction) -> None:
     limb = MeasuredLimb((0.0, 300.0), (200.0, 260.0))
     with refuses("outline"):
         worn_tube(glove_chart.chart, ACRYLIC, limb, around, stitches=glove_chart.stitch)
+
+
+@pytest.mark.parametrize("around", Direction)
+def test_a_tube_of_a_counted_gauge_is_as_large_and_presses_as_its_gauge_says(
+    around: Direction,
+) -> None:
+    chart, size = StitchChart.parse("KKPP").tile(10, 10), RelaxedSize(3.0, 3.5)
+    limb = MeasuredLimb((0.0, 300.0), (190.0, 190.0))
+    tube = worn_tube(chart, ACRYLIC, limb, around, size=size)
+    along, lines = predict(chart, ACRYLIC, size).along(around), len(tube.places)
+    rests = [place.rest_mm for place in tube.places]
+    assert np.mean(rests) == pytest.approx(400 / lines * size.extent_mm(around))
+    assert tube.relaxed_length_mm == pytest.approx(lines * size.extent_mm(around.other))
+    place = tube.places[lines // 2]
+    alone = place_on(along, 0.0, 190.0, place.rest_mm)
+    assert place.highest_mmhg == pytest.approx(alone.highest_mmhg, rel=0.05)

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipe, ellipk
 
-from knitcore import Fabric, StitchChart, material
+from knitcore import Fabric, RelaxedSize, StitchChart, material
 from knitcore.base.arrays import Array
 from knitcore.chart.phases import continued
 from knitcore.cloth.space import sheet_kernels as kernels
@@ -20,6 +20,7 @@ from knitcore.cloth.space.sheet_shape import settle, shake_mm
 from knitcore.cloth.space.stitch_sheet import StitchSheet, sheet_of
 from knitcore.cloth.space.tangent import Tangent
 from knitcore.garment.shaped import outline_marks
+from knitcore.prediction.neighbourhood import neighbourhood_sizes
 from tests.knitcore.cloth.space.outlines import OUTLINES
 
 MIXED = StitchChart.parse("KKPK\nKPPK\nPPKK\nKPKP\nKKKK")
@@ -238,3 +239,15 @@ def test_the_edge_of_a_hole_curls_like_a_free_edge(axis: int) -> None:
     towards = 1.0 if axis else -1.0
     assert towards * edge[-1] > 0.5
     np.testing.assert_allclose(edge, free, atol=0.2)
+
+
+def test_a_sheet_of_a_known_size_is_wider_and_higher() -> None:
+    chart = StitchChart.parse("KKPP").tile(6, 3)
+    computed, plain = (
+        neighbourhood_sizes(chart, ACRYLIC).mean(axis=(0, 1)),
+        sheet_of(chart, ACRYLIC),
+    )
+    for factor in (1.0, 0.9, 1.2):
+        known = sheet_of(chart, ACRYLIC, size=RelaxedSize(*(factor * computed).tolist()))
+        np.testing.assert_allclose(known.flat_mm, factor * plain.flat_mm, rtol=1e-5, atol=1e-9)
+        np.testing.assert_allclose(known.membrane[:, :2], factor * plain.membrane[:, :2], rtol=1e-5)
