@@ -26,14 +26,13 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def compiled(function: Function) -> Function:
     """The function, compiled by numba when it is first called; it runs without the interpreter's
     lock.
+
+    A division by zero gives infinity, as in numpy, no error. Neither a check for it nor an entry
+    for C is compiled: both would cost time and are not used.
     """
-    made: Function = numba.njit(function, cache=True, nogil=True)
-    return made
-
-
-def compiled_as_numpy(function: Function) -> Function:
-    """The function, :func:`compiled`; a division by zero gives infinity, as in numpy, no error."""
-    made: Function = numba.njit(function, cache=True, nogil=True, error_model="numpy")
+    made: Function = numba.njit(
+        function, cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True
+    )
     return made
 
 
