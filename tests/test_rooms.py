@@ -21,7 +21,7 @@ FLOORS = (
     {"garment"},
     {"cloth"},
     {"draw", "fit"},
-    {"design", "formats", "notebook", "warm_up"},
+    {"design", "formats", "notebook", "compile_share", "warm_up"},
 )
 """Rooms of ``knitcore`` from the ground up; one imports from lower floors only."""
 

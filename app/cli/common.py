@@ -99,18 +99,22 @@ def emit(result: BaseModel, text: str, *, as_json: bool) -> None:
 
 
 class _Compiling(logging.Handler):
-    """Says on stderr that kernels are compiled, and has a second process compile some of them."""
+    """Says on stderr that kernels are compiled, and has other processes compile some of them."""
 
-    second: subprocess.Popen[bytes] | None = None
+    def __init__(self) -> None:
+        super().__init__()
+        self.others: list[subprocess.Popen[bytes]] = []
 
     def emit(self, record: logging.LogRecord) -> None:
         click.echo(record.getMessage(), err=True)
+        share = [sys.executable, "-m", "knitcore.compile_share", record.__dict__["compiling"]]
         if (os.cpu_count() or 1) > 1:
-            self.second = subprocess.Popen(  # noqa: S603 - a module of our own
-                [sys.executable, "-m", "knitcore.warm_up", record.__dict__["compiling"]],
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-            )
+            self.others = [
+                subprocess.Popen(  # noqa: S603 - a module of our own
+                    [*share, number], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+                )
+                for number in ("0", "1")
+            ]
 
 
 @contextlib.contextmanager
@@ -124,6 +128,6 @@ def telling_what_is_compiled() -> Iterator[None]:
     finally:
         log.removeHandler(handler)
         log.setLevel(logging.NOTSET)
-        if handler.second is not None:
-            handler.second.kill()
-            handler.second.wait()
+        for other in handler.others:
+            other.kill()
+            other.wait()

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from knitcore.base.arrays import Array
-from knitcore.base.compiled import compiled_as_numpy
+from knitcore.base.compiled import compiled
 from knitcore.chart.fabric import Fabric
 from knitcore.yarn.kernels.potential import potential_and_derivatives
 from knitcore.yarn.kernels.structures import ContactLaw
@@ -35,7 +35,7 @@ def midpoint_tables() -> tuple[Array, Array]:
     return bernstein(t), bernstein(t, 1)
 
 
-@compiled_as_numpy
+@compiled
 def contact_points(
     controls: Array, places: Array, slopes: Array
 ) -> tuple[Array, Array, Array, Array]:
@@ -62,7 +62,7 @@ def contact_points(
     return points, tangents, lengths, arclengths
 
 
-@compiled_as_numpy
+@compiled
 def _boxes(points: Array, curves: int) -> Array:
     """Extent of each curve's points in the plane, mm: shape (curves, low or high, x or y)."""
     out = np.empty((curves, 2, 2))
@@ -76,7 +76,7 @@ def _boxes(points: Array, curves: int) -> Array:
     return out
 
 
-@compiled_as_numpy
+@compiled
 def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
     """Tell whether a box and another one, shifted by (x, y), are farther apart than the reach."""
     return bool(
@@ -87,7 +87,7 @@ def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
     )
 
 
-@compiled_as_numpy
+@compiled
 def curve_contact_energy(
     controls: Array,
     cell: tuple[float, float],

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from knitcore.base.arrays import Array
-from knitcore.base.compiled import compiled_as_numpy
+from knitcore.base.compiled import compiled
 from knitcore.chart.fabric import Fabric
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -81,14 +81,14 @@ def unknown_names(fabric: Fabric) -> tuple[str, ...]:
     )
 
 
-@compiled_as_numpy
+@compiled
 def _cross(a: ComplexArray, b: ComplexArray, out: ComplexArray) -> None:
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         out[i] = a[j] * b[k] - a[k] * b[j]
 
 
-@compiled_as_numpy
+@compiled
 def _frame(p: ComplexArray, axes: ComplexArray) -> None:
     """Write the rows e1, e2, e3 of a crossover: R y, R z, R x with R = Rx Ry Rz."""
     sx, sy, sz = np.sin(p[2]), np.sin(p[3]), np.sin(p[4])
@@ -98,7 +98,7 @@ def _frame(p: ComplexArray, axes: ComplexArray) -> None:
     axes[2, 0], axes[2, 1], axes[2, 2] = cy * cz, cx * sz - sx * sy * cz, sx * sz + cx * sy * cz
 
 
-@compiled_as_numpy
+@compiled
 def _direct(
     end: ComplexArray, p: ComplexArray, at: int, axes: ComplexArray, strand: float, last: float
 ) -> None:
@@ -121,7 +121,7 @@ def _direct(
         end[2, m] = bend * (cosine * binormal[m] + sine * turned[m])
 
 
-@compiled_as_numpy
+@compiled
 def _crossover(p: ComplexArray) -> ComplexArray:
     """Ends A0, A1, B0, B1 of crossover 1: position, tangent, curvature vector, shape (4, 3, 3)."""
     last_axes, first_axes = np.empty((3, 3), np.complex128), np.empty((3, 3), np.complex128)
@@ -145,7 +145,7 @@ def _crossover(p: ComplexArray) -> ComplexArray:
     return ends
 
 
-@compiled_as_numpy
+@compiled
 def _moved(
     ends: ComplexArray, mirror_x: float, mirror_z: float, x: complex, y: complex
 ) -> ComplexArray:
@@ -162,7 +162,7 @@ def _moved(
     return out
 
 
-@compiled_as_numpy
+@compiled
 def _bezier(
     start: ComplexArray,
     alpha0: complex,
@@ -181,7 +181,7 @@ def _bezier(
         out[3, m] = out[4, m] + alpha1 * alpha1 * end[2, m] / 20.0 - beta1 * end[1, m]
 
 
-@compiled_as_numpy
+@compiled
 def control_points(p: ComplexArray, course_odd: bool, wale_odd: bool) -> ComplexArray:
     """Control points, mm, shape (8 curves, 6 points, 3), from the 34 parameters.
 
@@ -207,7 +207,7 @@ def control_points(p: ComplexArray, course_odd: bool, wale_odd: bool) -> Complex
     return out
 
 
-@compiled_as_numpy
+@compiled
 def control_points_and_jacobian(
     parameters: Array, course_odd: bool, wale_odd: bool
 ) -> tuple[Array, Array]:

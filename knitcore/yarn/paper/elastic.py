@@ -10,7 +10,7 @@ from math import comb
 import numpy as np
 
 from knitcore.base.arrays import Array
-from knitcore.base.compiled import compiled_as_numpy
+from knitcore.base.compiled import compiled
 
 ORDER = 5
 QUADRATURE_POINTS = 24
@@ -37,7 +37,7 @@ def gauss_tables() -> tuple[Array, Array]:
     return weights / 2.0, np.stack([bernstein(t, derivative) for derivative in (1, 2, 3)])
 
 
-@compiled_as_numpy
+@compiled
 def elastic_energy(  # noqa: PLR0915 - one derivation, forward and back
     controls: Array,
     bending: float,
