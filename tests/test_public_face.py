@@ -24,6 +24,7 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.read.chart_files import PieceInFile
 from knitcore.formats.write.knitout import KnitoutProgram
 from knitcore.materials import Interval
+from knitcore.prediction.learned import LearnedModel
 from knitcore.yarn.study.relax import RelaxOptions
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -98,8 +99,9 @@ def test_a_wrong_argument_is_refused_with_what_to_give(name: str, parameter: str
             assert error.remedy.endswith("."), error  # noqa: PT017
 
 
-NO_RESULTS = {StitchChart, Interval, KnitoutProgram, PieceInFile}
-"""Kinds that functions return, but that are inputs, a pair of numbers, or the content of a file."""
+NO_RESULTS = {StitchChart, Interval, KnitoutProgram, LearnedModel, PieceInFile}
+"""Kinds that functions return, but that are inputs, a pair of numbers, a model, or the content of a
+file."""
 
 
 def test_results_of_functions_become_plain_values() -> None:

@@ -1,4 +1,4 @@
-"""What a start costs: CPU until the page answers, memory at rest, and CPU of commands.
+"""Cost of a start: CPU until the page answers, memory at rest, and CPU of commands.
 
 Files are warm and the database is up to date. CPU is that of a process and those it started, and
 the median of several starts. Every figure is printed with its target and their ratio; the exit code

@@ -21,7 +21,7 @@ from knitcore.yarn.study.bent_cell import BendingResponse, settled
 from knitcore.yarn.study.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
 
 STANDARD_GRAVITY = 9.80665
-"""Of the earth, in m/s²."""
+"""Acceleration of free fall on the earth, m/s²."""
 FAR_APART = 1.5
 """Factor between the two states' rigidities from which on a rigidity is a range."""
 MAX_STITCHES = 36
