@@ -70,13 +70,13 @@ serve:           ## Run the tool and print its address
 	@nice -n 19 $(MAKE) --no-print-directory --silent $(VENV)/.compiled & exec $(BIN)/knitcore serve $(OPTIONS)
 
 # --- checking ---------------------------------------------------------------------------------
-test: $(VENV)/.installed-tests frontend/node_modules/.installed ## Run the default suite (browser tests install Chromium if missing)
-	scripts/ensure-browsers chromium
+test: $(VENV)/.installed-tests frontend/node_modules/.installed ## Run the default suite (with Chromium, nginx and PostgreSQL of Debian)
+	scripts/ensure-packages chromium nginx-light postgresql
 	@$(MAKE) --no-print-directory -j 3 $(VENV)/.compiled frontend-check page
 	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
 
 test-slow: $(VENV)/.installed-tests $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
-	scripts/ensure-browsers chromium firefox-esr
+	scripts/ensure-packages chromium firefox-esr nginx-light postgresql
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow --durations 12
 
 ten-runs: ## Run both suites ten times, two at a time, in fresh clones; logs in build
@@ -93,7 +93,7 @@ coverage: $(VENV)/.installed-tests page ## Tell which lines the default suite ru
 	$(BIN)/coverage report
 
 test-hard: $(VENV)/.installed-tests ## Kill the service 50 times, send thousands of hostile requests, take disk, database and workers away
-	dpkg -s postgresql >/dev/null 2>&1 || apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends postgresql
+	scripts/ensure-packages postgresql
 	$(BIN)/pytest -m postgres tests/app
 	KNITCORE_KILLS=50 KNITCORE_OUTAGE_S=30 KNITCORE_SCHEMA_EXAMPLES=60 KNITCORE_SOAK_S=1800 $(BIN)/pytest -s \
 		tests/app/whole_service/test_faults.py tests/app/whole_service/test_documented.py tests/app/whole_service/test_soak.py \

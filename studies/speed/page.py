@@ -343,7 +343,7 @@ def pauses(browser: Browser, url: str) -> None:
 def main() -> None:
     weight()
     if not CHROMIUM.exists():
-        print("needs Chromium for the rest (scripts/ensure-browsers chromium)")
+        print("needs Chromium for the rest (scripts/ensure-packages chromium)")
         return
     with (
         tempfile.TemporaryDirectory() as folder,

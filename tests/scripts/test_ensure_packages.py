@@ -1,4 +1,4 @@
-"""Browsers for the tests are installed by one process at a time."""
+"""Packages for the tests are installed by one process at a time."""
 
 import os
 import subprocess
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-SCRIPT = Path(__file__).parents[2] / "scripts" / "ensure-browsers"
+SCRIPT = Path(__file__).parents[2] / "scripts" / "ensure-packages"
 APT = """#!/bin/sh
 echo begin >>"$(dirname "$0")/log"
 sleep 0.2
@@ -20,6 +20,6 @@ def test_two_installations_take_turns(tmp_path: Path) -> None:
     program.write_text(APT, encoding="utf-8")
     program.chmod(0o755)
     environment = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
-    both = [subprocess.Popen([SCRIPT, "a-browser"], env=environment) for _ in range(2)]
+    both = [subprocess.Popen([SCRIPT, "a-package"], env=environment) for _ in range(2)]
     assert [process.wait(timeout=120) for process in both] == [0, 0]
     assert (tmp_path / "log").read_text(encoding="utf-8").split() == ["begin", "end"] * 4
