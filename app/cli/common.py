@@ -119,7 +119,7 @@ class _Compiling(logging.Handler):
 
 @contextlib.contextmanager
 def telling_what_is_compiled() -> Iterator[None]:
-    """Report on stderr that kernels are compiled, and compile some of them in a second process."""
+    """Report on stderr that kernels are compiled, and compile some of them in other processes."""
     log, handler = logging.getLogger("knitcore.base.compiled"), _Compiling()
     log.setLevel(logging.DEBUG)
     log.addHandler(handler)

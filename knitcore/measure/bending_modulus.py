@@ -16,13 +16,13 @@ import scipy
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_linear_density, check_positive, check_range
 from knitcore.base.errors import InputError
+from knitcore.base.gravity import STANDARD_GRAVITY_M_PER_S2
 from knitcore.base.kinds import as_numbers
 from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.result import Result
 from knitcore.measure.centreline import Centreline, load_grey, trace_centreline
 from knitcore.measure.heavy_elastica import heavy_elastica
 
-STANDARD_GRAVITY_M_PER_S2 = 9.80665
 FITTED_SHARE = 0.5
 """Share of the yarn, from the clamp, that is fitted."""
 LOG_LOADS = np.linspace(np.log(0.1), np.log(3e5), 60)

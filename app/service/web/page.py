@@ -38,7 +38,7 @@ def serve_page(app: FastAPI) -> None:
     @app.get("/", include_in_schema=False)
     async def page(request: Request) -> Response:
         answer = packed(folder / "index.html", request.headers, CHECK_AGAIN)
-        answer.background = BackgroundTask(request.app.state.visited.set)
+        answer.background = BackgroundTask(_note_visit, request.app)
         return answer
 
     if not built:  # the bundle has a smaller one
@@ -53,6 +53,11 @@ def serve_page(app: FastAPI) -> None:
             return Response(content, media_type="text/javascript", headers=headers)
 
     app.mount("/static", PageFiles(folder, FOR_EVER if built else CHECK_AGAIN), name="static")
+
+
+async def _note_visit(app: FastAPI) -> None:
+    """Tell the service that its page is sent; in its own loop, as an event demands."""
+    app.state.visited.set()
 
 
 def page_files() -> Path:

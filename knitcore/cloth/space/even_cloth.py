@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array, rounded
 from knitcore.base.bounds import check_linear_density
+from knitcore.base.gravity import STANDARD_GRAVITY_M_PER_S2
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.in_space import ClothInSpace
 from knitcore.chart.phases import pure_fabric, quarter_phases
@@ -27,12 +28,7 @@ from knitcore.materials.material import loop_lengths_mm
 from knitcore.prediction.predict import predict
 from knitcore.prediction.size import RelaxedSize
 from knitcore.yarn.library.yarns import yarn_for
-from knitcore.yarn.study.bending import (
-    MAX_STITCHES,
-    ROLLS_FROM,
-    STANDARD_GRAVITY,
-    bending_length_mm,
-)
+from knitcore.yarn.study.bending import MAX_STITCHES, ROLLS_FROM, bending_length_mm
 
 _MAX_POISSON = 0.95
 """Upper limit of √(ν_xy ν_yx); from 1 on, the membrane energy is not positive definite."""
@@ -79,7 +75,7 @@ class EvenCloth:
     @property
     def weight_g_per_m2(self) -> float:
         """Mass per area."""
-        return 1e9 * self.weight_n_per_mm2 / STANDARD_GRAVITY
+        return 1e9 * self.weight_n_per_mm2 / STANDARD_GRAVITY_M_PER_S2
 
     @property
     def curls(self) -> bool:
@@ -256,7 +252,7 @@ def stitch_weights_n(
     quarters = quarter_phases(chart, periodic=periodic, stitch=stitches)
     by_stitch = quarters.reshape(chart.rows, 2, chart.columns, 2).transpose(0, 2, 1, 3)
     loops = loop_lengths_mm(by_stitch.reshape(chart.rows, chart.columns, 4), material)
-    weights = 1e-6 * STANDARD_GRAVITY * linear_density_g_per_m * loops
+    weights = 1e-6 * STANDARD_GRAVITY_M_PER_S2 * linear_density_g_per_m * loops
     return np.asarray(weights if stitches is None else np.where(stitches, weights, 0.0))
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from knitcore.base.arrays import Array
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled
+from knitcore.base.gravity import STANDARD_GRAVITY_M_PER_S2
 from knitcore.chart.in_space import ClothInSpace, corners_of
 from knitcore.chart.phases import continued
 from knitcore.chart.stitch_chart import StitchChart, as_chart
@@ -19,7 +20,6 @@ from knitcore.cloth.space.stitch_sheet import sheet_of
 from knitcore.materials import Material, as_material
 from knitcore.prediction.neighbourhood import counted_over_computed
 from knitcore.prediction.size import RelaxedSize
-from knitcore.yarn.study.bending import STANDARD_GRAVITY
 
 
 class HungBy(Choice):
@@ -56,7 +56,7 @@ class HungPiece(ClothInSpace):
     @property
     def weight_g(self) -> float:
         """Mass of the piece, g."""
-        return 1000.0 * self.weight_n / STANDARD_GRAVITY
+        return 1000.0 * self.weight_n / STANDARD_GRAVITY_M_PER_S2
 
 
 def hang(

@@ -17,6 +17,7 @@ import skimage
 from knitcore.base.arrays import Array, Mask
 from knitcore.base.bounds import check_range
 from knitcore.base.errors import InputError
+from knitcore.base.gravity import STANDARD_GRAVITY_M_PER_S2
 from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.result import Result
@@ -24,7 +25,7 @@ from knitcore.measure.photos.photo_scale import MARKS_MM, PhotoScale, coin_scale
 from knitcore.measure.photos.stitch_spacing import StitchSpacing, stitch_spacing
 from knitcore.measure.stretch_points import StretchPoint
 
-GRAVITY_N_PER_G = 9.80665e-3
+GRAVITY_N_PER_G = 1e-3 * STANDARD_GRAVITY_M_PER_S2
 WORKING_PIXELS = 3000
 """Long side of the photo that is read."""
 MAX_BLUR = 0.16

@@ -14,14 +14,13 @@ import numpy as np
 
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError
+from knitcore.base.gravity import STANDARD_GRAVITY_M_PER_S2
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import check_stitches
 from knitcore.yarn.solve.splines import RelaxedRepeat
 from knitcore.yarn.study.bent_cell import BendingResponse, settled
 from knitcore.yarn.study.lowest import FOLLOWED_UP_TO, can_be_followed, without_mirrors
 
-STANDARD_GRAVITY = 9.80665
-"""Acceleration of free fall on the earth, m/s²."""
 FAR_APART = 1.5
 """Factor between the two states' rigidities from which on a rigidity is a range."""
 MAX_STITCHES = 36
@@ -188,7 +187,9 @@ def weight_n_per_mm2(
     linear_density_g_per_m: float, loop_length_mm: float, stitch_area_mm2: float
 ) -> float:
     """Return the weight per area, N/mm², of cloth with so much yarn in a stitch."""
-    return 1e-6 * STANDARD_GRAVITY * linear_density_g_per_m * loop_length_mm / stitch_area_mm2
+    return (
+        1e-6 * STANDARD_GRAVITY_M_PER_S2 * linear_density_g_per_m * loop_length_mm / stitch_area_mm2
+    )
 
 
 def bending_length_mm(rigidity_n_mm: float, weight_n_per_mm2: float) -> float:

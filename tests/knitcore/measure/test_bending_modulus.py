@@ -8,11 +8,8 @@ import pytest
 from PIL import Image
 
 from knitcore import InputError
-from knitcore.measure.bending_modulus import (
-    STANDARD_GRAVITY_M_PER_S2,
-    MeasuredBending,
-    measure_bending,
-)
+from knitcore.base.gravity import STANDARD_GRAVITY_M_PER_S2
+from knitcore.measure.bending_modulus import MeasuredBending, measure_bending
 from knitcore.measure.centreline import load_grey, trace_centreline
 from tests.knitcore.measure.synthetic import hanging_yarn, save_photo
 from tests.knitcore.refusals import refuses
