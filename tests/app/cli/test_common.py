@@ -81,45 +81,24 @@ class Names(event.Listener):
 event.register("numba:compile", Names())
 import knitcore
 from knitcore.cloth.space.curl import curl
-from knitcore.yarn.library.yarns import yarn_for
 
-chart, acrylic = knitcore.StitchChart.parse("K/P"), knitcore.material("acrylic")
-if sys.argv[1] == "yarn":
-    used = yarn_for(acrylic, chart)
-    knitcore.relax(chart, used.yarn, used.loop_length_mm)
-else:
-    curl(chart.tile(2, 4), acrylic)
+curl(knitcore.StitchChart.parse("K/P").tile(2, 4), knitcore.material("acrylic"))
 print(*compiled)
 """
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("study", "module", "spared"),
-    [
-        (
-            "yarn",
-            "knitcore.yarn.kernels.curve_samples",
-            {"yarn.kernels.contact.contact_hessian", "yarn.kernels.scatter.scatter_local",
-             "linear.dense.eliminate", "linear.dense.substitute", "linear.dense.solved",
-             "yarn.solve.clasps._crossings"},
-        ),
-        (
-            "shape",
-            "knitcore.cloth.space.sheet_kernels",
-            {"linear.front_tree._eliminate", "linear.front_tree._forward",
-             "linear.front_tree._backward", "cloth.space.tangent._hinges"},
-        ),
-    ],
-)  # fmt: skip
-def test_other_processes_compile_what_is_needed_late(
-    tmp_path: Path, study: str, module: str, spared: set[str]
-) -> None:
+def test_other_processes_compile_what_is_needed_late(tmp_path: Path) -> None:
     def compiled(cache: str) -> set[str]:
-        names = python("-c", COMPILED, study, env=_cache(tmp_path / cache)).stdout.split()
+        names = python("-c", COMPILED, env=_cache(tmp_path / cache)).stdout.split()
         return {name.removeprefix("knitcore.") for name in names}
 
     for number in ("0", "1"):
+        module = "knitcore.cloth.space.sheet_kernels"
         python("-m", "knitcore.compile_share", module, number, env=_cache(tmp_path / "kept"))
+    spared = {
+        *(f"linear.front_tree.{name}" for name in ("_eliminate", "_forward", "_backward")),
+        "cloth.space.tangent._hinges",
+    }
     assert spared <= compiled("new")
     assert not spared & compiled("kept")

@@ -54,15 +54,16 @@ def _charts() -> dict[str, StitchChart]:
 
 
 CHARTS = _charts()
-ALL, SOME = list(CHARTS.values()), list(CHARTS.values())[::60]
+ALL = list(CHARTS.values())
+MANY, SOME = ALL[::4], ALL[::60]
 
 in_yarns = pytest.mark.parametrize(
     ("yarn", "charts"),
     [
         *((yarn, SOME) for yarn in ("acrylic", "glove-wool", "lace-bamboo")),
         *(
-            pytest.param(yarn, ALL, marks=pytest.mark.slow)
-            for yarn in ("acrylic", "acrylic:simulation", "cotton")
+            pytest.param(yarn, charts, marks=pytest.mark.slow)
+            for yarn, charts in (("acrylic", ALL), ("acrylic:simulation", MANY), ("cotton", MANY))
         ),
     ],
     ids=lambda given: given if isinstance(given, str) else f"{len(given)} charts",

@@ -36,8 +36,9 @@ def request_of(kind: str) -> str:
 
 
 @pytest.fixture
-def runner(database: Database, tmp_path: Path, compute: Compute) -> JobRunner:
-    return runner_of(database, compute, folder=tmp_path)
+def runner(sqlite_database: Database, tmp_path: Path, compute: Compute) -> JobRunner:
+    """On one database: the kinds differ in what they compute, not in how they are kept."""
+    return runner_of(sqlite_database, compute, folder=tmp_path)
 
 
 def test_every_kind_has_an_example() -> None:
