@@ -269,7 +269,10 @@ def main() -> int:
     chosen = [n for n in ATTACKS if not given.names or any(part in n for part in given.names)]
     missed = 0
     print(f"load {os.getloadavg()[0]:.1f}; longest wait of another user, ms (at most {WAIT_MS:g})")
-    print(f"{'attack':30} {'healthz':>8} {'list':>8} {'stroke':>8} {'readyz':>8}  MB   answers")
+    print(
+        f"{'attack':30} {'healthz':>8} {'list':>8} {'stroke':>8} {'readyz':>8}  MB   answers",
+        flush=True,
+    )
     with tempfile.TemporaryDirectory() as name, _serving(Path(name)) as (service, tokens):
         headers = {"Authorization": f"Bearer {tokens['alice']}"}
         with httpx.Client(base_url=service.url, headers=headers, timeout=60) as alice:
