@@ -1,23 +1,28 @@
 """Health, readiness and metrics."""
 
 import asyncio
+from typing import Any
 
 from fastapi import APIRouter, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 from pydantic import BaseModel, Field
 
-from .doctor import examine
+from .doctor import Checks, examine
 from .identity import LOCAL_USER, current_user
+from .limits.fair_queue import FairLock
 from .problems import Problem, RefusedError, UnavailableError
 from .store.database import Database
+from .web.bodies import BoundedRoute
 from .web.sessions import Tokens
 
-router = APIRouter(tags=["service"])
+router = APIRouter(route_class=BoundedRoute, tags=["service"])
 
 PATIENCE_S = 5.0
 NEEDED = frozenset({"database", "free space", "cluster"})
 """Checks without which the service cannot work."""
+PROBE = "readyz"
+"""Who takes a thread for the checks: nobody's requests are in line before them."""
 
 
 class Health(BaseModel):
@@ -52,24 +57,32 @@ async def healthz() -> Health:
 async def readyz(request: Request) -> Readiness:
     """Run the checks of `knitcore doctor`: while this fails, send requests elsewhere.
 
-    It fails without database, disk or cluster, and where no thread is free: it takes one, looks
-    for a login and waits for its turn to write, as requests do. `knitcore doctor` reports the rest.
+    It fails without database, disk or cluster, and where no thread is free: it takes one in turn,
+    looks for a login and waits for its turn to write, as requests do. `knitcore doctor` reports
+    the rest.
     """
-    state = request.app.state
-    database: Database = state.database
+    threads: FairLock = request.app.state.threads
+    database: Database = request.app.state.database
     try:
         async with asyncio.timeout(PATIENCE_S):
-            report = await run_in_threadpool(examine, state.settings, database, state.cluster)
-            for check in report.failed:
-                if check.name in NEEDED:
-                    raise NotReadyError(check.problem or check.name, remedy=check.remedy)
-            await asyncio.to_thread(Tokens(database).find, identifier="")
+            async with threads.turn(PROBE):
+                report = await run_in_threadpool(_examined, request.app.state)
             await database.written(lambda _: None)
     except TimeoutError:
         raise NotReadyError(
             "The database, the cluster or a thread of the service does not answer."
         ) from None
     return Readiness(checks={check.name: check.ok for check in report.checks})
+
+
+def _examined(state: Any) -> Checks:
+    """The checks, none of those that are needed failed, and after them a look for a login."""
+    report = examine(state.settings, state.database, state.cluster)
+    for check in report.failed:
+        if check.name in NEEDED:
+            raise NotReadyError(check.problem or check.name, remedy=check.remedy)
+    Tokens(state.database).find(identifier="")
+    return report
 
 
 @router.get("/metrics", summary="Numbers for Prometheus", response_class=Response)

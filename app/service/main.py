@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import logging
 import os
+import sys
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
@@ -39,6 +40,7 @@ from .settings import Settings
 from .store.database import Database
 from .store.material_store import MaterialStore
 from .store.schema import migrate
+from .web.bodies import BoundedRoute
 from .web.errors import install_problem_handlers
 from .web.observing import Metrics, Observer, configure_logging
 from .web.page import serve_page
@@ -57,8 +59,12 @@ JANITOR_PERIOD_S = 30.0
 TIDY_PERIOD_S = 3600.0
 READY_AFTER_S = 2.0
 THREADS = 8
-"""Threads of the service besides the event loop. Python runs one at a time: with FastAPI's 40, the
-loop could wait for all of them each time it returns from reading or sending."""
+"""Threads of requests. Python runs one at a time: with FastAPI's 40, the event loop could wait for
+all of them each time it returns from reading or sending."""
+THREADS_EACH = 2
+"""Of these, the most that one of several users takes at once."""
+SPARE_THREADS = 2
+"""Threads of FastAPI for what takes none of these in turn, such as light work, one at a time."""
 
 
 @contextlib.asynccontextmanager
@@ -68,7 +74,7 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
     asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(THREADS, "service"))
-    current_default_thread_limiter().total_tokens = THREADS  # FastAPI's
+    current_default_thread_limiter().total_tokens = THREADS + SPARE_THREADS  # FastAPI's
     given: Database | None = app.state.database
     app.state.database = given or await asyncio.to_thread(_open_database, chosen)
     token = chosen.token.get_secret_value() if chosen.token else None
@@ -78,6 +84,8 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.compute = Compute(
         _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
     )
+    each = THREADS_EACH if chosen.asks_for_login else THREADS
+    app.state.threads = FairLock(THREADS, most_each=each, most_waiting=sys.maxsize)
     app.state.large_bodies = FairLock()
     app.state.light_work = FairLock()
     app.state.drawing = FairLock()
@@ -141,6 +149,7 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
     app.state.watched = Watched()
     app.state.passes = ViewPasses()
     app.state.metrics = Metrics(_gauges(app))
+    app.router.route_class = BoundedRoute
     install_problem_handlers(app)
     install_schema(app)
     for router in routers():

@@ -6,7 +6,7 @@ that only the relay knows keeps them out. viser has no setting for it, so the fu
 it starts its websocket server is wrapped; if that ever stops working, no view is opened.
 
 Its messages also wait in a queue that can fall asleep for good while a scene is being written; see
-:class:`NewsEvent`.
+:class:`NewsEvent`. It takes pictures that are packed already, and does not keep them unpacked too.
 """
 
 import asyncio
@@ -17,6 +17,7 @@ from typing import Any
 
 import rich
 import viser
+import viser._scene_api as viser_scene
 import viser.infra._infra as viser_infra
 import websockets.asyncio.server
 from viser.infra._async_message_buffer import AsyncMessageBuffer
@@ -104,6 +105,16 @@ class _Queue(AsyncMessageBuffer):
 
 
 vars(viser_infra)["AsyncMessageBuffer"] = _Queue
+
+_pack: Any = vars(viser_scene)["_encode_image_binary"]
+
+
+def _packed(image: Any, *args: Any, **options: Any) -> Any:
+    """A picture's format and content; bytes are a PNG."""
+    return ("png", image) if isinstance(image, bytes) else _pack(image, *args, **options)
+
+
+vars(viser_scene)["_encode_image_binary"] = _packed
 
 # Only viser's name for the package is replaced; everybody else's stays as it is.
 _server = SimpleNamespace(**{**vars(websockets.asyncio.server), "serve": _serve})

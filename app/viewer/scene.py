@@ -13,7 +13,6 @@ from knitcore.draw.instances import level_of
 
 from ..drawing.colours import SKIN
 from ..drawing.fabric import Box, Drawing, FabricScene, Ground
-from .balls import Picture
 from .camera import CameraSide, place_camera
 from .cloth import UNITS_PER_MM, ShownStitches
 
@@ -66,12 +65,12 @@ class SceneWriter:
         """The fabric shown."""
         return self._drawing
 
-    def write(self, drawing: Drawing, face: Picture | None = None) -> int:
+    def write(self, drawing: Drawing, face: bytes | None = None) -> int:
         """Show a fabric to everybody who looks; returns the number of stitches drawn as yarn.
 
         Parameters
         ----------
-        face : picture of a cloth of many stitches, for the eye that is far away.
+        face : picture of a cloth of many stitches, for the eye that is far away; a PNG.
         """
         part, ground = drawing.part, drawing.ground
         with self._lock:
@@ -181,13 +180,13 @@ class SceneWriter:
         vertices = _units(scene.body.sunk_mm(scene.top_mm) - np.append(middle, 0.0))
         self._put_mesh("body", vertices, scene.body.faces, SKIN)
 
-    def show_back(self, drawing: Drawing, picture: Picture | None) -> None:
+    def show_back(self, drawing: Drawing, picture: bytes | None) -> None:
         """Show the picture of a cloth's back, unless the cloth was changed meanwhile."""
         with self._lock:
             if drawing is self._drawing:
                 self._draw_sheet("back", drawing.ground, picture)
 
-    def _draw_sheet(self, side: str, ground: Ground, picture: Picture | None) -> None:
+    def _draw_sheet(self, side: str, ground: Ground, picture: bytes | None) -> None:
         """A picture of the cloth in its middle plane; browsers show it from afar
         (frontend/viser/yarn.js)."""
         if picture is None:
@@ -195,8 +194,9 @@ class SceneWriter:
             return
         turned, depth = SHEETS[side]
         width, height = UNITS_PER_MM * ground.extent_mm
+        png: Any = picture  # packed already; see app.viewer.private_port
         image = self._server.scene.add_image(
-            f"/{side}", picture, float(width), float(height), format="png", wxyz=turned,
+            f"/{side}", png, float(width), float(height), format="png", wxyz=turned,
             position=(0.0, 0.0, -depth * UNITS_PER_MM * ground.top_mm), **UNSHADED,
         )  # fmt: skip
         self._put(side, image)

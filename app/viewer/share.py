@@ -18,7 +18,7 @@ from ..requests.charts import to_chart
 from ..service.problems import ServiceError
 from .incoming import WantedPicture
 from .relay import with_scripts
-from .sheet import sheet_picture
+from .sheet import sheet_png
 from .still import still_png
 from .views import View, new_view
 
@@ -160,8 +160,8 @@ def _recorded(request: SharedViewRequest, computed: Computed, context: Context) 
         if request.animated:
             view.show(drawing)
         else:
-            view.show(drawing, sheet_picture(first))
-            view.writer.show_back(drawing, sheet_picture(first, back=True))
+            view.show(drawing, sheet_png(first))
+            view.writer.show_back(drawing, sheet_png(first, back=True))
         serializer = view.server.get_scene_serializer()
         played = False  # over and over, unless it has no length
         for scene in scenes:

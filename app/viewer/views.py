@@ -12,7 +12,6 @@ from ..drawing.fabric import Drawing, Ground
 from ..service.limits.user_limits import USER_LIMITS, OverLimitError
 from ..service.listeners import Listeners
 from ..service.problems import ServiceError, UnavailableError
-from .balls import Picture
 from .camera import FARTHEST
 from .cloth import UNITS_PER_MM
 from .incoming import WantedPicture
@@ -51,7 +50,7 @@ class View:
         """Loopback port of the viser server."""
         return int(self.server.get_port())
 
-    def show(self, drawing: Drawing, face: Picture | None = None) -> int:
+    def show(self, drawing: Drawing, face: bytes | None = None) -> int:
         """Draw a fabric; returns the number of stitches drawn as yarn."""
         self.last_used = time.monotonic()
         return self.writer.write(drawing, face)

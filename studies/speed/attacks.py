@@ -13,6 +13,7 @@ import base64
 import contextlib
 import io
 import json
+import multiprocessing
 import os
 import random
 import socket
@@ -21,7 +22,10 @@ import tempfile
 import threading
 import time
 import zipfile
+from collections import Counter
 from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection
+from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +47,8 @@ WAIT_MS = 100.0
 FRAME_BYTES = 15_900_000
 AT_ONCE = 12
 """Requests that Mallory makes at once."""
+STOPS_WITHIN_S = 90.0
+FORKED = multiprocessing.get_context("fork")
 Attack = Callable[[httpx.Client, int], object]
 
 CHART = {"chart": "KP/PK", "material": "acrylic"}
@@ -181,9 +187,7 @@ ATTACKS: dict[str, Attack] = {
 }  # fmt: skip
 
 
-def _attacking(
-    url: str, token: str, attack: Attack, stop: threading.Event, sent: list[int]
-) -> None:
+def _repeat(url: str, token: str, attack: Attack, stop: Event, sent: Counter[int]) -> None:
     """Repeat an attack, and count its answers by status."""
     headers = {"Authorization": f"Bearer {token}", "Content-Type": "application/json"}
     with httpx.Client(base_url=url, headers=headers, timeout=60) as client:
@@ -192,7 +196,34 @@ def _attacking(
             turn += 1
             with contextlib.suppress(httpx.TransportError):
                 answer = attack(client, turn)
-                sent.append(answer.status_code if isinstance(answer, httpx.Response) else 0)
+                sent[answer.status_code if isinstance(answer, httpx.Response) else 0] += 1
+
+
+def _attack(url: str, token: str, name: str, stop: Event, counted: Connection) -> None:
+    """All of Mallory's threads; runs in a process of its own, or Alice would wait for them here."""
+    sent = Counter[int]()
+    given = url, token, ATTACKS[name], stop, sent
+    threads = [threading.Thread(target=_repeat, args=given, daemon=True) for _ in range(AT_ONCE)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(STOPS_WITHIN_S)
+    counted.send(sent)
+
+
+@contextlib.contextmanager
+def _attacked(url: str, token: str, name: str) -> Iterator[Counter[int]]:
+    """Attack while the block runs; yields the answers by status, which are counted after it."""
+    stop, (counted, counting) = FORKED.Event(), FORKED.Pipe(duplex=False)
+    mallory = FORKED.Process(target=_attack, args=(url, token, name, stop, counting), daemon=True)
+    mallory.start()
+    sent = Counter[int]()
+    try:
+        yield sent
+    finally:
+        stop.set()
+        sent.update(counted.recv())
+        mallory.join()
 
 
 def waits_ms(alice: httpx.Client, design: str, seconds: float) -> dict[str, float]:
@@ -238,7 +269,10 @@ def main() -> int:
     chosen = [n for n in ATTACKS if not given.names or any(part in n for part in given.names)]
     missed = 0
     print(f"load {os.getloadavg()[0]:.1f}; longest wait of another user, ms (at most {WAIT_MS:g})")
-    print(f"{'attack':30} {'healthz':>8} {'list':>8} {'stroke':>8} {'readyz':>8}  MB   answers")
+    print(
+        f"{'attack':30} {'healthz':>8} {'list':>8} {'stroke':>8} {'readyz':>8}  MB   answers",
+        flush=True,
+    )
     with tempfile.TemporaryDirectory() as name, _serving(Path(name)) as (service, tokens):
         headers = {"Authorization": f"Bearer {tokens['alice']}"}
         with httpx.Client(base_url=service.url, headers=headers, timeout=60) as alice:
@@ -247,22 +281,12 @@ def main() -> int:
             ).json()["id"]
             waits_ms(alice, design, 2.0)
             for attack in chosen:
-                stop, sent = threading.Event(), list[int]()
-                given_to = service.url, tokens["mallory"], ATTACKS[attack], stop, sent
-                mallory = [
-                    threading.Thread(target=_attacking, args=given_to, daemon=True)
-                    for _ in range(AT_ONCE)
-                ]
-                for thread in mallory:
-                    thread.start()
-                worst = waits_ms(alice, design, given.seconds)
-                stop.set()
-                for thread in mallory:
-                    thread.join(90)
-                answers = {status: sent.count(status) for status in sorted(set(sent))}
+                with _attacked(service.url, tokens["mallory"], attack) as sent:
+                    worst = waits_ms(alice, design, given.seconds)
                 numbers = " ".join(f"{wait:8.0f}" for wait in worst.values())
+                memory = resident_mb(service.pid)
                 print(
-                    f"{attack:30} {numbers} {resident_mb(service.pid):4.0f}  {answers}", flush=True
+                    f"{attack:30} {numbers} {memory:4.0f}  {dict(sorted(sent.items()))}", flush=True
                 )
                 missed += max(worst.values()) > WAIT_MS
     print(f"{missed} of {len(chosen)} over the target; load {os.getloadavg()[0]:.1f}")

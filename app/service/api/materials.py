@@ -3,7 +3,6 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Request
-from fastapi.concurrency import run_in_threadpool
 
 from knitcore.materials.material_document import MaterialDocument
 
@@ -26,27 +25,26 @@ Identifier = Annotated[str, Path(max_length=200, examples=["acrylic"])]
 
 
 @router.post("/materials", status_code=201, summary="Add a material of your own")
-async def post_material(body: MaterialDocument, owner: Owner, store: Here) -> MaterialSummary:
+def post_material(body: MaterialDocument, owner: Owner, store: Here) -> MaterialSummary:
     """Add a material, or replace one of yours with the same identifier. Everybody on this service
     can use it."""
-    kept = await run_in_threadpool(store.keep, body, owner)
-    return summary(kept, added_by_you=True)
+    return summary(store.keep(body, owner), added_by_you=True)
 
 
 @router.get("/materials/{identifier}/document", summary="A material as a file")
-async def get_material_document(identifier: Identifier, request: Request) -> MaterialDocument:
+def get_material_document(identifier: Identifier, request: Request) -> MaterialDocument:
     """Return a material as a file, which `knitcore` reads and which you can add as your own."""
     context: Context = request.app.state.answers.context()
-    material = await run_in_threadpool(context.material, identifier)
+    material = context.material(identifier)
     plain = material.identifier.removeprefix("own:").rpartition(".")
     document = MaterialDocument.from_material(material)
     return document.model_copy(update={"identifier": plain[0] or document.identifier})
 
 
 @router.delete("/materials/{identifier}", status_code=204, summary="Remove a material of your own")
-async def delete_material(identifier: Identifier, owner: Owner, store: Here) -> None:
+def delete_material(identifier: Identifier, owner: Owner, store: Here) -> None:
     """Remove a material. Designs that use it keep its name and ask for another one."""
-    if not await run_in_threadpool(store.remove, identifier, owner):
+    if not store.remove(identifier, owner):
         raise NotFoundError(
             f"You added no material {identifier}.",
             field="identifier",

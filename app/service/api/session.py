@@ -11,10 +11,11 @@ from ..identity import current_session
 from ..limits.user_limits import USER_LIMITS, ConcurrencyLimit, Use
 from ..problems import NotFoundError, Problem
 from ..store.material_store import MaterialStore
+from ..web.bodies import BoundedRoute
 from ..web.security import OPENED_BY, SESSION_COOKIE
 from ..web.sessions import Login, Sessions, SignedIn
 
-router = APIRouter(tags=["session"])
+router = APIRouter(route_class=BoundedRoute, tags=["session"])
 
 SessionId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="Id of a session.")]
 

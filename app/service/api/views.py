@@ -23,7 +23,6 @@ from ...drawing.fabric import Box, Drawing
 from ...operations.perform import Reply
 from ...requests.base import RequestModel
 from ...requests.charts import OutlineInput, size_of_chart
-from ...viewer.balls import Picture
 from ...viewer.camera import CameraSide
 from ...viewer.scene import STILL_S, round_length_mm
 from ...viewer.share import (
@@ -35,7 +34,7 @@ from ...viewer.share import (
     shared_solid,
     shared_still,
 )
-from ...viewer.sheet import build_back, build_drawing, sheet_picture
+from ...viewer.sheet import build_back, build_drawing, sheet_png
 from ...viewer.views import View, Views
 from ..compute.compute import Compute
 from ..designs.parameters import DesignId, private_name
@@ -99,15 +98,15 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     context = state.answers.context()
     passes: ViewPasses = state.passes
     code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
-    made: tuple[Drawing, Picture | None] | None = None
+    made: tuple[Drawing, bytes | None] | None = None
     if computed is None and is_large(body):
         supplies = await state.answers.supplies(body)
         made = await _by_worker(request, build_drawing, body, supplies)
 
-    def draw() -> tuple[Drawing, Picture | None, ViewResult]:
+    def draw() -> tuple[Drawing, bytes | None, ViewResult]:
         if made is None:
             scene = build_scene(body, computed, context)
-            drawing, face = scene.drawing(), sheet_picture(scene)
+            drawing, face = scene.drawing(), sheet_png(scene)
         else:
             drawing, face = made
         return (

@@ -142,15 +142,25 @@ class FairQueue(Generic[Place]):
 
 
 class FairLock:
-    """A lock that one caller holds at a time; users take turns.
+    """A lock that one caller holds at a time, or a few; users take turns.
 
     It keeps the threads of the service that compute to one: Python runs one at a time, so that two
     would be no faster, and the event loop would wait for both.
+
+    Parameters
+    ----------
+    places, most_each, most_waiting : of its :class:`FairQueue`.
     """
 
-    def __init__(self) -> None:
+    def __init__(
+        self, places: int = 1, *, most_each: int | None = None, most_waiting: int = MAX_WAITING
+    ) -> None:
         self._queue = FairQueue(
-            [None], most_background=1, most_waiting=MAX_WAITING, most_waiting_each=0
+            [None] * places,
+            most_background=places,
+            most_waiting=most_waiting,
+            most_waiting_each=0,
+            most_each=most_each,
         )
 
     @contextlib.asynccontextmanager

@@ -37,6 +37,9 @@ from ..problems import DispossessedError, VanishedError
 from .backend import Backend
 
 BUSY_TIMEOUT_MS = 10_000
+CONNECTIONS = 24
+"""Connections that stay open: as many as there are threads that read and write. One more would be
+opened for each time that it is used, which takes longer than most reads."""
 BESIDE = ("-wal", "-shm")
 """Files that SQLite keeps beside its own while it is open: the newest changes, and their index."""
 STOP_FIRST = (
@@ -98,7 +101,9 @@ class SqliteFile(Backend):
         self._check_whole()
         _make(self.path)
         self._ours[self.path] = _identity(self.path)
-        self.engine = create_engine("sqlite://", creator=self.connect, poolclass=QueuePool)
+        self.engine = create_engine(
+            "sqlite://", creator=self.connect, poolclass=QueuePool, pool_size=CONNECTIONS
+        )
 
         @event.listens_for(self.engine, "connect")
         def _(connection: Any, _record: Any) -> None:

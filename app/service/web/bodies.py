@@ -8,6 +8,7 @@ would not help: Python runs one at a time.
 
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
+from inspect import iscoroutinefunction
 from typing import Any
 
 from fastapi import Request, Response
@@ -44,14 +45,23 @@ OrUndecoded = WrapValidator(
 """Mark of a body's model: a worker may decode the body if it is large."""
 
 
+Handler = Callable[[Request], Coroutine[Any, Any, Response]]
+
+
 class BoundedRoute(APIRoute):
-    """A route whose large bodies are decoded in turn."""
+    """A route whose large bodies are decoded in turn, and which takes a thread in turn.
+
+    FastAPI runs functions that are not asynchronous in threads. Without turns, one user's requests
+    would take all of them, and everybody else would stand in line behind those that wait.
+    """
 
     to_worker = False
 
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+    def get_route_handler(self) -> Handler:
         """Return the function that handles a request."""
         handle = super().get_route_handler()
+        if not iscoroutinefunction(self.endpoint):
+            handle = _in_turn(handle)
 
         async def bounded(request: Request) -> Response:
             length = request.headers.get("content-length", "0")
@@ -69,6 +79,17 @@ class BoundedRoute(APIRoute):
                 return await handle(_Decoded(request.scope, request.receive, content))
 
         return bounded
+
+
+def _in_turn(handle: Handler) -> Handler:
+    """Handle requests in a thread each, of which users take turns."""
+
+    async def in_turn(request: Request) -> Response:
+        threads: FairLock = request.app.state.threads
+        async with threads.turn(current_user.get()):
+            return await handle(request)
+
+    return in_turn
 
 
 class WorkerRoute(BoundedRoute):

@@ -6,7 +6,9 @@ must refuse requests that another site's page makes it send.
 
 import asyncio
 import logging
-from collections.abc import Mapping
+import sys
+from collections.abc import Callable, Mapping
+from typing import TypeVar
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -16,6 +18,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
 from ..identity import NOBODY, current_session, current_user
+from ..limits.fair_queue import FairLock
 from ..limits.user_limits import ConcurrencyLimit, RateLimit
 from ..problems import (
     RefusedError,
@@ -31,10 +34,11 @@ from .bodies import limited
 from .errors import answer_to, unexpected
 from .passes import Opener, ViewPasses
 from .reference import PAGES
-from .sessions import REMEMBERED_S, SESSION_S, Login
+from .sessions import REMEMBERED_S, SESSION_S, Login, NotRememberedError
 from .sign_in import PATH, sign_in_form, sign_in_page, token_page
 
 log = logging.getLogger("knitcore.app")
+T = TypeVar("T")
 
 SESSION_COOKIE = "knitcore_session"
 GONE = 499
@@ -46,6 +50,8 @@ LIMITS = "knitcore.limits"
 LOGIN_FAILURES = 20
 """Unknown tokens that one address may try before it must wait 10 s for each. A right token is
 always accepted: 256 random bits cannot be guessed, and a stranger cannot lock others out."""
+LOOKUPS = 4
+"""Logins that are read from the database at once, one for each user or stranger's address."""
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
 HOST_REMEDY = "Use its own address, or add the name to KNITCORE_ALLOWED_HOSTS."
 OPEN_PATHS = PAGES | {"/healthz", "/readyz"}
@@ -111,6 +117,7 @@ class AccessControl:
             self.hosts |= {settings.host.lower()}
         self.rate = RateLimit(settings.requests_per_s, int(4 * settings.requests_per_s))
         self.failures = RateLimit(0.1, LOGIN_FAILURES)
+        self.lookups = FairLock(LOOKUPS, most_each=1, most_waiting=sys.maxsize)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Check one connection and pass it on."""
@@ -252,7 +259,7 @@ class AccessControl:
         """Let the holder of a pass in while the token or session that asked for it is valid."""
         if opener.opened_by is not None:
             login: Login = scope["app"].state.login
-            if not await asyncio.to_thread(login.is_open, *opener.opened_by):
+            if not await self._known(scope, login.is_open, *opener.opened_by):
                 raise RefusedError(
                     "This pass has ended.", field="pass", remedy="Show the view again."
                 )
@@ -268,7 +275,7 @@ class AccessControl:
         headers = Headers(scope=scope)
         token, cookie = _bearer(headers), _cookie(headers)
         link = _link_token(scope.get("query_string", b""))
-        identifier, user, session = await asyncio.to_thread(_who, login, token, link, cookie)
+        identifier, user, session = await self._known(scope, _who, login, token, link, cookie)
         if not user:
             return self._stranger(scope, tried=bool(token or link))
         current_user.set(user)
@@ -281,7 +288,7 @@ class AccessControl:
 
     def _stranger(self, scope: Scope, *, tried: bool) -> Response:
         """Ask for a token; after several unknown ones the address must wait."""
-        if tried and self.failures.take((scope.get("client") or ("unknown", 0))[0])[1]:
+        if tried and self.failures.take(_address(scope))[1]:
             raise TooManyError("Too many unknown tokens came from this address.", 10.0)
         if _is_sign_in(scope) or (
             scope["path"] == "/" and "text/html" in Headers(scope=scope).get("accept", "")
@@ -308,7 +315,7 @@ class AccessControl:
         site led here or another user is signed in."""
         headers = Headers(scope=scope)
         cookie, login = _cookie(headers), scope["app"].state.login
-        before = (await asyncio.to_thread(login.by_session, cookie))[1] if cookie else ""
+        before = (await self._known(scope, login.by_session, cookie))[1] if cookie else ""
         led = headers.get("sec-fetch-site", "none") not in ("none", "same-origin")
         if led or before not in ("", user):
             return sign_in_page(user, before, link, scope["path"])
@@ -318,7 +325,7 @@ class AccessControl:
         """Begin a session after the click on the sign-in page."""
         token, to = await sign_in_form(scope, receive)
         login: Login = scope["app"].state.login
-        identifier, user = await asyncio.to_thread(login.by_token, token)
+        identifier, user = await self._known(scope, login.by_token, token)
         if user:
             return await self._begin(scope, identifier, user, to)
         return self._stranger(scope, tried=True)
@@ -354,7 +361,7 @@ class AccessControl:
             working = asyncio.ensure_future(self.app(scope, receive, answered.send))
             try:
                 while not (await asyncio.wait({working}, timeout=REMEMBERED_S))[0]:
-                    if not await _is_open(scope) and await answered.take_over():
+                    if not await self._is_open(scope) and await answered.take_over():
                         await _stop(working)
                         return False
                 await working
@@ -363,18 +370,26 @@ class AccessControl:
                 if not working.done():  # this task itself is cancelled
                     await _stop(working)
 
+    async def _is_open(self, scope: Scope) -> bool:
+        """Return whether the token or session of a request is valid. A request that ends its own
+        session is answered nevertheless."""
+        if OPENED_BY not in scope:
+            return True
+        login: Login = scope["app"].state.login
+        try:
+            is_open = await self._known(scope, login.is_open, *scope[OPENED_BY])
+        except StoreError:  # connections outlast a lost database
+            return True
+        return is_open or OPENED_BY not in scope
 
-async def _is_open(scope: Scope) -> bool:
-    """Return whether the token or session of a request is valid. A request that ends its own
-    session is answered nevertheless."""
-    if OPENED_BY not in scope:
-        return True
-    login: Login = scope["app"].state.login
-    try:
-        is_open = await asyncio.to_thread(login.is_open, *scope[OPENED_BY])
-    except StoreError:  # connections outlast a lost database
-        return True
-    return is_open or OPENED_BY not in scope
+    async def _known(self, scope: Scope, question: Callable[..., T], *given: object) -> T:
+        """The answer of a login: at once where it is remembered, otherwise in the turn of the user
+        who was known before, or of the stranger's address."""
+        try:
+            return question(*given, at_once=True)
+        except NotRememberedError as unknown:
+            async with self.lookups.turn(unknown.user or _address(scope)):
+                return await asyncio.to_thread(question, *given)
 
 
 async def _stop(working: asyncio.Future[None]) -> None:
@@ -401,13 +416,19 @@ def _is_sign_in(scope: Scope) -> bool:
     return scope["type"] == "http" and (scope["method"], scope["path"]) == ("POST", PATH)
 
 
-def _who(login: Login, token: str, link: str, cookie: str) -> tuple[str, str, str]:
+def _address(scope: Scope) -> str:
+    return str((scope.get("client") or ("unknown", 0))[0])
+
+
+def _who(
+    login: Login, token: str, link: str, cookie: str, *, at_once: bool = False
+) -> tuple[str, str, str]:
     """(token's id, user, session) of a request."""
     if token:  # a header with a token overrides link and cookie
-        return *login.by_token(token), ""
-    if link and (who := login.by_token(link))[1]:
+        return *login.by_token(token, at_once=at_once), ""
+    if link and (who := login.by_token(link, at_once=at_once))[1]:
         return *who, ""
-    session, user = login.by_session(cookie) if cookie else ("", "")
+    session, user = login.by_session(cookie, at_once=at_once) if cookie else ("", "")
     return "", user, session
 
 

@@ -234,8 +234,19 @@ class Sessions:
         self._database.write(lambda c: c.execute(old))
 
 
+class NotRememberedError(LookupError):
+    """Error: only the database knows; ``user`` is whom it named last, empty if it named nobody."""
+
+    def __init__(self, user: str) -> None:
+        super().__init__(user)
+        self.user = user
+
+
 class Login:
     """Finds the user behind a token or a session, and remembers it for a moment.
+
+    With ``at_once`` its methods do not read the database: they raise a
+    :class:`NotRememberedError` where they would have to.
 
     Parameters
     ----------
@@ -251,20 +262,20 @@ class Login:
         self._ended: set[str] = set()
         self._remembered: dict[tuple[str, str], tuple[float, tuple[str, str]]] = {}
 
-    def by_token(self, token: str) -> tuple[str, str]:
+    def by_token(self, token: str, *, at_once: bool = False) -> tuple[str, str]:
         """(id, user) of a token; empty strings if it is unknown."""
         hashed = hash_of(token)
         if self._environment is not None and hmac.compare_digest(hashed, self._environment):
             return ENVIRONMENT, LOCAL_USER
-        return self._ask("hashed", hashed)
+        return self._ask("hashed", hashed, at_once)
 
-    def by_session(self, cookie: str) -> tuple[str, str]:
+    def by_session(self, cookie: str, *, at_once: bool = False) -> tuple[str, str]:
         """(session, user) of a cookie; empty strings if this service did not sign it."""
         try:
             session = str(self._signer.loads(cookie))  # how old it is, the database knows
         except (BadSignature, ValueError, TypeError):
             return "", ""
-        user = self._ask("session", session)[1]
+        user = self._ask("session", session, at_once)[1]
         return (session, user) if user else ("", "")
 
     def begin(self, identifier: str, user: str) -> str:
@@ -280,11 +291,11 @@ class Login:
             self._ended.add(session)
         return is_ended
 
-    def is_open(self, identifier: str, session: str) -> bool:
+    def is_open(self, identifier: str, session: str, *, at_once: bool = False) -> bool:
         """Return whether the token or the session that began something still opens the service."""
         if session:
-            return bool(self._ask("session", session)[1])
-        return identifier == ENVIRONMENT or bool(self._ask("identifier", identifier)[1])
+            return bool(self._ask("session", session, at_once)[1])
+        return identifier == ENVIRONMENT or bool(self._ask("identifier", identifier, at_once)[1])
 
     def _opened_with(self, identifier: str) -> str:
         """Return the part of its token that a session stores.
@@ -305,14 +316,19 @@ class Login:
             return (token, user) if same else ("", "")
         return self._tokens.find(identifier=token) if token else ("", "")
 
-    def _ask(self, by: str, value: str) -> tuple[str, str]:
+    def _ask(self, by: str, value: str, at_once: bool) -> tuple[str, str]:
         if value in self._ended:
             return "", ""
         at = time.monotonic()
         known = self._remembered.get((by, value))
         if known is not None and at - known[0] < REMEMBERED_S:
             return known[1]
+        if at_once:
+            raise NotRememberedError(known[1][1] if known is not None else "")
         login = self._find(by, value)
+        if not login[1]:  # a stranger's tries would drive out what users are known by
+            self._remembered.pop((by, value), None)
+            return login
         if len(self._remembered) >= MAX_REMEMBERED:
             self._remembered.clear()
         self._remembered[by, value] = (at, login)

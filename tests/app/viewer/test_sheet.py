@@ -1,10 +1,14 @@
 """Pictures of cloth that is too large to be drawn as tubes."""
 
+from io import BytesIO
+
 import numpy as np
 import pytest
+from PIL import Image
 
 from app.drawing.fabric import FabricScene
-from app.viewer.sheet import sheet_picture
+from app.viewer.sheet import packed_png, sheet_picture
+from app.viewer.views import new_view
 from tests.app.drawing.test_design_view import scene_of
 
 ROWS = 32
@@ -70,3 +74,24 @@ def test_there_is_no_cloth_beyond_the_outline() -> None:
 def test_few_stitches_are_seen_one_by_one() -> None:
     small = {"chart": "KKPP\nKKPP", "material": "acrylic"}
     assert sheet_picture(scene_of(small)) is None
+
+
+def test_a_packed_picture_is_the_picture() -> None:
+    picture = np.random.default_rng(1).integers(0, 256, (7, 5, 4), np.uint8)
+    with Image.open(BytesIO(packed_png(picture))) as image:
+        assert image.mode == "RGBA"
+        assert np.array_equal(np.asarray(image), picture)
+
+
+def test_a_view_keeps_a_picture_packed_only() -> None:
+    of, view = scene(), new_view()
+    try:
+        face = packed_png(sides(of)[0])
+        view.show(of.drawing(), face)
+        shown = view.server.scene.get_handle_by_name("/face")
+        assert shown is not None
+        assert [value for value in vars(shown).values() if isinstance(value, np.ndarray)] == []
+        assert vars(shown)["_image"] is face
+        assert shown._data is face  # type: ignore[attr-defined]
+    finally:
+        view.stop()

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,7 @@ from app.service.settings import Settings
 from app.service.store.backup import back_up
 from app.service.store.database import Database
 from app.service.store.schema import migrate
-from app.service.store.sqlite import STOP_FIRST, Holder, SqliteFile, holder_of
+from app.service.store.sqlite import CONNECTIONS, STOP_FIRST, Holder, SqliteFile, holder_of
 from knitcore.base.errors import InputError
 from tests.app.clients import served
 from tests.app.databases import is_whole, opened, sqlite
@@ -171,6 +172,18 @@ def test_a_file_that_cannot_be_opened_is_refused_in_words(tmp_path: Path) -> Non
     for place, why in ((tmp_path, "it is no file"), (tmp_path / "no" / "file", "No such file")):
         with pytest.raises(InputError, match=rf"cannot be opened \({why}"):
             Database(f"sqlite:///{place}")
+
+
+def test_as_many_connections_stay_open_as_threads_read(sqlite_database: Database) -> None:
+    def used() -> set[int]:
+        with ExitStack() as readers:
+            connections = [
+                readers.enter_context(sqlite_database.read()) for _ in range(CONNECTIONS)
+            ]
+            return {id(c.connection.driver_connection) for c in connections}
+
+    assert used() == used()
+    assert sqlite_database.engine.pool.checkedin() == CONNECTIONS  # type: ignore[attr-defined]
 
 
 def test_the_file_of_a_lock_names_its_holder() -> None:

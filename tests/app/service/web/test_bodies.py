@@ -2,6 +2,10 @@
 
 import json
 import logging
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from inspect import iscoroutinefunction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,12 +14,16 @@ from fastapi.testclient import TestClient
 
 from app.requests.base import RequestModel
 from app.requests.charts import MAX_FIELD
+from app.service import health
 from app.service.api import routers
-from app.service.identity import LOCAL_USER
+from app.service.identity import LOCAL_USER, current_user
 from app.service.limits.user_limits import USER_LIMITS
+from app.service.main import THREADS, THREADS_EACH
+from app.service.store.database import Database
 from app.service.web.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
 from app.service.web.security import GONE
-from tests.app.clients import limited, state_of
+from tests.app.clients import limited, login, served, state_of
+from tests.app.running import wait_until
 
 PADDING = " " * SMALL_BYTES
 WISH = {"chart": "KP\nPK", "material": "acrylic"}
@@ -36,6 +44,40 @@ def test_every_address_with_a_body_keeps_the_rule() -> None:
     bodies = [route for route in routes if isinstance(route, APIRoute) and route.body_field]
     assert len(bodies) > 30
     assert [route.path for route in bodies if not isinstance(route, BoundedRoute)] == []
+
+
+def test_every_address_that_takes_a_thread_takes_it_in_turn(client: TestClient) -> None:
+    pages = client.app.routes  # type: ignore[attr-defined]
+    routes = [*pages, *(r for router in (*routers(), health.router) for r in router.routes)]
+    threaded = [
+        r for r in routes if isinstance(r, APIRoute) and not iscoroutinefunction(r.endpoint)
+    ]
+    assert len(threaded) > 20
+    assert [route.path for route in threaded if not isinstance(route, BoundedRoute)] == []
+
+
+def test_one_user_leaves_threads_to_others_and_to_probes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page, held, go_on = Database.page, list[str](), threading.Event()
+
+    def slowly(*given: Any, **more: Any) -> Any:
+        if current_user.get() == "ada":
+            held.append("ada")
+            go_on.wait(150)
+        return page(*given, **more)
+
+    monkeypatch.setattr(Database, "page", slowly)
+    many = 2 * THREADS
+    with served(require_login=True, data_dir=tmp_path) as client, ThreadPoolExecutor(many) as pool:
+        ada, bob = login(client, "ada"), login(client, "bob")
+        answers = [pool.submit(client.get, "/api/v1/designs", headers=ada) for _ in range(many)]
+        wait_until(lambda: state_of(client).concurrency.held("connections", "ada") == many)
+        assert client.get("/api/v1/designs", headers=bob).status_code == 200
+        assert client.get("/readyz").status_code == 200
+        assert len(held) == THREADS_EACH
+        go_on.set()
+        assert {answer.result().status_code for answer in answers} == {200}
 
 
 def test_a_worker_decodes_a_large_request(client: TestClient, computed: list[Any]) -> None:

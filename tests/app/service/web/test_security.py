@@ -1,5 +1,7 @@
 import logging
+import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,14 +10,16 @@ import pytest
 from fastapi.testclient import TestClient
 from itsdangerous import URLSafeTimedSerializer
 
-from app.service.main import create_app
+from app.service.main import THREADS, create_app
 from app.service.settings import Settings
 from app.service.web.bodies import MAX_VALUES
 from app.service.web.security import LOGIN_FAILURES, PAGE_POLICY, with_own_cookie_only
+from app.service.web.sessions import Login, Tokens
 from app.viewer import relay
 from knitcore import InputError
 from tests.app.clients import bearing, closed_with, login, served, state_of, tokens_of, watching
 from tests.app.command_line import printed, refused, run
+from tests.app.running import wait_until
 
 TOKEN = "a-long-enough-token"
 PATTERNS = "/api/v1/patterns"
@@ -121,6 +125,54 @@ def test_wrong_tokens_of_a_neighbour_close_no_session() -> None:
         assert client.get("/api/v1/patterns").status_code == 200
         wrong = client.get("/api/v1/patterns", headers=bearing("guess"))
         assert wrong.status_code == 429  # who brings a token is not let in by a session
+
+
+@pytest.mark.parametrize("remembered_s", [0.0, 1000.0])
+def test_wrong_tokens_are_looked_up_one_by_one_and_hold_up_no_user(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, remembered_s: float
+) -> None:
+    monkeypatch.setattr("app.service.web.sessions.REMEMBERED_S", remembered_s)
+    find, by_token, go_on = Tokens.find, Login.by_token, threading.Event()
+    came, looked_up = list[str](), list[str]()
+
+    def found_slowly(tokens: Tokens, **which: str) -> tuple[str, str]:
+        user = find(tokens, **which)
+        if not user[1]:
+            looked_up.append(which["hashed"])
+            go_on.wait(150)
+        return user
+
+    def noted(login: Login, token: str, *, at_once: bool = False) -> tuple[str, str]:
+        came.append(token)
+        return by_token(login, token, at_once=at_once)
+
+    many = 2 * THREADS
+    with guarded_service(require_login=True, data_dir=tmp_path) as lab:
+        ada = login(lab, "ada")
+        assert lab.get(PATTERNS, headers=ada).status_code == 200
+        monkeypatch.setattr(Tokens, "find", found_slowly)
+        monkeypatch.setattr(Login, "by_token", noted)
+        with ThreadPoolExecutor(many) as strangers:
+            tries = [
+                strangers.submit(lab.get, PATTERNS, headers=bearing(f"{n}")) for n in range(many)
+            ]
+            wait_until(lambda: len(set(came)) == many and looked_up)
+            assert lab.get(PATTERNS, headers=ada).status_code == 200
+            assert len(looked_up) == 1
+            go_on.set()
+            assert {attempt.result().status_code for attempt in tries} == {401}
+
+
+def test_wrong_tokens_make_no_user_forgotten(
+    lab: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.service.web.sessions.MAX_REMEMBERED", 2)
+    monkeypatch.setattr("app.service.web.sessions.REMEMBERED_S", 1000.0)
+    users: Login = state_of(lab).login
+    ada = tokens_of(lab).create("ada")
+    assert users.by_token(ada.token) == (ada.id, "ada")
+    assert {users.by_token(f"wrong {n}") for n in range(5)} == {("", "")}
+    assert users.by_token(ada.token, at_once=True) == (ada.id, "ada")
 
 
 def test_users_see_only_their_own(lab: TestClient) -> None:
