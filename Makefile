@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help install page client types wheel serve test test-slow ten-runs any-machine test-hard frontend-check lint format coverage mutation audit bench docs examples stitches lock clean
+.PHONY: help install page types wheel serve test test-slow ten-runs any-machine test-hard frontend-check lint format coverage mutation audit bench docs stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -48,11 +48,8 @@ page: frontend/dist/index.html ## Bundle the page
 types: $(VENV)/.installed ## Make the page's types from the service
 	@PYTHONPATH=. $(BIN)/python scripts/page_types.py
 
-client: $(VENV)/.installed ## Make the Python client from the service, in build/client
-	@PYTHONPATH=. $(BIN)/python scripts/client_code.py
-
-wheel: page client ## Build wheel and sdist with the page in them, and the client's, into dist
-	$(BIN)/uv build --quiet --out-dir dist . && $(BIN)/uv build --quiet --wheel --out-dir dist build/client
+wheel: page ## Build wheel and sdist with the page in them into dist
+	$(BIN)/uv build --quiet --out-dir dist .
 
 install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the product in it, and the page
 
@@ -102,7 +99,7 @@ test-hard: $(VENV)/.installed-tests ## Kill the service 50 times, send thousands
 frontend-check: types frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test
 
-lint: types client $(VENV)/.installed-tests frontend/node_modules/.installed ## ruff, mypy --strict; tsc, eslint, prettier
+lint: types $(VENV)/.installed-tests frontend/node_modules/.installed ## ruff, mypy --strict; tsc, eslint, prettier
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -141,9 +138,6 @@ mutation: $(VENV)/.installed-tests ## Would the tests notice? Changes the code i
 	$(BIN)/pip install --quiet --disable-pip-version-check mutmut==3.8.1
 	$(BIN)/mutmut run --max-children 2
 	$(BIN)/mutmut results
-
-examples: $(VENV)/.installed ## Ask the service for the answers that the reference of the API shows
-	PYTHONPATH=. $(BIN)/python scripts/api_examples.py
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
 	$(BIN)/python -m scripts.stored_stitches $(OPTIONS)

@@ -42,7 +42,7 @@ MADE = (ROOT / "docs" / "reference", ROOT / "docs" / "gallery.md")
 FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SHELL = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
-ROOMS = "app|client|deploy|docs|examples|frontend|knitcore|scripts|studies|tests"
+ROOMS = "app|deploy|docs|examples|frontend|knitcore|scripts|studies|tests"
 PATH = re.compile(rf"`((?:[\w.-]+/)*[\w.-]+\.(?:js|mjs|py)|(?:[\w.-]+/)+|(?:{ROOMS})/[\w./-]+)`")
 """A program, a folder with its slash, or a path that begins in one of our folders."""
 DOTTED = re.compile(r"`((?:knitcore|app|scripts|studies)(?:\.\w+)+)`")

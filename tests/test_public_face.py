@@ -43,7 +43,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "strip_test": dict.fromkeys(inspect.signature(knitcore.strip_test).parameters)
     | {
         "chart": "KP/PK", "material": "acrylic", "direction": "wale", "strain": 0.1, "steps": 1,
-        "model": "full", "clamps": "clamped", "draw_in": False, "cancelled": lambda: True,
+        "model": "full", "clamps": "clamped", "cancelled": lambda: True,
     },
     "relax": dict.fromkeys(RelaxOptions.__annotations__)
     | {

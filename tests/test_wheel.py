@@ -1,4 +1,4 @@
-"""The wheels in empty environments: the whole tool, the library alone, the client alone."""
+"""The wheels in empty environments: the whole tool, and the library alone."""
 
 import json
 import os
@@ -12,7 +12,6 @@ import httpx2 as httpx
 import pytest
 
 from app.service import VERSION
-from scripts.client_code import write
 
 ROOT = Path(__file__).resolve().parents[1]
 UV = Path(sys.executable).with_name("uv")
@@ -33,24 +32,22 @@ def run(*command: str | Path, cwd: Path) -> str:
 
 @pytest.fixture(scope="module")
 def wheels(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with both wheels, that of the tool made from its sdist."""
+    """A folder with the wheel, made from its sdist."""
     page = ROOT / "frontend" / "dist" / "index.html"
     assert page.is_file(), "make page"
     folder = tmp_path_factory.mktemp("dist")
     run(UV, "build", "--quiet", "--out-dir", folder, ROOT, cwd=folder)
-    write(folder / "client")
-    run(UV, "build", "--quiet", "--wheel", "--out-dir", folder, folder / "client", cwd=folder)
     return folder
 
 
 @pytest.fixture
 def installed(wheels: Path, tmp_path: Path) -> Callable[..., Path]:
-    """Install a wheel into an empty environment; returns its folder of programs."""
+    """Install the wheel into an empty environment; returns its folder of programs."""
 
-    def install(name: str, extra: str = "") -> Path:
+    def install(extra: str = "") -> Path:
         run(sys.executable, "-m", "venv", tmp_path / "venv", cwd=tmp_path)
         programs = tmp_path / "venv" / "bin"
-        [wheel] = wheels.glob(f"{name}-{VERSION}-*.whl")
+        [wheel] = wheels.glob(f"knitcore-{VERSION}-*.whl")
         python = programs / "python"
         (tmp_path / ".venv").symlink_to(python.parent.parent)  # the script installs into it
         (python.parent / "uv").symlink_to(UV)
@@ -87,7 +84,7 @@ def serving(tmp_path: Path) -> Iterator[Callable[[Path], str]]:
 def test_the_whole_tool_runs_without_checkout_and_node(
     installed: Callable[..., Path], serving: Callable[[Path], str], tmp_path: Path
 ) -> None:
-    programs = installed("knitcore", "[service]")
+    programs = installed("[service]")
     knitcore = programs / "knitcore"
     assert run(knitcore, "--version", cwd=tmp_path).split()[-1] == VERSION
     assert json.loads(run(knitcore, *PREDICT, cwd=tmp_path))["rows"]
@@ -105,7 +102,7 @@ def test_the_whole_tool_runs_without_checkout_and_node(
 
 
 def test_the_library_alone_is_light(installed: Callable[..., Path], tmp_path: Path) -> None:
-    programs = installed("knitcore")
+    programs = installed()
     script = (
         "import knitcore as k, importlib.util as u; chart = k.StitchChart.parse('KP/PK');"
         "print(k.predict(chart, k.material('acrylic')).course.modulus_n_per_mm > 0,"
@@ -113,16 +110,6 @@ def test_the_library_alone_is_light(installed: Callable[..., Path], tmp_path: Pa
     )
     assert run(programs / "python", "-c", script, cwd=tmp_path).split() == ["True", "None", "None"]
     assert json.loads(run(programs / "knitcore", *PREDICT, cwd=tmp_path))["rows"]
-
-
-def test_the_client_installs_alone(installed: Callable[..., Path], tmp_path: Path) -> None:
-    programs = installed("knitcore_client")
-    script = (
-        "import knitcore_client as k, importlib.util as u;"
-        "print(k.__version__, u.find_spec('numpy'), u.find_spec('knitcore'))"
-    )
-    printed = run(programs / "python", "-c", script, cwd=tmp_path)
-    assert printed.split() == [VERSION, "None", "None"]
 
 
 def test_it_runs_without_being_installed(wheels: Path, tmp_path: Path) -> None:

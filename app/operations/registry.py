@@ -1,9 +1,8 @@
 """The registry of operations, which modules in folders of subjects declare.
 
 Each ``Operation`` that a module holds is one. Routes (:mod:`app.service.api.operations`), commands
-(:mod:`app.cli.commands`), jobs (:mod:`app.service.jobs.kinds`), the client's methods
-(``scripts/client_code.py``) and the page's types (``scripts/page_types.py``) are made from it, so
-a new operation is one file here and its test.
+(:mod:`app.cli.commands`), jobs (:mod:`app.service.jobs.kinds`) and the page's types
+(``scripts/page_types.py``) are made from it, so a new operation is one file here and its test.
 """
 
 import importlib
@@ -54,8 +53,8 @@ class Operation(Generic[Request, Result]):
 
     Attributes
     ----------
-    run : the function that does it. Its name is that of the client's method, of the kind of job
-        and, by default, of the address; its annotations are the models of request and result; its
+    run : the function that does it. Its name is that of the kind of job and, by default,
+        of the address; its annotations are the models of request and result; its
         docstring is the description in the API's reference. It raises KnitcoreErrors.
     summary : one line.
     tag : heading in the API's reference.
@@ -83,7 +82,7 @@ class Operation(Generic[Request, Result]):
 
     @property
     def name(self) -> str:
-        """Name of the client's method and of the kind of job."""
+        """Name of the kind of job."""
         return self.run.__name__.rstrip("_")
 
     @cached_property

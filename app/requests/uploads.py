@@ -15,7 +15,7 @@ from pydantic_core import PydanticCustomError
 from .base import RequestModel
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
-"""Files of the API's examples (``tests/example_files.py``), and the answers to them."""
+"""Files of the API's examples (``tests/example_files.py``)."""
 MAX_NAME_BYTES = 200
 """A length that every file system accepts."""
 

@@ -1,7 +1,7 @@
 """The atlas: every repeat with its predicted constants and curves, for one material.
 
 It is a table in memory and one compressed file on disk; :mod:`knitcore.design.atlas_build` makes
-it, :mod:`knitcore.design.atlas_yarn` improves it from the yarn level.
+it.
 """
 
 from __future__ import annotations

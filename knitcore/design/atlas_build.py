@@ -17,7 +17,6 @@ from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
 from knitcore.materials import Interval, Material, as_material
-from knitcore.prediction.learned import SweptChart
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Prediction
 
@@ -112,12 +111,10 @@ def predict_repeats(task: AtlasTask) -> dict[str, Any]:
     return {"entries": entries}
 
 
-def predict_repeat(
-    repeat: StitchChart, material: Material, swept: SweptChart | None = None
-) -> Prediction:
-    """Prediction for a large cloth of a repeat, from its yarn-level sweep if there is one."""
+def predict_repeat(repeat: StitchChart, material: Material) -> Prediction:
+    """Prediction for a large cloth of a repeat."""
     # two repeats each way, so that it is not read as a swatch with edges
-    return predict(repeat.tile(2, 2), material, swept=swept)
+    return predict(repeat.tile(2, 2), material)
 
 
 def entry_of(prediction: Prediction) -> Entry:

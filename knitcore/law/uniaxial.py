@@ -12,7 +12,7 @@ from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
-from knitcore.law.stiffening import StiffeningForm, stiffening
+from knitcore.law.stiffening import stiffening
 
 _HALVINGS = 52
 """Halvings that reduce an interval to the rounding error of a double."""
@@ -41,25 +41,24 @@ def uniaxial_response(
     strain: ArrayLike,
     *,
     transverse: Transverse = Transverse.FREE,
-    form: StiffeningForm = StiffeningForm.FULL,
 ) -> UniaxialCurve:
     """Pull a sheet to the given strains (an array of any length).
 
     Raises
     ------
     InputError
-        If a strain reaches the lock-up of the full law, or leaves no free transverse equilibrium.
+        If a strain reaches the lock-up.
     """
     axial = np.atleast_1d(as_numbers("strain", strain, "Give finite strains."))
     if not np.all(np.isfinite(axial)):
         raise InputError("strain", "has values that are not numbers.", "Give finite strains.")
-    check_below_lock_up(law, direction, float(axial.max(initial=0.0)), form)
+    check_below_lock_up(law, direction, float(axial.max(initial=0.0)))
     across = (
         np.zeros_like(axial)
         if transverse is Transverse.FIXED
-        else free_transverse_strains(law, direction, axial, form)
+        else free_transverse_strains(law, direction, axial)
     )
-    stress = law.stress(*_pair(direction, axial, across), form)[direction.axis]
+    stress = law.stress(*_pair(direction, axial, across))[direction.axis]
     return UniaxialCurve(strain=axial, transverse_strain=across, stress=stress)
 
 
@@ -146,13 +145,8 @@ def _by_newton(
     return strain
 
 
-def check_below_lock_up(
-    law: ConstitutiveLaw,
-    direction: Direction,
-    strain: float,
-    form: StiffeningForm = StiffeningForm.FULL,
-) -> None:
-    """Refuse a strain at or beyond the lock-up of the full law.
+def check_below_lock_up(law: ConstitutiveLaw, direction: Direction, strain: float) -> None:
+    """Refuse a strain at or beyond the lock-up.
 
     Raises
     ------
@@ -160,7 +154,7 @@ def check_below_lock_up(
         Naming the largest strain that is accepted.
     """
     lock_up = law.lock_up_strain(direction)
-    if form is StiffeningForm.FULL and strain >= lock_up:
+    if strain >= lock_up:
         raise InputError(
             "strain",
             f"{strain:.3g} is at or beyond the lock-up of this fabric {direction}-wise.",
@@ -169,20 +163,13 @@ def check_below_lock_up(
 
 
 def free_transverse_strains(
-    law: ConstitutiveLaw,
-    direction: Direction,
-    axial: Array,
-    form: StiffeningForm = StiffeningForm.FULL,
-    *,
-    start: Array | None = None,
+    law: ConstitutiveLaw, direction: Direction, axial: Array, *, start: Array | None = None
 ) -> Array:
     """Transverse strains at which the transverse stress vanishes, at axial strains that exist.
 
     ``start`` is about where they are.
     """
     linear = -law.poisson(direction) * axial
-    if form is StiffeningForm.PUBLISHED:
-        return np.array([_published_free_strain(law, direction, e) for e in axial])
     if law.kappa_xx == 0 and law.kappa_yy == 0 and np.all(linear <= 0):
         return linear  # slack yarn does not stiffen: the linear answer is exact
     # The transverse stress grows and is convex in the transverse strain: after its first step
@@ -195,22 +182,3 @@ def free_transverse_strains(
         if np.all(np.abs(step) <= 1e-14 * (1 + np.abs(across))):
             break
     return across
-
-
-def _published_free_strain(law: ConstitutiveLaw, direction: Direction, axial: float) -> float:
-    form, linear = StiffeningForm.PUBLISHED, -law.poisson(direction) * axial
-
-    def residual(across: float) -> float:
-        pair = _pair(direction, np.asarray(axial), np.asarray(across))
-        return float(law.stress(*pair, form=form)[direction.other.axis])
-
-    from scipy.optimize import brentq
-
-    try:
-        return float(brentq(residual, min(linear * 2, 0.0), max(linear * 2, 0.0), xtol=1e-14))
-    except ValueError:
-        raise InputError(
-            "strain",
-            f"at {axial:.3g} the {form} law has no free transverse equilibrium.",
-            "Use a smaller strain or the full law.",
-        ) from None

@@ -8,7 +8,6 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.showing import INKS
 from knitcore.chart.fabric import Direction
-from knitcore.cloth.flat.strip_figures import plotly_objects
 from knitcore.cloth.flat.strip_results import StripTest
 from knitcore.cloth.space.curl import CurledPiece
 from knitcore.draw.tubes import tube_mesh
@@ -18,6 +17,23 @@ from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
 
 YARN, CLOTH = "#d9b48a", "#c7a77f"
 SIDES = 8
+
+
+def plotly_objects() -> Any:
+    """Import ``plotly.graph_objects``.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If plotly is not installed; the message says how to install it.
+    """
+    try:
+        from plotly import graph_objects
+    except ModuleNotFoundError:
+        raise ModuleNotFoundError(
+            "Figures need plotly. Install it with: pip install 'knitcore[notebook]'", name="plotly"
+        ) from None
+    return graph_objects
 
 
 @singledispatch

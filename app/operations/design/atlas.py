@@ -1,9 +1,9 @@
 """The atlas of a material: the mechanics of every small repeat."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import click
 from pydantic import BeforeValidator, Field
@@ -11,7 +11,6 @@ from pydantic import BeforeValidator, Field
 from knitcore.chart.fabric import Direction
 from knitcore.design.atlas import INTERVAL_SOURCE, VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
-from knitcore.design.atlas_yarn import improve_atlas
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM
 
 from ...cli.options import out_option
@@ -23,7 +22,6 @@ from ...service.results.atlases import EXTENTS, Extent, repeats_of
 from ..registry import Command, Operation
 
 DIGITS = 5
-MAX_STITCHES = 8
 
 
 def _rounded(values: Iterable[float]) -> list[float]:
@@ -92,18 +90,6 @@ def _result(atlas: Atlas) -> AtlasResult:
 @click.option(
     "--repeats", type=click.Choice(get_args(Extent)), default="all", show_default=True, help=EXTENTS
 )
-@click.option(
-    "--yarn-level",
-    is_flag=True,
-    help="Then relax and stretch repeats at the yarn level, small ones first.",
-)
-@click.option(
-    "--most-stitches",
-    type=click.IntRange(1, 64),
-    default=MAX_STITCHES,
-    show_default=True,
-    help="Stitches of the largest repeat to relax at the yarn level.",
-)
 @click.option("--workers", type=click.IntRange(1), help="Processes; all cores if left out.")
 @click.option("--scheduler", metavar="tcp://…", help="Address of a Dask cluster to work on.")
 def _command(
@@ -111,27 +97,23 @@ def _command(
     context: Context,
     out: Path,
     repeats: Extent,
-    yarn_level: bool,
-    most_stitches: int,
     workers: int | None,
     scheduler: str | None,
     as_json: bool,
 ) -> AtlasResult:
-    yarn = context.material(request.material)
-    place: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
-    progress = None if as_json else _teller("repeats")
-    atlas = build_atlas(yarn, repeats_of(repeats), file=out, progress=progress, **place)
-    if yarn_level:
-        progress = None if as_json else _teller("repeats at the yarn level")
-        atlas = improve_atlas(yarn, out, most_stitches=most_stitches, progress=progress, **place)
+    atlas = build_atlas(
+        context.material(request.material),
+        repeats_of(repeats),
+        file=out,
+        workers=workers,
+        scheduler=scheduler,
+        progress=None if as_json else _show_progress,
+    )
     return _result(atlas)
 
 
-def _teller(what: str) -> Callable[[int, int], None]:
-    def progress(done: int, total: int) -> None:
-        click.echo(f"\r{done} of {total} {what}", nl=done == total, err=True)
-
-    return progress
+def _show_progress(done: int, total: int) -> None:
+    click.echo(f"\r{done} of {total} repeats", nl=done == total, err=True)
 
 
 def _lines(r: AtlasResult) -> list[str]:

@@ -49,7 +49,7 @@ def _load() -> None:
     laws = SheetModel().parameters([material("acrylic").law(Fabric.GARTER)])
     at_rest = np.eye(2).reshape(1, 4)
     law_of_point = np.zeros(1, dtype=np.uint8)
-    respond(laws, law_of_point, False, False, at_rest, np.empty((1, 4)), np.empty((1, 4, 4)))
+    respond(laws, law_of_point, False, at_rest, np.empty((1, 4)), np.empty((1, 4, 4)))
 
 
 _watch = threading.Thread(target=_end_with_service, daemon=True)

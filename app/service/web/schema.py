@@ -102,14 +102,15 @@ def install_schema(app: FastAPI) -> None:
 
     def complete() -> dict[str, Any]:
         schema = made()
-        bodies, answers = _read("requests.json"), _read("answers.json")
+        bodies = json.loads((EXAMPLES / "requests.json").read_text("utf-8"))
         for name, operation in documented_operations(schema):
             _mark_problems(operation["responses"])
             for status, response in operation["responses"].items():
                 _add_headers(int(status), response)
             if name in OPEN:
                 operation["security"] = []
-            _show(operation, bodies.get(name), answers.get(name))
+            if name in bodies:
+                operation["requestBody"]["content"]["application/json"]["example"] = bodies[name]
             for parameter in operation.get("parameters", []):
                 if parameter["in"] == "path":
                     parameter["example"] = PARAMETERS.get(parameter["name"])
@@ -141,22 +142,6 @@ def documented_operations(schema: dict[str, Any]) -> Iterator[tuple[str, dict[st
     for path, methods in schema["paths"].items():
         for method, operation in methods.items():
             yield f"{method.upper()} {path}", operation
-
-
-def _read(name: str) -> dict[str, Any]:
-    """Read examples by operation; those of answers are there after ``make examples``."""
-    file = EXAMPLES / name
-    examples: dict[str, Any] = json.loads(file.read_text("utf-8")) if file.is_file() else {}
-    return examples
-
-
-def _show(operation: dict[str, Any], request: Any, answer: Any) -> None:
-    if request is not None:
-        operation["requestBody"]["content"]["application/json"]["example"] = request
-    for status, response in operation["responses"].items():
-        shown = "application/json" in response.get("content", {}) and answer is not None
-        if int(status) < FIRST_PROBLEM and shown:
-            response["content"]["application/json"]["example"] = answer
 
 
 def _add_headers(status: int, response: dict[str, Any]) -> None:

@@ -118,7 +118,6 @@ class PieceEnergy:
             laws,
             self.law_of_point.ravel(),
             model.energy is EnergyModel.PUBLISHED,
-            model.tension_field,
             fibres,
             stress,
             stiffness,

@@ -54,7 +54,6 @@ def cloth_under(
     *,
     shear_modulus: float | None = None,
     size: RelaxedSize | None = None,
-    quarters: bool = False,
 ) -> Cloth:
     """Cloth of a chart, repeated from the piece's lower left corner along rows and columns.
 
@@ -66,8 +65,6 @@ def cloth_under(
     model : energy model by name, or with all its options.
     shear_modulus : N/mm, replaces the laws' own.
     size : relaxed size of the mean stitch, if known.
-    quarters : whether the quarters of mixed stitches have laws of their own, as in the swatch; by
-        default each patch of stitches has one, because elements are larger than stitches.
 
     Raises
     ------
@@ -85,7 +82,8 @@ def cloth_under(
                 f"Use pieces of at most {MAX_STITCHES_PER_SIDE} stitches a side.",
             )
         covering = chart.tile(rows // chart.rows, columns // chart.columns)
-        laws = quarter_laws(covering, material, size, even=not quarters)
+        # each patch of stitches has one law, because elements are larger than stitches
+        laws = quarter_laws(covering, material, size, even=True)
         sheet = chart_sheet(covering, material, model, shear_modulus, laws=laws)
         missing = extent - (sheet.grid.width_mm, sheet.grid.length_mm)
         if np.all(missing <= 1e-9 * extent):

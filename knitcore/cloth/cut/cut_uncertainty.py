@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from knitcore.base.arrays import Array
-from knitcore.base.errors import InputError
 from knitcore.cloth.cut.cut_results import PieceTest
 from knitcore.cloth.flat.margins import sampled_steps
 from knitcore.cloth.flat.strip_uncertainty import STEP, law_parameters
@@ -22,11 +21,6 @@ from knitcore.prediction.quarter_laws import SPREAD_AT
 def piece_spreads(test: PieceTest, material: Material) -> Array:
     """Standard deviations at every step, (2, steps, conditions, 2): of the forces on the edges in N
     and of the edges' mean displacements in mm, along x and y.
-
-    Raises
-    ------
-    InputError
-        If the cloth may wrinkle (``tension_field``): its forces are not linear in the laws.
     """
     constraints = test.constraints
 
@@ -49,7 +43,7 @@ def force_log_sd(
 
     Parameters
     ----------
-    test, material : as for :func:`piece_spreads`, which raises the same errors.
+    test, material : as for :func:`piece_spreads`.
     force : of the internal forces (2, nodes) at a step (from 0), and linear in them.
     """
 
@@ -79,12 +73,6 @@ def _changes(test: PieceTest, material: Material, step: int) -> Iterator[tuple[A
     of each parameter of the laws.
     """
     sheet = test.energy.cloth.sheet
-    if sheet.model.tension_field:
-        raise InputError(
-            "tension_field",
-            "there are no intervals for cloth that wrinkles.",
-            "Turn tension_field off.",
-        )
     u, spread = test.equilibria[step].displacement, test.constraints.spread
     tangent = test.energy.at(u, test.constraints.tapes).tangent
     solve = positive_definite_factor(spread.T @ tangent @ spread)

@@ -1,10 +1,9 @@
-"""The finite swatch: a chart of any stitches as a nonlinear sheet, pulled, sheared or relaxed."""
+"""The finite swatch: a chart of any stitches as a nonlinear sheet, pulled or sheared."""
 
 from knitcore.cloth.flat.fields import Fields
 from knitcore.cloth.flat.force_control import strain_at_force
 from knitcore.cloth.flat.grid import QuarterGrid
 from knitcore.cloth.flat.grid_sheet import Sheet, State
-from knitcore.cloth.flat.misfit import Misfit, misfit, relaxed_shape
 from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel
 from knitcore.cloth.flat.strip import Clamps, chart_sheet, pull, strip_test
 from knitcore.cloth.flat.strip_results import LockUp, StripTest, SwatchTest
@@ -14,7 +13,6 @@ __all__ = [
     "EnergyModel",
     "Fields",
     "LockUp",
-    "Misfit",
     "QuarterGrid",
     "Sheet",
     "SheetModel",
@@ -22,9 +20,7 @@ __all__ = [
     "StripTest",
     "SwatchTest",
     "chart_sheet",
-    "misfit",
     "pull",
-    "relaxed_shape",
     "strain_at_force",
     "strip_test",
 ]

@@ -313,9 +313,8 @@ class PathSolver:
         try:
             self._factorise(lin)
         except IndefiniteTangentError:
-            at_rest = self.sheet.at_rest
             try:
-                self._factorise(at_rest.linearise(at_rest.reference))
+                self._factorise(self.sheet.linearise(self.sheet.reference))
             except IndefiniteTangentError:
                 raise StepError(
                     "Not even the sheet at rest can be factorised: its sizes or stiffnesses "

@@ -92,9 +92,7 @@ def strain_slopes(sheet: Sheet, state: State) -> scipy.sparse.csr_array:
         units = [fibre / np.linalg.norm(fibre, axis=2, keepdims=True) for fibre in fibres]
     slopes = [
         (differences.T @ unit) / (4 * size.reshape(-1, 1, 1))
-        for differences, unit, size in zip(
-            _DIFFERENCES, units, (grid.natural_width, grid.natural_height), strict=True
-        )
+        for differences, unit, size in zip(_DIFFERENCES, units, grid.cell_size, strict=True)
     ]
     unknowns = (2 * _cell_nodes(grid)[:, :, None] + np.arange(2)).reshape(-1, 10)
     ends = np.arange(0, 2 * unknowns.size + 1, 10)
@@ -106,10 +104,8 @@ def _triangle_fibres(grid: QuarterGrid, state: State) -> tuple[Array, Array]:
     """Images (cells, 4, 2) of the unit vectors along course and wale in every triangle."""
     nodes = np.concatenate(state)[_cell_nodes(grid)]
     course, wale = (differences @ nodes for differences in _DIFFERENCES)
-    return (
-        course / grid.natural_width.reshape(-1, 1, 1),
-        wale / grid.natural_height.reshape(-1, 1, 1),
-    )
+    width, height = (size.reshape(-1, 1, 1) for size in grid.cell_size)
+    return course / width, wale / height
 
 
 def _cell_nodes(grid: QuarterGrid) -> NDArray[np.int64]:
@@ -203,4 +199,4 @@ def corner_means(grid: QuarterGrid, cells: Array) -> Array:
     rest area; NaN where there is none.
     """
     with np.errstate(invalid="ignore"):
-        return np.asarray(sums_at_corners(grid.natural_area * cells) / grid.corner_area)
+        return np.asarray(sums_at_corners(grid.cell_area * cells) / grid.corner_area)

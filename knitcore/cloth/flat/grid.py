@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
 
@@ -37,10 +37,8 @@ class QuarterGrid:
         y of the horizontal lines, increasing.
     law_of_cell : uint8 array (rows, columns)
         Which law a cell follows; for a chart, its phase code plus four times its patch.
-    natural_width, natural_height : float arrays (rows, columns), mm
-        Size of the cell's own fabric at rest. By default the size between the lines.
     cloth : bool array (rows, columns)
-        Which cells hold fabric; by default all. The others carry no load, whatever their law.
+        Which cells hold fabric. The others carry no load, whatever their law.
 
     Raises
     ------
@@ -52,8 +50,6 @@ class QuarterGrid:
     column_lines: Array
     row_lines: Array
     law_of_cell: NDArray[np.uint8]
-    natural_width: Array
-    natural_height: Array
     cloth: NDArray[np.bool_]
 
     def __post_init__(self) -> None:
@@ -65,9 +61,6 @@ class QuarterGrid:
         ):
             if lines.shape != (count + 1,) or not np.all(np.diff(lines) > 0):
                 raise InputError(name, "leaves cells without size.", "Give sizes above 0 mm.")
-        for array in (self.natural_width, self.natural_height):
-            if array.shape != (rows, columns) or not np.all(array > 0):
-                raise InputError("size", "a cell has no natural size.", "Give sizes above 0 mm.")
         check_cloth(self.cloth, rows, columns)
 
     @classmethod
@@ -85,16 +78,8 @@ class QuarterGrid:
     def between(
         cls, column_lines: Array, row_lines: Array, law_of_cell: NDArray[np.uint8]
     ) -> QuarterGrid:
-        """Make a grid of cells that are at rest as laid out between the lines."""
-        shape = law_of_cell.shape
-        return cls(
-            column_lines,
-            row_lines,
-            law_of_cell,
-            np.broadcast_to(np.diff(column_lines), shape).copy(),
-            np.broadcast_to(np.diff(row_lines)[:, None], shape).copy(),
-            np.ones(shape, dtype=bool),
-        )
+        """Make a grid of cells that all hold fabric."""
+        return cls(column_lines, row_lines, law_of_cell, np.ones(law_of_cell.shape, dtype=bool))
 
     @classmethod
     def of_chart(
@@ -110,10 +95,10 @@ class QuarterGrid:
         """The grid of a chart, each phase with its fabric's stitch size (width, height).
 
         Where fabrics of different gauge meet, a column is as wide and a row as high as its
-        quarters are on average; the natural size of each quarter stays in ``natural_width`` and
-        ``natural_height``. ``scale`` (rows, columns, 2) multiplies the width and height of each
-        stitch. ``stitch`` (rows, columns) is False where there is no stitch. With ``width_mm`` or
-        ``length_mm`` all sizes are scaled so that the fabric measures that from edge to edge.
+        quarters are on average, and they are at rest there. ``scale`` (rows, columns, 2) multiplies
+        the width and height of each stitch. ``stitch`` (rows, columns) is False where there is no
+        stitch. With ``width_mm`` or ``length_mm`` all sizes are scaled so that the fabric measures
+        that from edge to edge.
         """
         check_cells(2 * chart.rows, 2 * chart.columns)
         inside = np.ones_like(chart.purl) if stitch is None else as_stitches(stitch, chart)
@@ -134,20 +119,16 @@ class QuarterGrid:
             sizes[code] = stitch_size_mm[fabric]
         factors = np.ones((*chart.purl.shape, 2)) if scale is None else scale
         factors = factors.repeat(2, axis=0).repeat(2, axis=1)
-        natural_width, natural_height = (
-            sizes[phases, axis] / 2 * factors[..., axis] for axis in (0, 1)
+        widths, heights = (
+            _means(sizes[phases, axis] / 2 * factors[..., axis], cloth, axis) for axis in (0, 1)
         )
-        widths = _means(natural_width, cloth, axis=0)
-        heights = _means(natural_height, cloth, axis=1)
         if width_mm is not None:
             check_size_mm(width_mm, 1.0)
-            scale = width_mm / widths[cloth.any(axis=0)].sum()
-            widths, natural_width = widths * scale, natural_width * scale
+            widths = widths * (width_mm / widths[cloth.any(axis=0)].sum())
         if length_mm is not None:
             check_size_mm(1.0, length_mm)
-            scale = length_mm / heights[cloth.any(axis=1)].sum()
-            heights, natural_height = heights * scale, natural_height * scale
-        return cls(_lines(widths), _lines(heights), phases, natural_width, natural_height, cloth)
+            heights = heights * (length_mm / heights[cloth.any(axis=1)].sum())
+        return cls(_lines(widths), _lines(heights), phases, cloth)
 
     @property
     def rows(self) -> int:
@@ -171,29 +152,19 @@ class QuarterGrid:
 
     @property
     def area_mm2(self) -> float:
-        """Area of the cloth as laid out."""
-        areas = np.outer(np.diff(self.row_lines), np.diff(self.column_lines))
-        return float(areas[self.cloth].sum())
+        """Area of the cloth."""
+        return float(self.cell_area.sum())
+
+    @cached_property
+    def cell_size(self) -> tuple[Array, Array]:
+        """Width and height (mm) of each cell at rest, (rows, columns) each."""
+        width, height = np.meshgrid(np.diff(self.column_lines), np.diff(self.row_lines))
+        return width, height
 
     @property
     def dofs(self) -> int:
         """Displacement unknowns of corners and centres, constrained ones included."""
         return 2 * ((self.rows + 1) * (self.columns + 1) + self.rows * self.columns)
-
-    @property
-    def at_rest_as_laid_out(self) -> QuarterGrid:
-        """Take the laid-out sizes as natural sizes, so that no gauges misfit."""
-        plain = QuarterGrid.between(self.column_lines, self.row_lines, self.law_of_cell)
-        return replace(plain, cloth=self.cloth)
-
-    @property
-    def has_misfit(self) -> bool:
-        """True if the natural size of any cell differs from its laid-out size."""
-        laid = self.at_rest_as_laid_out
-        return not (
-            np.allclose(laid.natural_width, self.natural_width, rtol=1e-12)
-            and np.allclose(laid.natural_height, self.natural_height, rtol=1e-12)
-        )
 
     @cached_property
     def corners(self) -> Array:
@@ -224,14 +195,15 @@ class QuarterGrid:
         return used
 
     @cached_property
-    def natural_area(self) -> Array:
+    def cell_area(self) -> Array:
         """Rest area (mm²) of each cell, (rows, columns); 0 without cloth."""
-        return np.where(self.cloth, self.natural_width * self.natural_height, 0.0)
+        width, height = self.cell_size
+        return np.where(self.cloth, width * height, 0.0)
 
     @cached_property
     def corner_area(self) -> Array:
         """Rest area (mm²) of the cells that meet at each corner, (rows + 1, columns + 1)."""
-        return sums_at_corners(self.natural_area)
+        return sums_at_corners(self.cell_area)
 
     def edge(self, name: str) -> Indices:
         """Corner numbers of the outermost cloth at ``bottom``, ``top``, ``left`` or ``right``."""

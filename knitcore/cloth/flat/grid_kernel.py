@@ -24,9 +24,6 @@ from knitcore.base.compiled import compiled
 from knitcore.cloth.flat.grid import corners_of
 from knitcore.law import stiffening
 
-WRINKLED_SHARE = 0.05
-"""Share of the compressive energy that a wrinkled sheet keeps, so that its tangent has a bound."""
-
 # The edge of each triangle (its two corners, the lower number first), whether the edge runs
 # course-wise, the sign of its direction, and that of the direction from edge to centre.
 _FIRST = (0, 1, 2, 0)
@@ -79,7 +76,6 @@ class Cells(NamedTuple):
     cloth : (cells,), where there is cloth.
     width, height : (cells,), rest sizes, mm.
     published : whether the energy is that of the published model (else the full one).
-    tension_field : whether the sheet wrinkles (full model).
     """
 
     columns: int
@@ -88,7 +84,6 @@ class Cells(NamedTuple):
     width: Array
     height: Array
     published: bool
-    tension_field: bool
 
 
 class CellTangents(NamedTuple):
@@ -140,47 +135,6 @@ def _stiffened(
 
 
 @compiled
-def _wrinkled(law: Law, ex: float, ey: float) -> Response:
-    """The law relaxed by wrinkling: the least energy over all longer fibres."""
-    taut = _axial(law, ex, ey)
-    if ex <= 0.0 and ey <= 0.0:
-        slack = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    elif ey > 0.0 and taut[1] < 0.0:
-        e, _, s, kxx, kyy, kxy = _axial(law, _free(law, ey, 0), ey)
-        slack = (e, 0.0, s, 0.0, kyy - kxy * kxy / kxx, 0.0)
-    elif ex > 0.0 and taut[2] < 0.0:
-        e, s, _, kxx, kyy, kxy = _axial(law, ex, _free(law, ex, 1))
-        slack = (e, s, 0.0, kxx - kxy * kxy / kyy, 0.0, 0.0)
-    else:
-        return taut
-    r = WRINKLED_SHARE
-    return (
-        r * taut[0] + (1 - r) * slack[0],
-        r * taut[1] + (1 - r) * slack[1],
-        r * taut[2] + (1 - r) * slack[2],
-        r * taut[3] + (1 - r) * slack[3],
-        r * taut[4] + (1 - r) * slack[4],
-        r * taut[5] + (1 - r) * slack[5],
-    )
-
-
-@compiled
-def _free(law: Law, along: float, axis: int) -> float:
-    """Strain on an axis at which its stress vanishes, at a strain on the other one (above 0).
-
-    The stress is convex in the strain, so Newton's method comes down to the root from one side.
-    """
-    across = 0.0
-    for _ in range(100):
-        values = _axial(law, across, along) if axis == 0 else _axial(law, along, across)
-        step = values[1 + axis] / values[3 + axis]
-        across -= step
-        if abs(step) <= 1e-14:
-            break
-    return across
-
-
-@compiled
 def _published_point(law: Law, a0: float, a1: float, b0: float, b1: float) -> Point:
     """The published model at (a, b)."""
     shear, g = a1 + b0, law.shear_modulus
@@ -198,16 +152,13 @@ def _published_point(law: Law, a0: float, a1: float, b0: float, b1: float) -> Po
 
 
 @compiled
-def _full_point(law: Law, tension_field: bool, a0: float, a1: float, b0: float, b1: float) -> Point:
+def _full_point(law: Law, a0: float, a1: float, b0: float, b1: float) -> Point:
     """The full model at (a, b); the energy is infinite where a fibre has collapsed."""
     la, lb = math.sqrt(a0 * a0 + a1 * a1), math.sqrt(b0 * b0 + b1 * b1)
     if la < 1e-9 or lb < 1e-9:
         none = (0.0, 0.0, 0.0)
         return np.inf, (0.0, 0.0), (0.0, 0.0), none, (0.0, 0.0, 0.0, 0.0), none
-    if tension_field:
-        energy, wa, wb, waa, wbb, wab = _wrinkled(law, la - 1.0, lb - 1.0)
-    else:
-        energy, wa, wb, waa, wbb, wab = _axial(law, la - 1.0, lb - 1.0)
+    energy, wa, wb, waa, wbb, wab = _axial(law, la - 1.0, lb - 1.0)
     gamma = math.atan2(a0 * b0 + a1 * b1, a0 * b1 - a1 * b0)
     shear, wg, wgg = _shear(gamma, law.shear_modulus, law.shear_stiffening)
     # Unit vectors along each fibre (t) and a quarter turn ahead of it (n). Turning the course
@@ -247,7 +198,6 @@ def respond(
     laws: NDArray[Any],
     law_of_point: NDArray[np.uint8],
     published: bool,
-    tension_field: bool,
     fibres: Array,
     force: Array,
     stiffness: Array,
@@ -265,7 +215,7 @@ def respond(
         if published:
             energy[point], fa, fb, haa, hab, hbb = _published_point(law, a0, a1, b0, b1)
         else:
-            energy[point], fa, fb, haa, hab, hbb = _full_point(law, tension_field, a0, a1, b0, b1)
+            energy[point], fa, fb, haa, hab, hbb = _full_point(law, a0, a1, b0, b1)
         force[point] = (fa[0], fa[1], fb[0], fb[1])
         stiffness[point, 0] = (haa[0], haa[1], hab[0], hab[1])
         stiffness[point, 1] = (haa[1], haa[2], hab[2], hab[3])
@@ -283,14 +233,7 @@ def _zero(matrix: Array) -> None:
 
 @compiled
 def _triangle(
-    law: Law,
-    published: bool,
-    tension_field: bool,
-    coursewise: bool,
-    edge: Pair,
-    inner: Pair,
-    he: float,
-    hc: float,
+    law: Law, published: bool, coursewise: bool, edge: Pair, inner: Pair, he: float, hc: float
 ) -> Point:
     """Energy density of a triangle, and its derivatives by the differences of positions along its
     edge and inward, of rest lengths he and hc.
@@ -300,7 +243,7 @@ def _triangle(
     if published:
         w, wa, wb, aa, ab, bb = _published_point(law, a0, a1, b0, b1)
     else:
-        w, wa, wb, aa, ab, bb = _full_point(law, tension_field, a0, a1, b0, b1)
+        w, wa, wb, aa, ab, bb = _full_point(law, a0, a1, b0, b1)
     if not coursewise:
         wa, wb, aa, ab, bb = wb, wa, bb, (ab[0], ab[2], ab[1], ab[3]), aa
     ee, ec, cc = 1.0 / (he * he), 1.0 / (he * hc), 1.0 / (hc * hc)
@@ -421,7 +364,6 @@ def assemble(
             w, we, wc, ee, ec, cc = _triangle(
                 law,
                 cells.published,
-                cells.tension_field,
                 _COURSEWISE[t],
                 (x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]),
                 (2.0 * centre0 - x[i, 0] - x[j, 0], 2.0 * centre1 - x[i, 1] - x[j, 1]),

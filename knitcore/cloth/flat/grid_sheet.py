@@ -97,19 +97,10 @@ class Sheet:
             columns=grid.columns,
             law=grid.law_of_cell.ravel(),
             cloth=grid.cloth.ravel(),
-            width=grid.natural_width.ravel(),
-            height=grid.natural_height.ravel(),
+            width=grid.cell_size[0].ravel(),
+            height=grid.cell_size[1].ravel(),
             published=model.energy is EnergyModel.PUBLISHED,
-            tension_field=model.tension_field,
         )
-
-    def with_grid(self, grid: QuarterGrid) -> Sheet:
-        """A sheet of the same laws and model on another grid."""
-        return Sheet(grid, self.laws, self.model, self._log_sd)
-
-    def with_model(self, model: SheetModel) -> Sheet:
-        """Put the grid and its laws (symmetric already) under another model."""
-        return Sheet(self.grid, self.laws, model, self._log_sd)
 
     @cached_property
     def stress_log_sd(self) -> Array | None:
@@ -117,11 +108,6 @@ class Sheet:
         their material; None where there is none.
         """
         return None if self._log_sd is None else self._log_sd()
-
-    @property
-    def at_rest(self) -> Sheet:
-        """Take away the misfit of gauges: the sheet is stable as laid out."""
-        return self.with_grid(self.grid.at_rest_as_laid_out)
 
     @property
     def reference(self) -> State:

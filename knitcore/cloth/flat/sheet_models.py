@@ -58,8 +58,6 @@ class SheetModel:
     coupling : symmetrisation rule; by default the model's own: ``geometric`` for ``full``,
         ``script`` for ``published``, because the published figures were made with it.
     shear_modulus : N/mm, replaces the laws' assumed shear modulus if given.
-    tension_field : bool
-        Let the sheet wrinkle instead of carrying compression along a course or wale (``full``).
 
     Raises
     ------
@@ -70,16 +68,11 @@ class SheetModel:
     energy: EnergyModel = EnergyModel.FULL
     coupling: Symmetrisation | None = None
     shear_modulus: float | None = None
-    tension_field: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "energy", energy_model(self.energy))
         if self.shear_modulus is not None:
             check_positive("shear_modulus", self.shear_modulus, "N/mm", "a stiffness")
-        if self.energy is EnergyModel.PUBLISHED and self.tension_field:
-            raise InputError(
-                "model", "the published model has no tension field.", "Use the full model."
-            )
 
     @property
     def rule(self) -> Symmetrisation:

@@ -10,14 +10,13 @@ from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_count
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, InputError, Progress
-from knitcore.base.kinds import as_numbers, check_callables, check_flags, check_kind
+from knitcore.base.kinds import as_numbers, check_callables, check_kind
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.phases import as_stitches
 from knitcore.chart.stitch_chart import StitchChart, as_chart
 from knitcore.cloth.flat.equilibrium_path import Path, run_path
 from knitcore.cloth.flat.grid import QuarterGrid, check_cloth
 from knitcore.cloth.flat.grid_sheet import Sheet
-from knitcore.cloth.flat.misfit import draw_in as draw_in_path
 from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel, energy_model
 from knitcore.cloth.flat.strip_results import StripTest
 from knitcore.materials import Material, as_material
@@ -49,7 +48,6 @@ def strip_test(
     model: EnergyModel | str | SheetModel = EnergyModel.FULL,
     shear_modulus: float | None = None,
     clamps: Clamps | str = Clamps.CLAMPED,
-    draw_in: bool = False,
     stitch: NDArray[np.bool_] | None = None,
     size: RelaxedSize | None = None,
     laws: QuarterLaws | None = None,
@@ -70,9 +68,6 @@ def strip_test(
     model : energy model by name, or with all its options.
     shear_modulus : N/mm, replaces the laws' assumed one.
     clamps : gripped or sliding ends.
-    draw_in : let each fabric keep its own gauge as rest size instead of the mean grid's, so that
-        regions of different gauge pull on each other (the ends stay at the grid's size). Compressed
-        regions wrinkle: by default the model then has its tension field on.
     stitch : bool (rows, columns), where a shaped piece has stitches, row 0 at the bottom; the
         clamps hold those of its outermost rows or columns. All of the rectangle by default.
     size : relaxed size of the chart's mean stitch, if known; not used beside ``laws``.
@@ -104,14 +99,12 @@ def strip_test(
     >>> test.converged, test.strain.round(2).tolist()
     (True, [0.1, 0.2, 0.3])
     """
-    check_flags(draw_in=draw_in)
     check_callables(progress=progress, cancelled=cancelled)
     sheet = chart_sheet(
         as_chart(chart),
         as_material(material),
         model,
         shear_modulus,
-        draw_in,
         stitch=stitch,
         size=size,
         laws=laws,
@@ -133,7 +126,6 @@ def chart_sheet(
     material: Material,
     model: EnergyModel | str | SheetModel = EnergyModel.FULL,
     shear_modulus: float | None = None,
-    draw_in: bool = False,
     *,
     stitch: NDArray[np.bool_] | None = None,
     size: RelaxedSize | None = None,
@@ -147,8 +139,6 @@ def chart_sheet(
     :func:`knitcore.prediction.predict.predict`.
     """
     chosen = sheet_model(model, shear_modulus)
-    if draw_in and not isinstance(model, SheetModel) and chosen.energy is EnergyModel.FULL:
-        chosen = replace(chosen, tension_field=True)
     if stitch is not None:
         stitch = as_stitches(stitch, chart)
     if laws is not None:
@@ -158,8 +148,6 @@ def chart_sheet(
     grid = QuarterGrid.of_chart(
         chart, sizes, local.scale, stitch=stitch, width_mm=width_mm, length_mm=length_mm
     )
-    if not draw_in:
-        grid = grid.at_rest_as_laid_out
     patch = local.patch.repeat(2, axis=0).repeat(2, axis=1)
     codes = (len(PHASES) * patch + grid.law_of_cell).astype(np.uint8)
     return Sheet(replace(grid, law_of_cell=codes), local.laws, chosen, local.log_sd)
@@ -245,17 +233,7 @@ def pull(
     check_lock_up(sheet, direction, float(levels.max()))
     fixed = clamp_mask(sheet.grid, direction, clamps)
     targets = [stretched(sheet.grid, direction, e) for e in levels]
-    start, problem, seconds = None, None, 0.0
-    if sheet.grid.has_misfit:
-        drawn = draw_in_path(sheet, fixed, cancelled=cancelled)
-        problem, seconds = drawn.problem, drawn.seconds
-        start = drawn.states[-1] if drawn.states else None
-    path = (
-        run_path(sheet, fixed, targets, start=start, progress=progress, cancelled=cancelled)
-        if problem is None
-        else Path((), problem, 0.0)
-    )
-    path = replace(path, seconds=path.seconds + seconds)
+    path = run_path(sheet, fixed, targets, progress=progress, cancelled=cancelled)
     return strip_result(sheet, direction, levels, path)
 
 
@@ -306,10 +284,10 @@ def lock_up_strain(sheet: Sheet, direction: Direction) -> float:
         return float("inf")
     grid, axis = sheet.grid, direction.axis
     limits = np.array([law.lock_up_strain(direction) for law in sheet.laws])[grid.law_of_cell]
-    natural = grid.natural_width if axis == 0 else grid.natural_height
     along = 1 - axis
     through = grid.cloth.sum(axis=along) == np.count_nonzero(grid.cloth.any(axis=axis))
-    longest = np.sum(np.where(grid.cloth, natural * (1 + limits), 0.0), axis=along)[through]
+    reach = np.where(grid.cloth, grid.cell_size[axis] * (1 + limits), 0.0)
+    longest = np.sum(reach, axis=along)[through]
     return float(longest.min(initial=np.inf) / _length(grid, direction) - 1)
 
 

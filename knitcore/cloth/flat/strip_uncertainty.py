@@ -29,7 +29,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
-from knitcore.base.errors import InputError
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.cloth.flat.fields import (
     cell_strains,
@@ -126,11 +125,6 @@ class StripSpread:
     material : with the uncertainty of its laws.
     clamps : as in the test.
 
-    Raises
-    ------
-    InputError
-        If the sheet may wrinkle (``tension_field``): its forces are not linear in the laws.
-
     Examples
     --------
     >>> from knitcore import StitchChart
@@ -146,12 +140,6 @@ class StripSpread:
     def __init__(
         self, test: StripTest, material: Material, clamps: Clamps = Clamps.CLAMPED
     ) -> None:
-        if test.sheet.model.tension_field:
-            raise InputError(
-                "tension_field",
-                "there are no intervals for a sheet that wrinkles.",
-                "Turn tension_field off.",
-            )
         grid = test.sheet.grid
         fixed = clamp_mask(grid, test.direction, clamps) | ~grid.used_corners[:, None]
         self.test = test

@@ -99,10 +99,6 @@ def law_from_mapping(data: Mapping[str, Any]) -> LawFile:
     """
     nested = data.get("law", data)
     constants = _plain(nested if isinstance(nested, Mapping) else {})
-    model = data.get("sheet_model")
-    if isinstance(model, Mapping):  # where files of version 0.x kept one coupling for both
-        kappa = model.get("stiffening_coupling", 0.0)
-        constants = {"kappa_xx": kappa, "kappa_yy": kappa} | constants
     try:
         curves = _Curves.model_validate({"curves": data.get("curves", {})})
         document = LawDocument.model_validate(

@@ -1,6 +1,6 @@
 """Loading and unloading with friction: loops, lost energy, and rest sizes that remember."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,19 +95,6 @@ class Hysteresis(Result):
     lost_n_mm: Array
 
     @property
-    def last_cycle(self) -> Sweep:
-        """The last cycle as one stretch, there and back; ``jumps`` are those of the way there."""
-        there, back = self.legs[-2:]
-        stress = np.concatenate([there.stress_n_per_mm, back.stress_n_per_mm[1:]])
-        cells = (*there.cells, *back.cells[1:])
-        return Sweep(self.direction, self.zero, cells, stress, there.jumps, self.notes)
-
-    @property
-    def turn(self) -> int:
-        """Index in the last cycle at which the release begins, that of its largest strain."""
-        return len(self.legs[-2].cells) - 1
-
-    @property
     def notes(self) -> tuple[str, ...]:
         """Remarks for the user, in sentences."""
         notes = dict.fromkeys(note for leg in self.legs for note in leg.notes)
@@ -173,15 +160,12 @@ class RubbedStretch:
     state : reached so far.
     along : direction of the pull.
     coefficient : of friction between yarns.
-    across_mm : size of a stitch across the pull, by its size along it; None where it is free of
-        force.
     """
 
     state: RubbedCell
     along: Direction
     coefficient: float
     cancelled: Cancelled | None = None
-    across_mm: Callable[[float], float] | None = None
     note: str = ""
 
     def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedRepeat:
@@ -195,13 +179,8 @@ class RubbedStretch:
         del known  # the forces of friction are in the state
         check_cancelled(self.cancelled)
         if abs(size_mm - self.state.cell.cell_mm(self.along)) > _THERE * size_mm:
-            if self.across_mm is None:
-                place = (COURSE if self.along is Direction.COURSE else WALE,)
-                self._step(fixed=place, target=np.array([size_mm, size_mm]))
-            else:
-                across = self.across_mm(size_mm)
-                sizes = self.along.of((size_mm, across), (across, size_mm))
-                self._step(fixed=(COURSE, WALE), target=np.array(sizes))
+            place = (COURSE if self.along is Direction.COURSE else WALE,)
+            self._step(fixed=place, target=np.array([size_mm, size_mm]))
         return self.state.cell
 
     def release(self, stride_mm: float) -> Iterator[RelaxedRepeat]:
@@ -230,10 +209,9 @@ def pull(
     *,
     points: int = DEFAULT_POINTS,
     max_stress_n_per_mm: float | None = None,
-    across: Callable[[float], float] | None = None,
     cancelled: Cancelled | None = None,
 ) -> Leg:
-    """Pull in one direction with friction.
+    """Pull in one direction with friction, the other direction free of force.
 
     Where the yarn locks or unravels, the pull ends, with a note. The other parameters are those of
     :func:`hysteresis`.
@@ -243,8 +221,6 @@ def pull(
     begin : a relaxed repeat, which begins in its agitated state, or a state free of force that
         other pulls have left; strains and stresses refer to its size.
     max_stress_n_per_mm : stop beyond this nominal stress.
-    across : strain of the other direction as a function of that of the pull; one that is always 0
-        holds the width. By default the other direction is free of force.
 
     Raises
     ------
@@ -256,11 +232,7 @@ def pull(
     along = Direction.parse(direction)
     check_stretch(max_strain, points, max_stress_n_per_mm)
     state = begin if isinstance(begin, RubbedCell) else agitated(begin)
-    long, wide = state.cell.cell_mm(along), state.cell.cell_mm(along.other)
-    stretch = RubbedStretch(
-        state, along, coefficient, cancelled,
-        across and (lambda size_mm: wide * (1.0 + across(size_mm / long - 1.0))),
-    )  # fmt: skip
+    stretch = RubbedStretch(state, along, coefficient, cancelled)
     strain = np.linspace(0.0, max_strain, points)
     return _pulled(stretch, state.cell, strain, max_stress_n_per_mm)
 

@@ -6,29 +6,7 @@ from fastapi.testclient import TestClient
 from app.context import Context
 from app.operations.chart.curve import CurveRequest, curve
 from knitcore.base.errors import CancelledError
-from knitcore.chart.fabric import Direction, Fabric
-from knitcore.law.uniaxial import free_strains_at_stress
-from knitcore.materials import material
 from tests.app.command_line import refused, run
-
-
-def test_a_pure_fabric_has_its_law(client: TestClient) -> None:
-    arguments = ["garter", "--size", "6x6", "--material", "acrylic", "--direction", "wale"]
-    shown = run("curve", *arguments, "--points", "4")
-    law = material("acrylic").law(Fabric.GARTER)
-    expected = free_strains_at_stress(law, Direction.WALE, shown["stress_n_per_mm"])
-    assert shown["strain"] == pytest.approx(expected)
-    assert shown["provenance"] == "measured"
-    lows, highs = shown["strain_interval"]
-    assert lows[0] == highs[0] == 0
-    assert len(shown["stress_interval_n_per_mm"]) == 2
-    for low, strain, high in zip(lows[1:], shown["strain"][1:], highs[1:], strict=True):
-        assert low < strain < high
-    # cloth that narrows locks a little later than cloth held at its width
-    assert highs[-1] < 1.05 * law.lock_up_strain(Direction.WALE)
-    body = {"chart": "K\nP", "material": "acrylic", "direction": "wale"}
-    body["stress_n_per_mm"] = shown["stress_n_per_mm"]
-    assert client.post("/api/v1/curve", json=body).json()["strain"] == pytest.approx(expected)
 
 
 def test_a_wide_rib_is_learned_and_ones_own_gauge_counts(

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
-from knitcore import Fabric
-from knitcore.materials import load_library, material, save_material_file
+from knitcore.materials import material, save_material_file
 from tests.app.command_line import run
 from tests.app.rest import post, refusal
 
@@ -48,18 +47,6 @@ def test_the_pull_of_a_hand_is_told_if_asked_for(client: TestClient) -> None:
     assert low < hand["course"]["strain"] < high
     assert hand["wale"]["more_than"] == ["stockinette"]
     assert run("predict", "KKPP", "--material", "acrylic", "--hand")["hand"] == [light, hand, firm]
-
-
-@pytest.mark.parametrize("yarn", list(load_library()))
-@pytest.mark.parametrize("fabric", list(Fabric))
-def test_every_pure_fabric_has_its_table_values(yarn: str, fabric: Fabric) -> None:
-    result = run("predict", fabric, "--size", "31x31", "--material", yarn, "--laws", "published")
-    printed = load_library()[yarn].record(fabric).printed
-    for name, direction in (("Y_x", "course"), ("Y_y", "wale")):
-        modulus = result[f"modulus_{direction}_n_per_mm"]
-        assert isinstance(modulus, float)
-        assert modulus == pytest.approx(printed[name].corrected, rel=0.01)
-        assert result[f"extensibility_{direction}_mm_per_n"] == pytest.approx(1 / modulus)
 
 
 def test_a_chart_file_and_a_material_file_work(tmp_path: Path) -> None:

@@ -38,12 +38,6 @@ def test_curves_that_are_none_are_refused_by_name(curves: object, field: str) ->
     assert caught.value.field.startswith(field)
 
 
-def test_an_older_law_file_has_one_coupling_for_both_directions() -> None:
-    constants = {k: v for k, v in asdict(LAW).items() if not k.startswith("kappa")}
-    old = {"law": constants, "sheet_model": {"energy": "full", "stiffening_coupling": 0.45}}
-    assert law_from_mapping(old).law == replace(LAW, kappa_xx=0.45, kappa_yy=0.45)
-
-
 def test_constants_may_carry_their_unit() -> None:
     constants = {
         name if name.startswith("alpha") else f"{name}_n_per_mm": value

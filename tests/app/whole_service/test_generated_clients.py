@@ -10,7 +10,7 @@ import pytest
 
 from app.service.main import create_app
 
-PAGE = Path(__file__).resolve().parents[2] / "frontend"
+PAGE = Path(__file__).resolve().parents[3] / "frontend"
 PROGRAMS = Path(sys.executable).parent
 PYTHON_GENERATOR = "openapi-python-client==0.29.1"
 AS_BYTES = ("image/png", "model/gltf-binary")
