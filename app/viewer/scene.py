@@ -268,8 +268,10 @@ def round_length_mm(width_mm: float) -> float:
 
 
 def _scale_below_mm(ground: Ground) -> float:
-    """How far the scale lies below a fabric; its lowest loops reach below its own edge."""
-    stitch = float(ground.sizes_mm[..., 1].mean())
+    """How far the scale lies below a fabric; its lowest loops reach below its own edge, the farther
+    the more they are stretched.
+    """
+    stitch = float(ground.sizes_mm[..., 1].max())
     return max(SCALE_BELOW[0] * stitch, SCALE_BELOW[1] * float(ground.extent_mm[1]))
 
 
