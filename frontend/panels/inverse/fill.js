@@ -121,7 +121,7 @@ export function fromStiffness(studio) {
   /** @param {Part} part @param {number} at */
   const item = (part, at) => {
     const inputs = AXES.map(({ axis, label }) => {
-      const input = field(`Target modulus along ${label}, N/mm: ${part.name}`, 0, {
+      const input = field(`Target stiffness along ${label}, N/mm: ${part.name}`, 0, {
         min: "0.0001",
         step: "any",
         required: false,
@@ -259,8 +259,8 @@ export function fromStiffness(studio) {
     if (!targeted.length) {
       run.say({
         title: "There is no target",
-        detail: "A part needs a modulus along rows or columns.",
-        remedy: "Add a part, and give it a number.",
+        detail: "A part needs a stiffness along rows or columns.",
+        remedy: "Add a part, and say how it should be, or give it a number.",
       });
       return;
     }
@@ -388,9 +388,8 @@ export function fromStiffness(studio) {
         h("label", { class: "check" }, scattered, "Allow irregular patterns (closer match, harder to knit by hand)"),
         h("label", { class: "check" }, large, "Allow larger patterns (the first time takes up to a minute)"),
       ),
-      fillButton(studio, "fill-run", "fill", "a fill"),
+      fillButton(studio, "fill-run", "fill", "a fill", run),
     ),
-    run.element,
     answer,
   );
   chart.onSettle(measureAll);
