@@ -74,7 +74,7 @@ class SceneWriter:
         face : picture of a cloth of many stitches, for the eye that is far away.
         """
         part, ground = drawing.part, drawing.ground
-        with self._lock:
+        with self._lock, self._server.atomic():  # no scale, nor frame, of the cloth before
             self._drawing = drawing
             stitches = self._lay(exact=not self._server.get_clients())
             self._draw_rectangles(part, ground.middle_mm)

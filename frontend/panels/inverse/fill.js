@@ -244,7 +244,10 @@ export function fromStiffness(studio) {
     });
 
   const fill = async () => {
-    if (parts.some(({ wish }) => wish)) await measureAll();
+    if (parts.some(({ wish }) => wish)) {
+      const known = await run.during("Computing the parts as they are …", () => measureAll().then(() => true));
+      if (!known) return;
+    }
     const waiting = parts.find(({ wish }) => wish);
     if (waiting) {
       run.say({
